@@ -1,0 +1,31 @@
+//! Poses, twists, angles and unit conversions: the plane geometry that every other module shares.
+//!
+//! Conventions follow ROS REP 103: metres and radians, x forward, y left, angles counter-clockwise. Millimetres
+//! and degrees, which the book, EyeSim's files and the command line use, are converted here and nowhere else.
+
+pub mod math;
+mod pose;
+mod shapes;
+pub mod units;
+
+pub use pose::{Pose, Twist, angle_difference, normalize_angle};
+pub use shapes::{Aabb, Segment};
+
+/// A point in the plane, in metres.
+pub type Point = nalgebra::Point2<f64>;
+
+/// A vector in the plane, in metres.
+pub type Vector = nalgebra::Vector2<f64>;
+
+/// The cross product's z component, `a.x * b.y - a.y * b.x`: positive when `b` lies counter-clockwise of `a`.
+#[inline]
+pub fn cross(a: Vector, b: Vector) -> f64 {
+    a.x * b.y - a.y * b.x
+}
+
+/// The unit vector that points in the direction `angle`.
+#[inline]
+pub fn direction(angle: f64) -> Vector {
+    let (sin, cos) = math::sin_cos(angle);
+    Vector::new(cos, sin)
+}

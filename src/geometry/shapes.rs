@@ -1,0 +1,87 @@
+use super::{Point, Vector};
+
+/// A straight line between two points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// One end.
+    pub a: Point,
+    /// The other end.
+    pub b: Point,
+}
+
+impl Segment {
+    /// A segment between two points, which may coincide.
+    pub const fn new(a: Point, b: Point) -> Self {
+        Self { a, b }
+    }
+
+    /// The length in metres.
+    pub fn length(&self) -> f64 {
+        (self.b - self.a).norm()
+    }
+
+    /// The point of the segment nearest to `point`.
+    #[inline]
+    pub fn closest_point(&self, point: Point) -> Point {
+        let along = self.b - self.a;
+        let squared = along.norm_squared();
+        if squared == 0.0 {
+            return self.a;
+        }
+        let t = ((point - self.a).dot(&along) / squared).clamp(0.0, 1.0);
+        self.a + along * t
+    }
+
+    /// The distance to a point in metres.
+    #[inline]
+    pub fn distance_to(&self, point: Point) -> f64 {
+        (self.closest_point(point) - point).norm()
+    }
+}
+
+/// An axis-aligned box.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Aabb {
+    /// The corner with the smallest coordinates.
+    pub min: Point,
+    /// The corner with the largest coordinates.
+    pub max: Point,
+}
+
+impl Aabb {
+    /// A box between two opposite corners, in any order.
+    pub fn new(a: Point, b: Point) -> Self {
+        Self { min: a.inf(&b), max: a.sup(&b) }
+    }
+
+    /// The smallest box around some points; `None` without points.
+    pub fn around(points: impl IntoIterator<Item = Point>) -> Option<Self> {
+        points.into_iter().fold(None, |bounds: Option<Self>, point| match bounds {
+            None => Some(Self { min: point, max: point }),
+            Some(b) => Some(Self { min: b.min.inf(&point), max: b.max.sup(&point) }),
+        })
+    }
+
+    /// Width and height in metres.
+    pub fn size(&self) -> Vector {
+        self.max - self.min
+    }
+
+    /// Whether a point lies inside or on the border.
+    pub fn contains(&self, point: Point) -> bool {
+        self.min.x <= point.x && point.x <= self.max.x && self.min.y <= point.y && point.y <= self.max.y
+    }
+
+    /// The box grown by `margin` metres on every side.
+    #[must_use]
+    pub fn inflated(&self, margin: f64) -> Self {
+        let m = Vector::new(margin, margin);
+        Self { min: self.min - m, max: self.max + m }
+    }
+
+    /// The smallest box around both.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        Self { min: self.min.inf(&other.min), max: self.max.sup(&other.max) }
+    }
+}

@@ -1,0 +1,29 @@
+use super::Result;
+
+/// Motors that a program drives one by one, below the v-omega interface. They are numbered from 1: left, right; or
+/// front left, front right, back left, back right.
+#[auto_impl::auto_impl(&mut, Box)]
+#[ambassador::delegatable_trait]
+pub trait Motors {
+    /// Drives a motor with a fraction of its full speed, -1 to 1, until the next command.
+    fn set_motor(&mut self, motor: u8, fraction: f64) -> Result<()>;
+}
+
+/// Servos, numbered from 1.
+#[auto_impl::auto_impl(&mut, Box)]
+#[ambassador::delegatable_trait]
+pub trait Servos {
+    /// Moves a servo to a position, -1 (full left or down) to 1 (full right or up).
+    fn set_servo(&mut self, servo: u8, position: f64) -> Result<()>;
+}
+
+/// Encoders on the motors' shafts, numbered as the motors.
+#[auto_impl::auto_impl(&mut, Box)]
+#[ambassador::delegatable_trait]
+pub trait Encoders {
+    /// Ticks since the start or the last reset.
+    fn encoder(&mut self, motor: u8) -> Result<i64>;
+
+    /// Sets an encoder's count to zero. Odometry is not affected.
+    fn reset_encoder(&mut self, motor: u8) -> Result<()>;
+}

@@ -1,0 +1,14 @@
+use super::Result;
+
+/// A robot's clock, the only source of time that an algorithm has.
+///
+/// In the simulator it is virtual: it moves when the program waits, and a little with every call.
+#[auto_impl::auto_impl(&mut, Box)]
+#[ambassador::delegatable_trait]
+pub trait Clock {
+    /// Seconds since the robot was started.
+    fn now(&mut self) -> Result<f64>;
+
+    /// Lets the given number of seconds pass. Zero or less returns at once.
+    fn wait(&mut self, seconds: f64) -> Result<()>;
+}

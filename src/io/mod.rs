@@ -1,0 +1,34 @@
+//! What any robot can be asked to do, whatever it is made of.
+//!
+//! One capability is one small trait. An algorithm asks for what it uses, `fn run(robot: &mut (impl Clock + Drive +
+//! Lidar))`, and so runs on a simulated robot, on a recording and on a real one. [`RobotIo`] is all of them at once.
+//! Every trait works behind `&mut R`, `Box<R>` and `dyn`.
+
+mod actuators;
+mod clock;
+mod drive;
+mod error;
+mod keys;
+mod lidar;
+mod psd;
+mod radio;
+
+pub use actuators::{Encoders, Motors, Servos};
+pub use clock::Clock;
+pub use drive::Drive;
+pub use error::{Error, ErrorKind, Result};
+pub use keys::{Key, Keys};
+pub use lidar::{Lidar, LidarScan, LidarSettings};
+pub use psd::{DistanceSensors, Psd};
+pub use radio::{Radio, RadioMessage};
+
+/// A full robot: every capability at once.
+pub trait RobotIo:
+    Clock + Drive + DistanceSensors + Lidar + Keys + Radio + Motors + Servos + Encoders
+{
+}
+
+impl<R> RobotIo for R where
+    R: Clock + Drive + DistanceSensors + Lidar + Keys + Radio + Motors + Servos + Encoders + ?Sized
+{
+}

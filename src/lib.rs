@@ -1,0 +1,6 @@
+//! Every system of a robotics textbook as a library.
+
+pub mod geometry;
+pub mod io;
+pub mod random;
+pub mod world;

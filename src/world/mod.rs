@@ -1,0 +1,19 @@
+//! What a world and a robot are, and every file format that describes one.
+//!
+//! A [`Scene`] is a [`World`] with robots in it. The types are plain data in SI units; the readers and writers of
+//! the EyeSim and ROS formats are in [`formats`].
+
+mod colour;
+pub mod formats;
+mod object;
+mod robot;
+mod scene;
+mod wall;
+
+pub use colour::Colour;
+pub use object::{Marker, Object, ObjectKind, Shape};
+pub use robot::{
+    CameraSpec, DriveSpec, Footprint, LidarSpec, MotorSpec, Mount, PsdSpec, RobotSpec, SpecError,
+};
+pub use scene::{Place, RobotPlacement, Scene, Terrain, World};
+pub use wall::Wall;

@@ -1,0 +1,119 @@
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::Colour;
+use crate::geometry::{Point, Pose};
+
+/// A solid that stands on the floor, upright.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Shape {
+    /// A cylinder, or an upright capsule.
+    Cylinder {
+        /// Metres from the axis to the surface.
+        radius: f64,
+        /// Metres from foot to top.
+        height: f64,
+    },
+    /// A ball.
+    Sphere {
+        /// Metres.
+        radius: f64,
+    },
+    /// A cuboid.
+    Box {
+        /// Metres along the object's x axis.
+        length: f64,
+        /// Metres along the object's y axis.
+        width: f64,
+        /// Metres from foot to top.
+        height: f64,
+    },
+}
+
+impl Shape {
+    /// Metres from the foot to the top.
+    pub fn height(&self) -> f64 {
+        match *self {
+            Shape::Cylinder { height, .. } | Shape::Box { height, .. } => height,
+            Shape::Sphere { radius } => 2.0 * radius,
+        }
+    }
+
+    /// The radius of the circle around the object's axis that just holds it.
+    pub fn bounding_radius(&self) -> f64 {
+        match *self {
+            Shape::Cylinder { radius, .. } | Shape::Sphere { radius } => radius,
+            Shape::Box { length, width, .. } => 0.5 * crate::geometry::math::hypot(length, width),
+        }
+    }
+}
+
+/// What all objects of one kind share: EyeSim's `.esObj`, or one of its predefined objects.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObjectKind {
+    /// The name under which scenes place it.
+    pub name: String,
+    /// Its outline.
+    pub shape: Shape,
+    /// Its colour.
+    pub colour: Colour,
+    /// Kilograms.
+    pub mass: f64,
+    /// Whether it stays where it is when something pushes it.
+    pub fixed: bool,
+    /// Cubic metres of water that it displaces, for things that float.
+    pub buoyancy: Option<f64>,
+    /// The 3D model that EyeSim shows, if any.
+    pub model: Option<PathBuf>,
+}
+
+impl ObjectKind {
+    /// A kind with a name, a shape and a colour, of 1 kg, movable.
+    pub fn new(name: impl Into<String>, shape: Shape, colour: Colour) -> Self {
+        Self { name: name.into(), shape, colour, mass: 1.0, fixed: false, buoyancy: None, model: None }
+    }
+
+    /// EyeSim's predefined kinds, matched without regard to case: `can`, `soccer`, `golf`, `crate`.
+    pub fn predefined(name: &str) -> Option<Self> {
+        let (shape, colour, mass) = match name.to_ascii_lowercase().as_str() {
+            "can" => (Shape::Cylinder { radius: 0.033, height: 0.115 }, Colour::RED, 0.4),
+            "soccer" => (Shape::Sphere { radius: 0.110 }, Colour::WHITE, 0.43),
+            "golf" => (Shape::Sphere { radius: 0.0215 }, Colour::from_hex(0xff_a5_00), 0.046),
+            "crate" => {
+                (Shape::Box { length: 0.2, width: 0.2, height: 0.2 }, Colour::from_hex(0x9c_6b_30), 2.0)
+            }
+            _ => return None,
+        };
+        Some(Self { mass, ..Self::new(name, shape, colour) })
+    }
+}
+
+/// An object in a world.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Object {
+    /// What it is.
+    pub kind: Arc<ObjectKind>,
+    /// Where its axis stands, and how it is turned.
+    pub pose: Pose,
+    /// Metres between the floor and its foot.
+    pub elevation: f64,
+}
+
+impl Object {
+    /// An object on the floor.
+    pub fn new(kind: Arc<ObjectKind>, pose: Pose) -> Self {
+        Self { kind, pose, elevation: 0.0 }
+    }
+}
+
+/// A coloured mark on the floor, which no robot touches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Marker {
+    /// Its middle.
+    pub position: Point,
+    /// Its colour.
+    pub colour: Colour,
+    /// Opacity, 0 to 255.
+    pub alpha: u8,
+}

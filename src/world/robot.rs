@@ -1,0 +1,341 @@
+use std::path::PathBuf;
+
+use crate::geometry::{Aabb, units};
+
+/// A description of a robot: its drive, outline and sensors. EyeSim's `.robi`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RobotSpec {
+    /// The name under which scenes place it.
+    pub name: String,
+    /// How it moves.
+    pub drive: DriveSpec,
+    /// What its motors can do.
+    pub motor: MotorSpec,
+    /// Its outline on the floor, about the middle of its driven axle.
+    pub footprint: Footprint,
+    /// Metres from the floor to its top: what other robots' sensors see.
+    pub height: f64,
+    /// Kilograms.
+    pub mass: f64,
+    /// Its position-sensitive devices: single-ray distance sensors.
+    pub psds: Vec<PsdSpec>,
+    /// Its laser scanner, if it has one.
+    pub lidar: Option<LidarSpec>,
+    /// Its camera, if it has one.
+    pub camera: Option<CameraSpec>,
+    /// The 3D model that EyeSim shows, if any.
+    pub model: Option<PathBuf>,
+}
+
+/// How a robot moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum DriveSpec {
+    /// Two driven wheels side by side.
+    Differential {
+        /// Metres.
+        wheel_diameter: f64,
+        /// Metres between the wheels' contact points.
+        track: f64,
+        /// The fastest that a wheel turns, in radians per second.
+        max_wheel_speed: f64,
+        /// Encoder ticks in one turn of a wheel.
+        ticks_per_turn: f64,
+    },
+    /// Driven rear wheels and steered front wheels, as a car.
+    Ackermann {
+        /// Metres.
+        wheel_diameter: f64,
+        /// Metres between the wheels of an axle.
+        track: f64,
+        /// Metres between the axles.
+        wheelbase: f64,
+        /// The largest steering angle of the bicycle model, in radians.
+        max_steering: f64,
+        /// The fastest that a wheel turns, in radians per second.
+        max_wheel_speed: f64,
+        /// Encoder ticks in one turn of a wheel.
+        ticks_per_turn: f64,
+    },
+    /// Four Mecanum wheels.
+    Omni {
+        /// Metres.
+        wheel_diameter: f64,
+        /// Metres between left and right wheels.
+        track: f64,
+        /// Metres between front and rear wheels.
+        wheelbase: f64,
+        /// The fastest that a wheel turns, in radians per second.
+        max_wheel_speed: f64,
+        /// Encoder ticks in one turn of a wheel.
+        ticks_per_turn: f64,
+    },
+}
+
+/// What a robot's motors can do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotorSpec {
+    /// The time constant, in seconds, of the first-order lag with which wheel speed follows the command.
+    pub time_constant: f64,
+    /// The largest change of a wheel's rim speed, in metres per second squared.
+    pub max_acceleration: f64,
+}
+
+impl Default for MotorSpec {
+    /// A lag of 0.2 s, the middle of the range in which the book's programs work, and 2 m/s².
+    fn default() -> Self {
+        Self { time_constant: 0.2, max_acceleration: 2.0 }
+    }
+}
+
+/// A robot's outline on the floor, in its own frame.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Footprint {
+    /// A disc about the middle of the driven axle.
+    Disc {
+        /// Metres.
+        radius: f64,
+    },
+    /// A rectangle along the robot's axes.
+    Rectangle(Aabb),
+}
+
+impl Footprint {
+    /// The radius of the circle about the robot's origin that just holds the outline.
+    pub fn bounding_radius(&self) -> f64 {
+        match self {
+            Footprint::Disc { radius } => *radius,
+            Footprint::Rectangle(b) => {
+                let x = b.min.x.abs().max(b.max.x.abs());
+                let y = b.min.y.abs().max(b.max.y.abs());
+                crate::geometry::math::hypot(x, y)
+            }
+        }
+    }
+}
+
+/// Where a sensor sits on a robot.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Mount {
+    /// Metres ahead of the middle of the driven axle.
+    pub x: f64,
+    /// Metres to the left of it.
+    pub y: f64,
+    /// Metres above the floor.
+    pub z: f64,
+    /// Radians counter-clockwise from straight ahead.
+    pub yaw: f64,
+}
+
+/// A position-sensitive device: a distance sensor of one ray.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PsdSpec {
+    /// The number by which programs read it.
+    pub id: u8,
+    /// Its name in the robot's description.
+    pub name: String,
+    /// Where it sits, and where it points.
+    pub mount: Mount,
+    /// The farthest distance that it reports, in metres.
+    pub max_range: f64,
+}
+
+impl PsdSpec {
+    /// RoBIOS reports nothing beyond 9.999 m.
+    pub const DEFAULT_MAX_RANGE: f64 = 9.999;
+}
+
+/// A laser scanner.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LidarSpec {
+    /// Where it sits. The scan is centred on its yaw.
+    pub mount: Mount,
+    /// The angle that a scan covers, in radians, at most a full turn.
+    pub field_of_view: f64,
+    /// Radians by which the beams point above the horizontal.
+    pub tilt: f64,
+    /// Beams in a scan.
+    pub points: usize,
+    /// The farthest distance that it reports, in metres.
+    pub max_range: f64,
+}
+
+impl Default for LidarSpec {
+    /// 360 level beams all round, 0.1 m above the floor, as far as RoBIOS reports.
+    fn default() -> Self {
+        Self {
+            mount: Mount { z: 0.1, ..Mount::default() },
+            field_of_view: std::f64::consts::TAU,
+            tilt: 0.0,
+            points: 360,
+            max_range: PsdSpec::DEFAULT_MAX_RANGE,
+        }
+    }
+}
+
+/// A camera on a pan-tilt head.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CameraSpec {
+    /// Where it sits; the yaw is the pan at rest.
+    pub mount: Mount,
+    /// Radians above the horizontal at rest.
+    pub tilt: f64,
+    /// The largest pan to either side, in radians.
+    pub max_pan: f64,
+    /// The largest tilt up or down, in radians.
+    pub max_tilt: f64,
+    /// The horizontal field of view, in radians.
+    pub field_of_view: f64,
+}
+
+/// What is wrong with a robot's description.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("robot {robot}: {parameter} is {value}; expected {expected}")]
+pub struct SpecError {
+    robot: String,
+    parameter: &'static str,
+    value: f64,
+    expected: &'static str,
+}
+
+impl RobotSpec {
+    /// EyeSim's S4: a small differential drive robot with four PSDs, a lidar and a camera.
+    ///
+    /// Wheels, encoders and track are those of its description file; the outline is a disc of 60 mm.
+    pub fn s4() -> Self {
+        Self {
+            name: "S4".into(),
+            drive: DriveSpec::Differential {
+                wheel_diameter: 0.054,
+                track: 0.090,
+                max_wheel_speed: units::from_deg(3600.0),
+                ticks_per_turn: 1100.0,
+            },
+            motor: MotorSpec::default(),
+            footprint: Footprint::Disc { radius: 0.060 },
+            height: 0.090,
+            mass: 0.5,
+            psds: four_psds(0.060, 0.045, 0.030),
+            lidar: Some(LidarSpec::default()),
+            camera: Some(CameraSpec {
+                mount: Mount { x: 0.062, y: 0.0, z: 0.060, yaw: 0.0 },
+                tilt: 0.0,
+                max_pan: units::from_deg(90.0),
+                max_tilt: units::from_deg(90.0),
+                field_of_view: units::from_deg(60.0),
+            }),
+            model: None,
+        }
+    }
+
+    /// EyeSim's LabBot: a larger differential drive robot.
+    pub fn labbot() -> Self {
+        Self {
+            name: "LabBot".into(),
+            drive: DriveSpec::Differential {
+                wheel_diameter: 0.045,
+                track: 0.140,
+                max_wheel_speed: units::from_deg(3600.0),
+                ticks_per_turn: 540.0,
+            },
+            footprint: Footprint::Disc { radius: 0.090 },
+            height: 0.120,
+            mass: 1.5,
+            psds: four_psds(0.045, 0.027, 0.040),
+            ..Self::s4()
+        }
+    }
+
+    /// A robot that every scene knows by name, without regard to case: `S4` or `LabBot`.
+    pub fn predefined(name: &str) -> Option<Self> {
+        match name.to_ascii_lowercase().as_str() {
+            "s4" => Some(Self::s4()),
+            "labbot" => Some(Self::labbot()),
+            _ => None,
+        }
+    }
+
+    /// Checks that every length, speed and count makes sense.
+    pub fn validate(&self) -> Result<(), SpecError> {
+        let check = |parameter, value: f64, good: bool, expected| {
+            if good {
+                Ok(())
+            } else {
+                Err(SpecError { robot: self.name.clone(), parameter, value, expected })
+            }
+        };
+        let positive = |parameter, value: f64| {
+            check(parameter, value, value.is_finite() && value > 0.0, "a positive, finite number")
+        };
+        match self.drive {
+            DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn } => {
+                positive("wheel diameter", wheel_diameter)?;
+                positive("track", track)?;
+                positive("maximal wheel speed", max_wheel_speed)?;
+                positive("ticks per turn", ticks_per_turn)?;
+            }
+            DriveSpec::Ackermann {
+                wheel_diameter,
+                track,
+                wheelbase,
+                max_wheel_speed,
+                ticks_per_turn,
+                max_steering,
+            } => {
+                positive("wheel diameter", wheel_diameter)?;
+                positive("track", track)?;
+                positive("wheelbase", wheelbase)?;
+                positive("maximal steering", max_steering)?;
+                positive("maximal wheel speed", max_wheel_speed)?;
+                positive("ticks per turn", ticks_per_turn)?;
+            }
+            DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn } => {
+                positive("wheel diameter", wheel_diameter)?;
+                positive("track", track)?;
+                positive("wheelbase", wheelbase)?;
+                positive("maximal wheel speed", max_wheel_speed)?;
+                positive("ticks per turn", ticks_per_turn)?;
+            }
+        }
+        let lag = self.motor.time_constant;
+        check("motor time constant", lag, lag.is_finite() && lag >= 0.0, "a finite number of at least 0")?;
+        positive("maximal acceleration", self.motor.max_acceleration)?;
+        positive("footprint radius", self.footprint.bounding_radius())?;
+        positive("height", self.height)?;
+        for psd in &self.psds {
+            positive("PSD maximal range", psd.max_range)?;
+        }
+        if let Some(lidar) = &self.lidar {
+            let (fov, points) = (lidar.field_of_view, lidar.points as f64);
+            let full_turn = std::f64::consts::TAU * (1.0 + 1e-9);
+            check(
+                "lidar field of view",
+                fov,
+                fov > 0.0 && fov <= full_turn,
+                "more than 0 and at most a full turn",
+            )?;
+            check("lidar points", points, (1.0..=100_000.0).contains(&points), "1 to 100000")?;
+            positive("lidar maximal range", lidar.max_range)?;
+        }
+        Ok(())
+    }
+}
+
+/// PSDs 1 to 4 at the front, left, right and back, as the simulator numbers them.
+fn four_psds(ahead: f64, aside: f64, z: f64) -> Vec<PsdSpec> {
+    [
+        (1, "PSD_FRONT", ahead, 0.0, 0.0),
+        (2, "PSD_LEFT", ahead - 0.005, aside, 90.0),
+        (3, "PSD_RIGHT", ahead - 0.005, -aside, -90.0),
+        (4, "PSD_BACK", -ahead, 0.0, 180.0),
+    ]
+    .into_iter()
+    .map(|(id, name, x, y, yaw)| PsdSpec {
+        id,
+        name: name.into(),
+        mount: Mount { x, y, z, yaw: units::from_deg(yaw) },
+        max_range: PsdSpec::DEFAULT_MAX_RANGE,
+    })
+    .collect()
+}

@@ -1,0 +1,139 @@
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::{Marker, Object, RobotSpec, Wall};
+use crate::geometry::{Aabb, Point, Pose, Vector};
+
+/// A place without robots: floor, walls, objects and marks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct World {
+    /// The floor. Nothing stops a robot at its edge; only walls do.
+    pub floor: Aabb,
+    /// An image stretched over the floor.
+    pub floor_texture: Option<PathBuf>,
+    /// The walls.
+    pub walls: Vec<Wall>,
+    /// The objects, in the order in which they were placed.
+    pub objects: Vec<Object>,
+    /// Marks on the floor.
+    pub markers: Vec<Marker>,
+    /// The start pose that the world file itself names.
+    pub start: Option<Pose>,
+    /// Named places: the letters of a maze.
+    pub places: Vec<Place>,
+    /// Hills.
+    pub terrain: Option<Terrain>,
+    /// Metres of the water's surface above the floor.
+    pub water_level: Option<f64>,
+}
+
+impl World {
+    /// An empty floor from (0, 0), `width` metres along x and `height` metres along y, without walls.
+    pub fn empty(width: f64, height: f64) -> Self {
+        Self {
+            floor: Aabb::new(Point::origin(), Point::new(width, height)),
+            floor_texture: None,
+            walls: Vec::new(),
+            objects: Vec::new(),
+            markers: Vec::new(),
+            start: None,
+            places: Vec::new(),
+            terrain: None,
+            water_level: None,
+        }
+    }
+
+    /// A floor from (0, 0) with walls on its four edges.
+    ///
+    /// ```
+    /// let world = roverlab::world::World::walled(2.0, 1.0);
+    /// assert_eq!(world.walls.len(), 4);
+    /// ```
+    pub fn walled(width: f64, height: f64) -> Self {
+        let mut world = Self::empty(width, height);
+        world.add_loop(&[
+            Point::new(0.0, 0.0),
+            Point::new(width, 0.0),
+            Point::new(width, height),
+            Point::new(0.0, height),
+        ]);
+        world
+    }
+
+    /// Adds walls along a closed line through some points.
+    pub fn add_loop(&mut self, corners: &[Point]) {
+        let next = corners.iter().cycle().skip(1);
+        self.walls.extend(corners.iter().zip(next).map(|(&a, &b)| Wall::new(a, b)));
+    }
+
+    /// The smallest box around floor, walls and objects.
+    pub fn bounds(&self) -> Aabb {
+        let walls = self.walls.iter().flat_map(|w| [w.line.a, w.line.b]);
+        let objects = self.objects.iter().flat_map(|o| {
+            let r = o.kind.shape.bounding_radius();
+            let reach = Vector::new(r, r);
+            [o.pose.position() - reach, o.pose.position() + reach]
+        });
+        Aabb::around(walls.chain(objects)).map_or(self.floor, |b| b.union(&self.floor))
+    }
+}
+
+/// A named place in a world: a letter in a maze file, to which scenes refer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// The letter as written.
+    pub letter: char,
+    /// The middle of its cell.
+    pub position: Point,
+    /// The heading that the letter stands for, if it stands for one.
+    pub heading: Option<f64>,
+}
+
+/// Hills as a height image over the floor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Terrain {
+    /// Metres along x that the image covers.
+    pub width: f64,
+    /// Metres along y that the image covers.
+    pub height: f64,
+    /// Metres above the floor of a white pixel; black is 0.
+    pub max_elevation: f64,
+    /// The gray image.
+    pub image: PathBuf,
+}
+
+/// A robot placed in a world.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RobotPlacement {
+    /// What it is.
+    pub spec: Arc<RobotSpec>,
+    /// Where it starts.
+    pub pose: Pose,
+    /// Metres between the floor and its foot, for robots that swim, dive or are dropped.
+    pub elevation: f64,
+    /// The program that a simulation script names for it, as written.
+    pub program: Option<String>,
+}
+
+impl RobotPlacement {
+    /// A robot on the floor, without a program.
+    pub fn new(spec: Arc<RobotSpec>, pose: Pose) -> Self {
+        Self { spec, pose, elevation: 0.0, program: None }
+    }
+}
+
+/// A world with robots in it: what a simulation starts from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Floor, walls, objects and marks.
+    pub world: World,
+    /// The robots, in the order in which they were placed.
+    pub robots: Vec<RobotPlacement>,
+}
+
+impl Scene {
+    /// A world with one robot.
+    pub fn with_robot(world: World, spec: RobotSpec, pose: Pose) -> Self {
+        Self { world, robots: vec![RobotPlacement::new(Arc::new(spec), pose)] }
+    }
+}
