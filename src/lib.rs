@@ -2,5 +2,6 @@
 
 pub mod geometry;
 pub mod io;
+pub mod kinematics;
 pub mod random;
 pub mod world;

@@ -1,0 +1,73 @@
+use super::Displacement;
+use crate::geometry::Twist;
+
+/// Rim speeds of the two driven wheels, in metres per second.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct WheelSpeeds {
+    /// The left wheel.
+    pub left: f64,
+    /// The right wheel.
+    pub right: f64,
+}
+
+/// The geometry of a drive with two wheels side by side (book, section 7.1).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Differential {
+    /// Metres between the wheels' contact points.
+    pub track: f64,
+}
+
+impl Differential {
+    /// What the robot does when its wheels' rims turn at these speeds.
+    pub fn forward(&self, wheels: WheelSpeeds) -> Twist {
+        let Displacement { length, angle } = self.displacement(wheels.left, wheels.right);
+        Twist::new(length, angle)
+    }
+
+    /// The rim speeds that give a twist.
+    pub fn inverse(&self, twist: Twist) -> WheelSpeeds {
+        let half = 0.5 * self.track * twist.angular;
+        WheelSpeeds { left: twist.linear - half, right: twist.linear + half }
+    }
+
+    /// What the robot does while its wheels roll `left` and `right` metres at constant speeds.
+    pub fn displacement(&self, left: f64, right: f64) -> Displacement {
+        Displacement { length: 0.5 * (left + right), angle: (right - left) / self.track }
+    }
+
+    /// The rim speeds for a twist, scaled down where a wheel would exceed `limit` so that the ratio of the two, and
+    /// with it the path's curvature, stays.
+    pub fn inverse_limited(&self, twist: Twist, limit: f64) -> WheelSpeeds {
+        let wheels = self.inverse(twist);
+        let fastest = wheels.left.abs().max(wheels.right.abs());
+        if fastest <= limit {
+            return wheels;
+        }
+        let scale = limit / fastest;
+        WheelSpeeds { left: wheels.left * scale, right: wheels.right * scale }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn forward_undoes_inverse(v in -2.0..2.0f64, w in -6.0..6.0f64, track in 0.05..1.0f64) {
+            let drive = Differential { track };
+            let twist = drive.forward(drive.inverse(Twist::new(v, w)));
+            prop_assert!((twist.linear - v).abs() < 1e-12 && (twist.angular - w).abs() < 1e-12);
+        }
+
+        #[test]
+        fn limits_keep_the_curvature(v in 0.1..2.0f64, w in -6.0..6.0f64, limit in 0.05..1.0f64) {
+            let drive = Differential { track: 0.09 };
+            let wheels = drive.inverse_limited(Twist::new(v, w), limit);
+            prop_assert!(wheels.left.abs() <= limit + 1e-12 && wheels.right.abs() <= limit + 1e-12);
+            let twist = drive.forward(wheels);
+            prop_assert!((twist.angular * v - w * twist.linear).abs() < 1e-9);
+        }
+    }
+}
