@@ -8,6 +8,7 @@ pub mod formats;
 mod object;
 mod robot;
 mod scene;
+pub mod space;
 mod wall;
 
 pub use colour::Colour;

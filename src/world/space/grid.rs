@@ -1,0 +1,373 @@
+use super::shape::{Block, OrientedBox};
+use crate::geometry::{Aabb, Point, Vector};
+
+/// The farthest from the origin, in metres, that cells reach. What stands beyond is tested by every question.
+const FARTHEST: f64 = 1e7;
+
+/// A solid that covers more cells than this is tested by every question instead of being listed in each.
+const MOST_CELLS_OF_A_SOLID: usize = 64;
+
+/// A rectangle of cells, its last column and row included.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Cells {
+    pub(super) x0: i32,
+    pub(super) y0: i32,
+    pub(super) x1: i32,
+    pub(super) y1: i32,
+}
+
+impl Cells {
+    #[inline]
+    pub(super) fn count(&self) -> usize {
+        (self.x1 - self.x0 + 1) as usize * (self.y1 - self.y0 + 1) as usize
+    }
+
+    /// Whether this cell is the first that two overlapping rectangles share: the one where a pair is met once.
+    #[inline]
+    pub(super) fn meets_first_at(&self, other: &Cells, x: i32, y: i32) -> bool {
+        x == self.x0.max(other.x0) && y == self.y0.max(other.y0)
+    }
+}
+
+/// Where the cells of a grid are.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Lattice {
+    origin: Point,
+    /// Metres from a cell to the next, and its inverse.
+    pitch: f64,
+    per_metre: f64,
+    columns: i32,
+    rows: i32,
+    /// Metres by which outlines are grown before their cells are looked up, more than any rounding.
+    margin: f64,
+}
+
+impl Lattice {
+    /// Square cells over some bounds: about as many as asked for, and never more than three times as many.
+    pub(super) fn covering(bounds: Aabb, cells: usize) -> Self {
+        let limit = Point::new(FARTHEST, FARTHEST);
+        let (min, max) = (bounds.min.sup(&-limit).inf(&limit), bounds.max.sup(&-limit).inf(&limit));
+        let size = max - min;
+        let wanted = cells.max(1) as f64;
+        let pitch = (size.x * size.y / wanted).sqrt().max(size.x / wanted).max(size.y / wanted).max(1e-3);
+        let magnitude = min.coords.amax().max(max.coords.amax());
+        let margin = 1e-9 * pitch + 1e-12 * magnitude;
+        let per_metre = 1.0 / pitch;
+        let count = |extent: f64| ((extent + 2.0 * margin) * per_metre) as i32 + 1;
+        Self {
+            origin: min - Vector::new(margin, margin),
+            pitch,
+            per_metre,
+            columns: count(size.x),
+            rows: count(size.y),
+            margin,
+        }
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.columns as usize * self.rows as usize
+    }
+
+    #[inline]
+    pub(super) fn index(&self, x: i32, y: i32) -> usize {
+        y as usize * self.columns as usize + x as usize
+    }
+
+    /// The cells under a box, and whether the whole box lies on cells; `None` if no cell is under it.
+    #[inline]
+    pub(super) fn under(&self, bounds: &Aabb) -> Option<(Cells, bool)> {
+        let x0 = (bounds.min.x - self.margin - self.origin.x) * self.per_metre;
+        let y0 = (bounds.min.y - self.margin - self.origin.y) * self.per_metre;
+        let x1 = (bounds.max.x + self.margin - self.origin.x) * self.per_metre;
+        let y1 = (bounds.max.y + self.margin - self.origin.y) * self.per_metre;
+        let (columns, rows) = (f64::from(self.columns), f64::from(self.rows));
+        if !(x0 < columns && y0 < rows && x1 >= 0.0 && y1 >= 0.0) {
+            return None;
+        }
+        let whole = x0 >= 0.0 && y0 >= 0.0 && x1 < columns && y1 < rows;
+        let cells = Cells {
+            x0: (x0 as i32).max(0),
+            y0: (y0 as i32).max(0),
+            x1: (x1 as i32).min(self.columns - 1),
+            y1: (y1 as i32).min(self.rows - 1),
+        };
+        Some((cells, whole))
+    }
+
+    /// Visits the cells that a box may overlap, row by row, until `visit` returns false.
+    fn for_each_under(&self, shape: &OrientedBox, mut visit: impl FnMut(usize) -> bool) -> bool {
+        let reach = shape.reach();
+        let bounds = Aabb { min: shape.centre - reach, max: shape.centre + reach };
+        let Some((cells, _)) = self.under(&bounds) else { return true };
+        let (a, half) = (shape.axis, shape.half);
+        // The extent of the box across its middle line, along y and along x.
+        let (across_y, across_x) = (a.x.abs() * half.y, a.y.abs() * half.y);
+        for y in cells.y0..=cells.y1 {
+            let low = self.origin.y + f64::from(y) * self.pitch - self.margin;
+            let high = low + self.pitch + 2.0 * self.margin;
+            let (from, to) = if a.y.abs() * half.x > self.margin {
+                let p = (low - across_y - shape.centre.y) / a.y;
+                let q = (high + across_y - shape.centre.y) / a.y;
+                (p.min(q).max(-half.x), p.max(q).min(half.x))
+            } else {
+                (-half.x, half.x)
+            };
+            let (p, q) = (shape.centre.x + a.x * from, shape.centre.x + a.x * to);
+            let row = Aabb {
+                min: Point::new(p.min(q) - across_x, low),
+                max: Point::new(p.max(q) + across_x, low + 0.5 * self.pitch),
+            };
+            let Some((part, _)) = self.under(&row) else { continue };
+            for x in part.x0..=part.x1 {
+                if !visit(self.index(x, y)) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    /// Visits the cells along a ray in order, up to `limit` metres. `visit` returns the limit from there on.
+    #[inline]
+    pub(super) fn walk(
+        &self,
+        origin: Point,
+        direction: Vector,
+        limit: f64,
+        mut visit: impl FnMut(usize) -> f64,
+    ) {
+        let x = Axis::new(origin.x - self.origin.x, direction.x, self.pitch, self.columns);
+        let y = Axis::new(origin.y - self.origin.y, direction.y, self.pitch, self.rows);
+        let enter = x.enter.max(y.enter).max(0.0);
+        let leave = x.leave.min(y.leave).min(limit);
+        // Written so that a range that is not a number ends the walk.
+        if !(enter <= leave && enter.is_finite()) {
+            return;
+        }
+        let (mut cx, mut cy) = (x.cell(enter, self.per_metre), y.cell(enter, self.per_metre));
+        let (mut next_x, mut next_y) = (x.border_after(cx), y.border_after(cy));
+        loop {
+            let limit = visit(self.index(cx, cy)).min(leave);
+            if next_x < next_y {
+                if next_x > limit {
+                    return;
+                }
+                cx += x.step;
+                next_x += x.stride;
+                if cx < 0 || cx >= self.columns {
+                    return;
+                }
+            } else {
+                if next_y > limit {
+                    return;
+                }
+                cy += y.step;
+                next_y += y.stride;
+                if cy < 0 || cy >= self.rows {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+/// A ray's course along one axis of a lattice. Distances are along the ray.
+struct Axis {
+    /// The origin's coordinate from the lattice's border, and the ray's change of it in a metre.
+    origin: f64,
+    slope: f64,
+    /// Where the ray comes onto the cells, and where it leaves them.
+    enter: f64,
+    leave: f64,
+    /// The next cell's offset, and the distance to it.
+    step: i32,
+    stride: f64,
+    pitch: f64,
+    cells: i32,
+}
+
+impl Axis {
+    #[inline]
+    fn new(origin: f64, slope: f64, pitch: f64, cells: i32) -> Self {
+        let extent = f64::from(cells) * pitch;
+        let inverse = 1.0 / slope;
+        let (enter, leave, step, stride) = if slope > 0.0 {
+            (-origin * inverse, (extent - origin) * inverse, 1, pitch * inverse)
+        } else if slope < 0.0 {
+            ((extent - origin) * inverse, -origin * inverse, -1, -pitch * inverse)
+        } else if (0.0..=extent).contains(&origin) {
+            (0.0, f64::INFINITY, 0, f64::INFINITY)
+        } else {
+            (f64::INFINITY, 0.0, 0, f64::INFINITY)
+        };
+        Self { origin, slope, enter, leave, step, stride, pitch, cells }
+    }
+
+    /// The cell in which the ray is after some distance.
+    #[inline]
+    fn cell(&self, distance: f64, per_metre: f64) -> i32 {
+        (((self.origin + self.slope * distance) * per_metre) as i32).clamp(0, self.cells - 1)
+    }
+
+    /// The distance to where the ray leaves a cell along this axis.
+    #[inline]
+    fn border_after(&self, cell: i32) -> f64 {
+        if self.step == 0 {
+            return f64::INFINITY;
+        }
+        let border = f64::from(if self.step > 0 { cell + 1 } else { cell }) * self.pitch;
+        (border - self.origin) / self.slope
+    }
+}
+
+/// Cells that list the walls and solids in them.
+#[derive(Debug, Clone)]
+pub(super) struct Grid {
+    pub(super) lattice: Lattice,
+    /// Where each cell's walls start in `wall_list`, and where the last one's end.
+    wall_starts: Vec<u32>,
+    wall_list: Vec<u32>,
+    solids: Vec<Vec<u32>>,
+    /// What is tested by every question, because it is not, or not wholly, on cells.
+    loose_walls: Vec<u32>,
+    loose_solids: Vec<u32>,
+}
+
+impl Grid {
+    /// A grid over walls and the bounds of solids that are yet to be listed.
+    pub(super) fn new(walls: &[Block], solids: &[Aabb]) -> Self {
+        let all = walls.iter().map(Block::bounds).chain(solids.iter().copied());
+        let bounds = all.reduce(|a, b| a.union(&b)).unwrap_or(Aabb::new(Point::origin(), Point::origin()));
+        let mut cells = 2 * (walls.len() + solids.len()) + 16;
+        let most_entries = 8 * walls.len() + 64;
+        loop {
+            let lattice = Lattice::covering(bounds, cells);
+            if let Some(grid) = Self::with_lattice(lattice, walls, most_entries.max(cells)) {
+                return grid;
+            }
+            // Many walls cross most of the world: fewer, larger cells keep the lists in proportion to the walls.
+            cells /= 4;
+        }
+    }
+
+    /// Lists the walls, unless that takes too many entries.
+    fn with_lattice(lattice: Lattice, walls: &[Block], most_entries: usize) -> Option<Self> {
+        let mut counts = vec![0_u32; lattice.count() + 1];
+        let mut loose_walls = Vec::new();
+        let mut left = most_entries;
+        let may_fail = lattice.count() > 1;
+        for (number, wall) in walls.iter().enumerate() {
+            if !lattice.under(&wall.bounds()).is_some_and(|(_, whole)| whole) {
+                loose_walls.push(number as u32);
+                continue;
+            }
+            let fits = lattice.for_each_under(&wall.shape, |cell| {
+                counts[cell + 1] += 1;
+                left = left.saturating_sub(1);
+                left > 0 || !may_fail
+            });
+            if !fits {
+                return None;
+            }
+        }
+        for cell in 1..counts.len() {
+            counts[cell] += counts[cell - 1];
+        }
+        let wall_starts = counts;
+        let mut ends = wall_starts.clone();
+        let mut wall_list = vec![0; wall_starts[lattice.count()] as usize];
+        let mut loose = loose_walls.iter().copied().peekable();
+        for (number, wall) in walls.iter().enumerate() {
+            if loose.next_if_eq(&(number as u32)).is_some() {
+                continue;
+            }
+            lattice.for_each_under(&wall.shape, |cell| {
+                wall_list[ends[cell] as usize] = number as u32;
+                ends[cell] += 1;
+                true
+            });
+        }
+        let solids = vec![Vec::new(); lattice.count()];
+        Some(Self { lattice, wall_starts, wall_list, solids, loose_walls, loose_solids: Vec::new() })
+    }
+
+    /// The walls listed in a cell.
+    #[inline]
+    pub(super) fn walls_in(&self, cell: usize) -> &[u32] {
+        &self.wall_list[self.wall_starts[cell] as usize..self.wall_starts[cell + 1] as usize]
+    }
+
+    /// The solids listed in a cell.
+    #[inline]
+    pub(super) fn solids_in(&self, cell: usize) -> &[u32] {
+        &self.solids[cell]
+    }
+
+    /// Visits the walls of some cells: a wall once for each cell that lists it.
+    #[inline]
+    pub(super) fn for_each_wall_in(&self, cells: Cells, mut visit: impl FnMut(u32)) {
+        for y in cells.y0..=cells.y1 {
+            for x in cells.x0..=cells.x1 {
+                self.walls_in(self.lattice.index(x, y)).iter().for_each(|&number| visit(number));
+            }
+        }
+    }
+
+    /// Visits the solids of some cells, with the cell's column and row: a solid once for each cell that lists it.
+    #[inline]
+    pub(super) fn for_each_solid_in(&self, cells: Cells, mut visit: impl FnMut(u32, i32, i32)) {
+        for y in cells.y0..=cells.y1 {
+            for x in cells.x0..=cells.x1 {
+                self.solids_in(self.lattice.index(x, y)).iter().for_each(|&number| visit(number, x, y));
+            }
+        }
+    }
+
+    #[inline]
+    pub(super) fn loose_walls(&self) -> &[u32] {
+        &self.loose_walls
+    }
+
+    #[inline]
+    pub(super) fn loose_solids(&self) -> &[u32] {
+        &self.loose_solids
+    }
+
+    /// The cells in which a solid with these bounds is listed; `None` if it is to be loose.
+    #[inline]
+    pub(super) fn place_for(&self, bounds: &Aabb) -> Option<Cells> {
+        let (cells, whole) = self.lattice.under(bounds)?;
+        (whole && cells.count() <= MOST_CELLS_OF_A_SOLID).then_some(cells)
+    }
+
+    pub(super) fn insert(&mut self, solid: u32, place: Option<Cells>) {
+        let Some(cells) = place else {
+            self.loose_solids.push(solid);
+            return;
+        };
+        for y in cells.y0..=cells.y1 {
+            for x in cells.x0..=cells.x1 {
+                self.solids[self.lattice.index(x, y)].push(solid);
+            }
+        }
+    }
+
+    pub(super) fn remove(&mut self, solid: u32, place: Option<Cells>) {
+        let Some(cells) = place else {
+            take(&mut self.loose_solids, solid);
+            return;
+        };
+        for y in cells.y0..=cells.y1 {
+            for x in cells.x0..=cells.x1 {
+                take(&mut self.solids[self.lattice.index(x, y)], solid);
+            }
+        }
+    }
+}
+
+/// Takes one entry out of a list whose order means nothing.
+fn take(list: &mut Vec<u32>, solid: u32) {
+    if let Some(at) = list.iter().position(|&other| other == solid) {
+        list.swap_remove(at);
+    }
+}
