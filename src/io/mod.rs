@@ -7,11 +7,12 @@
 mod actuators;
 mod clock;
 mod drive;
-mod error;
+pub(crate) mod error;
 mod keys;
 mod lidar;
 mod psd;
 mod radio;
+pub mod sim;
 
 pub use actuators::{Encoders, Motors, Servos};
 pub use clock::Clock;

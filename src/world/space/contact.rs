@@ -76,6 +76,19 @@ impl Space {
         self.find_clearance(&query, limit)
     }
 
+    /// As [`clearance`](Self::clearance), to solids alone.
+    pub fn solids_clearance(
+        &self,
+        outline: &Outline,
+        pose: &Pose,
+        span: Span,
+        limit: f64,
+        except: Option<SolidId>,
+    ) -> f64 {
+        let query = Query { shape: outline.at(pose), span, walls: false, solids: true, except };
+        self.find_clearance(&query, limit)
+    }
+
     #[inline]
     fn find_contacts(&self, query: &Query, out: &mut Vec<Contact>) {
         out.clear();

@@ -1,0 +1,175 @@
+use std::fmt;
+use std::ops::ControlFlow;
+
+use super::engine::Engine;
+use super::truth::robot_truth;
+use super::{RobotTruth, SimOptions, TICK};
+use crate::geometry::Pose;
+use crate::io::error::require_positive;
+use crate::io::{Error, ErrorKind, Result};
+use crate::world::Scene;
+
+/// Any number of robots whose behaviours are stepped in one thread.
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use roverlab::geometry::{Pose, Twist};
+/// use roverlab::io::sim::{Fleet, SimOptions};
+/// use roverlab::io::{DistanceSensors, Drive, Psd};
+/// use roverlab::world::{RobotSpec, Scene, World};
+///
+/// # fn main() -> Result<(), roverlab::io::Error> {
+/// let scene = Scene::with_robot(World::walled(2.0, 2.0), RobotSpec::s4(), Pose::new(1.0, 1.0, 0.0));
+/// let mut fleet = Fleet::new(&scene, SimOptions::ideal())?;
+/// fleet.control(0, 0.1, |robot| {
+///     let free = robot.distance(Psd::FRONT)?;
+///     robot.set_speed(Twist::new(0.5 * (free - 0.2), 0.0))?;
+///     Ok(ControlFlow::Continue(()))
+/// })?;
+/// fleet.run_for(20.0)?;
+/// assert!((fleet.truth(0)?.pose.x - 1.735).abs() < 0.02);
+/// # Ok(())
+/// # }
+/// ```
+pub struct Fleet<'a> {
+    engine: Engine,
+    members: Vec<Option<Member<'a>>>,
+}
+
+/// A robot's behaviour and when it is due.
+struct Member<'a> {
+    behaviour: Box<dyn FnMut(&mut FleetRobot<'_>) -> Result<ControlFlow<()>> + 'a>,
+    period: u64,
+    due: u64,
+}
+
+/// A robot of a [`Fleet`], as its behaviour sees it: a full robot that cannot wait, because the fleet decides when
+/// the behaviour is called again.
+#[derive(Debug)]
+pub struct FleetRobot<'e> {
+    engine: &'e mut Engine,
+    index: usize,
+}
+
+impl fmt::Debug for Fleet<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let controlled = self.members.iter().flatten().count();
+        f.debug_struct("Fleet")
+            .field("robots", &self.members.len())
+            .field("controlled", &controlled)
+            .field("time", &self.time())
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Fleet<'a> {
+    /// A fleet of all robots of a scene. Fails as [`Simulation::new`](super::Simulation::new) does.
+    pub fn new(scene: &Scene, options: SimOptions) -> Result<Self> {
+        let engine = Engine::new(scene, options)?;
+        let members = engine.bodies.iter().map(|_| None).collect();
+        Ok(Self { engine, members })
+    }
+
+    /// How many robots there are.
+    pub fn len(&self) -> usize {
+        self.members.len()
+    }
+
+    /// Whether there is no robot.
+    pub fn is_empty(&self) -> bool {
+        self.members.is_empty()
+    }
+
+    /// Gives a robot a behaviour, which is called every `period` seconds, rounded to whole ticks, until it breaks.
+    pub fn control(
+        &mut self,
+        robot: usize,
+        period: f64,
+        behaviour: impl FnMut(&mut FleetRobot<'_>) -> Result<ControlFlow<()>> + 'a,
+    ) -> Result<()> {
+        require_positive("control period", period)?;
+        let robots = self.members.len();
+        let due = self.engine.tick;
+        let Some(member) = self.members.get_mut(robot) else {
+            return Err(Error::invalid_input("robot", robot, &format!("an index below {robots}")));
+        };
+        let period = ((period / TICK).round() as u64).max(1);
+        *member = Some(Member { behaviour: Box::new(behaviour), period, due });
+        Ok(())
+    }
+
+    /// Lets the world run, and steps each behaviour when it is due, for `seconds` or until all behaviours have
+    /// ended. The first error of a behaviour ends the run; the robots stay as they are.
+    pub fn run_for(&mut self, seconds: f64) -> Result<()> {
+        crate::io::error::require_finite("duration", seconds)?;
+        let end = self.engine.tick + (seconds.max(0.0) / TICK).round() as u64;
+        while self.engine.tick < end {
+            self.step_behaviours()?;
+            if self.members.iter().all(Option::is_none) {
+                return Ok(());
+            }
+            self.engine.step();
+        }
+        Ok(())
+    }
+
+    fn step_behaviours(&mut self) -> Result<()> {
+        let tick = self.engine.tick;
+        for (index, slot) in self.members.iter_mut().enumerate() {
+            let Some(member) = slot else { continue };
+            if member.due > tick {
+                continue;
+            }
+            member.due = tick + member.period;
+            let mut robot = FleetRobot { engine: &mut self.engine, index };
+            if (member.behaviour)(&mut robot)?.is_break() {
+                *slot = None;
+            }
+        }
+        Ok(())
+    }
+
+    /// Seconds since the start.
+    pub fn time(&self) -> f64 {
+        self.engine.time()
+    }
+
+    /// A robot's true pose in the world.
+    pub fn pose(&self, robot: usize) -> Option<Pose> {
+        self.engine.bodies.get(robot).map(|body| body.pose)
+    }
+
+    /// All that is true about a robot.
+    pub fn truth(&self, robot: usize) -> Result<RobotTruth> {
+        robot_truth(&self.engine, robot)
+    }
+}
+
+impl FleetRobot<'_> {
+    pub(super) fn call<T>(&mut self, ask: impl FnOnce(&mut Engine, usize) -> Result<T>) -> Result<T> {
+        ask(self.engine, self.index)
+    }
+
+    pub(super) fn time(&mut self) -> Result<f64> {
+        Ok(self.engine.time())
+    }
+
+    #[allow(clippy::unused_self)] // The blocking robot's counterpart needs it.
+    pub(super) fn pause(&mut self, _seconds: f64) -> Result<()> {
+        Err(cannot_wait())
+    }
+
+    pub(super) fn poll<T>(
+        &mut self,
+        mut ask: impl FnMut(&mut Engine, usize) -> Result<Option<T>>,
+    ) -> Result<T> {
+        ask(self.engine, self.index)?.ok_or_else(cannot_wait)
+    }
+}
+
+fn cannot_wait() -> Error {
+    Error::new(
+        ErrorKind::Unsupported,
+        "a behaviour in a fleet cannot wait; it is called again when it is due",
+    )
+}

@@ -1,0 +1,47 @@
+//! Robots in a simulated world, in virtual time.
+//!
+//! A [`Simulation`] hands out robots that ordinary blocking programs drive, one thread each when there are several.
+//! A [`Fleet`] steps any number of behaviours in one thread. Both run the same engine: wheels with motor lag,
+//! encoders with whole ticks, slip, collisions, ray-cast sensors with noise. The world advances in ticks of 10 ms;
+//! nothing sleeps, and the same seed gives the same run on every platform and under every scheduling.
+//!
+//! ```
+//! use roverlab::geometry::Pose;
+//! use roverlab::io::{DistanceSensors, Drive, Psd};
+//! use roverlab::io::sim::{SimOptions, Simulation};
+//! use roverlab::world::{RobotSpec, Scene, World};
+//!
+//! # fn main() -> Result<(), roverlab::io::Error> {
+//! let scene = Scene::with_robot(World::walled(2.0, 1.0), RobotSpec::s4(), Pose::new(0.5, 0.5, 0.0));
+//! let simulation = Simulation::new(&scene, SimOptions::ideal())?;
+//! let mut robot = simulation.robot(0)?;
+//! robot.straight(1.0, 0.3)?;
+//! robot.wait_done()?;
+//! assert!((robot.distance(Psd::FRONT)? - 0.435).abs() < 0.005);
+//! # Ok(())
+//! # }
+//! ```
+
+mod autopilot;
+mod body;
+mod drivetrain;
+mod engine;
+mod fleet;
+mod noise;
+mod options;
+mod robot;
+mod robot_traits;
+mod shared;
+mod simulation;
+mod truth;
+
+pub use body::TrailPoint;
+pub use fleet::{Fleet, FleetRobot};
+pub use noise::NoiseModel;
+pub use options::SimOptions;
+pub use robot::SimRobot;
+pub use simulation::Simulation;
+pub use truth::{RobotTruth, Truth};
+
+/// Seconds in which the world advances at a time.
+pub const TICK: f64 = 0.010;

@@ -1,0 +1,56 @@
+/// How far a simulated robot is from an ideal one, as standard deviations.
+///
+/// `NoiseModel::real()` is noise factor 1 of every example and campaign; [`scaled`](NoiseModel::scaled) multiplies
+/// all of it. Drive errors are drawn once for a robot, slip at every step, range errors at every reading.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NoiseModel {
+    /// Relative error of both wheels' diameters together.
+    pub wheel_scale: f64,
+    /// Relative difference between the left and the right wheel's diameter.
+    pub wheel_mismatch: f64,
+    /// Relative error of the track.
+    pub track: f64,
+    /// Slip of each wheel, in metres after one metre; it grows with the square root of the distance.
+    pub slip: f64,
+    /// Error of each range reading of PSDs and lidar, in metres.
+    pub range: f64,
+    /// Relative error of length and angle, drawn anew for every drive command.
+    pub command: f64,
+}
+
+impl NoiseModel {
+    /// No sensor or drive error at all. Encoders still count whole ticks.
+    pub const fn ideal() -> Self {
+        Self { wheel_scale: 0.0, wheel_mismatch: 0.0, track: 0.0, slip: 0.0, range: 0.0, command: 0.0 }
+    }
+
+    /// As on the real robot.
+    pub const fn real() -> Self {
+        Self {
+            wheel_scale: 0.01,
+            wheel_mismatch: 0.0003,
+            track: 0.003,
+            slip: 0.0005,
+            range: 0.010,
+            command: 0.0,
+        }
+    }
+
+    /// The book's simpler picture: every drive command comes out 1 to 2 % wrong, and ranges err by 10 mm.
+    pub const fn textbook() -> Self {
+        Self { range: 0.010, command: 0.015, ..Self::ideal() }
+    }
+
+    /// Everything multiplied by a factor.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        Self {
+            wheel_scale: self.wheel_scale * factor,
+            wheel_mismatch: self.wheel_mismatch * factor,
+            track: self.track * factor,
+            slip: self.slip * factor,
+            range: self.range * factor,
+            command: self.command * factor,
+        }
+    }
+}

@@ -1,0 +1,71 @@
+use super::{NoiseModel, TICK};
+use crate::io::{Error, Result};
+
+/// How a simulation runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimOptions {
+    /// The seed of every random stream.
+    pub seed: u64,
+    /// Drive and sensor errors.
+    pub noise: NoiseModel,
+    /// Whether encoders measure exactly instead of counting whole ticks.
+    pub ideal_encoders: bool,
+    /// Seconds that every call of a robot takes, so that a loop that only reads a sensor still lets time pass.
+    pub call_duration: f64,
+    /// Seconds after which every call fails with [`TimedOut`](crate::io::ErrorKind::TimedOut).
+    pub time_limit: Option<f64>,
+    /// Seconds between the points of each robot's trail; none is kept without it.
+    pub trail_interval: Option<f64>,
+}
+
+impl Default for SimOptions {
+    /// Seed 1, noise as on the real robot, 0.1 ms a call, no time limit.
+    fn default() -> Self {
+        Self {
+            seed: 1,
+            noise: NoiseModel::real(),
+            ideal_encoders: false,
+            call_duration: 1e-4,
+            time_limit: None,
+            trail_interval: None,
+        }
+    }
+}
+
+impl SimOptions {
+    /// Default options without noise.
+    pub fn ideal() -> Self {
+        Self { noise: NoiseModel::ideal(), ..Self::default() }
+    }
+
+    /// Default options with the real robot's noise times a factor, and a seed.
+    pub fn with_noise(factor: f64, seed: u64) -> Self {
+        Self { seed, noise: NoiseModel::real().scaled(factor), ..Self::default() }
+    }
+
+    /// Fails with the name of the option that is out of range.
+    pub(super) fn validate(&self) -> Result<()> {
+        let n = &self.noise;
+        for (name, value) in [
+            ("wheel scale error", n.wheel_scale),
+            ("wheel mismatch", n.wheel_mismatch),
+            ("track error", n.track),
+            ("slip", n.slip),
+            ("range error", n.range),
+            ("command error", n.command),
+            ("time limit", self.time_limit.unwrap_or(0.0)),
+        ] {
+            if !(value.is_finite() && value >= 0.0) {
+                return Err(Error::invalid_input(name, value, "a finite number of at least 0"));
+            }
+        }
+        let interval = self.trail_interval.unwrap_or(TICK);
+        if !(interval.is_finite() && interval >= TICK) {
+            return Err(Error::invalid_input("trail interval", interval, "at least one tick of 10 ms"));
+        }
+        if !(1e-6..=1.0).contains(&self.call_duration) {
+            return Err(Error::invalid_input("call duration", self.call_duration, "1 µs to 1 s"));
+        }
+        Ok(())
+    }
+}

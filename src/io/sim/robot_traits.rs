@@ -1,0 +1,165 @@
+//! The capabilities of a simulated robot, written once for blocking robots and for members of a fleet.
+
+use super::engine::Engine;
+use super::{FleetRobot, SimRobot};
+use crate::geometry::{Pose, Twist};
+use crate::io::{
+    Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Key, Keys, Lidar, LidarScan, LidarSettings,
+    Motors, Psd, Radio, RadioMessage, Result, Servos,
+};
+use crate::kinematics::Displacement;
+
+/// Answers whether the running manoeuvre has ended.
+fn arrival(engine: &mut Engine, index: usize) -> Result<Option<()>> {
+    Ok(engine.bodies[index].autopilot.is_done().then_some(()))
+}
+
+/// Answers with the next key press, and fails when none can come.
+fn next_key(engine: &mut Engine, index: usize) -> Result<Option<Key>> {
+    let now = engine.time();
+    let body = &mut engine.bodies[index];
+    if body.keys.is_empty() {
+        let message = "the program waits for a key, and no key press is scheduled";
+        return Err(Error::new(ErrorKind::Other, message));
+    }
+    Ok(body.take_key(now))
+}
+
+macro_rules! robot_through_engine {
+    ($robot:ty) => {
+        impl Clock for $robot {
+            fn now(&mut self) -> Result<f64> {
+                self.time()
+            }
+
+            fn wait(&mut self, seconds: f64) -> Result<()> {
+                self.pause(seconds)
+            }
+        }
+
+        impl Drive for $robot {
+            fn set_speed(&mut self, twist: Twist) -> Result<()> {
+                self.call(|engine, i| engine.set_twist(i, twist))
+            }
+
+            fn speed(&mut self) -> Result<Twist> {
+                self.call(|engine, i| Ok(engine.bodies[i].drivetrain.twist()))
+            }
+
+            fn pose(&mut self) -> Result<Pose> {
+                self.call(|engine, i| Ok(engine.bodies[i].drivetrain.odometry()))
+            }
+
+            fn set_pose(&mut self, pose: Pose) -> Result<()> {
+                self.call(|engine, i| engine.bodies[i].drivetrain.set_odometry(pose))
+            }
+
+            fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
+                self.curve(distance, 0.0, speed)
+            }
+
+            fn turn(&mut self, angle: f64, speed: f64) -> Result<()> {
+                self.curve(0.0, angle, speed)
+            }
+
+            fn curve(&mut self, length: f64, angle: f64, speed: f64) -> Result<()> {
+                self.call(|engine, i| engine.manoeuvre(i, Displacement { length, angle }, speed))
+            }
+
+            fn remaining(&mut self) -> Result<f64> {
+                self.call(|engine, i| {
+                    let body = &engine.bodies[i];
+                    Ok(body.autopilot.remaining(&body.drivetrain))
+                })
+            }
+
+            fn is_done(&mut self) -> Result<bool> {
+                self.call(|engine, i| Ok(engine.bodies[i].autopilot.is_done()))
+            }
+
+            fn wait_done(&mut self) -> Result<()> {
+                self.poll(arrival)
+            }
+
+            fn is_stalled(&mut self) -> Result<bool> {
+                self.call(|engine, i| Ok(engine.bodies[i].touch.is_stalled()))
+            }
+        }
+
+        impl DistanceSensors for $robot {
+            fn distance(&mut self, sensor: Psd) -> Result<f64> {
+                self.call(|engine, i| engine.psd(i, sensor))
+            }
+        }
+
+        impl Lidar for $robot {
+            fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()> {
+                self.call(|engine, i| engine.scan_into(i, scan))
+            }
+
+            fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
+                self.call(|engine, i| engine.configure_lidar(i, settings))
+            }
+        }
+
+        impl Keys for $robot {
+            fn read_key(&mut self) -> Result<Option<Key>> {
+                self.call(|engine, i| {
+                    let now = engine.time();
+                    Ok(engine.bodies[i].take_key(now))
+                })
+            }
+
+            fn wait_key(&mut self) -> Result<Key> {
+                self.poll(next_key)
+            }
+
+            fn read_touch(&mut self) -> Result<Option<(i32, i32)>> {
+                self.call(|_, _| Ok(None))
+            }
+        }
+
+        impl Radio for $robot {
+            fn radio_id(&mut self) -> Result<u32> {
+                self.call(|_, i| Ok(i as u32 + 1))
+            }
+
+            fn radio_peers(&mut self) -> Result<Vec<u32>> {
+                self.call(|engine, _| Ok((1..=engine.bodies.len() as u32).collect()))
+            }
+
+            fn send(&mut self, to: u32, data: &[u8]) -> Result<()> {
+                self.call(|engine, i| engine.send(i, to, data))
+            }
+
+            fn receive(&mut self) -> Result<Option<RadioMessage>> {
+                self.call(|engine, i| Ok(engine.bodies[i].mailbox.pop_front()))
+            }
+        }
+
+        impl Motors for $robot {
+            fn set_motor(&mut self, motor: u8, fraction: f64) -> Result<()> {
+                self.call(|engine, i| engine.set_motor(i, motor, fraction))
+            }
+        }
+
+        impl Servos for $robot {
+            fn set_servo(&mut self, servo: u8, _position: f64) -> Result<()> {
+                self.call(|_, _| Err(Error::unsupported(format!("servo {servo}"))))
+            }
+        }
+
+        impl Encoders for $robot {
+            fn encoder(&mut self, motor: u8) -> Result<i64> {
+                self.call(|engine, i| engine.bodies[i].encoder(motor))
+            }
+
+            fn reset_encoder(&mut self, motor: u8) -> Result<()> {
+                self.call(|engine, i| engine.bodies[i].reset_encoder(motor))
+            }
+        }
+    };
+}
+
+robot_through_engine!(SimRobot);
+robot_through_engine!(FleetRobot<'_>);

@@ -1,0 +1,49 @@
+use std::sync::Arc;
+
+use super::engine::Engine;
+use super::shared::Shared;
+use super::{SimOptions, SimRobot, Truth};
+use crate::io::{Error, Key, Result};
+use crate::world::Scene;
+
+/// A simulated world whose robots are driven by ordinary blocking programs.
+///
+/// One robot needs no thread. Of several, each gets a thread of its own; take all of them with
+/// [`robot`](Simulation::robot) before the first one drives, because the world waits for those that are taken. A
+/// robot that nobody takes stands still; one whose handle is dropped keeps its last command.
+#[derive(Debug, Clone)]
+pub struct Simulation {
+    shared: Arc<Shared>,
+}
+
+impl Simulation {
+    /// A simulation of a scene. Fails when an option or a robot's description makes no sense, or a robot has a
+    /// drive that is not simulated.
+    pub fn new(scene: &Scene, options: SimOptions) -> Result<Self> {
+        Ok(Self { shared: Arc::new(Shared::new(Engine::new(scene, options)?)) })
+    }
+
+    /// Takes a robot, by its index in the scene. Fails when there is none, or somebody has it.
+    pub fn robot(&self, index: usize) -> Result<SimRobot> {
+        SimRobot::claim(&self.shared, index)
+    }
+
+    /// What is true in the world, for verdicts, pictures and tests.
+    pub fn truth(&self) -> Truth {
+        Truth::new(Arc::clone(&self.shared))
+    }
+
+    /// Schedules a key press on a robot, in seconds since the start.
+    pub fn press_key(&self, robot: usize, time: f64, key: Key) -> Result<()> {
+        let mut state = self.shared.lock();
+        let robots = state.engine.bodies.len();
+        let Some(body) = state.engine.bodies.get_mut(robot) else {
+            return Err(Error::invalid_input("robot", robot, &format!("an index below {robots}")));
+        };
+        if !time.is_finite() {
+            return Err(Error::invalid_input("time of the key press", time, "a finite number"));
+        }
+        body.schedule_key(time, key);
+        Ok(())
+    }
+}

@@ -1,0 +1,86 @@
+use std::sync::Arc;
+
+use super::TrailPoint;
+use super::engine::Engine;
+use super::shared::Shared;
+use crate::geometry::{Point, Pose};
+use crate::io::{Error, Result};
+
+/// What is true in a simulated world. No robot reaches it; verdicts, pictures and tests do.
+#[derive(Debug, Clone)]
+pub struct Truth {
+    shared: Arc<Shared>,
+}
+
+/// What is true about one robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RobotTruth {
+    /// Its pose in the world.
+    pub pose: Pose,
+    /// What its odometry says, relative to its start.
+    pub odometry: Pose,
+    /// How often it has come into contact with a wall, an object or a robot.
+    pub contacts: u32,
+    /// Where it first touched each time; at most the first 1,000.
+    pub contact_places: Vec<Point>,
+    /// Metres that its middle has moved.
+    pub path_length: f64,
+    /// Where it was, if the options ask for a trail.
+    pub trail: Vec<TrailPoint>,
+}
+
+impl Truth {
+    pub(super) fn new(shared: Arc<Shared>) -> Self {
+        Self { shared }
+    }
+
+    /// Seconds since the start of the world.
+    pub fn time(&self) -> f64 {
+        self.shared.lock().engine.time()
+    }
+
+    /// A robot's pose in the world.
+    pub fn pose(&self, robot: usize) -> Result<Pose> {
+        let state = self.shared.lock();
+        check(&state.engine, robot)?;
+        Ok(state.engine.bodies[robot].pose)
+    }
+
+    /// All that is true about a robot.
+    pub fn robot(&self, robot: usize) -> Result<RobotTruth> {
+        robot_truth(&self.shared.lock().engine, robot)
+    }
+
+    /// Puts a robot somewhere else, as a hand would. Its odometry does not notice.
+    pub fn set_pose(&self, robot: usize, pose: Pose) -> Result<()> {
+        let mut state = self.shared.lock();
+        check(&state.engine, robot)?;
+        if !pose.is_finite() {
+            return Err(Error::invalid_input("pose", format!("{pose:?}"), "finite numbers"));
+        }
+        state.engine.place(robot, pose);
+        Ok(())
+    }
+}
+
+fn check(engine: &Engine, robot: usize) -> Result<()> {
+    let robots = engine.bodies.len();
+    if robot < robots {
+        Ok(())
+    } else {
+        Err(Error::invalid_input("robot", robot, &format!("an index below {robots}, the number of robots")))
+    }
+}
+
+pub(super) fn robot_truth(engine: &Engine, robot: usize) -> Result<RobotTruth> {
+    check(engine, robot)?;
+    let body = &engine.bodies[robot];
+    Ok(RobotTruth {
+        pose: body.pose,
+        odometry: body.drivetrain.odometry(),
+        contacts: body.touch.contacts,
+        contact_places: body.touch.places.clone(),
+        path_length: body.path_length,
+        trail: body.trail.clone(),
+    })
+}

@@ -1,0 +1,130 @@
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use super::surroundings::Surroundings;
+use crate::geometry::{Point, Pose, direction, math, normalize_angle};
+
+/// On which side of the robot the followed obstacle is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WallSide {
+    /// The obstacle is to the left, so the robot goes round it clockwise.
+    Left,
+    /// The obstacle is to the right, so the robot goes round it counter-clockwise.
+    Right,
+}
+
+impl WallSide {
+    /// The sense in which headings are tried from the obstacle outwards: +1 counter-clockwise, -1 clockwise.
+    fn sense(self) -> f64 {
+        match self {
+            WallSide::Left => -1.0,
+            WallSide::Right => 1.0,
+        }
+    }
+}
+
+/// Distances that a boundary is followed at, from the robot's middle, in metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FollowDistances {
+    /// What a passage must offer on either side for the robot to enter it.
+    pub(super) least: f64,
+    /// What is kept where there is room.
+    pub(super) wished: f64,
+    /// How far ahead a step is looked at.
+    pub(super) step: f64,
+}
+
+/// Goes along the boundary of an obstacle, in one sense, into every passage that is wide enough.
+///
+/// Headings are tried from the obstacle outwards until a step is free. That decides *where* the boundary goes; it
+/// is the boundary of the obstacle grown by the least distance. Among the headings of that opening the robot takes
+/// the first that keeps the wished distance, or else the one with the most room: the middle of a narrow passage.
+#[derive(Debug, Clone)]
+pub(super) struct BoundaryFollower {
+    side: WallSide,
+    distances: FollowDistances,
+    /// The point, in the frame of the robot's pose, that bounded the way at the last step.
+    anchor: Point,
+}
+
+/// Headings that are tried in a turn.
+const HEADINGS: usize = 180;
+const SPACING: f64 = TAU / HEADINGS as f64;
+/// The largest jump, in metres, of the anchor between two steps.
+const ANCHOR_JUMP: f64 = 0.08;
+
+impl BoundaryFollower {
+    /// A follower of the obstacle at `anchor`.
+    pub(super) fn new(side: WallSide, distances: FollowDistances, anchor: Point) -> Self {
+        Self { side, distances, anchor }
+    }
+
+    /// The heading to take, relative to the robot's; `None` when no step is free.
+    pub(super) fn heading(&mut self, pose: &Pose, surroundings: &Surroundings) -> Option<f64> {
+        let sense = self.side.sense();
+        let anchor = self.local_anchor(pose, surroundings);
+        let start = math::atan2(anchor.y, anchor.x);
+        let at = |k: i32| start + sense * SPACING * f64::from(k);
+        let clearance = |k: i32| surroundings.step_clearance(direction(at(k)), self.distances.step).0;
+        let first = self.opening(&clearance)?;
+        let chosen = self.roomy(first, &clearance);
+        let bounding = surroundings.step_clearance(direction(at(first - 1)), self.distances.step).1;
+        if let Some(point) = bounding {
+            self.anchor = pose.to_world(point);
+        }
+        Some(normalize_angle(at(chosen)))
+    }
+
+    /// The anchor as it is seen now, in the robot's frame.
+    fn local_anchor(&self, pose: &Pose, surroundings: &Surroundings) -> Point {
+        let expected = pose.to_local(self.anchor);
+        match surroundings.nearest_to(expected) {
+            Some(seen) if (seen - expected).norm() < ANCHOR_JUMP => seen,
+            _ => expected,
+        }
+    }
+
+    /// The first free heading outwards from the anchor, as a count of headings.
+    fn opening(&self, clearance: &impl Fn(i32) -> f64) -> Option<i32> {
+        let free = |k: i32| clearance(k) >= self.distances.least;
+        if !free(0) {
+            return (1..HEADINGS as i32).find(|&k| free(k));
+        }
+        // The obstacle has receded: turn back towards it, and beyond, until it bounds the way again.
+        let back = (1..=HEADINGS as i32 / 2).find(|&k| !free(-k));
+        Some(back.map_or(0, |k| 1 - k))
+    }
+
+    /// Within the opening that begins at `first`, the first heading with the wished room, or the one with the most.
+    fn roomy(&self, first: i32, clearance: &impl Fn(i32) -> f64) -> i32 {
+        let mut best = (first, clearance(first));
+        let quarter = (FRAC_PI_2 / SPACING) as i32;
+        for k in first..first + quarter {
+            let room = clearance(k);
+            if room >= self.distances.wished {
+                return k;
+            }
+            if room < self.distances.least {
+                break;
+            }
+            if room > best.1 {
+                best = (k, room);
+            }
+        }
+        best.0
+    }
+}
+
+/// The side on which to follow an obstacle that blocks the way in a direction, so that the robot turns least.
+pub(super) fn nearer_side(
+    blocked: f64,
+    anchor: Point,
+    surroundings: &Surroundings,
+    distances: FollowDistances,
+) -> WallSide {
+    let turn = |side| {
+        let mut trial = BoundaryFollower::new(side, distances, anchor);
+        let heading = trial.heading(&Pose::default(), surroundings);
+        heading.map_or(f64::INFINITY, |heading| normalize_angle(heading - blocked).abs())
+    };
+    if turn(WallSide::Left) < turn(WallSide::Right) { WallSide::Left } else { WallSide::Right }
+}

@@ -1,0 +1,454 @@
+use super::boundary::{BoundaryFollower, FollowDistances, WallSide, nearer_side};
+use super::surroundings::Surroundings;
+use super::{ScanFilter, ScanMatcher};
+use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math, normalize_angle};
+use crate::io::{Clock, Drive, Error, ErrorKind, Lidar, LidarScan, Result};
+
+/// What DistBug goes by. Lengths in metres, speeds in metres per second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DistBugParameters {
+    /// The radius of the robot's outline.
+    pub robot_radius: f64,
+    /// The free space beside the outline that a passage must offer on either side.
+    pub least_clearance: f64,
+    /// The free space beside the outline that is kept to an obstacle where there is room.
+    pub clearance: f64,
+    /// STEP of the leave condition: how much nearer to the goal than ever before a leave must bring the robot.
+    pub step: f64,
+    /// The distance to the goal that counts as reached.
+    pub goal_tolerance: f64,
+    /// The speed in the open.
+    pub cruise_speed: f64,
+    /// The speed along an obstacle.
+    pub follow_speed: f64,
+    /// On which side obstacles are kept; `None`: on the side that needs the smaller turn.
+    pub side: Option<WallSide>,
+    /// Whether odometry is corrected by matching scans.
+    pub match_scans: bool,
+    /// Seconds from one control step to the next, for [`run`](DistBug::run).
+    pub period: f64,
+}
+
+impl DistBugParameters {
+    /// Parameters for a disc-shaped robot of a radius in metres; distances are scaled to it.
+    pub fn for_radius(radius: f64) -> Self {
+        Self {
+            robot_radius: radius,
+            least_clearance: 0.2 * radius,
+            clearance: 0.65 * radius,
+            step: 0.25 * radius,
+            goal_tolerance: 0.025,
+            cruise_speed: 0.3,
+            follow_speed: 0.2,
+            side: None,
+            match_scans: true,
+            period: 0.05,
+        }
+    }
+
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<()> {
+        use crate::io::error::require_positive;
+        require_positive("robot radius", self.robot_radius)?;
+        require_positive("least clearance", self.least_clearance)?;
+        require_positive("STEP", self.step)?;
+        require_positive("goal tolerance", self.goal_tolerance)?;
+        require_positive("cruise speed", self.cruise_speed)?;
+        require_positive("follow speed", self.follow_speed)?;
+        require_positive("control period", self.period)?;
+        if !(self.clearance >= self.least_clearance && self.clearance.is_finite()) {
+            let expected = format!("at least the least clearance, {}", self.least_clearance);
+            return Err(Error::invalid_input("clearance", self.clearance, &expected));
+        }
+        Ok(())
+    }
+
+    fn follow_distances(&self) -> FollowDistances {
+        let wished = self.robot_radius + self.clearance;
+        FollowDistances { least: self.robot_radius + self.least_clearance, wished, step: wished }
+    }
+}
+
+impl Default for DistBugParameters {
+    /// For the S4's 60 mm.
+    fn default() -> Self {
+        Self::for_radius(0.060)
+    }
+}
+
+/// How a run of DistBug ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DistBugOutcome {
+    /// The robot is at the goal.
+    Reached,
+    /// The robot went all the way round an obstacle without getting nearer to the goal: there is no way.
+    Unreachable,
+    /// The time was over.
+    TimedOut,
+}
+
+/// What the robot is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DistBugPhase {
+    /// Driving straight to the goal.
+    ToGoal,
+    /// Following the boundary of an obstacle.
+    Following(WallSide),
+    /// Standing, with a verdict.
+    Ended(DistBugOutcome),
+}
+
+/// Something worth telling that happened in a step. Points are where the robot was, relative to its start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum DistBugEvent {
+    /// An obstacle is in the way: the hit point.
+    Hit {
+        /// Where the robot was.
+        point: Point,
+        /// The side of the robot on which it follows the obstacle.
+        side: WallSide,
+    },
+    /// The way to the goal is free enough: the leave point.
+    Leave {
+        /// Where the robot was.
+        point: Point,
+        /// The free distance towards the goal.
+        free: f64,
+    },
+    /// The run is over.
+    End(DistBugOutcome),
+}
+
+/// What a step of DistBug is given.
+#[derive(Debug, Clone, Copy)]
+pub struct DistBugObservation<'a> {
+    /// The pose by odometry, relative to the start.
+    pub odometry: Pose,
+    /// The speed by odometry.
+    pub speed: Twist,
+    /// A scan all round, made at that pose.
+    pub scan: &'a LidarScan,
+}
+
+/// DistBug: to a goal through unknown obstacles, with a proof when there is no way (book, sections 10.1 and 10.2;
+/// I. Kamon and E. Rivlin, "Sensory-based motion planning with global proofs", IEEE Transactions on Robotics and
+/// Automation 13(6), 1997).
+///
+/// The robot drives straight at the goal until something is in the way: the *hit point*. It then follows the
+/// obstacle's boundary and keeps the smallest distance `d_min` that the boundary has had to the goal. As soon as
+/// `d - F <= d_min - STEP`, where `d` is the distance to the goal and `F` the free range towards it, it leaves: the
+/// *leave point*. Back at the hit point without having left, it knows that the goal cannot be reached.
+///
+/// # Model
+///
+/// The robot is a disc; an obstacle grown by its radius and the least clearance is what the boundary is of. So the
+/// proof holds for a robot of that size: a passage narrower than `2 (radius + least clearance)` counts as closed.
+/// `F` is the distance that the whole disc can move towards the goal, and `d_min` starts at the place where the
+/// disc would have touched the obstacle, so that the margins kept from obstacles do not enter the comparison.
+///
+/// # Failure modes
+///
+/// Odometry errors move the goal and can hide that the robot has come back to its hit point; with
+/// [`match_scans`](DistBugParameters::match_scans) poses are corrected by the scans themselves.
+#[derive(Debug, Clone)]
+pub struct DistBug {
+    parameters: DistBugParameters,
+    goal: Point,
+    phase: DistBugPhase,
+    follower: Option<Following>,
+    filter: ScanFilter,
+    matcher: ScanMatcher,
+    surroundings: Surroundings,
+    points: Vec<Point>,
+    pose: Pose,
+    events: Vec<DistBugEvent>,
+}
+
+/// One obstacle's boundary, as far as it has been followed.
+#[derive(Debug, Clone)]
+struct Following {
+    boundary: BoundaryFollower,
+    /// The smallest distance to the goal that the boundary has had.
+    least_distance: f64,
+    progress: LoopProgress,
+}
+
+/// Whether the robot has been all round.
+#[derive(Debug, Clone)]
+struct LoopProgress {
+    begin: Option<Pose>,
+    last: Pose,
+    /// Metres since the boundary was met, and since the loop began.
+    approach: f64,
+    travelled: f64,
+    /// Radians turned since the loop began.
+    turned: f64,
+    /// Steps without a free heading.
+    boxed_in: u32,
+}
+
+/// The standard deviation of a lidar's ranges that the filter starts from, in metres.
+const EXPECTED_NOISE: f64 = 0.010;
+/// How far round the robot points count for its next step, in steps.
+const REACH: f64 = 2.4;
+/// Steps without a free heading after which the robot is boxed in.
+const BOXED_IN_STEPS: u32 = 40;
+/// Steps, at the start, that only look.
+const SETTLING_STEPS: u32 = 12;
+
+impl DistBug {
+    /// A run to a goal given relative to the robot's start: metres ahead and to the left.
+    pub fn new(goal: Point, parameters: DistBugParameters) -> Result<Self> {
+        parameters.validate()?;
+        if !(goal.x.is_finite() && goal.y.is_finite()) {
+            return Err(Error::invalid_input("goal", goal, "finite numbers"));
+        }
+        Ok(Self {
+            parameters,
+            goal,
+            phase: DistBugPhase::ToGoal,
+            follower: None,
+            filter: ScanFilter::new(EXPECTED_NOISE),
+            matcher: ScanMatcher::new(),
+            surroundings: Surroundings::default(),
+            points: Vec::new(),
+            pose: Pose::default(),
+            events: Vec::new(),
+        })
+    }
+
+    /// What the robot is doing.
+    pub fn phase(&self) -> DistBugPhase {
+        self.phase
+    }
+
+    /// Where the robot takes itself to be, relative to its start.
+    pub fn pose(&self) -> Pose {
+        self.pose
+    }
+
+    /// The distance to the goal that the robot takes itself to have.
+    pub fn goal_distance(&self) -> f64 {
+        self.pose.distance_to(self.goal)
+    }
+
+    /// What it sees at the moment: the noise-filtered hits of the scan in the robot's frame.
+    pub fn visible_points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// Takes the events that have happened since the last call.
+    pub fn take_events(&mut self) -> Vec<DistBugEvent> {
+        std::mem::take(&mut self.events)
+    }
+
+    /// One control step: what the robot shall do until the next.
+    pub fn step(&mut self, observation: &DistBugObservation<'_>) -> Result<Twist> {
+        self.perceive(observation)?;
+        if self.goal_distance() <= self.parameters.goal_tolerance {
+            self.end(DistBugOutcome::Reached);
+        }
+        let heading = match self.phase {
+            DistBugPhase::ToGoal => self.to_goal(),
+            DistBugPhase::Following(_) => self.follow(),
+            DistBugPhase::Ended(_) => None,
+        };
+        Ok(heading.map_or(Twist::STOP, |heading| self.steer(heading, observation.speed)))
+    }
+
+    /// Ends the run with a verdict from outside, such as that the time is over.
+    pub fn end(&mut self, outcome: DistBugOutcome) {
+        if !matches!(self.phase, DistBugPhase::Ended(_)) {
+            self.phase = DistBugPhase::Ended(outcome);
+            self.events.push(DistBugEvent::End(outcome));
+        }
+    }
+
+    fn perceive(&mut self, observation: &DistBugObservation<'_>) -> Result<()> {
+        if !observation.odometry.is_finite() {
+            let found = format!("{:?}", observation.odometry);
+            return Err(Error::invalid_input("odometry", found, "finite numbers"));
+        }
+        self.filter.update(observation.odometry, observation.scan)?;
+        self.points.clear();
+        self.points.extend(self.filter.points());
+        self.pose = if self.parameters.match_scans {
+            self.matcher.update(observation.odometry, &self.points)
+        } else {
+            observation.odometry
+        };
+        let reach = REACH * self.parameters.follow_distances().step;
+        self.surroundings.update(self.points.iter().copied(), reach);
+        Ok(())
+    }
+
+    /// Bearing and distance of the goal, how far the way there is free, and what ends it.
+    fn look_at_goal(&self) -> GoalView {
+        let bearing = self.pose.bearing_to(self.goal);
+        let distance = self.goal_distance();
+        let radius = self.parameters.follow_distances().least;
+        let (free, obstacle) = self.surroundings.free_distance(direction(bearing), radius);
+        GoalView { bearing, distance, free, obstacle }
+    }
+
+    /// Drives at the goal; the heading to take.
+    fn to_goal(&mut self) -> Option<f64> {
+        let view = self.look_at_goal();
+        let near = self.parameters.follow_distances().wished - self.parameters.robot_radius;
+        match view.obstacle {
+            Some(obstacle) if view.free < near && view.free < view.distance => self.hit(&view, obstacle),
+            _ => Some(view.bearing),
+        }
+    }
+
+    /// Starts to follow what is in the way.
+    fn hit(&mut self, view: &GoalView, obstacle: Point) -> Option<f64> {
+        let distances = self.parameters.follow_distances();
+        let side = self
+            .parameters
+            .side
+            .unwrap_or_else(|| nearer_side(view.bearing, obstacle, &self.surroundings, distances));
+        let point = self.pose.position();
+        self.follower = Some(Following {
+            boundary: BoundaryFollower::new(side, distances, self.pose.to_world(obstacle)),
+            least_distance: view.distance - view.free,
+            progress: LoopProgress::new(self.pose),
+        });
+        self.phase = DistBugPhase::Following(side);
+        self.events.push(DistBugEvent::Hit { point, side });
+        self.follow()
+    }
+
+    /// Follows the boundary until it can be left or is closed; the heading to take.
+    fn follow(&mut self) -> Option<f64> {
+        let view = self.look_at_goal();
+        let following = self.follower.as_mut()?;
+        following.least_distance = following.least_distance.min(view.distance);
+        let within_sight = view.free >= view.distance;
+        if within_sight || view.distance - view.free <= following.least_distance - self.parameters.step {
+            return self.leave(&view);
+        }
+        let heading = following.boundary.heading(&self.pose, &self.surroundings);
+        let all_round = following.progress.update(self.pose, heading, self.parameters.robot_radius);
+        if all_round {
+            self.end(DistBugOutcome::Unreachable);
+            return None;
+        }
+        heading
+    }
+
+    fn leave(&mut self, view: &GoalView) -> Option<f64> {
+        self.follower = None;
+        self.phase = DistBugPhase::ToGoal;
+        let point = self.pose.position();
+        self.events.push(DistBugEvent::Leave { point, free: view.free.min(view.distance) });
+        Some(view.bearing)
+    }
+
+    /// The twist that turns the robot to a heading and drives it on.
+    fn steer(&self, heading: f64, speed: Twist) -> Twist {
+        // Proportional to the error, damped by the turn rate: the motors' lag would make it swing otherwise.
+        let angular = (8.0 * heading - 1.5 * speed.angular).clamp(-3.0, 3.0);
+        let ahead = math::cos(heading).max(0.0);
+        let aligned = ahead * ahead * ahead;
+        let cruise = match self.phase {
+            DistBugPhase::ToGoal => self.parameters.cruise_speed,
+            _ => self.parameters.follow_speed,
+        };
+        let linear = (cruise * aligned).min(self.safe_speed());
+        Twist::new(linear, angular)
+    }
+
+    /// The speed from which the robot can still stop before what is ahead, or at the goal.
+    fn safe_speed(&self) -> f64 {
+        // The motors' lag lets the robot roll on for about 0.2 s; a little more is reserve.
+        const STOPPING_TIME: f64 = 0.45;
+        let outline = self.parameters.robot_radius + 0.5 * self.parameters.least_clearance;
+        let (ahead, _) = self.surroundings.free_distance(direction(0.0), outline);
+        let goal = self.goal_distance();
+        let creep = 0.02;
+        (ahead / STOPPING_TIME).min(goal / STOPPING_TIME).max(creep)
+    }
+
+    /// Drives a robot to the goal, or finds that there is no way, within `time_limit` seconds. `observe` is called
+    /// after every step.
+    pub fn run<R: Clock + Drive + Lidar + ?Sized>(
+        &mut self,
+        robot: &mut R,
+        time_limit: f64,
+        mut observe: impl FnMut(&mut Self, f64),
+    ) -> Result<DistBugOutcome> {
+        let mut scan = LidarScan::default();
+        let begin = robot.now()?;
+        let mut next = begin;
+        for step in 0_u32.. {
+            let now = robot.now()?;
+            if now - begin >= time_limit {
+                self.end(DistBugOutcome::TimedOut);
+            }
+            robot.scan_into(&mut scan)?;
+            let observation =
+                DistBugObservation { odometry: robot.pose()?, speed: robot.speed()?, scan: &scan };
+            let twist =
+                if step < SETTLING_STEPS { self.look(&observation)? } else { self.step(&observation)? };
+            robot.set_speed(twist)?;
+            observe(self, now);
+            if let DistBugPhase::Ended(outcome) = self.phase {
+                return Ok(outcome);
+            }
+            next += self.parameters.period;
+            let pause = next - robot.now()?;
+            robot.wait(pause)?;
+        }
+        Err(Error::new(ErrorKind::Other, "more control steps than a number can count"))
+    }
+
+    /// A step that only looks, so that the filter has something to go by before the robot moves.
+    pub fn look(&mut self, observation: &DistBugObservation<'_>) -> Result<Twist> {
+        self.perceive(observation)?;
+        Ok(Twist::STOP)
+    }
+}
+
+/// The goal as the robot sees it.
+#[derive(Debug, Clone, Copy)]
+struct GoalView {
+    bearing: f64,
+    distance: f64,
+    free: f64,
+    obstacle: Option<Point>,
+}
+
+impl LoopProgress {
+    fn new(pose: Pose) -> Self {
+        Self { begin: None, last: pose, approach: 0.0, travelled: 0.0, turned: 0.0, boxed_in: 0 }
+    }
+
+    /// Takes in where the robot is and the heading that it takes; whether it is back where the loop began.
+    fn update(&mut self, pose: Pose, heading: Option<f64>, radius: f64) -> bool {
+        let moved = pose.distance_to(self.last.position());
+        let turned = angle_difference(pose.heading, self.last.heading);
+        self.last = pose;
+        let Some(heading) = heading else {
+            self.boxed_in += 1;
+            return self.boxed_in > BOXED_IN_STEPS;
+        };
+        self.boxed_in = 0;
+        let Some(begin) = self.begin else {
+            self.approach += moved;
+            // The loop begins once the robot has come into line with the boundary.
+            let in_line = heading.abs() < 0.3 && self.approach > 0.5 * radius;
+            if in_line || self.approach > 6.0 * radius {
+                self.begin = Some(pose);
+            }
+            return false;
+        };
+        self.travelled += moved;
+        self.turned += turned;
+        let near = pose.distance_to(begin.position()) < 1.5 * radius;
+        let same_way = normalize_angle(pose.heading - begin.heading).abs() < 1.2;
+        let been_away = self.travelled > 6.0 * radius || self.turned.abs() > 1.1 * std::f64::consts::TAU;
+        near && same_way && been_away
+    }
+}

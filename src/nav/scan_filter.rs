@@ -1,0 +1,228 @@
+use std::f64::consts::TAU;
+
+use crate::geometry::{Point, Pose, direction, math};
+use crate::io::{Error, LidarScan, Result};
+
+/// Takes the noise out of consecutive lidar scans of a moving robot.
+///
+/// Each beam carries an estimate of its range. With every scan the estimates are moved along with the robot's own
+/// motion, which is known far better between two scans than a single range, and then averaged with the new
+/// readings. A reading that does not fit its prediction, because something came into view or went out of it, starts
+/// its beam anew. After some scans the noise is a fraction of the sensor's, without the blur that a plain average
+/// over time or over neighbours would have.
+#[derive(Debug, Clone)]
+pub struct ScanFilter {
+    beams: Vec<Beam>,
+    predicted: Vec<Beam>,
+    directions: Vec<(f64, f64)>,
+    angle_min: f64,
+    angle_increment: f64,
+    mount: Pose,
+    pose: Pose,
+    noise: f64,
+    scratch: Vec<f64>,
+}
+
+/// The estimate of one beam.
+#[derive(Debug, Clone, Copy)]
+struct Beam {
+    range: f64,
+    /// How many readings the estimate rests on; 0 when there is none.
+    weight: f64,
+}
+
+const UNKNOWN: Beam = Beam { range: f64::INFINITY, weight: 0.0 };
+/// The most readings that an estimate counts for, so that it still follows small changes.
+const MAX_WEIGHT: f64 = 10.0;
+/// Readings farther from their prediction than this many standard deviations start anew.
+const GATE: f64 = 4.0;
+/// The smallest such distance, in metres: a wall seen at a slant moves by this between beams.
+const MIN_GATE: f64 = 0.015;
+/// Beams whose hits lie closer together than this, in metres, see the same piece of surface.
+const SMOOTHING_ARC: f64 = 0.008;
+
+impl ScanFilter {
+    /// A filter without a scan. `noise` is the standard deviation in metres that one range of the sensor is expected
+    /// to have; the filter finds the actual one by itself.
+    pub fn new(noise: f64) -> Self {
+        Self {
+            beams: Vec::new(),
+            predicted: Vec::new(),
+            directions: Vec::new(),
+            angle_min: 0.0,
+            angle_increment: 0.0,
+            mount: Pose::default(),
+            pose: Pose::default(),
+            noise,
+            scratch: Vec::new(),
+        }
+    }
+
+    /// Takes in a scan that was made at `pose` by odometry. The scan must cover a full turn; the first one fixes the
+    /// number of beams.
+    pub fn update(&mut self, pose: Pose, scan: &LidarScan) -> Result<()> {
+        self.check(scan)?;
+        if self.beams.len() != scan.ranges.len() {
+            self.restart(scan);
+        } else {
+            self.predict(pose);
+        }
+        self.pose = pose;
+        self.correct(&scan.ranges);
+        Ok(())
+    }
+
+    /// The estimated range of every beam in metres, +infinity where nothing is seen.
+    pub fn ranges(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
+        (0..self.beams.len()).map(|i| self.smoothed(i))
+    }
+
+    /// The estimated hits in the robot's frame.
+    pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
+        let origin = self.mount.position();
+        self.ranges()
+            .zip(&self.directions)
+            .filter(|(range, _)| range.is_finite())
+            .map(move |(range, &(cos, sin))| Point::new(origin.x + range * cos, origin.y + range * sin))
+    }
+
+    /// The standard deviation of the sensor's ranges as found so far, in metres.
+    pub fn noise(&self) -> f64 {
+        self.noise
+    }
+
+    fn check(&self, scan: &LidarScan) -> Result<()> {
+        let covered = scan.angle_increment * scan.ranges.len() as f64;
+        if scan.ranges.len() < 36 || (covered - TAU).abs() > 0.02 * TAU {
+            let found = format!("{} beams over {:.2} rad", scan.ranges.len(), covered);
+            return Err(Error::invalid_input("lidar scan", found, "at least 36 beams over a full turn"));
+        }
+        Ok(())
+    }
+
+    fn restart(&mut self, scan: &LidarScan) {
+        self.angle_min = scan.angle_min;
+        self.angle_increment = scan.angle_increment;
+        self.mount = scan.mount;
+        self.beams = vec![UNKNOWN; scan.ranges.len()];
+        self.directions = (0..scan.ranges.len())
+            .map(|i| {
+                let d = direction(scan.mount.heading + scan.angle(i));
+                (d.x, d.y)
+            })
+            .collect();
+    }
+
+    /// Moves the estimates to where they are seen from the new pose.
+    fn predict(&mut self, pose: Pose) {
+        let before = self.pose.compose(&self.mount);
+        let now = pose.compose(&self.mount);
+        let motion = now.inverse().compose(&before);
+        let (sin, cos) = math::sin_cos(motion.heading);
+        self.predicted.clear();
+        self.predicted.resize(self.beams.len(), UNKNOWN);
+        for i in 0..self.beams.len() {
+            let Beam { range, weight } = self.beams[i];
+            if weight == 0.0 || !range.is_finite() {
+                continue;
+            }
+            let (along, across) = self.local_direction(i);
+            let x = motion.x + range * (cos * along - sin * across);
+            let y = motion.y + range * (sin * along + cos * across);
+            let seen = math::hypot(x, y);
+            let bearing = (math::atan2(y, x) - self.angle_min) / self.angle_increment;
+            let bearing = bearing.rem_euclid(self.beams.len() as f64);
+            let nearest = bearing.round();
+            let target = nearest as usize % self.beams.len();
+            // The estimate is for the beam's own direction, which the moved point misses by up to half a beam.
+            let range = seen + self.slope(i) * (nearest - bearing);
+            if range < self.predicted[target].range {
+                self.predicted[target] = Beam { range, weight };
+            }
+        }
+        std::mem::swap(&mut self.beams, &mut self.predicted);
+    }
+
+    /// A beam's direction in the sensor's frame.
+    fn local_direction(&self, index: usize) -> (f64, f64) {
+        let (x, y) = self.directions[index];
+        if self.mount.heading == 0.0 {
+            return (x, y);
+        }
+        let (sin, cos) = math::sin_cos(self.mount.heading);
+        (cos * x + sin * y, cos * y - sin * x)
+    }
+
+    /// How much the range changes from one beam to the next on the surface that a beam sees.
+    fn slope(&self, index: usize) -> f64 {
+        let n = self.beams.len();
+        let before = self.beams[(index + n - 1) % n].range;
+        let after = self.beams[(index + 1) % n].range;
+        let slope = 0.5 * (after - before);
+        let here = self.beams[index].range;
+        // Across an edge between surfaces there is no slope.
+        if slope.abs() < 0.1 * here && (before + after - 2.0 * here).abs() < 0.05 * here {
+            slope
+        } else {
+            0.0
+        }
+    }
+
+    fn correct(&mut self, ranges: &[f64]) {
+        let gate = (GATE * self.noise).max(MIN_GATE);
+        self.scratch.clear();
+        for (beam, &reading) in self.beams.iter_mut().zip(ranges) {
+            let surprise = reading - beam.range;
+            if beam.weight == 0.0 || !(surprise.abs() <= gate) {
+                let weight = if reading.is_finite() { 1.0 } else { 0.0 };
+                *beam = Beam { range: if reading.is_nan() { f64::INFINITY } else { reading }, weight };
+                continue;
+            }
+            // A prediction that rests on many readings is nearly exact, so its surprise is the reading's noise.
+            if beam.weight >= 4.0 {
+                self.scratch.push(surprise.abs());
+            }
+            beam.weight = (beam.weight + 1.0).min(MAX_WEIGHT);
+            beam.range += surprise / beam.weight;
+        }
+        self.learn_noise();
+    }
+
+    /// Moves the estimate of the sensor's noise towards what this scan showed.
+    fn learn_noise(&mut self) {
+        let n = self.scratch.len();
+        if n < 20 {
+            return;
+        }
+        let (_, median, _) = self.scratch.select_nth_unstable_by(n / 2, f64::total_cmp);
+        // The median of absolute normal deviations is 0.6745 of their standard deviation.
+        let observed = *median / 0.6745;
+        self.noise += 0.1 * (observed - self.noise);
+    }
+
+    /// A beam's estimate, averaged with neighbours that see the same piece of surface.
+    fn smoothed(&self, index: usize) -> f64 {
+        let here = self.beams[index];
+        let arc = here.range * self.angle_increment;
+        if !(arc < SMOOTHING_ARC) {
+            return here.range;
+        }
+        let reach = (SMOOTHING_ARC / arc) as usize;
+        let reach = reach.min(6);
+        let gate = (2.0 * self.noise).max(0.005) + 2.0 * SMOOTHING_ARC;
+        let n = self.beams.len();
+        let (mut sum, mut weights) = (here.range * here.weight, here.weight);
+        for step in 1..=reach {
+            // Neighbours come in pairs, so that the slope of the surface cancels.
+            let before = self.beams[(index + n - step) % n];
+            let after = self.beams[(index + step) % n];
+            if !((before.range - here.range).abs() < gate && (after.range - here.range).abs() < gate) {
+                break;
+            }
+            let weight = before.weight.min(after.weight);
+            sum += weight * (before.range + after.range);
+            weights += 2.0 * weight;
+        }
+        sum / weights
+    }
+}

@@ -1,0 +1,220 @@
+use std::f64::consts::TAU;
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::geometry::{Point, Pose, Vector, cross, direction, math, normalize_angle};
+
+/// Corrects odometry by matching scans against earlier ones.
+///
+/// The first scan, and others on the way, are kept as references with the poses at which they were made. Each new
+/// scan is laid over the nearest reference: points against the lines between neighbouring points there
+/// (point-to-line ICP after A. Censi, "An ICP variant using a point-to-line metric", ICRA 2008, with correspondences
+/// found by bearing as in polar scan matching). Errors then grow with the number of references in a chain, not with
+/// the distance driven, and returning to a known place takes them back.
+#[derive(Debug, Clone, Default)]
+pub struct ScanMatcher {
+    references: Vec<Reference>,
+    /// From the odometry's frame to the corrected one.
+    correction: Pose,
+}
+
+/// A scan that later ones are matched against.
+#[derive(Debug, Clone)]
+struct Reference {
+    pose: Pose,
+    /// Where each beam hit, in the robot's frame, in the order of bearing; `None` where nothing was seen.
+    hits: Vec<Option<Hit>>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Hit {
+    point: Point,
+    range: f64,
+    /// The unit normal of the surface, if the neighbours lie on one line with the point.
+    normal: Option<Vector>,
+}
+
+/// The result of laying a scan over a reference.
+#[derive(Debug, Clone, Copy)]
+struct Match {
+    pose: Pose,
+    /// The share of points that found a counterpart.
+    overlap: f64,
+}
+
+/// Bearings that a reference is divided into.
+const BINS: usize = 360;
+/// Farther from its reference than this, in metres, a scan becomes a reference itself.
+const REFERENCE_SPACING: f64 = 0.5;
+/// So it does when less than this share of its points matches.
+const MIN_OVERLAP: f64 = 0.6;
+/// A match below this share is not believed.
+const MIN_MATCH: f64 = 0.3;
+const ITERATIONS: usize = 6;
+/// Points farther from the reference's surface than this, in metres, have no counterpart: first and last iteration.
+const COARSE_GATE: f64 = 0.10;
+const FINE_GATE: f64 = 0.03;
+/// Standard deviations by which the prediction may err: metres and radians. They hold the directions that the scan
+/// says nothing about, as along a corridor.
+const PRIOR_POSITION: f64 = 0.02;
+const PRIOR_HEADING: f64 = 0.01;
+/// The standard deviation of a matched point, in metres.
+const POINT_NOISE: f64 = 0.01;
+/// How far neighbours may lie from a common line, as a part of their distance.
+const FLATNESS: f64 = 0.2;
+
+impl ScanMatcher {
+    /// A matcher without references, whose corrected frame is odometry's own.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The corrected pose for a pose by odometry, by the last match.
+    pub fn corrected(&self, odometry: Pose) -> Pose {
+        self.correction.compose(&odometry)
+    }
+
+    /// How many scans are kept as references.
+    pub fn references(&self) -> usize {
+        self.references.len()
+    }
+
+    /// Matches a scan, given as points in the robot's frame in order of bearing, that was made at `odometry`, and
+    /// returns the corrected pose.
+    pub fn update(&mut self, odometry: Pose, points: &[Point]) -> Pose {
+        let predicted = self.corrected(odometry);
+        let Some(reference) = self.nearest_reference(predicted) else {
+            self.references.push(Reference::new(predicted, points));
+            return predicted;
+        };
+        let matched = reference.lay_over(predicted, points);
+        let distance = reference.pose.distance_to(matched.pose.position());
+        let believed = matched.overlap >= MIN_MATCH;
+        let pose = if believed { matched.pose } else { predicted };
+        self.correction = pose.compose(&odometry.inverse());
+        if distance > REFERENCE_SPACING || matched.overlap < MIN_OVERLAP {
+            self.references.push(Reference::new(pose, points));
+        }
+        pose
+    }
+
+    fn nearest_reference(&self, pose: Pose) -> Option<&Reference> {
+        let distance = |r: &Reference| (r.pose.position() - pose.position()).norm_squared();
+        self.references.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    }
+}
+
+impl Reference {
+    fn new(pose: Pose, points: &[Point]) -> Self {
+        let mut hits: Vec<Option<Hit>> = vec![None; BINS];
+        for (i, &point) in points.iter().enumerate() {
+            let range = point.coords.norm();
+            let bin = bin_of(point);
+            if hits[bin].is_none_or(|hit| range < hit.range) {
+                hits[bin] = Some(Hit { point, range, normal: normal_at(points, i) });
+            }
+        }
+        Self { pose, hits }
+    }
+
+    /// Moves a scan from its predicted pose to where it fits this reference best.
+    fn lay_over(&self, predicted: Pose, points: &[Point]) -> Match {
+        let prior = self.pose.inverse().compose(&predicted);
+        let mut relative = prior;
+        let mut matched = 0;
+        for iteration in 0..ITERATIONS {
+            let share = iteration as f64 / (ITERATIONS - 1) as f64;
+            let gate = COARSE_GATE + (FINE_GATE - COARSE_GATE) * share;
+            let (information, residual, count) = self.normal_equations(relative, prior, points, gate);
+            matched = count;
+            let Some(step) = information.cholesky().map(|c| c.solve(&residual)) else { break };
+            relative.x += step.x;
+            relative.y += step.y;
+            relative.heading = normalize_angle(relative.heading + step.z);
+            if step.x.abs() + step.y.abs() < 1e-6 && step.z.abs() < 1e-6 && share > 0.5 {
+                break;
+            }
+        }
+        let overlap = matched as f64 / points.len().max(1) as f64;
+        Match { pose: self.pose.compose(&relative), overlap }
+    }
+
+    /// Gauss-Newton's equations for the pose relative to this reference, and the number of counterparts found.
+    fn normal_equations(
+        &self,
+        relative: Pose,
+        prior: Pose,
+        points: &[Point],
+        gate: f64,
+    ) -> (Matrix3<f64>, Vector3<f64>, usize) {
+        let position = 1.0 / (PRIOR_POSITION * PRIOR_POSITION);
+        let heading = 1.0 / (PRIOR_HEADING * PRIOR_HEADING);
+        let weights = Vector3::new(position, position, heading);
+        let strayed = Vector3::new(
+            prior.x - relative.x,
+            prior.y - relative.y,
+            normalize_angle(prior.heading - relative.heading),
+        );
+        let mut information = Matrix3::from_diagonal(&weights);
+        let mut residual = weights.component_mul(&strayed);
+        let mut count = 0;
+        let along = direction(relative.heading);
+        for point in points {
+            let turned =
+                Vector::new(along.x * point.x - along.y * point.y, along.y * point.x + along.x * point.y);
+            let placed = Point::new(relative.x + turned.x, relative.y + turned.y);
+            let Some((normal, error)) = self.counterpart(placed, gate) else { continue };
+            count += 1;
+            // Large errors count less, so that what has no true counterpart does not pull.
+            let robust = 1.0 / (1.0 + (error / POINT_NOISE) * (error / POINT_NOISE) * 0.25);
+            let weight = robust / (POINT_NOISE * POINT_NOISE);
+            let gradient = Vector3::new(normal.x, normal.y, cross(turned, normal));
+            information += gradient * gradient.transpose() * weight;
+            residual -= gradient * (weight * error);
+        }
+        (information, residual, count)
+    }
+
+    /// The surface's normal and the signed distance to it, where a point has a counterpart.
+    fn counterpart(&self, point: Point, gate: f64) -> Option<(Vector, f64)> {
+        let bin = bin_of(point);
+        let range = point.coords.norm();
+        // Near surfaces spread over many bins: the best of the neighbours is the nearest point.
+        let candidates = [bin, (bin + 1) % BINS, (bin + BINS - 1) % BINS];
+        let hit = candidates
+            .iter()
+            .filter_map(|&b| self.hits[b])
+            .min_by(|a, b| (a.range - range).abs().total_cmp(&(b.range - range).abs()))?;
+        let normal = hit.normal?;
+        let error = (point - hit.point).dot(&normal);
+        let apart = (point - hit.point).norm_squared();
+        let spread = 3.0 * range * TAU / BINS as f64 + gate;
+        (error.abs() < gate && apart < spread * spread).then_some((normal, error))
+    }
+}
+
+fn bin_of(point: Point) -> usize {
+    let turn = math::atan2(point.y, point.x) / TAU;
+    ((turn * BINS as f64).round() as i64).rem_euclid(BINS as i64) as usize
+}
+
+/// The normal of the line through a point's neighbours, if the point lies on it.
+fn normal_at(points: &[Point], index: usize) -> Option<Vector> {
+    let n = points.len();
+    if n < 5 {
+        return None;
+    }
+    let reach = 2;
+    let before = points[(index + n - reach) % n];
+    let after = points[(index + reach) % n];
+    let along = after - before;
+    let length = along.norm();
+    let range = points[index].coords.norm();
+    // Neighbours across an edge lie much farther apart than beams on one surface do.
+    if length < 1e-6 || length > 0.6 * range.max(0.05) {
+        return None;
+    }
+    let normal = Vector::new(-along.y, along.x) / length;
+    let off = (points[index] - before).dot(&normal).abs();
+    (off < FLATNESS * length).then_some(normal)
+}

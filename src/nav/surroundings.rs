@@ -1,0 +1,85 @@
+use crate::geometry::{Point, Vector, cross};
+
+/// What a disc-shaped robot sees around it, as points in its own frame, and where it can go.
+///
+/// All lengths are from the robot's middle: a *clearance* of the robot's radius means touching.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Surroundings {
+    points: Vec<Point>,
+    /// Those near enough to matter for the next step.
+    near: Vec<Point>,
+    clearance: f64,
+}
+
+/// How fast a robot that is closer to something than it should be must gain distance, in metres per metre.
+const RECEDING_SLOPE: f64 = 0.25;
+
+impl Surroundings {
+    /// Replaces what is seen. Points within `reach` of the robot count for its next step.
+    pub(super) fn update(&mut self, points: impl Iterator<Item = Point>, reach: f64) {
+        self.points.clear();
+        self.points.extend(points);
+        self.near.clear();
+        self.near.extend(self.points.iter().filter(|p| p.coords.norm_squared() < reach * reach));
+        let nearest = self.near.iter().map(|p| p.coords.norm_squared()).fold(reach * reach, f64::min);
+        self.clearance = nearest.sqrt();
+    }
+
+    /// The distance to the nearest point, at most the reach.
+    pub(super) fn clearance(&self) -> f64 {
+        self.clearance
+    }
+
+    /// How near the robot's middle comes to anything on a straight step of `length` metres in a direction.
+    ///
+    /// What the step leaves behind, or moves away from fast enough, does not count: a robot that is too close to a
+    /// wall may still drive off it. Also returns the point that it comes nearest to.
+    pub(super) fn step_clearance(&self, unit: Vector, length: f64) -> (f64, Option<Point>) {
+        let mut least = (f64::INFINITY, None);
+        for point in &self.near {
+            let along = point.coords.dot(&unit);
+            if along <= 0.0 {
+                continue;
+            }
+            let across = cross(unit, point.coords).abs();
+            let distance =
+                if along <= length { across } else { crate::geometry::math::hypot(across, along - length) };
+            let receding = distance >= self.clearance + RECEDING_SLOPE * along.min(length);
+            if !receding && distance < least.0 {
+                least = (distance, Some(*point));
+            }
+        }
+        least
+    }
+
+    /// How far a disc of radius `radius` can move in a direction before it touches something, and what it touches.
+    ///
+    /// A radius larger than the present clearance is cut down to it.
+    pub(super) fn free_distance(&self, unit: Vector, radius: f64) -> (f64, Option<Point>) {
+        let radius = radius.min(self.clearance - 1e-3);
+        let mut free = (f64::INFINITY, None);
+        for point in &self.points {
+            let along = point.coords.dot(&unit);
+            if along <= 0.0 {
+                continue;
+            }
+            let across = cross(unit, point.coords);
+            let depth = radius * radius - across * across;
+            if depth > 0.0 {
+                let distance = (along - depth.sqrt()).max(0.0);
+                if distance < free.0 {
+                    free = (distance, Some(*point));
+                }
+            }
+        }
+        free
+    }
+
+    /// The visible point nearest to a place.
+    pub(super) fn nearest_to(&self, place: Point) -> Option<Point> {
+        self.near
+            .iter()
+            .min_by(|a, b| (*a - place).norm_squared().total_cmp(&(*b - place).norm_squared()))
+            .copied()
+    }
+}
