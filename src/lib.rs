@@ -3,5 +3,6 @@
 pub mod geometry;
 pub mod io;
 pub mod kinematics;
+pub mod nav;
 pub mod random;
 pub mod world;

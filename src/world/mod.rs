@@ -3,6 +3,7 @@
 //! A [`Scene`] is a [`World`] with robots in it. The types are plain data in SI units; the readers and writers of
 //! the EyeSim and ROS formats are in [`formats`].
 
+mod clearance;
 mod colour;
 pub mod formats;
 mod object;
@@ -10,6 +11,7 @@ mod robot;
 mod scene;
 mod wall;
 
+pub use clearance::{Clearance, Raster, RasterError};
 pub use colour::Colour;
 pub use object::{Marker, Object, ObjectKind, Shape};
 pub use robot::{
