@@ -1,5 +1,5 @@
 use std::cmp::Ordering;
-use std::collections::{BinaryHeap, VecDeque};
+use std::collections::BinaryHeap;
 use std::f64::consts::SQRT_2;
 
 use crate::geometry::Point;
@@ -30,11 +30,10 @@ use crate::world::{Clearance, Raster, RasterError, World};
 #[derive(Debug, Clone)]
 pub struct Reachability {
     raster: Raster,
-    /// For every cell the number of its connected region, or [`BLOCKED`].
-    regions: Vec<u32>,
+    /// For every free cell the number of its region of cells connected through edges. Steps over corners that cut
+    /// none connect no more than these.
+    regions: Vec<Option<u32>>,
 }
-
-const BLOCKED: u32 = u32::MAX;
 
 /// A way between two points through the middles of free cells.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,7 +61,7 @@ impl Reachability {
     /// The same from distances already measured up to a limit above `radius`; with a lower limit no cell is free.
     pub fn from_clearance(clearance: &Clearance, radius: f64) -> Self {
         let raster = clearance.raster().clone();
-        let regions = label(&raster, |cell| clearance.at(cell) > radius);
+        let regions = raster.regions(|cell| clearance.at(cell) > radius);
         Self { raster, regions }
     }
 
@@ -84,7 +83,7 @@ impl Reachability {
     /// The number of free cells that a robot at this point can reach, its own among them.
     pub fn region_size(&self, point: Point) -> usize {
         self.region_at(point)
-            .map_or(0, |region| self.regions.iter().filter(|&&other| other == region).count())
+            .map_or(0, |region| self.regions.iter().filter(|&&other| other == Some(region)).count())
     }
 
     /// Metres along the shortest way from `a` to `b`; `None` if there is none. See [`Self::shortest_path`].
@@ -118,12 +117,11 @@ impl Reachability {
     }
 
     fn region_at(&self, point: Point) -> Option<u32> {
-        let cell = self.raster.cell_at(point)?;
-        Some(self.regions[cell]).filter(|&region| region != BLOCKED)
+        self.regions[self.raster.cell_at(point)?]
     }
 
     fn is_free_cell(&self, cell: usize) -> bool {
-        self.regions[cell] != BLOCKED
+        self.regions[cell].is_some()
     }
 
     /// Calls `visit` with each cell that one step leads to, and whether the step is diagonal.
@@ -147,33 +145,6 @@ impl Reachability {
             }
         }
     }
-}
-
-/// Numbers the regions of free cells that are connected through edges. Steps over corners that cut none connect the
-/// same cells, so they need no attention here.
-fn label(raster: &Raster, is_free: impl Fn(usize) -> bool) -> Vec<u32> {
-    const UNSEEN: u32 = u32::MAX - 1;
-    let mut regions: Vec<u32> =
-        (0..raster.cells()).map(|cell| if is_free(cell) { UNSEEN } else { BLOCKED }).collect();
-    let mut queue = VecDeque::new();
-    let mut region = 0;
-    for seed in 0..regions.len() {
-        if regions[seed] != UNSEEN {
-            continue;
-        }
-        regions[seed] = region;
-        queue.push_back(seed);
-        while let Some(cell) = queue.pop_front() {
-            for next in raster.edge_neighbours(cell).into_iter().flatten() {
-                if regions[next] == UNSEEN {
-                    regions[next] = region;
-                    queue.push_back(next);
-                }
-            }
-        }
-        region += 1;
-    }
-    regions
 }
 
 /// A cell in the queue of the search, the most promising first.

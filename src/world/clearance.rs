@@ -118,6 +118,31 @@ impl Raster {
         ]
     }
 
+    /// Numbers the regions of free cells that are connected through edges, from 0 in the order of their first cells;
+    /// `None` for the other cells.
+    pub fn regions(&self, is_free: impl Fn(usize) -> bool) -> Vec<Option<u32>> {
+        let mut regions = vec![None; self.cells()];
+        let mut stack = Vec::new();
+        let mut region = 0;
+        for seed in 0..regions.len() {
+            if regions[seed].is_some() || !is_free(seed) {
+                continue;
+            }
+            regions[seed] = Some(region);
+            stack.push(seed);
+            while let Some(cell) = stack.pop() {
+                for next in self.edge_neighbours(cell).into_iter().flatten() {
+                    if regions[next].is_none() && is_free(next) {
+                        regions[next] = Some(region);
+                        stack.push(next);
+                    }
+                }
+            }
+            region += 1;
+        }
+        regions
+    }
+
     /// The indices between two coordinates along an axis that starts at `corner` and has `count` cells: those whose
     /// middles lie there, and at most one more on either side.
     fn span(&self, corner: f64, count: usize, low: f64, high: f64) -> std::ops::Range<usize> {

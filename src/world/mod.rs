@@ -6,6 +6,7 @@
 mod clearance;
 mod colour;
 pub mod formats;
+pub mod generate;
 mod object;
 mod robot;
 mod scene;
