@@ -3,14 +3,17 @@
 //! A [`Scene`] is a [`World`] with robots in it. The types are plain data in SI units; the readers and writers of
 //! the EyeSim and ROS formats are in [`formats`].
 
+mod clearance;
 mod colour;
 pub mod formats;
+pub mod generate;
 mod object;
 mod robot;
 mod scene;
 pub mod space;
 mod wall;
 
+pub use clearance::{Clearance, Raster, RasterError};
 pub use colour::Colour;
 pub use object::{Marker, Object, ObjectKind, Shape};
 pub use robot::{

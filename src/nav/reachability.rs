@@ -1,0 +1,410 @@
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use std::f64::consts::SQRT_2;
+
+use crate::geometry::Point;
+use crate::world::{Clearance, Raster, RasterError, World};
+
+/// The places that the middle of a disc-shaped robot can take in a world, and the ways between them.
+///
+/// The floor is divided into square cells. A cell is free if its middle is farther than the robot's radius from
+/// every wall and object, which is an exact test (see [`Clearance`]); a robot moves between free cells that share an
+/// edge, or a corner if both cells beside that corner are free. So the answers are those of the continuous world for
+/// a radius that differs by less than one cell: a gap wider than the robot by 1.5 cells connects, and a gap narrower
+/// than the robot by one cell does not.
+///
+/// ```
+/// use roverlab::geometry::Point;
+/// use roverlab::nav::Reachability;
+/// use roverlab::world::{Wall, World};
+/// let mut world = World::walled(2.0, 1.0);
+/// let (left, right) = (Point::new(0.5, 0.5), Point::new(1.5, 0.5));
+/// let way = Reachability::new(&world, 0.06, Reachability::DEFAULT_RESOLUTION)?;
+/// assert!((way.shortest_path_length(left, right).unwrap() - 1.0).abs() < 0.01);
+///
+/// world.walls.push(Wall::new(Point::new(1.0, 0.0), Point::new(1.0, 1.0)));
+/// let way = Reachability::new(&world, 0.06, Reachability::DEFAULT_RESOLUTION)?;
+/// assert!(way.is_free(right) && !way.connected(left, right));
+/// # Ok::<(), roverlab::world::RasterError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Reachability {
+    raster: Raster,
+    /// For every free cell the number of its region of cells connected through edges. Steps over corners that cut
+    /// none connect no more than these.
+    regions: Vec<Option<u32>>,
+}
+
+/// A way between two points through the middles of free cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path {
+    /// The start, the middles of the cells on the way, and the goal.
+    pub points: Vec<Point>,
+    /// Metres along the points.
+    pub length: f64,
+    /// Cells taken off the search's queue.
+    pub expanded: usize,
+}
+
+impl Reachability {
+    /// Metres along a cell's edge that suit robots of the size of an EyeBot.
+    pub const DEFAULT_RESOLUTION: f64 = 0.005;
+
+    /// Divides a world into cells of `resolution` metres for a robot of `radius` metres.
+    ///
+    /// Takes time and memory in proportion to the cells.
+    pub fn new(world: &World, radius: f64, resolution: f64) -> Result<Self, RasterError> {
+        let clearance = Clearance::new(world, resolution, radius.next_up())?;
+        Ok(Self::from_clearance(&clearance, radius))
+    }
+
+    /// The same from distances already measured up to a limit above `radius`; with a lower limit no cell is free.
+    pub fn from_clearance(clearance: &Clearance, radius: f64) -> Self {
+        let raster = clearance.raster().clone();
+        let regions = raster.regions(|cell| clearance.at(cell) > radius);
+        Self { raster, regions }
+    }
+
+    /// The cells.
+    pub fn raster(&self) -> &Raster {
+        &self.raster
+    }
+
+    /// Whether a robot whose middle is in the cell of this point touches nothing.
+    pub fn is_free(&self, point: Point) -> bool {
+        self.region_at(point).is_some()
+    }
+
+    /// Whether both points are free and a way leads from one to the other.
+    pub fn connected(&self, a: Point, b: Point) -> bool {
+        self.region_at(a).is_some_and(|region| Some(region) == self.region_at(b))
+    }
+
+    /// The number of free cells that a robot at this point can reach, its own among them.
+    pub fn region_size(&self, point: Point) -> usize {
+        self.region_at(point)
+            .map_or(0, |region| self.regions.iter().filter(|&&other| other == Some(region)).count())
+    }
+
+    /// Metres along the shortest way from `a` to `b`; `None` if there is none. See [`Self::shortest_path`].
+    pub fn shortest_path_length(&self, a: Point, b: Point) -> Option<f64> {
+        self.shortest_path(a, b).map(|path| path.length)
+    }
+
+    /// The shortest way from `a` to `b` in steps along edges and diagonals, found by A\* with the octile distance;
+    /// `None` if there is no way. In open space such a way is at most 8.3 % longer than the straight line.
+    ///
+    /// P. E. Hart, N. J. Nilsson, B. Raphael, *A Formal Basis for the Heuristic Determination of Minimum Cost
+    /// Paths*, IEEE Trans. Systems Science and Cybernetics 4(2), 1968. O(n log n) for n cells.
+    pub fn shortest_path(&self, a: Point, b: Point) -> Option<Path> {
+        if !self.connected(a, b) {
+            return None;
+        }
+        let (start, goal) = (self.raster.cell_at(a)?, self.raster.cell_at(b)?);
+        let mut search = Search::new(self, goal);
+        let found = search.run(start);
+        found.then(|| self.path(a, b, &search.trace(start), search.expanded))
+    }
+
+    fn path(&self, a: Point, b: Point, cells: &[usize], expanded: usize) -> Path {
+        let mut points = vec![a];
+        // The first and the last cell are those of the given points, which stand for their middles.
+        let inner = cells.get(1..cells.len().saturating_sub(1)).unwrap_or_default();
+        points.extend(inner.iter().map(|&cell| self.raster.centre(cell)));
+        points.push(b);
+        let length = points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+        Path { points, length, expanded }
+    }
+
+    fn region_at(&self, point: Point) -> Option<u32> {
+        self.regions[self.raster.cell_at(point)?]
+    }
+
+    fn is_free_cell(&self, cell: usize) -> bool {
+        self.regions[cell].is_some()
+    }
+
+    /// Calls `visit` with each cell that one step leads to, and whether the step is diagonal.
+    fn steps(&self, cell: usize, mut visit: impl FnMut(usize, bool)) {
+        let free = |neighbour: Option<usize>| neighbour.filter(|&next| self.is_free_cell(next));
+        let [right, left, above, below] = self.raster.edge_neighbours(cell).map(free);
+        for next in [right, left, above, below].into_iter().flatten() {
+            visit(next, false);
+        }
+        let columns = self.raster.columns();
+        for (side, to_right) in [(right, true), (left, false)] {
+            if side.is_none() {
+                continue;
+            }
+            for row in [above, below].into_iter().flatten() {
+                let corner = if to_right { row + 1 } else { row - 1 };
+                debug_assert!(corner / columns == row / columns);
+                if self.is_free_cell(corner) {
+                    visit(corner, true);
+                }
+            }
+        }
+    }
+}
+
+/// A cell in the queue of the search, the most promising first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Candidate {
+    estimate: f64,
+    cost: f64,
+    cell: usize,
+}
+
+impl Eq for Candidate {}
+
+impl Ord for Candidate {
+    /// Reversed, because the heap gives its greatest first. Ties go to the cell nearer to the goal, then to the
+    /// lower index, so that the path does not depend on the heap's inner order.
+    fn cmp(&self, other: &Self) -> Ordering {
+        (other.estimate.total_cmp(&self.estimate))
+            .then(self.cost.total_cmp(&other.cost))
+            .then(other.cell.cmp(&self.cell))
+    }
+}
+
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// A\* over free cells, with costs in cells.
+struct Search<'a> {
+    space: &'a Reachability,
+    goal: usize,
+    costs: Vec<f64>,
+    came_from: Vec<usize>,
+    closed: Vec<bool>,
+    expanded: usize,
+}
+
+impl<'a> Search<'a> {
+    fn new(space: &'a Reachability, goal: usize) -> Self {
+        let cells = space.raster.cells();
+        Self {
+            space,
+            goal,
+            costs: vec![f64::INFINITY; cells],
+            came_from: vec![usize::MAX; cells],
+            closed: vec![false; cells],
+            expanded: 0,
+        }
+    }
+
+    fn run(&mut self, start: usize) -> bool {
+        let mut queue = BinaryHeap::new();
+        self.costs[start] = 0.0;
+        queue.push(Candidate { estimate: self.heuristic(start), cost: 0.0, cell: start });
+        while let Some(Candidate { cell, cost, .. }) = queue.pop() {
+            if self.closed[cell] {
+                continue;
+            }
+            self.closed[cell] = true;
+            self.expanded += 1;
+            if cell == self.goal {
+                return true;
+            }
+            let space = self.space;
+            space.steps(cell, |next, diagonal| {
+                let cost = cost + if diagonal { SQRT_2 } else { 1.0 };
+                if cost < self.costs[next] {
+                    self.costs[next] = cost;
+                    self.came_from[next] = cell;
+                    queue.push(Candidate { estimate: cost + self.heuristic(next), cost, cell: next });
+                }
+            });
+        }
+        false
+    }
+
+    /// The octile distance to the goal.
+    fn heuristic(&self, cell: usize) -> f64 {
+        let columns = self.space.raster.columns();
+        let dx = (cell % columns).abs_diff(self.goal % columns);
+        let dy = (cell / columns).abs_diff(self.goal / columns);
+        dx.max(dy) as f64 + (SQRT_2 - 1.0) * dx.min(dy) as f64
+    }
+
+    fn trace(&self, start: usize) -> Vec<usize> {
+        let mut cells = vec![self.goal];
+        let mut cell = self.goal;
+        while cell != start {
+            cell = self.came_from[cell];
+            cells.push(cell);
+        }
+        cells.reverse();
+        cells
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Pose, direction};
+    use crate::world::{Object, ObjectKind, Wall};
+    use proptest::prelude::*;
+    use std::f64::consts::TAU;
+    use std::sync::Arc;
+
+    const RADIUS: f64 = 0.06;
+
+    fn point() -> impl Strategy<Value = Point> {
+        (0.0..1.5, 0.0..1.5).prop_map(|(x, y)| Point::new(x, y))
+    }
+
+    fn scattered_world() -> impl Strategy<Value = World> {
+        proptest::collection::vec((point(), point()), 0..8).prop_map(|ends| {
+            let mut world = World::walled(1.5, 1.5);
+            world.walls.extend(ends.into_iter().map(|(a, b)| Wall::new(a, b)));
+            world
+        })
+    }
+
+    /// A field in two halves, with a gap of a width in the wall between them.
+    fn gate(width: f64, angle: f64) -> (World, Point, Point) {
+        let along = direction(angle);
+        let middle = Point::new(1.0, 1.0);
+        let mut world = World::walled(2.0, 2.0);
+        for side in [-1.0, 1.0] {
+            let post = middle + along * (side * 0.5 * width);
+            world.walls.push(Wall { thickness: 0.0, ..Wall::new(post, middle + along * (side * 1.5)) });
+        }
+        let across = direction(angle + 0.25 * TAU) * 0.4;
+        (world, middle + across, middle - across)
+    }
+
+    fn ring(middle: Point, radius: f64, corners: usize) -> Vec<Point> {
+        (0..corners).map(|i| middle + direction(TAU * i as f64 / corners as f64) * radius).collect()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        #[test]
+        fn connection_and_length_are_symmetric(world in scattered_world(), a in point(), b in point()) {
+            let space = Reachability::new(&world, RADIUS, 0.02).unwrap();
+            prop_assert_eq!(space.connected(a, b), space.connected(b, a));
+            match (space.shortest_path_length(a, b), space.shortest_path_length(b, a)) {
+                (Some(there), Some(back)) => {
+                    prop_assert!(space.connected(a, b));
+                    // The pieces between the given points and the cells' middles may differ on ways of equal cost.
+                    prop_assert!((there - back).abs() < 0.03, "{} {}", there, back);
+                    prop_assert!(there >= (b - a).norm() - 1e-9);
+                }
+                (there, back) => prop_assert!(there.is_none() && back.is_none() && !space.connected(a, b)),
+            }
+        }
+
+        #[test]
+        fn a_larger_robot_reaches_no_more(world in scattered_world(), a in point(), b in point(), more in 0.0..0.1) {
+            let small = Reachability::new(&world, RADIUS, 0.02).unwrap();
+            let large = Reachability::new(&world, RADIUS + more, 0.02).unwrap();
+            prop_assert!(small.is_free(a) || !large.is_free(a));
+            prop_assert!(small.connected(a, b) || !large.connected(a, b));
+        }
+
+        #[test]
+        fn a_way_stays_in_free_cells_and_takes_one_step_at_a_time(
+            world in scattered_world(), a in point(), b in point(),
+        ) {
+            let space = Reachability::new(&world, RADIUS, 0.02).unwrap();
+            if let Some(path) = space.shortest_path(a, b) {
+                prop_assert!(path.points.iter().all(|&p| space.is_free(p)));
+                let inner = &path.points[1..path.points.len() - 1];
+                prop_assert!(inner.windows(2).all(|w| (w[1] - w[0]).norm() < 0.02 * SQRT_2 + 1e-9));
+            }
+        }
+
+        #[test]
+        fn the_way_is_as_short_as_relaxing_all_steps_finds(
+            world in scattered_world(), a in point(), b in point(),
+        ) {
+            let space = Reachability::new(&world, RADIUS, 0.05).unwrap();
+            if let Some(path) = space.shortest_path(a, b) {
+                let (start, goal) = (space.raster.cell_at(a).unwrap(), space.raster.cell_at(b).unwrap());
+                let mut search = Search::new(&space, goal);
+                prop_assert!(search.run(start));
+                prop_assert!((search.costs[goal] - bellman_ford(&space, start)[goal]).abs() < 1e-9);
+                prop_assert!(path.expanded <= space.region_size(a));
+            }
+        }
+
+        #[test]
+        fn a_gap_connects_from_the_robots_width_on(angle in 0.0..TAU, resolution in 0.004..0.01) {
+            let (world, a, b) = gate(2.0 * RADIUS + 1.5 * resolution, angle);
+            prop_assert!(Reachability::new(&world, RADIUS, resolution).unwrap().connected(a, b));
+            let (world, a, b) = gate(2.0 * RADIUS - resolution, angle);
+            prop_assert!(!Reachability::new(&world, RADIUS, resolution).unwrap().connected(a, b));
+        }
+
+        #[test]
+        fn a_closed_ring_disconnects_and_an_open_one_does_not(corners in 3usize..40, opening in 0usize..3) {
+            let middle = Point::new(1.0, 1.0);
+            let mut world = World::walled(2.0, 2.0);
+            world.add_loop(&ring(middle, 0.6, corners));
+            let corner = Point::new(0.2, 0.2);
+            let closed = Reachability::new(&world, RADIUS, 0.01).unwrap();
+            prop_assert!(closed.is_free(middle) && closed.is_free(corner) && !closed.connected(middle, corner));
+            // Take walls away until the gap is twice as wide as the robot.
+            let side = world.walls[5].line.length();
+            let gone = (4.0 * RADIUS / side).ceil() as usize;
+            world.walls.drain(4 + opening.min(corners - gone)..).take(gone).for_each(drop);
+            let open = Reachability::new(&world, RADIUS, 0.01).unwrap();
+            prop_assert!(open.connected(middle, corner));
+        }
+    }
+
+    /// The costs of all cells by relaxing every step until nothing changes.
+    fn bellman_ford(space: &Reachability, start: usize) -> Vec<f64> {
+        let mut costs = vec![f64::INFINITY; space.raster.cells()];
+        costs[start] = 0.0;
+        let mut changed = true;
+        while changed {
+            changed = false;
+            for cell in (0..costs.len()).filter(|&cell| space.is_free_cell(cell)) {
+                let cost = costs[cell];
+                space.steps(cell, |next, diagonal| {
+                    let better = cost + if diagonal { SQRT_2 } else { 1.0 };
+                    if better + 1e-12 < costs[next] {
+                        costs[next] = better;
+                        changed = true;
+                    }
+                });
+            }
+        }
+        costs
+    }
+
+    #[test]
+    fn objects_block_as_walls_do() {
+        let mut world = World::walled(2.0, 0.2);
+        let (a, b) = (Point::new(0.3, 0.1), Point::new(1.7, 0.1));
+        assert!(Reachability::new(&world, RADIUS, 0.005).unwrap().connected(a, b));
+        let can = Arc::new(ObjectKind::predefined("can").unwrap());
+        world.objects.push(Object::new(can, Pose::new(1.0, 0.1, 0.0)));
+        assert!(!Reachability::new(&world, RADIUS, 0.005).unwrap().connected(a, b));
+    }
+
+    #[test]
+    fn places_in_walls_and_outside_are_not_free() {
+        let space = Reachability::new(&World::walled(1.0, 1.0), RADIUS, 0.005).unwrap();
+        assert!(space.is_free(Point::new(0.5, 0.5)));
+        assert!(!space.is_free(Point::new(0.5, 0.01)));
+        assert!(!space.is_free(Point::new(50.0, 0.5)));
+        assert!(!space.is_free(Point::new(f64::NAN, 0.5)));
+        assert_eq!(space.shortest_path(Point::new(0.5, 0.5), Point::new(50.0, 0.5)), None);
+        assert_eq!(space.region_size(Point::new(0.5, 0.01)), 0);
+    }
+
+    #[test]
+    fn a_way_to_the_same_place_has_no_length() {
+        let space = Reachability::new(&World::walled(1.0, 1.0), RADIUS, 0.005).unwrap();
+        let here = Point::new(0.5, 0.5);
+        assert_eq!(space.shortest_path_length(here, here), Some(0.0));
+    }
+}

@@ -1,0 +1,376 @@
+//! How far every place on the floor is from the nearest solid.
+
+use super::{Object, Shape, Wall, World};
+use crate::geometry::{Aabb, Point, Segment, Vector, direction, math};
+
+/// What keeps a [`Raster`] from being laid over a world.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RasterError {
+    /// A length is not what it must be.
+    #[error("{parameter} is {value} m; expected a positive, finite number")]
+    Length {
+        /// Which length.
+        parameter: &'static str,
+        /// What it is, in metres.
+        value: f64,
+    },
+    /// A wall or an object lies at no finite place.
+    #[error("the world's extent is {width} m x {height} m; expected finite numbers")]
+    Extent {
+        /// Metres along x.
+        width: f64,
+        /// Metres along y.
+        height: f64,
+    },
+    /// The cells would not fit into memory.
+    #[error("cells of {resolution} m would be {cells} in number; expected at most {most}")]
+    TooManyCells {
+        /// Metres along a cell's edge.
+        resolution: f64,
+        /// The number of cells.
+        cells: f64,
+        /// The largest number accepted.
+        most: f64,
+    },
+}
+
+/// Square cells in rows over a part of the floor. The index of a cell counts along x first, then along y.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Raster {
+    corner: Point,
+    resolution: f64,
+    columns: usize,
+    rows: usize,
+}
+
+impl Raster {
+    /// The most cells that a raster may have.
+    pub const MAX_CELLS: f64 = 5e7;
+
+    /// Cells of `resolution` metres over a box, which the last column and row may overlap.
+    pub fn over(bounds: Aabb, resolution: f64) -> Result<Self, RasterError> {
+        positive("resolution", resolution)?;
+        let size = bounds.size();
+        if !(size.x.is_finite() && size.y.is_finite()) {
+            return Err(RasterError::Extent { width: size.x, height: size.y });
+        }
+        let cells_along = |length: f64| (length / resolution).ceil().max(1.0);
+        let (columns, rows) = (cells_along(size.x), cells_along(size.y));
+        if columns * rows > Self::MAX_CELLS {
+            return Err(RasterError::TooManyCells {
+                resolution,
+                cells: columns * rows,
+                most: Self::MAX_CELLS,
+            });
+        }
+        Ok(Self { corner: bounds.min, resolution, columns: columns as usize, rows: rows as usize })
+    }
+
+    /// Metres along a cell's edge.
+    pub fn resolution(&self) -> f64 {
+        self.resolution
+    }
+
+    /// Cells along x.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Cells along y.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// All cells.
+    pub fn cells(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// The middle of a cell.
+    #[inline]
+    pub fn centre(&self, cell: usize) -> Point {
+        self.centre_of(cell % self.columns, cell / self.columns)
+    }
+
+    #[inline]
+    fn centre_of(&self, column: usize, row: usize) -> Point {
+        self.corner + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.resolution
+    }
+
+    /// The cell that holds a point, unless the point lies outside of the raster.
+    pub fn cell_at(&self, point: Point) -> Option<usize> {
+        let place = (point - self.corner) / self.resolution;
+        let inside = |x: f64, n: usize| x >= 0.0 && x < n as f64;
+        (inside(place.x, self.columns) && inside(place.y, self.rows))
+            .then(|| place.y as usize * self.columns + place.x as usize)
+    }
+
+    /// The cells that share an edge with a cell: right, left, above, below.
+    #[inline]
+    pub fn edge_neighbours(&self, cell: usize) -> [Option<usize>; 4] {
+        let column = cell % self.columns;
+        [
+            (column + 1 < self.columns).then(|| cell + 1),
+            (column > 0).then(|| cell - 1),
+            (cell + self.columns < self.cells()).then(|| cell + self.columns),
+            cell.checked_sub(self.columns),
+        ]
+    }
+
+    /// Numbers the regions of free cells that are connected through edges, from 0 in the order of their first cells;
+    /// `None` for the other cells.
+    pub fn regions(&self, is_free: impl Fn(usize) -> bool) -> Vec<Option<u32>> {
+        let mut regions = vec![None; self.cells()];
+        let mut stack = Vec::new();
+        let mut region = 0;
+        for seed in 0..regions.len() {
+            if regions[seed].is_some() || !is_free(seed) {
+                continue;
+            }
+            regions[seed] = Some(region);
+            stack.push(seed);
+            while let Some(cell) = stack.pop() {
+                for next in self.edge_neighbours(cell).into_iter().flatten() {
+                    if regions[next].is_none() && is_free(next) {
+                        regions[next] = Some(region);
+                        stack.push(next);
+                    }
+                }
+            }
+            region += 1;
+        }
+        regions
+    }
+
+    /// The indices between two coordinates along an axis that starts at `corner` and has `count` cells: those whose
+    /// middles lie there, and at most one more on either side.
+    fn span(&self, corner: f64, count: usize, low: f64, high: f64) -> std::ops::Range<usize> {
+        let first = ((low - corner) / self.resolution - 0.5).floor().max(0.0);
+        let last = ((high - corner) / self.resolution + 0.5).ceil().clamp(0.0, count as f64);
+        first as usize..last as usize
+    }
+}
+
+fn positive(parameter: &'static str, value: f64) -> Result<(), RasterError> {
+    if value.is_finite() && value > 0.0 { Ok(()) } else { Err(RasterError::Length { parameter, value }) }
+}
+
+/// The distance from the middle of every cell to the nearest wall or object, where that is less than a limit.
+///
+/// Walls are rectangles of their thickness with square ends, objects their outlines seen from above, whatever
+/// stands on the floor or hangs over it. The distances are exact up to rounding; inside a solid they are 0.
+///
+/// ```
+/// use roverlab::geometry::Point;
+/// use roverlab::world::{Clearance, World};
+/// let field = Clearance::new(&World::walled(2.0, 1.0), 0.01, 0.3)?;
+/// // 200 mm from the middle line of a wall that is 10 mm thick.
+/// assert!((field.at_point(Point::new(1.005, 0.205)).unwrap() - 0.2).abs() < 1e-9);
+/// # Ok::<(), roverlab::world::RasterError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Clearance {
+    raster: Raster,
+    limit: f64,
+    distances: Vec<f64>,
+}
+
+impl Clearance {
+    /// Measures a world. The raster covers the floor and all solids, and `limit` metres more on each side, so that
+    /// there is a way around a world without a border.
+    ///
+    /// Takes time in proportion to the cells, plus those within the limit of each solid.
+    pub fn new(world: &World, resolution: f64, limit: f64) -> Result<Self, RasterError> {
+        positive("clearance limit", limit)?;
+        let thickest = world.walls.iter().map(|wall| 0.5 * wall.thickness).fold(0.0, f64::max);
+        let bounds = world.bounds().inflated(limit + thickest + 2.0 * resolution);
+        let raster = Raster::over(bounds, resolution)?;
+        let distances = vec![limit; raster.cells()];
+        let mut field = Self { raster, limit, distances };
+        world.walls.iter().map(Solid::of_wall).for_each(|solid| field.stamp(&solid));
+        world.objects.iter().map(Solid::of_object).for_each(|solid| field.stamp(&solid));
+        Ok(field)
+    }
+
+    /// The cells.
+    pub fn raster(&self) -> &Raster {
+        &self.raster
+    }
+
+    /// The distance, in metres, beyond which all places count as equally far.
+    pub fn limit(&self) -> f64 {
+        self.limit
+    }
+
+    /// Metres between a cell's middle and the nearest solid, at most the limit.
+    #[inline]
+    pub fn at(&self, cell: usize) -> f64 {
+        self.distances[cell]
+    }
+
+    /// Metres between the middle of the cell that holds a point and the nearest solid, at most the limit; `None`
+    /// outside of the raster.
+    pub fn at_point(&self, point: Point) -> Option<f64> {
+        self.raster.cell_at(point).map(|cell| self.at(cell))
+    }
+
+    fn stamp(&mut self, solid: &Solid) {
+        let raster = &self.raster;
+        let (low, high) = solid.spine_rows(self.limit);
+        for row in raster.span(raster.corner.y, raster.rows, low, high) {
+            let y = raster.centre_of(0, row).y;
+            let Some((left, right)) = solid.columns_at(y, self.limit) else { continue };
+            for column in raster.span(raster.corner.x, raster.columns, left, right) {
+                let distance = solid.distance_to(raster.centre_of(column, row));
+                let cell = &mut self.distances[row * raster.columns + column];
+                *cell = cell.min(distance);
+            }
+        }
+    }
+}
+
+/// The outline of a wall or an object on the floor.
+enum Solid {
+    /// A rectangle: all points beside a spine, up to half its width.
+    Bar { spine: Segment, axis: Vector, half_length: f64, half_width: f64 },
+    /// A disc.
+    Disc { middle: Point, radius: f64 },
+}
+
+impl Solid {
+    fn of_wall(wall: &Wall) -> Self {
+        let along = wall.line.b - wall.line.a;
+        let length = math::hypot(along.x, along.y);
+        let axis = if length > 0.0 { along / length } else { Vector::new(1.0, 0.0) };
+        Self::bar(wall.line, axis, length, wall.thickness)
+    }
+
+    fn of_object(object: &Object) -> Self {
+        let middle = object.pose.position();
+        match object.kind.shape {
+            Shape::Cylinder { radius, .. } | Shape::Sphere { radius } => Self::Disc { middle, radius },
+            Shape::Box { length, width, .. } => {
+                let axis = direction(object.pose.heading);
+                let half = axis * (0.5 * length);
+                Self::bar(Segment::new(middle - half, middle + half), axis, length, width)
+            }
+        }
+    }
+
+    fn bar(spine: Segment, axis: Vector, length: f64, width: f64) -> Self {
+        Self::Bar { spine, axis, half_length: 0.5 * length, half_width: 0.5 * width.max(0.0) }
+    }
+
+    #[inline]
+    fn distance_to(&self, point: Point) -> f64 {
+        match *self {
+            Self::Disc { middle, radius } => {
+                let offset = point - middle;
+                (math::hypot(offset.x, offset.y) - radius).max(0.0)
+            }
+            Self::Bar { spine, axis, half_length, half_width } => {
+                let offset = point - spine.a;
+                let along = ((offset.x * axis.x + offset.y * axis.y) - half_length).abs() - half_length;
+                let across = (axis.x * offset.y - axis.y * offset.x).abs() - half_width;
+                math::hypot(along.max(0.0), across.max(0.0))
+            }
+        }
+    }
+
+    /// The lowest and the highest y within `limit` of the solid, or somewhat beyond.
+    fn spine_rows(&self, limit: f64) -> (f64, f64) {
+        match *self {
+            Self::Disc { middle, radius } => (middle.y - radius - limit, middle.y + radius + limit),
+            Self::Bar { spine, half_width, .. } => {
+                let reach = half_width + limit;
+                (spine.a.y.min(spine.b.y) - reach, spine.a.y.max(spine.b.y) + reach)
+            }
+        }
+    }
+
+    /// The x between which the points of height `y` within `limit` of the solid lie, or somewhat beyond: what is
+    /// left of the spine within reach of that height, and the reach to both sides.
+    fn columns_at(&self, y: f64, limit: f64) -> Option<(f64, f64)> {
+        let (spine, reach) = match *self {
+            Self::Disc { middle, radius } => (Segment::new(middle, middle), radius + limit),
+            Self::Bar { spine, half_width, .. } => (spine, half_width + limit),
+        };
+        let (lower, upper) = if spine.a.y <= spine.b.y { (spine.a, spine.b) } else { (spine.b, spine.a) };
+        let rise = upper.y - lower.y;
+        let x_at = |height: f64| {
+            if rise > 0.0 {
+                lower.x + (upper.x - lower.x) * ((height - lower.y) / rise).clamp(0.0, 1.0)
+            } else {
+                lower.x
+            }
+        };
+        if y + reach < lower.y || y - reach > upper.y {
+            return None;
+        }
+        let (one, other) = if rise > 0.0 { (x_at(y - reach), x_at(y + reach)) } else { (lower.x, upper.x) };
+        Some((one.min(other) - reach, one.max(other) + reach))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::geometry::Pose;
+    use crate::world::ObjectKind;
+    use proptest::prelude::*;
+
+    fn point() -> impl Strategy<Value = Point> {
+        (0.0..1.0, 0.0..1.0).prop_map(|(x, y)| Point::new(x, y))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(32))]
+
+        #[test]
+        fn every_cell_holds_the_least_distance_of_all_solids(
+            ends in proptest::collection::vec((point(), point(), 0.0..0.1), 1..5),
+            can in point(),
+            crate_at in (point(), -3.0..3.0),
+        ) {
+            let mut world = World::empty(1.0, 1.0);
+            for &(a, b, thickness) in &ends {
+                world.walls.push(Wall { thickness, ..Wall::new(a, b) });
+            }
+            for (name, pose) in [("can", Pose::new(can.x, can.y, 0.0)),
+                                 ("crate", Pose::new(crate_at.0.x, crate_at.0.y, crate_at.1))] {
+                let kind = Arc::new(ObjectKind::predefined(name).unwrap());
+                world.objects.push(Object::new(kind, pose));
+            }
+            let field = Clearance::new(&world, 0.03, 0.2).unwrap();
+            let solids: Vec<Solid> = world.walls.iter().map(Solid::of_wall)
+                .chain(world.objects.iter().map(Solid::of_object)).collect();
+            for cell in 0..field.raster().cells() {
+                let centre = field.raster().centre(cell);
+                let least = solids.iter().map(|s| s.distance_to(centre)).fold(0.2, f64::min);
+                prop_assert_eq!(field.at(cell), least);
+                prop_assert_eq!(field.raster().cell_at(centre), Some(cell));
+            }
+        }
+
+        #[test]
+        fn a_thin_wall_is_as_far_as_its_segment(a in point(), b in point(), from in point()) {
+            let wall = Wall { thickness: 0.0, ..Wall::new(a, b) };
+            let distance = Solid::of_wall(&wall).distance_to(from);
+            prop_assert!((distance - wall.line.distance_to(from)).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        let world = World::walled(1.0, 1.0);
+        assert!(matches!(Clearance::new(&world, 0.0, 0.1), Err(RasterError::Length { .. })));
+        assert!(matches!(Clearance::new(&world, 0.01, f64::NAN), Err(RasterError::Length { .. })));
+        assert!(matches!(Clearance::new(&world, 1e-6, 0.1), Err(RasterError::TooManyCells { .. })));
+        let mut endless = world;
+        endless.walls.push(Wall::new(Point::origin(), Point::new(f64::INFINITY, 0.0)));
+        assert!(matches!(Clearance::new(&endless, 0.01, 0.1), Err(RasterError::Extent { .. })));
+    }
+}

@@ -1,0 +1,24 @@
+//! Random worlds whose answers are known.
+//!
+//! [`obstacle_course`] draws a walled field of varied obstacles, many of them concave or curved, with a start and a
+//! goal that can or cannot be reached. Whether they can is not a matter of hair's breadths: every passage and every
+//! niche is either closed or as wide as [`CourseOptions::min_corridor`] says, which is checked on the finished world.
+//! The same stream gives the same world on every platform.
+//!
+//! Algorithms that find their way to a goal by sensors (chapter 10) are judged on such courses.
+
+mod bent;
+mod border;
+mod course;
+mod enclosure;
+mod figure;
+mod layout;
+mod options;
+mod repertoire;
+mod round;
+mod straight;
+mod survey;
+
+pub use course::{Course, obstacle_course};
+pub use options::{CourseOptions, CourseOptionsError};
+pub use repertoire::ObstacleKind;

@@ -1,0 +1,127 @@
+/// What [`super::obstacle_course`] draws.
+///
+/// ```
+/// use roverlab::world::generate::CourseOptions;
+/// let large = CourseOptions { size: (5.0, 8.0), obstacles: (6, 12), ..CourseOptions::default() };
+/// assert!(large.validate().is_ok());
+/// assert!(CourseOptions { unreachable_share: 1.5, ..large }.validate().is_err());
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct CourseOptions {
+    /// The least and the greatest length of the field's sides, in metres. Each side is drawn on its own.
+    pub size: (f64, f64),
+    /// The least and the greatest number of obstacles. A field that does not hold as many gets fewer.
+    pub obstacles: (usize, usize),
+    /// The most crates and cans that stand between the obstacles. They are fixed to the floor.
+    pub objects: usize,
+    /// Metres of room that every passage between solids leaves, if it is not closed.
+    pub min_corridor: f64,
+    /// The radius of the disc-shaped robot for which the course is made, in metres.
+    pub robot_radius: f64,
+    /// The share of courses whose goal cannot be reached, 0 to 1.
+    pub unreachable_share: f64,
+}
+
+impl Default for CourseOptions {
+    /// Fields of 4 m to 6 m with three to eight obstacles and up to three objects, for a robot of 60 mm and passages
+    /// of 1.5 times its width; one goal in four cannot be reached.
+    fn default() -> Self {
+        let robot_radius = 0.060;
+        Self {
+            size: (4.0, 6.0),
+            obstacles: (3, 8),
+            objects: 3,
+            min_corridor: 1.5 * 2.0 * robot_radius,
+            robot_radius,
+            unreachable_share: 0.25,
+        }
+    }
+}
+
+/// What is wrong with the options of a course.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("course options: {parameter} is {value}; expected {expected}")]
+pub struct CourseOptionsError {
+    parameter: &'static str,
+    value: f64,
+    expected: &'static str,
+}
+
+impl CourseOptions {
+    /// The most obstacles, and the most objects, that may be asked for.
+    pub const MAX_COUNT: usize = 100;
+
+    /// Checks that every number makes sense, and that the field holds more than the robot.
+    pub fn validate(&self) -> Result<(), CourseOptionsError> {
+        let check = |parameter, value: f64, good: bool, expected| {
+            if good { Ok(()) } else { Err(CourseOptionsError { parameter, value, expected }) }
+        };
+        let radius = self.robot_radius;
+        check("robot radius", radius, radius.is_finite() && radius > 0.0, "a positive, finite number")?;
+        let corridor = self.min_corridor;
+        check(
+            "minimal corridor",
+            corridor,
+            (2.2 * radius..=6.0 * radius).contains(&corridor),
+            "1.1 to 3 times the robot's width",
+        )?;
+        let (least, greatest) = self.size;
+        check(
+            "least side",
+            least,
+            least >= 15.0 * corridor && least <= 500.0 * radius,
+            "at least 15 minimal corridors and at most 250 robot widths",
+        )?;
+        check(
+            "greatest side",
+            greatest,
+            greatest >= least && greatest <= 500.0 * radius,
+            "no less than the least side and at most 250 robot widths",
+        )?;
+        let (fewest, most) = self.obstacles;
+        check("least number of obstacles", fewest as f64, fewest <= Self::MAX_COUNT, "at most 100")?;
+        check(
+            "greatest number of obstacles",
+            most as f64,
+            (fewest..=Self::MAX_COUNT).contains(&most),
+            "no less than the least number and at most 100",
+        )?;
+        check("number of objects", self.objects as f64, self.objects <= Self::MAX_COUNT, "at most 100")?;
+        let share = self.unreachable_share;
+        check("share of unreachable goals", share, (0.0..=1.0).contains(&share), "0 to 1")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_message_names_parameter_value_and_range() {
+        let options = CourseOptions { min_corridor: 0.1, ..CourseOptions::default() };
+        assert_eq!(
+            options.validate().unwrap_err().to_string(),
+            "course options: minimal corridor is 0.1; expected 1.1 to 3 times the robot's width"
+        );
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        let good = CourseOptions::default();
+        assert!(good.validate().is_ok());
+        for bad in [
+            CourseOptions { robot_radius: 0.0, ..good.clone() },
+            CourseOptions { robot_radius: f64::NAN, ..good.clone() },
+            CourseOptions { min_corridor: f64::INFINITY, ..good.clone() },
+            CourseOptions { size: (0.5, 6.0), ..good.clone() },
+            CourseOptions { size: (6.0, 4.0), ..good.clone() },
+            CourseOptions { size: (4.0, f64::NAN), ..good.clone() },
+            CourseOptions { obstacles: (4, 3), ..good.clone() },
+            CourseOptions { obstacles: (0, 1000), ..good.clone() },
+            CourseOptions { objects: 101, ..good.clone() },
+            CourseOptions { unreachable_share: -0.1, ..good.clone() },
+        ] {
+            assert!(bad.validate().is_err(), "{bad:?}");
+        }
+    }
+}

@@ -1,0 +1,154 @@
+use super::border::{self, Field};
+use super::figure::{Figure, Outline, stroke};
+use super::{bent, round, straight};
+use crate::geometry::Point;
+use crate::random::Stream;
+
+/// What an obstacle of a course looks like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum ObstacleKind {
+    /// A convex polygon.
+    Polygon,
+    /// A disc of short walls.
+    Disc,
+    /// An ellipse of short walls.
+    Ellipse,
+    /// A star.
+    Star,
+    /// Two crossed beams.
+    Cross,
+    /// A bowed wall.
+    Bow,
+    /// A crescent with pointed horns.
+    Crescent,
+    /// A C: a ring with an opening.
+    OpenRing,
+    /// A G: a C with a bar that leads inwards.
+    HookedRing,
+    /// A C within a C.
+    NestedRings,
+    /// A round spiral.
+    Spiral,
+    /// Half rings to either side in turn.
+    Snake,
+    /// A U.
+    Trough,
+    /// An L.
+    Angle,
+    /// A zig-zag wall.
+    Zigzag,
+    /// A spiral of straight walls.
+    SquareSpiral,
+    /// Two walls side by side.
+    Corridor,
+    /// A channel with baffles.
+    Baffles,
+    /// A spine with teeth.
+    Comb,
+    /// A room with a door.
+    Room,
+    /// A room with a door within another.
+    NestedRooms,
+    /// A wall that stands out from the border.
+    Spur,
+    /// A half disc on the border.
+    Bump,
+    /// A room with a door on the border.
+    Alcove,
+    /// What keeps the robot from an unreachable goal: a closed line of any shape, alone, on the border, or across
+    /// the field.
+    Enclosure,
+}
+
+impl ObstacleKind {
+    /// The kinds that are drawn at random.
+    pub(super) const DRAWN: [Self; 24] = [
+        Self::Polygon,
+        Self::Disc,
+        Self::Ellipse,
+        Self::Star,
+        Self::Cross,
+        Self::Bow,
+        Self::Crescent,
+        Self::OpenRing,
+        Self::HookedRing,
+        Self::NestedRings,
+        Self::Spiral,
+        Self::Snake,
+        Self::Trough,
+        Self::Angle,
+        Self::Zigzag,
+        Self::SquareSpiral,
+        Self::Corridor,
+        Self::Baffles,
+        Self::Comb,
+        Self::Room,
+        Self::NestedRooms,
+        Self::Spur,
+        Self::Bump,
+        Self::Alcove,
+    ];
+
+    /// Whether the obstacle has a cove, a room or a corridor into which a robot can be drawn.
+    pub fn is_concave(self) -> bool {
+        !matches!(self, Self::Polygon | Self::Disc | Self::Ellipse | Self::Bump | Self::Enclosure)
+    }
+
+    /// Whether the obstacle stands on the border.
+    pub(super) fn is_on_border(self) -> bool {
+        matches!(self, Self::Spur | Self::Bump | Self::Alcove)
+    }
+
+    /// An obstacle of this kind: about the origin, or on the border of the field.
+    pub(super) fn draw(self, brush: &mut Brush, field: Field) -> Figure {
+        match self {
+            Self::Polygon | Self::Enclosure => straight::polygon(brush),
+            Self::Disc => round::disc(brush),
+            Self::Ellipse => round::ellipse(brush),
+            Self::Star => straight::star(brush),
+            Self::Cross => straight::cross(brush),
+            Self::Bow => round::bow(brush),
+            Self::Crescent => round::crescent(brush),
+            Self::OpenRing => round::open_ring(brush),
+            Self::HookedRing => round::hooked_ring(brush),
+            Self::NestedRings => round::nested_rings(brush),
+            Self::Spiral => round::spiral(brush),
+            Self::Snake => round::snake(brush),
+            Self::Trough => bent::trough(brush),
+            Self::Angle => bent::angle(brush),
+            Self::Zigzag => bent::zigzag(brush),
+            Self::SquareSpiral => bent::square_spiral(brush),
+            Self::Corridor => bent::corridor(brush),
+            Self::Baffles => bent::baffles(brush),
+            Self::Comb => straight::comb(brush),
+            Self::Room => straight::room(brush),
+            Self::NestedRooms => straight::nested_rooms(brush),
+            Self::Spur => border::spur(brush, field),
+            Self::Bump => border::bump(brush, field),
+            Self::Alcove => border::alcove(brush, field),
+        }
+    }
+}
+
+/// What figures are drawn with.
+#[derive(Debug)]
+pub(super) struct Brush<'a> {
+    pub(super) stream: &'a mut Stream,
+    /// Metres between the middle lines of two walls with the narrowest passage between them.
+    pub(super) gap: f64,
+    /// About half the size wanted, in metres. Figures with corridors in them may need more.
+    pub(super) radius: f64,
+}
+
+impl Brush<'_> {
+    /// The length of the walls that make up a curve: from fine to coarse.
+    pub(super) fn facet(&mut self) -> f64 {
+        self.stream.between(0.03, 0.09)
+    }
+
+    /// A single wall along a line, or the outline of a stroke of a width, with little odds for the former.
+    pub(super) fn wall_or_stroke(&mut self, line: Vec<Point>, width: f64) -> Outline {
+        if self.stream.chance(0.35) { Outline::open(line) } else { stroke(&line, width) }
+    }
+}
