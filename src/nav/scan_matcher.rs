@@ -14,6 +14,8 @@ use crate::geometry::{Point, Pose, Vector, cross, direction, math, normalize_ang
 #[derive(Debug, Clone, Default)]
 pub struct ScanMatcher {
     references: Vec<Reference>,
+    /// The reference that scans are matched against at present.
+    current: usize,
     /// From the odometry's frame to the corrected one.
     correction: Pose,
 }
@@ -48,6 +50,10 @@ const BINS: usize = 360;
 const REFERENCE_SPACING: f64 = 0.5;
 /// So it does when less than this share of its points matches.
 const MIN_OVERLAP: f64 = 0.6;
+/// References that are kept at most.
+const MAX_REFERENCES: usize = 10_000;
+/// A match that moves the predicted pose by more than this, in metres, is not believed.
+const MAX_CORRECTION: f64 = 0.05;
 /// A match below this share is not believed.
 const MIN_MATCH: f64 = 0.3;
 const ITERATIONS: usize = 6;
@@ -56,8 +62,8 @@ const COARSE_GATE: f64 = 0.10;
 const FINE_GATE: f64 = 0.03;
 /// Standard deviations by which the prediction may err: metres and radians. They hold the directions that the scan
 /// says nothing about, as along a corridor.
-const PRIOR_POSITION: f64 = 0.02;
-const PRIOR_HEADING: f64 = 0.01;
+const PRIOR_POSITION: f64 = 0.003;
+const PRIOR_HEADING: f64 = 0.003;
 /// The standard deviation of a matched point, in metres.
 const POINT_NOISE: f64 = 0.01;
 /// How far neighbours may lie from a common line, as a part of their distance.
@@ -83,24 +89,42 @@ impl ScanMatcher {
     /// returns the corrected pose.
     pub fn update(&mut self, odometry: Pose, points: &[Point]) -> Pose {
         let predicted = self.corrected(odometry);
-        let Some(reference) = self.nearest_reference(predicted) else {
+        if self.references.is_empty() {
             self.references.push(Reference::new(predicted, points));
             return predicted;
-        };
-        let matched = reference.lay_over(predicted, points);
-        let distance = reference.pose.distance_to(matched.pose.position());
-        let believed = matched.overlap >= MIN_MATCH;
+        }
+        let matched = self.references[self.current].lay_over(predicted, points);
+        let strayed = predicted.distance_to(matched.pose.position());
+        let believed = matched.overlap >= MIN_MATCH && strayed < MAX_CORRECTION;
         let pose = if believed { matched.pose } else { predicted };
         self.correction = pose.compose(&odometry.inverse());
+        let distance = self.references[self.current].pose.distance_to(pose.position());
         if distance > REFERENCE_SPACING || matched.overlap < MIN_OVERLAP {
-            self.references.push(Reference::new(pose, points));
+            self.change_reference(pose, points, matched.overlap);
         }
         pose
     }
 
-    fn nearest_reference(&self, pose: Pose) -> Option<&Reference> {
-        let distance = |r: &Reference| (r.pose.position() - pose.position()).norm_squared();
-        self.references.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    /// Goes over to the earlier reference that shares most with a scan, or makes the scan one.
+    fn change_reference(&mut self, pose: Pose, points: &[Point], overlap: f64) {
+        let near = |r: &&(usize, &Reference)| r.1.pose.distance_to(pose.position()) <= REFERENCE_SPACING;
+        let best = self
+            .references
+            .iter()
+            .enumerate()
+            .collect::<Vec<_>>()
+            .iter()
+            .filter(near)
+            .map(|(index, reference)| (*index, reference.overlap(pose, points)))
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        match best {
+            Some((index, share)) if share >= MIN_OVERLAP => self.current = index,
+            _ if overlap < MIN_MATCH && self.references.len() > MAX_REFERENCES => {}
+            _ => {
+                self.current = self.references.len();
+                self.references.push(Reference::new(pose, points));
+            }
+        }
     }
 }
 
@@ -139,6 +163,13 @@ impl Reference {
         Match { pose: self.pose.compose(&relative), overlap }
     }
 
+    /// The share of a scan's points that have counterparts at a pose.
+    fn overlap(&self, pose: Pose, points: &[Point]) -> f64 {
+        let relative = self.pose.inverse().compose(&pose);
+        let (_, _, count) = self.normal_equations(relative, relative, points, FINE_GATE);
+        count as f64 / points.len().max(1) as f64
+    }
+
     /// Gauss-Newton's equations for the pose relative to this reference, and the number of counterparts found.
     fn normal_equations(
         &self,
@@ -163,7 +194,7 @@ impl Reference {
             let turned =
                 Vector::new(along.x * point.x - along.y * point.y, along.y * point.x + along.x * point.y);
             let placed = Point::new(relative.x + turned.x, relative.y + turned.y);
-            let Some((normal, error)) = self.counterpart(placed, gate) else { continue };
+            let Some((normal, error)) = self.counterpart(placed, relative.position(), gate) else { continue };
             count += 1;
             // Large errors count less, so that what has no true counterpart does not pull.
             let robust = 1.0 / (1.0 + (error / POINT_NOISE) * (error / POINT_NOISE) * 0.25);
@@ -176,7 +207,9 @@ impl Reference {
     }
 
     /// The surface's normal and the signed distance to it, where a point has a counterpart.
-    fn counterpart(&self, point: Point, gate: f64) -> Option<(Vector, f64)> {
+    ///
+    /// A surface has only one visible side: from `viewer` behind it, a thin wall's other face is seen.
+    fn counterpart(&self, point: Point, viewer: Point, gate: f64) -> Option<(Vector, f64)> {
         let bin = bin_of(point);
         let range = point.coords.norm();
         // Near surfaces spread over many bins: the best of the neighbours is the nearest point.
@@ -186,6 +219,9 @@ impl Reference {
             .filter_map(|&b| self.hits[b])
             .min_by(|a, b| (a.range - range).abs().total_cmp(&(b.range - range).abs()))?;
         let normal = hit.normal?;
+        if (viewer - hit.point).dot(&normal) <= 0.0 {
+            return None;
+        }
         let error = (point - hit.point).dot(&normal);
         let apart = (point - hit.point).norm_squared();
         let spread = 3.0 * range * TAU / BINS as f64 + gate;
@@ -216,5 +252,6 @@ fn normal_at(points: &[Point], index: usize) -> Option<Vector> {
     }
     let normal = Vector::new(-along.y, along.x) / length;
     let off = (points[index] - before).dot(&normal).abs();
-    (off < FLATNESS * length).then_some(normal)
+    let facing = if points[index].coords.dot(&normal) < 0.0 { normal } else { -normal };
+    (off < FLATNESS * length).then_some(facing)
 }

@@ -75,12 +75,14 @@ impl Engine {
     /// Advances the world by one tick.
     pub(super) fn step(&mut self) {
         let mut farthest: f64 = 0.0;
+        let mut moving = false;
         for (body, motion) in self.bodies.iter_mut().zip(&mut self.motions) {
             let command = body.autopilot.command(&body.drivetrain);
             *motion = body.drivetrain.step(command);
             farthest = farthest.max(reach(body, *motion));
+            moving |= *motion != Displacement::default();
         }
-        if farthest > 0.0 {
+        if moving {
             for index in 0..self.bodies.len() {
                 self.move_body(index, farthest);
             }
