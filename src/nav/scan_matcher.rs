@@ -11,13 +11,19 @@ use crate::geometry::{Point, Pose, Vector, cross, direction, math, normalize_ang
 /// (point-to-line ICP after A. Censi, "An ICP variant using a point-to-line metric", ICRA 2008, with correspondences
 /// found by bearing as in polar scan matching). Errors then grow with the number of references in a chain, not with
 /// the distance driven, and returning to a known place takes them back.
+///
+/// Match and odometry are weighed by what each knows: odometry by how far the robot has moved, the match by the
+/// directions in which the visible surfaces hold the scan. Along a bare corridor or in a round room odometry decides.
 #[derive(Debug, Clone, Default)]
 pub struct ScanMatcher {
     references: Vec<Reference>,
     /// The reference that scans are matched against at present.
     current: usize,
-    /// From the odometry's frame to the corrected one.
-    correction: Pose,
+    /// The pose by odometry of the last scan, and its corrected pose.
+    odometry: Pose,
+    pose: Pose,
+    /// The covariance of the corrected pose: metres and radians squared.
+    covariance: Matrix3<f64>,
 }
 
 /// A scan that later ones are matched against.
@@ -40,8 +46,17 @@ struct Hit {
 #[derive(Debug, Clone, Copy)]
 struct Match {
     pose: Pose,
+    covariance: Matrix3<f64>,
     /// The share of points that found a counterpart.
     overlap: f64,
+}
+
+/// Gauss-Newton's equations for a pose, from the points that have counterparts.
+#[derive(Debug, Clone, Default)]
+struct Evidence {
+    information: Matrix3<f64>,
+    residual: Vector3<f64>,
+    matched: usize,
 }
 
 /// Bearings that a reference is divided into.
@@ -60,14 +75,20 @@ const ITERATIONS: usize = 6;
 /// Points farther from the reference's surface than this, in metres, have no counterpart: first and last iteration.
 const COARSE_GATE: f64 = 0.10;
 const FINE_GATE: f64 = 0.03;
-/// Standard deviations by which the prediction may err: metres and radians. They hold the directions that the scan
-/// says nothing about, as along a corridor.
-const PRIOR_POSITION: f64 = 0.003;
-const PRIOR_HEADING: f64 = 0.003;
-/// The standard deviation of a matched point, in metres.
+/// Standard deviation of one matched point, in metres.
 const POINT_NOISE: f64 = 0.01;
+/// How many points count as one: consecutive filtered scans share their noise, and surfaces are not quite straight.
+const POINTS_PER_FACT: f64 = 10.0;
+/// Odometry's error as a part of the distance driven and of the angle turned in one step.
+const DISTANCE_ERROR: f64 = 0.03;
+const TURN_ERROR: f64 = 0.01;
+/// The variance that slip adds to the heading: radians squared per metre and per radian.
+const SLIP_PER_METRE: f64 = 6e-5;
+const SLIP_PER_RADIAN: f64 = 2.5e-6;
+/// The least variance of a step, so that no direction ever counts as exactly known.
+const LEAST_VARIANCE: f64 = 1e-10;
 /// How far neighbours may lie from a common line, as a part of their distance.
-const FLATNESS: f64 = 0.2;
+const FLATNESS: f64 = 0.1;
 
 impl ScanMatcher {
     /// A matcher without references, whose corrected frame is odometry's own.
@@ -77,7 +98,7 @@ impl ScanMatcher {
 
     /// The corrected pose for a pose by odometry, by the last match.
     pub fn corrected(&self, odometry: Pose) -> Pose {
-        self.correction.compose(&odometry)
+        self.pose.compose(&self.odometry.inverse().compose(&odometry))
     }
 
     /// How many scans are kept as references.
@@ -88,38 +109,55 @@ impl ScanMatcher {
     /// Matches a scan, given as points in the robot's frame in order of bearing, that was made at `odometry`, and
     /// returns the corrected pose.
     pub fn update(&mut self, odometry: Pose, points: &[Point]) -> Pose {
-        let predicted = self.corrected(odometry);
-        if self.references.is_empty() {
+        let predicted = self.predict(odometry);
+        let Some(reference) = self.references.get(self.current) else {
             self.references.push(Reference::new(predicted, points));
             return predicted;
-        }
-        let matched = self.references[self.current].lay_over(predicted, points);
+        };
+        let matched = reference.lay_over(predicted, &self.covariance, points);
         let strayed = predicted.distance_to(matched.pose.position());
-        let believed = matched.overlap >= MIN_MATCH && strayed < MAX_CORRECTION;
-        let pose = if believed { matched.pose } else { predicted };
-        self.correction = pose.compose(&odometry.inverse());
-        let distance = self.references[self.current].pose.distance_to(pose.position());
-        if distance > REFERENCE_SPACING || matched.overlap < MIN_OVERLAP {
-            self.change_reference(pose, points, matched.overlap);
+        if matched.overlap >= MIN_MATCH && strayed < MAX_CORRECTION {
+            self.pose = matched.pose;
+            self.covariance = matched.covariance;
         }
-        pose
+        let distance = reference.pose.distance_to(self.pose.position());
+        if distance > REFERENCE_SPACING || matched.overlap < MIN_OVERLAP {
+            self.change_reference(points);
+        }
+        self.pose
     }
 
-    /// Goes over to the earlier reference that shares most with a scan, or makes the scan one.
-    fn change_reference(&mut self, pose: Pose, points: &[Point], overlap: f64) {
-        let near = |r: &&(usize, &Reference)| r.1.pose.distance_to(pose.position()) <= REFERENCE_SPACING;
-        let best = self
-            .references
-            .iter()
-            .enumerate()
-            .collect::<Vec<_>>()
-            .iter()
-            .filter(near)
-            .map(|(index, reference)| (*index, reference.overlap(pose, points)))
+    /// Moves pose and covariance on by odometry.
+    fn predict(&mut self, odometry: Pose) -> Pose {
+        let motion = self.odometry.inverse().compose(&odometry);
+        let before = self.pose;
+        self.pose = before.compose(&motion);
+        self.odometry = odometry;
+        let (dx, dy) = (self.pose.x - before.x, self.pose.y - before.y);
+        let distance = math::hypot(motion.x, motion.y);
+        let turn = motion.heading.abs();
+        let carried = Matrix3::new(1.0, 0.0, -dy, 0.0, 1.0, dx, 0.0, 0.0, 1.0);
+        let position = (DISTANCE_ERROR * distance) * (DISTANCE_ERROR * distance) + LEAST_VARIANCE;
+        let heading = (TURN_ERROR * turn) * (TURN_ERROR * turn)
+            + SLIP_PER_METRE * distance
+            + SLIP_PER_RADIAN * turn
+            + LEAST_VARIANCE;
+        self.covariance = carried * self.covariance * carried.transpose()
+            + Matrix3::from_diagonal(&Vector3::new(position, position, heading));
+        self.pose
+    }
+
+    /// Goes over to the earlier reference near by that shares most with a scan, or makes the scan one.
+    fn change_reference(&mut self, points: &[Point]) {
+        let pose = self.pose;
+        let near = |r: &Reference| r.pose.distance_to(pose.position()) <= REFERENCE_SPACING;
+        let candidates = self.references.iter().enumerate().filter(|(_, r)| near(r));
+        let best = candidates
+            .map(|(index, reference)| (index, reference.overlap(pose, points)))
             .max_by(|a, b| a.1.total_cmp(&b.1));
         match best {
             Some((index, share)) if share >= MIN_OVERLAP => self.current = index,
-            _ if overlap < MIN_MATCH && self.references.len() > MAX_REFERENCES => {}
+            _ if self.references.len() == MAX_REFERENCES => {}
             _ => {
                 self.current = self.references.len();
                 self.references.push(Reference::new(pose, points));
@@ -142,68 +180,71 @@ impl Reference {
     }
 
     /// Moves a scan from its predicted pose to where it fits this reference best.
-    fn lay_over(&self, predicted: Pose, points: &[Point]) -> Match {
+    fn lay_over(&self, predicted: Pose, covariance: &Matrix3<f64>, points: &[Point]) -> Match {
+        let to_local = self.rotation().transpose();
         let prior = self.pose.inverse().compose(&predicted);
+        let known =
+            (to_local * covariance * to_local.transpose()).try_inverse().unwrap_or_else(Matrix3::zeros);
         let mut relative = prior;
-        let mut matched = 0;
+        let mut found = Evidence::default();
+        let mut information = known;
         for iteration in 0..ITERATIONS {
             let share = iteration as f64 / (ITERATIONS - 1) as f64;
             let gate = COARSE_GATE + (FINE_GATE - COARSE_GATE) * share;
-            let (information, residual, count) = self.normal_equations(relative, prior, points, gate);
-            matched = count;
-            let Some(step) = information.cholesky().map(|c| c.solve(&residual)) else { break };
+            found = self.evidence(relative, points, gate);
+            information = known + found.information;
+            let strayed = Vector3::new(
+                prior.x - relative.x,
+                prior.y - relative.y,
+                normalize_angle(prior.heading - relative.heading),
+            );
+            let Some(solver) = information.cholesky() else { break };
+            let step = solver.solve(&(known * strayed + found.residual));
             relative.x += step.x;
             relative.y += step.y;
             relative.heading = normalize_angle(relative.heading + step.z);
-            if step.x.abs() + step.y.abs() < 1e-6 && step.z.abs() < 1e-6 && share > 0.5 {
-                break;
-            }
         }
-        let overlap = matched as f64 / points.len().max(1) as f64;
-        Match { pose: self.pose.compose(&relative), overlap }
+        let rotation = self.rotation();
+        let covariance = information.try_inverse().unwrap_or_else(Matrix3::zeros);
+        Match {
+            pose: self.pose.compose(&relative),
+            covariance: rotation * covariance * rotation.transpose(),
+            overlap: found.matched as f64 / points.len().max(1) as f64,
+        }
+    }
+
+    /// The rotation from this reference's frame to the world's, for pose covariances.
+    fn rotation(&self) -> Matrix3<f64> {
+        let d = direction(self.pose.heading);
+        Matrix3::new(d.x, -d.y, 0.0, d.y, d.x, 0.0, 0.0, 0.0, 1.0)
     }
 
     /// The share of a scan's points that have counterparts at a pose.
     fn overlap(&self, pose: Pose, points: &[Point]) -> f64 {
         let relative = self.pose.inverse().compose(&pose);
-        let (_, _, count) = self.normal_equations(relative, relative, points, FINE_GATE);
-        count as f64 / points.len().max(1) as f64
+        let found = self.evidence(relative, points, FINE_GATE);
+        found.matched as f64 / points.len().max(1) as f64
     }
 
-    /// Gauss-Newton's equations for the pose relative to this reference, and the number of counterparts found.
-    fn normal_equations(
-        &self,
-        relative: Pose,
-        prior: Pose,
-        points: &[Point],
-        gate: f64,
-    ) -> (Matrix3<f64>, Vector3<f64>, usize) {
-        let position = 1.0 / (PRIOR_POSITION * PRIOR_POSITION);
-        let heading = 1.0 / (PRIOR_HEADING * PRIOR_HEADING);
-        let weights = Vector3::new(position, position, heading);
-        let strayed = Vector3::new(
-            prior.x - relative.x,
-            prior.y - relative.y,
-            normalize_angle(prior.heading - relative.heading),
-        );
-        let mut information = Matrix3::from_diagonal(&weights);
-        let mut residual = weights.component_mul(&strayed);
-        let mut count = 0;
+    /// What the counterparts of a scan's points say about its pose relative to this reference.
+    fn evidence(&self, relative: Pose, points: &[Point], gate: f64) -> Evidence {
+        let mut evidence = Evidence::default();
         let along = direction(relative.heading);
         for point in points {
             let turned =
                 Vector::new(along.x * point.x - along.y * point.y, along.y * point.x + along.x * point.y);
             let placed = Point::new(relative.x + turned.x, relative.y + turned.y);
             let Some((normal, error)) = self.counterpart(placed, relative.position(), gate) else { continue };
-            count += 1;
+            evidence.matched += 1;
             // Large errors count less, so that what has no true counterpart does not pull.
-            let robust = 1.0 / (1.0 + (error / POINT_NOISE) * (error / POINT_NOISE) * 0.25);
-            let weight = robust / (POINT_NOISE * POINT_NOISE);
+            let deviations = error / POINT_NOISE;
+            let robust = 1.0 / (1.0 + 0.25 * deviations * deviations);
+            let weight = robust / (POINT_NOISE * POINT_NOISE * POINTS_PER_FACT);
             let gradient = Vector3::new(normal.x, normal.y, cross(turned, normal));
-            information += gradient * gradient.transpose() * weight;
-            residual -= gradient * (weight * error);
+            evidence.information += gradient * gradient.transpose() * weight;
+            evidence.residual -= gradient * (weight * error);
         }
-        (information, residual, count)
+        evidence
     }
 
     /// The surface's normal and the signed distance to it, where a point has a counterpart.
