@@ -6,15 +6,18 @@
 
 mod actuators;
 mod clock;
+mod display;
 mod drive;
 mod error;
 mod keys;
 mod lidar;
 mod psd;
 mod radio;
+pub mod sim;
 
 pub use actuators::{Encoders, Motors, Servos};
 pub use clock::Clock;
+pub use display::{Display, DisplayOption, Fill, Font, FontFamily, FontStyle, Picture, Pixel, Viewport};
 pub use drive::Drive;
 pub use error::{Error, ErrorKind, Result};
 pub use keys::{Key, Keys};
@@ -24,11 +27,11 @@ pub use radio::{Radio, RadioMessage};
 
 /// A full robot: every capability at once.
 pub trait RobotIo:
-    Clock + Drive + DistanceSensors + Lidar + Keys + Radio + Motors + Servos + Encoders
+    Clock + Drive + DistanceSensors + Lidar + Display + Keys + Radio + Motors + Servos + Encoders
 {
 }
 
 impl<R> RobotIo for R where
-    R: Clock + Drive + DistanceSensors + Lidar + Keys + Radio + Motors + Servos + Encoders + ?Sized
+    R: Clock + Drive + DistanceSensors + Lidar + Display + Keys + Radio + Motors + Servos + Encoders + ?Sized
 {
 }

@@ -1,0 +1,5 @@
+//! Robots in a simulated world.
+
+mod lcd;
+
+pub use lcd::Lcd;
