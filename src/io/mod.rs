@@ -6,14 +6,17 @@
 
 mod actuators;
 mod clock;
+pub mod delegate;
 mod display;
 mod drive;
 mod error;
 mod keys;
 mod lidar;
+mod mock;
 mod psd;
 mod radio;
 pub mod sim;
+pub mod wrappers;
 
 pub use actuators::{Encoders, Motors, Servos};
 pub use clock::Clock;
@@ -22,6 +25,7 @@ pub use drive::Drive;
 pub use error::{Error, ErrorKind, Result};
 pub use keys::{Key, Keys};
 pub use lidar::{Lidar, LidarScan, LidarSettings};
+pub use mock::{Call, MockRobot, Script};
 pub use psd::{DistanceSensors, Psd};
 pub use radio::{Radio, RadioMessage};
 
