@@ -24,7 +24,7 @@ use crate::world::Colour;
 ///
 /// ```
 /// use roverlab::geometry::Twist;
-/// use roverlab::io::{Call, Clock, DistanceSensors, Drive, MockRobot, Psd, Result};
+/// use roverlab::io::{Call, Clock, DistanceSensors, Drive, MockRobot, Psd, Result, Script};
 ///
 /// /// Drives until something is nearer than 20 cm; gives the distance that is left.
 /// fn approach(robot: &mut (impl Clock + Drive + DistanceSensors)) -> Result<f64> {
@@ -47,10 +47,10 @@ use crate::world::Colour;
 ///
 /// // ... with an ideal drive, where the robot gets to.
 /// let mut robot = MockRobot::new()
-///     .with_distance(Psd::FRONT, roverlab::io::Script::function(|time| Ok(1.0 - 0.1 * time)))
+///     .with_distance(Psd::FRONT, Script::function(|time| Ok(0.98 - 0.1 * time)))
 ///     .with_ideal_drive();
 /// approach(&mut robot)?;
-/// assert!((robot.pose()?.x - 0.85).abs() < 1e-9);
+/// assert!((robot.pose()?.x - 0.8).abs() < 1e-9);
 /// # Ok(())
 /// # }
 /// ```
@@ -86,7 +86,8 @@ fn in_order<T>(events: impl IntoIterator<Item = (f64, T)>) -> Events<T> {
 
 /// The oldest event, if its time has come.
 fn take_due<T>(events: &mut Events<T>, time: f64) -> Option<T> {
-    events.pop_front_if(|(at, _)| *at <= time).map(|(_, event)| event)
+    let is_due = events.front().is_some_and(|&(at, _)| at <= time);
+    if is_due { events.pop_front().map(|(_, event)| event) } else { None }
 }
 
 /// Scripting the robot.
@@ -260,7 +261,7 @@ impl MockRobot {
         self.lenient.then_some(value)
     }
 
-    fn from_drive<T>(&self, read: impl FnOnce(&IdealDrive) -> T, quiet: T) -> Option<T> {
+    fn by_drive<T>(&self, read: impl FnOnce(&IdealDrive) -> T, quiet: T) -> Option<T> {
         self.drive.as_ref().map(read).or_else(|| self.or_quiet(quiet))
     }
 
@@ -319,7 +320,7 @@ impl Drive for MockRobot {
         self.read(
             "speed",
             |robot| robot.speed.as_mut(),
-            |robot| robot.from_drive(IdealDrive::speed, Twist::STOP),
+            |robot| robot.by_drive(IdealDrive::speed, Twist::STOP),
         )
     }
 
@@ -327,7 +328,7 @@ impl Drive for MockRobot {
         self.read(
             "pose",
             |robot| robot.pose.as_mut(),
-            |robot| robot.from_drive(IdealDrive::pose, Pose::default()),
+            |robot| robot.by_drive(IdealDrive::pose, Pose::default()),
         )
     }
 
@@ -356,7 +357,7 @@ impl Drive for MockRobot {
         self.read(
             "rest of the manoeuvre",
             |robot| robot.remaining.as_mut(),
-            |robot| robot.from_drive(IdealDrive::remaining, 0.0),
+            |robot| robot.by_drive(IdealDrive::remaining, 0.0),
         )
     }
 
@@ -372,11 +373,7 @@ impl Drive for MockRobot {
     }
 
     fn is_stalled(&mut self) -> Result<bool> {
-        self.read(
-            "stall detector",
-            |robot| robot.stalled.as_mut(),
-            |robot| robot.from_drive(|_| false, false),
-        )
+        self.read("stall detector", |robot| robot.stalled.as_mut(), |robot| robot.by_drive(|_| false, false))
     }
 }
 

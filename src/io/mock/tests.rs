@@ -150,7 +150,9 @@ proptest! {
         };
         let (mut once, mut often) = (drive(), drive());
         once.wait(cuts.iter().sum()).unwrap();
-        cuts.iter().for_each(|&seconds| often.wait(seconds).unwrap());
+        for &seconds in &cuts {
+            often.wait(seconds).unwrap();
+        }
         let (a, b) = (once.pose().unwrap(), often.pose().unwrap());
         prop_assert!((a.position() - b.position()).norm() < 1e-9);
         prop_assert!((once.remaining().unwrap() - often.remaining().unwrap()).abs() < 1e-9);

@@ -58,7 +58,7 @@ impl Limits {
         for (name, limit) in
             [("speed limit", self.linear), ("turning limit", self.angular), ("motor limit", self.motor)]
         {
-            if !(limit >= 0.0) {
+            if limit.is_nan() || limit < 0.0 {
                 return Err(Error::invalid_input(name, limit, "0 or more"));
             }
         }
@@ -66,7 +66,7 @@ impl Limits {
             ("acceleration limit", self.linear_acceleration),
             ("turning acceleration limit", self.angular_acceleration),
         ] {
-            if !(limit > 0.0) {
+            if limit.is_nan() || limit <= 0.0 {
                 return Err(Error::invalid_input(name, limit, "more than 0"));
             }
         }
@@ -111,7 +111,8 @@ impl<R> Limited<R> {
 
     /// The value, or the limit with its sign, or an error, if the value is beyond the limit either way.
     fn reduce(&self, name: &str, value: f64, limit: f64) -> Result<f64> {
-        if !(value.abs() > limit) {
+        // What is not a number is for the robot to refuse.
+        if value.is_nan() || value.abs() <= limit {
             return Ok(value);
         }
         match self.limits.excess {

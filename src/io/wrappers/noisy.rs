@@ -68,6 +68,7 @@ impl Default for Noise {
 /// distance negative, never turns "nothing in range" into a distance, and never carries a range beyond the lidar's
 /// reach.
 #[derive(Debug, Clone, Delegate)]
+#[expect(clippy::duplicated_attributes, reason = "every capability has the same target")]
 #[delegate(Clock, target = "inner")]
 #[delegate(Display, target = "inner")]
 #[delegate(Keys, target = "inner")]

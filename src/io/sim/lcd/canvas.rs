@@ -53,15 +53,10 @@ impl Canvas {
     /// Fills the pixels of a box that lie on the canvas.
     pub(super) fn fill(&mut self, columns: Range<i32>, rows: Range<i32>, colour: Colour) {
         let columns = clip(&columns, self.width());
-        if columns.is_empty() {
-            return;
-        }
+        let line = rgb(colour).0.repeat(columns.len());
         for y in clip(&rows, self.height()) {
             let start = 3 * (y * self.width() + columns.start) as usize;
-            let end = 3 * (y * self.width() + columns.end) as usize;
-            for pixel in (&mut *self.image)[start..end].chunks_exact_mut(3) {
-                pixel.copy_from_slice(&rgb(colour).0);
-            }
+            (*self.image)[start..start + line.len()].copy_from_slice(&line);
         }
     }
 
