@@ -1,5 +1,6 @@
 //! A robot for unit tests of programs: scripted readings in, recorded commands out.
 
+mod answers;
 mod call;
 mod ideal;
 mod robot;

@@ -25,7 +25,8 @@ const DEFAULT_LABEL: (Colour, Colour) = (Colour::WHITE, Colour::from_hex(0x0040_
 /// The display of a simulated robot: a frame buffer of 480 x 320 pixels that can be saved as a picture.
 ///
 /// Text is drawn in fixed-width letters of the Latin-1 character set, whatever the font's family; other characters
-/// appear as a question mark.
+/// appear as a question mark. In the default font there are 24 rows of 80 letters, 21 rows while the soft keys'
+/// labels are shown, of which rows 18 to 20 lie below an image in the default [`Viewport`].
 ///
 /// ```
 /// use roverlab::io::sim::Lcd;

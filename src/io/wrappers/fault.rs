@@ -45,7 +45,7 @@ pub enum FaultKind {
     Link,
     /// The next call, whichever it is, takes this many seconds more.
     Hang(f64),
-    /// The clock stands still, while time goes on.
+    /// The clock stands still at the time when the fault begins, while time goes on.
     ClockStop,
     /// The clock jumps by this many seconds, back if negative.
     ClockJump(f64),

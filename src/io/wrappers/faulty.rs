@@ -55,8 +55,6 @@ enum Progress {
     Waiting,
     /// Odometry's frame has moved to here.
     Jumped(Pose),
-    /// The clock stands at this time.
-    Stopped(f64),
     /// Its effect is over.
     Spent,
 }
@@ -145,17 +143,13 @@ impl<R> Faulty<R> {
     }
 
     /// What a faulty clock says when the truth is `time`.
-    fn shown(&mut self, time: f64) -> f64 {
-        let mut shown = time;
-        for Scheduled { fault, progress } in self.schedule.iter_mut().filter(|s| s.fault.is_active(time)) {
-            match (fault.kind, *progress) {
-                (FaultKind::ClockJump(seconds), _) => shown += seconds,
-                (FaultKind::ClockStop, Progress::Stopped(at)) => shown = at,
-                (FaultKind::ClockStop, _) => *progress = Progress::Stopped(shown),
-                _ => {}
-            }
-        }
-        shown
+    fn shown(&self, time: f64) -> f64 {
+        let active = self.schedule.iter().map(|s| s.fault).filter(|fault| fault.is_active(time));
+        active.fold(time, |shown, fault| match fault.kind {
+            FaultKind::ClockJump(seconds) => shown + seconds,
+            FaultKind::ClockStop => shown - (time - fault.at),
+            _ => shown,
+        })
     }
 }
 

@@ -81,7 +81,8 @@ impl Limits {
 /// A robot whose program cannot drive it faster, or change its speed more quickly, than some limits.
 ///
 /// While a speed is being reached gradually, every call asks the robot's clock and moves the speed on, and a wait is
-/// cut into steps of 10 ms; at other times calls go straight through.
+/// cut into steps of 10 ms; at other times calls go straight through. A call that blocks in the robot inside, as
+/// waiting for a key does, keeps the speed that it finds.
 #[derive(Debug, Clone)]
 pub struct Limited<R> {
     inner: R,

@@ -4,10 +4,11 @@ use proptest::prelude::*;
 
 use super::{CALLS, busy_robot, calls};
 use crate::geometry::{Pose, Twist};
-use crate::io::wrappers::{Faulty, Stamp, Traced};
+use crate::io::wrappers::{Faulty, Limited, Limits, Noise, Noisy, Stamp, Traced};
 use crate::io::{
     Clock, Display, DistanceSensors, Drive, Lidar, LidarScan, MockRobot, Picture, Psd, Radio, Viewport,
 };
+use crate::random::Stream;
 
 fn trace(numbers: &[u8]) -> (Vec<u8>, u64) {
     let mut robot = Traced::new(busy_robot(), Vec::new()).whole_scans();
@@ -43,6 +44,40 @@ proptest! {
         let written = text.trim_end().rsplit(' ').next().unwrap();
         prop_assert_eq!(written.parse::<f64>().unwrap().to_bits(), value.to_bits());
     }
+}
+
+/// The digest of one run on a stack of everything.
+fn stacked_digest(seed: u64, numbers: &[u8]) -> u64 {
+    let limits = Limits { linear: 0.15, linear_acceleration: 0.5, ..Limits::default() };
+    let faults =
+        "late:front=0.2@0.5 jump@1 stuck:lidar@1.5-3".split(' ').map(|f| f.parse().unwrap()).collect();
+    let robot = Noisy::new(busy_robot(), Noise::default(), &Stream::new(seed)).unwrap();
+    let robot = Limited::new(Faulty::new(robot, faults), limits).unwrap();
+    let mut robot = Traced::new(robot, io::sink()).whole_scans();
+    calls(&mut robot, numbers);
+    robot.digest()
+}
+
+/// The number must not change, on any platform: recorded runs are compared with it.
+#[test]
+fn a_run_on_a_stack_has_a_fixed_digest() {
+    let numbers: Vec<u8> = (0..CALLS).chain(0..20).chain([1, 1, 14, 17, 4, 1, 17, 4, 3]).collect();
+    assert_eq!(stacked_digest(1, &numbers), stacked_digest(1, &numbers));
+    assert_ne!(stacked_digest(1, &numbers), stacked_digest(2, &numbers));
+    assert_eq!(stacked_digest(1, &numbers), 0x997b_8ff3_ed15_01d0);
+}
+
+#[test]
+fn a_trace_sees_what_is_inside_of_it() {
+    let robot = || MockRobot::new().with_distance(Psd::FRONT, 0.5);
+    let stream = Stream::new(9);
+    let mut outside = Traced::new(Noisy::new(robot(), Noise::default(), &stream).unwrap(), Vec::new());
+    let noisy = outside.distance(Psd::FRONT).unwrap();
+    let mut inside = Noisy::new(Traced::new(robot(), Vec::new()), Noise::default(), &stream).unwrap();
+    assert_eq!(inside.distance(Psd::FRONT).unwrap(), noisy);
+    let text = |bytes: io::Result<Vec<u8>>| String::from_utf8(bytes.unwrap()).unwrap();
+    assert_eq!(text(outside.finish().1), format!("0.0 distance(1) -> {noisy:?}\n"));
+    assert_eq!(text(inside.into_inner().finish().1), "0.0 distance(1) -> 0.5\n");
 }
 
 #[test]
