@@ -6,30 +6,36 @@
 
 mod actuators;
 mod clock;
+pub mod delegate;
+mod display;
 mod drive;
 pub(crate) mod error;
 mod keys;
 mod lidar;
+mod mock;
 mod psd;
 mod radio;
 pub mod sim;
+pub mod wrappers;
 
 pub use actuators::{Encoders, Motors, Servos};
 pub use clock::Clock;
+pub use display::{Display, DisplayOption, Fill, Font, FontFamily, FontStyle, Picture, Pixel, Viewport};
 pub use drive::Drive;
 pub use error::{Error, ErrorKind, Result};
 pub use keys::{Key, Keys};
 pub use lidar::{Lidar, LidarScan, LidarSettings};
+pub use mock::{Call, MockRobot, Script};
 pub use psd::{DistanceSensors, Psd};
 pub use radio::{Radio, RadioMessage};
 
 /// A full robot: every capability at once.
 pub trait RobotIo:
-    Clock + Drive + DistanceSensors + Lidar + Keys + Radio + Motors + Servos + Encoders
+    Clock + Drive + DistanceSensors + Lidar + Display + Keys + Radio + Motors + Servos + Encoders
 {
 }
 
 impl<R> RobotIo for R where
-    R: Clock + Drive + DistanceSensors + Lidar + Keys + Radio + Motors + Servos + Encoders + ?Sized
+    R: Clock + Drive + DistanceSensors + Lidar + Display + Keys + Radio + Motors + Servos + Encoders + ?Sized
 {
 }

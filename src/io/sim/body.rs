@@ -1,14 +1,14 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::SimOptions;
 use super::autopilot::Autopilot;
 use super::drivetrain::{DifferentialSpec, Drivetrain};
+use super::{Lcd, SimOptions};
 use crate::geometry::{Point, Pose, direction};
 use crate::io::{Error, Key, LidarSettings, Psd, RadioMessage, Result};
 use crate::random::Stream;
 use crate::world::space::{Contact, Outline, Scanner, Solid, SolidId, Span};
-use crate::world::{DriveSpec, Footprint, Mount, RobotPlacement, RobotSpec};
+use crate::world::{DriveSpec, Mount, RobotPlacement, RobotSpec};
 
 /// One robot in the engine: its mechanics, its devices and what is true about it.
 #[derive(Debug)]
@@ -24,6 +24,8 @@ pub(super) struct Body {
     pub(super) psd_noise: Stream,
     pub(super) mailbox: VecDeque<RadioMessage>,
     pub(super) keys: VecDeque<KeyPress>,
+    /// Made when the program first draws: most robots of a fleet never do.
+    lcd: Option<Box<Lcd>>,
     pub(super) encoder_offsets: [i64; 2],
     pub(super) touch: Touch,
     pub(super) path_length: f64,
@@ -152,6 +154,7 @@ impl Body {
             psd_noise: streams.child("psd", 0),
             mailbox: VecDeque::new(),
             keys: VecDeque::new(),
+            lcd: None,
             encoder_offsets: [0; 2],
             touch: Touch::default(),
             path_length: 0.0,
@@ -171,6 +174,10 @@ impl Body {
             bottom: span.bottom,
             top: span.top,
         }
+    }
+
+    pub(super) fn lcd(&mut self) -> &mut Lcd {
+        self.lcd.get_or_insert_with(|| Box::new(Lcd::new()))
     }
 
     /// Where a device on the robot is, and where it looks, in the world.

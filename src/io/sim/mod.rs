@@ -27,6 +27,7 @@ mod body;
 mod drivetrain;
 mod engine;
 mod fleet;
+mod lcd;
 mod noise;
 mod options;
 mod robot;
@@ -37,6 +38,7 @@ mod truth;
 
 pub use body::TrailPoint;
 pub use fleet::{Fleet, FleetRobot};
+pub use lcd::Lcd;
 pub use noise::NoiseModel;
 pub use options::SimOptions;
 pub use robot::SimRobot;

@@ -41,7 +41,7 @@ impl SimRobot {
     pub(super) fn call<T>(&mut self, ask: impl FnOnce(&mut Engine, usize) -> Result<T>) -> Result<T> {
         if self.clock >= self.time_limit {
             // The world still advances to the limit, so that what is true then can be looked at.
-            self.shared.reach(self.index, self.time_limit / TICK_NANOSECONDS)?;
+            drop(self.shared.reach(self.index, self.time_limit / TICK_NANOSECONDS)?);
             return Err(Error::new(ErrorKind::TimedOut, "the time limit of the simulation is over"));
         }
         let mut state = self.shared.reach(self.index, self.clock / TICK_NANOSECONDS)?;

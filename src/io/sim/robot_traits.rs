@@ -4,10 +4,13 @@ use super::engine::Engine;
 use super::{FleetRobot, SimRobot};
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Key, Keys, Lidar, LidarScan, LidarSettings,
-    Motors, Psd, Radio, RadioMessage, Result, Servos,
+    Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font, Key, Keys,
+    Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Result, Servos,
+    Viewport,
 };
 use crate::kinematics::Displacement;
+use crate::world::Colour;
+use image::RgbImage;
 
 /// Answers whether the running manoeuvre has ended.
 fn arrival(engine: &mut Engine, index: usize) -> Result<Option<()>> {
@@ -99,6 +102,100 @@ macro_rules! robot_through_engine {
 
             fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
                 self.call(|engine, i| engine.configure_lidar(i, settings))
+            }
+        }
+
+        impl Display for $robot {
+            fn print(&mut self, text: &str) -> Result<()> {
+                self.call(|engine, i| engine.bodies[i].lcd().print(text))
+            }
+
+            fn set_cursor(&mut self, row: i32, column: i32) -> Result<()> {
+                self.call(|engine, i| engine.bodies[i].lcd().set_cursor(row, column))
+            }
+
+            fn cursor(&mut self) -> Result<(i32, i32)> {
+                self.call(|engine, i| engine.bodies[i].lcd().cursor())
+            }
+
+            fn set_text_colours(&mut self, foreground: Colour, background: Colour) -> Result<()> {
+                self.call(|engine, i| engine.bodies[i].lcd().set_text_colours(foreground, background))
+            }
+
+            fn set_font(&mut self, font: Font) -> Result<()> {
+                self.call(|engine, i| engine.bodies[i].lcd().set_font(font))
+            }
+
+            fn clear_display(&mut self) -> Result<()> {
+                self.call(|engine, i| engine.bodies[i].lcd().clear_display())
+            }
+
+            fn display_size(&mut self) -> Result<(i32, i32)> {
+                self.call(|engine, i| engine.bodies[i].lcd().display_size())
+            }
+
+            fn set_pixel(&mut self, at: Pixel, colour: Colour) -> Result<()> {
+                self.call(|engine, i| engine.bodies[i].lcd().set_pixel(at, colour))
+            }
+
+            fn pixel(&mut self, at: Pixel) -> Result<Option<Colour>> {
+                self.call(|engine, i| engine.bodies[i].lcd().pixel(at))
+            }
+
+            fn draw_line(&mut self, from: Pixel, to: Pixel, colour: Colour) -> Result<()> {
+                self.call(|engine, i| engine.bodies[i].lcd().draw_line(from, to, colour))
+            }
+
+            fn draw_rectangle(
+                &mut self,
+                corner: Pixel,
+                opposite: Pixel,
+                colour: Colour,
+                fill: Fill,
+            ) -> Result<()> {
+                self.call(|engine, i| engine.bodies[i].lcd().draw_rectangle(corner, opposite, colour, fill))
+            }
+
+            fn draw_circle(
+                &mut self,
+                centre: Pixel,
+                diameter: i32,
+                colour: Colour,
+                fill: Fill,
+            ) -> Result<()> {
+                self.call(|engine, i| engine.bodies[i].lcd().draw_circle(centre, diameter, colour, fill))
+            }
+
+            fn draw_image(&mut self, picture: Picture<'_>, viewport: Viewport) -> Result<()> {
+                self.call(|engine, i| engine.bodies[i].lcd().draw_image(picture, viewport))
+            }
+
+            fn set_menu_label(
+                &mut self,
+                key: Key,
+                label: &str,
+                foreground: Colour,
+                background: Colour,
+            ) -> Result<()> {
+                self.call(|engine, i| {
+                    engine.bodies[i].lcd().set_menu_label(key, label, foreground, background)
+                })
+            }
+
+            fn set_menu(&mut self, labels: [&str; 4]) -> Result<()> {
+                self.call(|engine, i| engine.bodies[i].lcd().set_menu(labels))
+            }
+
+            fn set_display_option(&mut self, option: DisplayOption, on: bool) -> Result<()> {
+                self.call(|engine, i| engine.bodies[i].lcd().set_display_option(option, on))
+            }
+
+            fn refresh(&mut self) -> Result<()> {
+                self.call(|engine, i| engine.bodies[i].lcd().refresh())
+            }
+
+            fn screenshot(&mut self) -> Result<RgbImage> {
+                self.call(|engine, i| engine.bodies[i].lcd().screenshot())
             }
         }
 

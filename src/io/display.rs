@@ -1,0 +1,213 @@
+use image::{GrayImage, Rgb, RgbImage};
+
+use super::{Key, Result};
+use crate::world::Colour;
+
+/// A pixel of the display: columns to the right and rows down from the upper left corner, which is `(0, 0)`.
+pub type Pixel = (i32, i32);
+
+/// How a closed shape is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Fill {
+    /// Its border alone, one pixel wide.
+    Outline,
+    /// Border and inside.
+    Solid,
+}
+
+/// The look of text, as RoBIOS has it. A display that lacks a family, a style or a size takes its nearest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Font {
+    /// The design of the letters.
+    pub family: FontFamily,
+    /// Their weight and slant.
+    pub style: FontStyle,
+    /// Their size: 8, 10, 12, 14, 18 or 24; others take the nearest, and 0 or less means the default of 12.
+    pub size: i32,
+}
+
+/// The design of a font's letters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum FontFamily {
+    /// Without serifs.
+    #[default]
+    Helvetica,
+    /// With serifs.
+    Times,
+    /// Like a typewriter's.
+    Courier,
+}
+
+/// The weight and slant of a font.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum FontStyle {
+    /// Upright.
+    #[default]
+    Normal,
+    /// Heavy.
+    Bold,
+    /// Slanted.
+    Italic,
+}
+
+/// A habit of the display that can be switched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum DisplayOption {
+    /// What is drawn is visible at once; without it, at the next [`refresh`](Display::refresh). On at first.
+    AutoRefresh,
+    /// A new line below the last row moves everything up by one row; without it, further rows are lost. On at first.
+    Scrolling,
+    /// A newline goes to the start of the next row; without it, straight down. On at first.
+    LineFeed,
+    /// The soft keys' labels are shown. Off until a label is set.
+    Menu,
+    /// Text leaves the pixels between its strokes as they were, instead of in the background colour. Off at first.
+    TransparentText,
+    /// Text is drawn in the opposite of the foreground colour. Off at first.
+    InvertedForeground,
+    /// Text stands on the opposite of the background colour. Off at first.
+    InvertedBackground,
+}
+
+/// Where an image goes on the display, and at what size.
+///
+/// The default is where RoBIOS puts camera images: a QVGA window, 320 x 240 pixels, in the upper left corner.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Viewport {
+    /// The upper left corner.
+    pub corner: Pixel,
+    /// Pixels across; nothing is drawn for 0 or less.
+    pub width: i32,
+    /// Pixels down; nothing is drawn for 0 or less.
+    pub height: i32,
+}
+
+impl Viewport {
+    /// A window from its upper left corner and its size.
+    pub const fn new(corner: Pixel, width: i32, height: i32) -> Self {
+        Self { corner, width, height }
+    }
+}
+
+impl Default for Viewport {
+    fn default() -> Self {
+        Self::new((0, 0), 320, 240)
+    }
+}
+
+/// An image for the display.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Picture<'a> {
+    /// In colour.
+    Rgb(&'a RgbImage),
+    /// In shades of gray, 0 black to 255 white.
+    Gray(&'a GrayImage),
+    /// In black and white: 0 is white and anything else black, as in RoBIOS and in the PBM format.
+    Binary(&'a GrayImage),
+}
+
+impl Picture<'_> {
+    /// Columns and rows.
+    pub fn dimensions(&self) -> (u32, u32) {
+        match self {
+            Picture::Rgb(image) => image.dimensions(),
+            Picture::Gray(image) | Picture::Binary(image) => image.dimensions(),
+        }
+    }
+
+    /// The colour of a pixel; `None` outside the image.
+    pub fn colour(&self, x: u32, y: u32) -> Option<Colour> {
+        match self {
+            Picture::Rgb(image) => {
+                image.get_pixel_checked(x, y).map(|&Rgb([red, green, blue])| Colour::new(red, green, blue))
+            }
+            Picture::Gray(image) => image.get_pixel_checked(x, y).map(|p| Colour::new(p[0], p[0], p[0])),
+            Picture::Binary(image) => {
+                image.get_pixel_checked(x, y).map(|p| if p[0] == 0 { Colour::WHITE } else { Colour::BLACK })
+            }
+        }
+    }
+}
+
+impl<'a> From<&'a RgbImage> for Picture<'a> {
+    fn from(image: &'a RgbImage) -> Self {
+        Picture::Rgb(image)
+    }
+}
+
+impl<'a> From<&'a GrayImage> for Picture<'a> {
+    fn from(image: &'a GrayImage) -> Self {
+        Picture::Gray(image)
+    }
+}
+
+/// A colour display with text and graphics, as RoBIOS has it (book, appendix, LCD functions).
+///
+/// Everything clips: what lies off the display, however far, is left out, and it is no error.
+#[auto_impl::auto_impl(&mut, Box)]
+#[ambassador::delegatable_trait]
+pub trait Display {
+    /// Prints at the cursor and moves it behind the text. Lines wrap at the right edge; `\n` starts a new line.
+    fn print(&mut self, text: &str) -> Result<()>;
+
+    /// Moves the cursor and prints there.
+    fn print_at(&mut self, row: i32, column: i32, text: &str) -> Result<()> {
+        self.set_cursor(row, column)?;
+        self.print(text)
+    }
+
+    /// Moves the cursor; rows and columns are those of the present font and count from 0.
+    fn set_cursor(&mut self, row: i32, column: i32) -> Result<()>;
+
+    /// The cursor's row and column.
+    fn cursor(&mut self) -> Result<(i32, i32)>;
+
+    /// The colours of text printed from now on, and of the cleared display.
+    fn set_text_colours(&mut self, foreground: Colour, background: Colour) -> Result<()>;
+
+    /// The font of text printed from now on.
+    fn set_font(&mut self, font: Font) -> Result<()>;
+
+    /// Fills the display with the background colour and moves the cursor to row 0, column 0. The soft keys' labels
+    /// stay.
+    fn clear_display(&mut self) -> Result<()>;
+
+    /// Pixels across and down, the soft keys' bar included.
+    fn display_size(&mut self) -> Result<(i32, i32)>;
+
+    /// Sets a pixel.
+    fn set_pixel(&mut self, at: Pixel, colour: Colour) -> Result<()>;
+
+    /// The colour of a pixel as last drawn, visible yet or not; `None` off the display.
+    fn pixel(&mut self, at: Pixel) -> Result<Option<Colour>>;
+
+    /// Draws a line that includes both ends.
+    fn draw_line(&mut self, from: Pixel, to: Pixel, colour: Colour) -> Result<()>;
+
+    /// Draws an upright rectangle between two opposite corners, both included, in any order.
+    fn draw_rectangle(&mut self, corner: Pixel, opposite: Pixel, colour: Colour, fill: Fill) -> Result<()>;
+
+    /// Draws a circle of `diameter` pixels; where that is even, the centre is the pixel to the upper left of the true
+    /// one. Nothing is drawn for 0 or less.
+    fn draw_circle(&mut self, centre: Pixel, diameter: i32, colour: Colour, fill: Fill) -> Result<()>;
+
+    /// Draws an image, scaled to fill a window; every pixel of the window shows the image's nearest.
+    fn draw_image(&mut self, picture: Picture<'_>, viewport: Viewport) -> Result<()>;
+
+    /// Labels a soft key in the bar at the bottom of the display, and shows the bar.
+    fn set_menu_label(&mut self, key: Key, label: &str, foreground: Colour, background: Colour)
+    -> Result<()>;
+
+    /// Labels all four soft keys from left to right in the default colours, and shows the bar.
+    fn set_menu(&mut self, labels: [&str; 4]) -> Result<()>;
+
+    /// Switches a habit of the display on or off.
+    fn set_display_option(&mut self, option: DisplayOption, on: bool) -> Result<()>;
+
+    /// Makes visible what was drawn while [`DisplayOption::AutoRefresh`] is off.
+    fn refresh(&mut self) -> Result<()>;
+
+    /// A copy of what the display shows.
+    fn screenshot(&mut self) -> Result<RgbImage>;
+}

@@ -1,0 +1,83 @@
+use std::collections::VecDeque;
+use std::fmt;
+
+use crate::io::{Error, ErrorKind, Result};
+
+/// What a sensor of a [`MockRobot`](super::MockRobot) reads.
+///
+/// A plain value converts to a constant, a vector or an array to a queue.
+pub struct Script<T>(Kind<T>);
+
+type Function<T> = Box<dyn FnMut(f64) -> Result<T> + Send>;
+
+enum Kind<T> {
+    Constant(T),
+    Queue { left: VecDeque<T>, given: usize },
+    Function(Function<T>),
+}
+
+impl<T> Script<T> {
+    /// The same reading every time.
+    pub fn constant(value: T) -> Self {
+        Self(Kind::Constant(value))
+    }
+
+    /// One reading after the other; when they are used up, reading is an error of the kind
+    /// [`EndOfLog`](ErrorKind::EndOfLog).
+    pub fn queue(readings: impl IntoIterator<Item = T>) -> Self {
+        Self(Kind::Queue { left: readings.into_iter().collect(), given: 0 })
+    }
+
+    /// What a function says, which is given the robot's time in seconds and may fail.
+    pub fn function(reading: impl FnMut(f64) -> Result<T> + Send + 'static) -> Self {
+        Self(Kind::Function(Box::new(reading)))
+    }
+}
+
+impl<T: Clone> Script<T> {
+    /// The next reading of the sensor of a name.
+    pub(super) fn next(&mut self, name: &str, time: f64) -> Result<T> {
+        match &mut self.0 {
+            Kind::Constant(value) => Ok(value.clone()),
+            Kind::Queue { left, given } => {
+                let reading = left.pop_front().ok_or_else(|| {
+                    let message = format!("the script of the {name} ended after {given} readings");
+                    Error::new(ErrorKind::EndOfLog, message)
+                })?;
+                *given += 1;
+                Ok(reading)
+            }
+            Kind::Function(reading) => reading(time),
+        }
+    }
+}
+
+impl<T> From<T> for Script<T> {
+    fn from(value: T) -> Self {
+        Self::constant(value)
+    }
+}
+
+impl<T> From<Vec<T>> for Script<T> {
+    fn from(readings: Vec<T>) -> Self {
+        Self::queue(readings)
+    }
+}
+
+impl<T, const N: usize> From<[T; N]> for Script<T> {
+    fn from(readings: [T; N]) -> Self {
+        Self::queue(readings)
+    }
+}
+
+impl<T: fmt::Debug> fmt::Debug for Script<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0 {
+            Kind::Constant(value) => f.debug_tuple("Constant").field(value).finish(),
+            Kind::Queue { left, given } => {
+                f.debug_struct("Queue").field("left", left).field("given", given).finish()
+            }
+            Kind::Function(_) => f.write_str("Function"),
+        }
+    }
+}

@@ -1,0 +1,316 @@
+use std::collections::BTreeMap;
+
+use image::RgbImage;
+
+use super::fault::{Fault, FaultKind, Sensor};
+use super::memory::{Disturbance, Memory};
+use crate::geometry::{Pose, Twist};
+use crate::io::{
+    Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font, Key, Keys,
+    Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Result, Servos,
+    Viewport,
+};
+use crate::world::Colour;
+
+/// A robot on which things go wrong at set times.
+///
+/// Times are those of the clock inside. To know them, every call asks that clock once, which may take time on the
+/// robot inside; with an empty schedule, nothing is asked and nothing changes.
+///
+/// ```
+/// use roverlab::io::wrappers::Faulty;
+/// use roverlab::io::{Clock, DistanceSensors, MockRobot, Psd};
+///
+/// # fn main() -> roverlab::io::Result<()> {
+/// let robot = MockRobot::new().with_distance(Psd::LEFT, vec![0.5, 0.4, 0.3]);
+/// let mut robot = Faulty::new(robot, vec!["stuck:left@1".parse()?]);
+/// assert_eq!(robot.distance(Psd::LEFT)?, 0.5);
+/// robot.wait(1.0)?;
+/// assert_eq!(robot.distance(Psd::LEFT)?, 0.5);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone)]
+pub struct Faulty<R> {
+    inner: R,
+    schedule: Vec<Scheduled>,
+    /// For how long readings are kept.
+    horizon: f64,
+    distances: BTreeMap<Psd, Memory<f64>>,
+    scans: Memory<LidarScan>,
+    poses: Memory<Pose>,
+    speeds: Memory<Twist>,
+}
+
+#[derive(Debug, Clone)]
+struct Scheduled {
+    fault: Fault,
+    progress: Progress,
+}
+
+/// How far a fault that has a beginning has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Progress {
+    /// It has had no effect yet.
+    Waiting,
+    /// Odometry's frame has moved to here.
+    Jumped(Pose),
+    /// Its effect is over.
+    Spent,
+}
+
+impl<R> Faulty<R> {
+    /// Lets faults happen to a robot. Where several act on one reading, it is first late, then stuck, then off, then
+    /// NaN.
+    pub fn new(inner: R, faults: Vec<Fault>) -> Self {
+        let delay = |fault: &Fault| match fault.kind {
+            FaultKind::Late(_, delay) => delay,
+            _ => 0.0,
+        };
+        let horizon = faults.iter().map(delay).fold(0.0, f64::max);
+        let schedule =
+            faults.into_iter().map(|fault| Scheduled { fault, progress: Progress::Waiting }).collect();
+        Self {
+            inner,
+            schedule,
+            horizon,
+            distances: BTreeMap::new(),
+            scans: Memory::new(horizon),
+            poses: Memory::new(horizon),
+            speeds: Memory::new(horizon),
+        }
+    }
+
+    /// The robot inside.
+    pub fn inner(&self) -> &R {
+        &self.inner
+    }
+
+    /// The robot inside, without the faults.
+    pub fn into_inner(self) -> R {
+        self.inner
+    }
+
+    fn any(&self, time: f64, is_it: impl Fn(FaultKind) -> bool) -> bool {
+        self.schedule.iter().any(|s| s.fault.is_active(time) && is_it(s.fault.kind))
+    }
+
+    fn is_nan(&self, time: f64, sensor: Sensor) -> bool {
+        self.any(time, |kind| matches!(kind, FaultKind::Nan(s) if s.covers(sensor)))
+    }
+
+    fn require(&self, time: f64, sensor: Sensor, name: impl std::fmt::Display) -> Result<()> {
+        if self.any(time, |kind| matches!(kind, FaultKind::Lost(s) if s.covers(sensor))) {
+            return Err(Error::new(ErrorKind::Disconnected, format!("the {name} is gone")));
+        }
+        Ok(())
+    }
+
+    fn disturbance(&self, time: f64, sensor: Sensor) -> Disturbance {
+        let stuck = self.any(time, |kind| matches!(kind, FaultKind::Stuck(s) if s.covers(sensor)));
+        let delays =
+            self.schedule.iter().filter(|s| s.fault.is_active(time)).filter_map(|s| match s.fault.kind {
+                FaultKind::Late(late, delay) if late.covers(sensor) => Some(delay),
+                _ => None,
+            });
+        Disturbance { stuck, delay: delays.reduce(f64::max) }
+    }
+
+    /// What odometry that has jumped says when the truth is `pose`.
+    fn jumped(&mut self, time: f64, mut pose: Pose) -> Pose {
+        for Scheduled { fault, progress } in &mut self.schedule {
+            let FaultKind::Jump(jump) = fault.kind else { continue };
+            if !fault.is_active(time) {
+                continue;
+            }
+            if *progress == Progress::Waiting {
+                *progress = Progress::Jumped(pose.compose(&jump).compose(&pose.inverse()));
+            }
+            if let Progress::Jumped(frame) = progress {
+                pose = frame.compose(&pose);
+            }
+        }
+        pose
+    }
+
+    /// Ends the jumps that have happened: odometry has been told where it is.
+    fn cure_jumps(&mut self, time: f64) {
+        for Scheduled { fault, progress } in &mut self.schedule {
+            if matches!(fault.kind, FaultKind::Jump(_)) && fault.at <= time {
+                *progress = Progress::Spent;
+            }
+        }
+    }
+
+    /// What a faulty clock says when the truth is `time`.
+    fn shown(&self, time: f64) -> f64 {
+        let active = self.schedule.iter().map(|s| s.fault).filter(|fault| fault.is_active(time));
+        active.fold(time, |shown, fault| match fault.kind {
+            FaultKind::ClockJump(seconds) => shown + seconds,
+            FaultKind::ClockStop => shown - (time - fault.at),
+            _ => shown,
+        })
+    }
+}
+
+impl<R: Clock> Faulty<R> {
+    /// Lets a call begin: it hangs, or fails, or is told the time inside. `None` says that nothing is scheduled.
+    fn begin(&mut self) -> Result<Option<f64>> {
+        if self.schedule.is_empty() {
+            return Ok(None);
+        }
+        let mut time = self.inner.now()?;
+        let hang = self.take_hang(time);
+        if hang > 0.0 {
+            self.inner.wait(hang)?;
+            time = self.inner.now()?;
+        }
+        if self.any(time, |kind| kind == FaultKind::Link) {
+            return Err(Error::new(ErrorKind::Disconnected, "the link to the robot is gone"));
+        }
+        Ok(Some(time))
+    }
+
+    fn ready(&mut self) -> Result<()> {
+        self.begin().map(|_| ())
+    }
+
+    /// The seconds that the next call takes more.
+    fn take_hang(&mut self, time: f64) -> f64 {
+        let mut seconds = 0.0;
+        for Scheduled { fault, progress } in &mut self.schedule {
+            if let (FaultKind::Hang(more), Progress::Waiting) = (fault.kind, *progress)
+                && fault.is_active(time)
+            {
+                *progress = Progress::Spent;
+                seconds += more;
+            }
+        }
+        seconds
+    }
+}
+
+impl<R: Clock> Clock for Faulty<R> {
+    fn now(&mut self) -> Result<f64> {
+        match self.begin()? {
+            Some(time) => Ok(self.shown(time)),
+            None => self.inner.now(),
+        }
+    }
+
+    fn wait(&mut self, seconds: f64) -> Result<()> {
+        let ready = self.ready();
+        self.inner.wait(seconds)?;
+        ready
+    }
+}
+
+impl<R: DistanceSensors + Clock> DistanceSensors for Faulty<R> {
+    fn distance(&mut self, sensor: Psd) -> Result<f64> {
+        let Some(time) = self.begin()? else { return self.inner.distance(sensor) };
+        let about = Sensor::Psd(sensor);
+        self.require(time, about, sensor)?;
+        let fresh = self.inner.distance(sensor)?;
+        let disturbance = self.disturbance(time, about);
+        let horizon = self.horizon;
+        let memory = self.distances.entry(sensor).or_insert_with(|| Memory::new(horizon));
+        let reading = memory.pass(time, fresh, disturbance);
+        Ok(if self.is_nan(time, about) { f64::NAN } else { reading })
+    }
+}
+
+impl<R: Lidar + Clock> Lidar for Faulty<R> {
+    fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()> {
+        let Some(time) = self.begin()? else { return self.inner.scan_into(scan) };
+        self.require(time, Sensor::Lidar, "lidar")?;
+        self.inner.scan_into(scan)?;
+        let disturbance = self.disturbance(time, Sensor::Lidar);
+        *scan = self.scans.pass(time, std::mem::take(scan), disturbance);
+        if self.is_nan(time, Sensor::Lidar) {
+            scan.ranges.fill(f64::NAN);
+        }
+        Ok(())
+    }
+
+    fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
+        if let Some(time) = self.begin()? {
+            self.require(time, Sensor::Lidar, "lidar")?;
+        }
+        self.inner.configure_lidar(settings)
+    }
+}
+
+impl<R: Drive + Clock> Drive for Faulty<R> {
+    fn speed(&mut self) -> Result<Twist> {
+        let Some(time) = self.begin()? else { return self.inner.speed() };
+        self.require(time, Sensor::Odometry, "odometry")?;
+        let fresh = self.inner.speed()?;
+        let reading = self.speeds.pass(time, fresh, self.disturbance(time, Sensor::Odometry));
+        Ok(if self.is_nan(time, Sensor::Odometry) { Twist::new(f64::NAN, f64::NAN) } else { reading })
+    }
+
+    fn pose(&mut self) -> Result<Pose> {
+        let Some(time) = self.begin()? else { return self.inner.pose() };
+        self.require(time, Sensor::Odometry, "odometry")?;
+        let fresh = self.inner.pose()?;
+        let reading = self.poses.pass(time, fresh, self.disturbance(time, Sensor::Odometry));
+        let reading = self.jumped(time, reading);
+        let nan = Pose::new(f64::NAN, f64::NAN, f64::NAN);
+        Ok(if self.is_nan(time, Sensor::Odometry) { nan } else { reading })
+    }
+
+    fn set_pose(&mut self, pose: Pose) -> Result<()> {
+        if let Some(time) = self.begin()? {
+            self.require(time, Sensor::Odometry, "odometry")?;
+            self.cure_jumps(time);
+        }
+        self.inner.set_pose(pose)
+    }
+
+    fn set_speed(&mut self, twist: Twist) -> Result<()> {
+        self.ready()?;
+        self.inner.set_speed(twist)
+    }
+
+    fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
+        self.ready()?;
+        self.inner.straight(distance, speed)
+    }
+
+    fn turn(&mut self, angle: f64, speed: f64) -> Result<()> {
+        self.ready()?;
+        self.inner.turn(angle, speed)
+    }
+
+    fn curve(&mut self, length: f64, angle: f64, speed: f64) -> Result<()> {
+        self.ready()?;
+        self.inner.curve(length, angle, speed)
+    }
+
+    fn drive_to(&mut self, forward: f64, left: f64, speed: f64) -> Result<()> {
+        self.ready()?;
+        self.inner.drive_to(forward, left, speed)
+    }
+
+    fn remaining(&mut self) -> Result<f64> {
+        self.ready()?;
+        self.inner.remaining()
+    }
+
+    fn is_done(&mut self) -> Result<bool> {
+        self.ready()?;
+        self.inner.is_done()
+    }
+
+    fn wait_done(&mut self) -> Result<()> {
+        self.ready()?;
+        self.inner.wait_done()
+    }
+
+    fn is_stalled(&mut self) -> Result<bool> {
+        self.ready()?;
+        self.inner.is_stalled()
+    }
+}
+
+hooked! { Faulty, ready, [Clock], Display, Keys, Radio, Motors, Servos, Encoders }

@@ -1,0 +1,290 @@
+use image::RgbImage;
+
+use crate::geometry::{Pose, Twist};
+use crate::io::{
+    Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font, Key, Keys, Lidar,
+    LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Result, Servos, Viewport,
+};
+use crate::world::Colour;
+
+/// Seconds between two speed commands while the wrapper brings a robot up to speed.
+const RAMP_STEP: f64 = 0.01;
+
+/// The most that a program may command. Infinity, the default, is no limit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Forward and backward speed, in metres per second.
+    pub linear: f64,
+    /// Turning speed either way, in radians per second.
+    pub angular: f64,
+    /// Change of the forward speed, in metres per second squared; for [`Drive::set_speed`] alone.
+    pub linear_acceleration: f64,
+    /// Change of the turning speed, in radians per second squared; for [`Drive::set_speed`] alone.
+    pub angular_acceleration: f64,
+    /// Fraction of a single motor's full speed; for [`Motors::set_motor`] alone.
+    pub motor: f64,
+    /// What happens to a command beyond the limits.
+    pub excess: Excess,
+}
+
+/// What happens to a command beyond the limits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Excess {
+    /// It is reduced to the limits: speeds at once, keeping the path's curvature, and changes of speed by reaching
+    /// the commanded speed later.
+    #[default]
+    Clamp,
+    /// It is an error of the kind [`InvalidInput`](crate::io::ErrorKind::InvalidInput), and the robot goes on as it
+    /// did. A change of speed is too large if the acceleration allows less since the last command.
+    Refuse,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            linear: f64::INFINITY,
+            angular: f64::INFINITY,
+            linear_acceleration: f64::INFINITY,
+            angular_acceleration: f64::INFINITY,
+            motor: f64::INFINITY,
+            excess: Excess::Clamp,
+        }
+    }
+}
+
+impl Limits {
+    /// Fails with the name of the limit that is negative or not a number, or of an acceleration that is zero.
+    pub fn validate(&self) -> Result<()> {
+        for (name, limit) in
+            [("speed limit", self.linear), ("turning limit", self.angular), ("motor limit", self.motor)]
+        {
+            if limit.is_nan() || limit < 0.0 {
+                return Err(Error::invalid_input(name, limit, "0 or more"));
+            }
+        }
+        for (name, limit) in [
+            ("acceleration limit", self.linear_acceleration),
+            ("turning acceleration limit", self.angular_acceleration),
+        ] {
+            if limit.is_nan() || limit <= 0.0 {
+                return Err(Error::invalid_input(name, limit, "more than 0"));
+            }
+        }
+        Ok(())
+    }
+
+    fn limits_acceleration(&self) -> bool {
+        self.linear_acceleration.is_finite() || self.angular_acceleration.is_finite()
+    }
+}
+
+/// A robot whose program cannot drive it faster, or change its speed more quickly, than some limits.
+///
+/// While a speed is being reached gradually, every call asks the robot's clock and moves the speed on, and a wait is
+/// cut into steps of 10 ms; at other times calls go straight through. A call that blocks in the robot inside, as
+/// waiting for a key does, keeps the speed that it finds.
+#[derive(Debug, Clone)]
+pub struct Limited<R> {
+    inner: R,
+    limits: Limits,
+    /// The speed that the program wants and the robot has not been given yet.
+    target: Option<Twist>,
+    /// What the robot was last told, if the last command was a speed, and when.
+    told: Option<(f64, Twist)>,
+}
+
+impl<R> Limited<R> {
+    /// Limits a robot's speeds. Fails if a limit makes no sense.
+    pub fn new(inner: R, limits: Limits) -> Result<Self> {
+        limits.validate()?;
+        Ok(Self { inner, limits, target: None, told: None })
+    }
+
+    /// The robot inside.
+    pub fn inner(&self) -> &R {
+        &self.inner
+    }
+
+    /// The robot inside, without the limits.
+    pub fn into_inner(self) -> R {
+        self.inner
+    }
+
+    /// The value, or the limit with its sign, or an error, if the value is beyond the limit either way.
+    fn reduce(&self, name: &str, value: f64, limit: f64) -> Result<f64> {
+        // What is not a number is for the robot to refuse.
+        if value.is_nan() || value.abs() <= limit {
+            return Ok(value);
+        }
+        match self.limits.excess {
+            Excess::Clamp => Ok(limit.copysign(value)),
+            Excess::Refuse => Err(Error::invalid_input(name, value, &format!("at most {limit} either way"))),
+        }
+    }
+
+    /// The speeds within the limits that drive the same curve.
+    fn reduce_twist(&self, twist: Twist) -> Result<Twist> {
+        let linear = self.reduce("speed", twist.linear, self.limits.linear)?;
+        let angular = self.reduce("turning speed", twist.angular, self.limits.angular)?;
+        if linear == twist.linear && angular == twist.angular {
+            return Ok(twist);
+        }
+        let share = |reduced: f64, wanted: f64| if wanted == 0.0 { 1.0 } else { reduced / wanted };
+        let scale = share(linear, twist.linear).min(share(angular, twist.angular));
+        // The one that set the scale keeps its exact limit.
+        let scaled = |reduced: f64, wanted: f64| {
+            if share(reduced, wanted) == scale { reduced } else { wanted * scale }
+        };
+        Ok(Twist::new(scaled(linear, twist.linear), scaled(angular, twist.angular)))
+    }
+
+    /// A manoeuvre's speed within the limits, given how many radians it turns per metre.
+    fn reduce_curve(&self, speed: f64, curvature: f64) -> Result<f64> {
+        let limit = if curvature == 0.0 {
+            self.limits.linear
+        } else {
+            self.limits.linear.min(self.limits.angular / curvature)
+        };
+        self.reduce("speed", speed, limit)
+    }
+
+    fn start_manoeuvre(&mut self) {
+        self.target = None;
+        self.told = None;
+    }
+}
+
+impl<R: Clock + Drive> Limited<R> {
+    fn set_speed_gradually(&mut self, twist: Twist) -> Result<()> {
+        let now = self.inner.now()?;
+        let (before, from) = match self.told {
+            Some(told) => told,
+            None => (now, self.inner.speed()?),
+        };
+        let next = self.approach(from, twist, now - before);
+        if next != twist && self.limits.excess == Excess::Refuse {
+            let change = format!("from {} m/s, {} rad/s", from.linear, from.angular);
+            let found = format!("{} m/s, {} rad/s, {change}", twist.linear, twist.angular);
+            return Err(Error::invalid_input("speed", found, "a change that the acceleration limits allow"));
+        }
+        self.inner.set_speed(next)?;
+        self.told = Some((now, next));
+        self.target = (next != twist).then_some(twist);
+        Ok(())
+    }
+
+    /// The speed nearest to `target` that can be reached from another within some seconds.
+    fn approach(&self, from: Twist, target: Twist, seconds: f64) -> Twist {
+        let step = |from: f64, target: f64, acceleration: f64| {
+            let room = if acceleration.is_finite() { acceleration * seconds.max(0.0) } else { acceleration };
+            if (target - from).abs() <= room { target } else { from + room.copysign(target - from) }
+        };
+        Twist::new(
+            step(from.linear, target.linear, self.limits.linear_acceleration),
+            step(from.angular, target.angular, self.limits.angular_acceleration),
+        )
+    }
+
+    /// Moves the speed on towards the one that the program wants.
+    fn keep_up(&mut self) -> Result<()> {
+        match self.target {
+            Some(target) => self.set_speed_gradually(target),
+            None => Ok(()),
+        }
+    }
+}
+
+impl<R: Clock + Drive> Clock for Limited<R> {
+    fn now(&mut self) -> Result<f64> {
+        self.keep_up()?;
+        self.inner.now()
+    }
+
+    fn wait(&mut self, seconds: f64) -> Result<()> {
+        let mut left = seconds;
+        while self.target.is_some() && left > RAMP_STEP {
+            self.inner.wait(RAMP_STEP)?;
+            left -= RAMP_STEP;
+            self.keep_up()?;
+        }
+        self.inner.wait(left)?;
+        self.keep_up()
+    }
+}
+
+impl<R: Clock + Drive> Drive for Limited<R> {
+    fn set_speed(&mut self, twist: Twist) -> Result<()> {
+        let twist = self.reduce_twist(twist)?;
+        if self.limits.limits_acceleration() && twist.is_finite() {
+            return self.set_speed_gradually(twist);
+        }
+        self.inner.set_speed(twist)
+    }
+
+    fn speed(&mut self) -> Result<Twist> {
+        self.keep_up()?;
+        self.inner.speed()
+    }
+
+    fn pose(&mut self) -> Result<Pose> {
+        self.keep_up()?;
+        self.inner.pose()
+    }
+
+    fn set_pose(&mut self, pose: Pose) -> Result<()> {
+        self.keep_up()?;
+        self.inner.set_pose(pose)
+    }
+
+    fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
+        let speed = self.reduce_curve(speed, 0.0)?;
+        self.inner.straight(distance, speed)?;
+        self.start_manoeuvre();
+        Ok(())
+    }
+
+    fn turn(&mut self, angle: f64, speed: f64) -> Result<()> {
+        let speed = self.reduce("turning speed", speed, self.limits.angular)?;
+        self.inner.turn(angle, speed)?;
+        self.start_manoeuvre();
+        Ok(())
+    }
+
+    fn curve(&mut self, length: f64, angle: f64, speed: f64) -> Result<()> {
+        let speed = self.reduce_curve(speed, (angle / length).abs())?;
+        self.inner.curve(length, angle, speed)?;
+        self.start_manoeuvre();
+        Ok(())
+    }
+
+    fn remaining(&mut self) -> Result<f64> {
+        self.keep_up()?;
+        self.inner.remaining()
+    }
+
+    fn is_done(&mut self) -> Result<bool> {
+        self.keep_up()?;
+        self.inner.is_done()
+    }
+
+    fn wait_done(&mut self) -> Result<()> {
+        self.keep_up()?;
+        self.inner.wait_done()
+    }
+
+    fn is_stalled(&mut self) -> Result<bool> {
+        self.keep_up()?;
+        self.inner.is_stalled()
+    }
+}
+
+impl<R: Motors + Clock + Drive> Motors for Limited<R> {
+    fn set_motor(&mut self, motor: u8, fraction: f64) -> Result<()> {
+        let fraction = self.reduce("motor fraction", fraction, self.limits.motor)?;
+        self.inner.set_motor(motor, fraction)?;
+        self.start_manoeuvre();
+        Ok(())
+    }
+}
+
+hooked! { Limited, keep_up, [Clock Drive], DistanceSensors, Lidar, Display, Keys, Radio, Servos, Encoders }

@@ -1,0 +1,46 @@
+//! Robots around robots: noise, faults, limits and a trace for whatever is inside.
+//!
+//! A wrapper has the capabilities of the robot that it wraps, changes what it is for and passes on the rest, so
+//! wrappers stack, and work around simulated, recorded and real robots alike. The outermost one is the one that the
+//! program talks to: `Traced<Noisy<R>>` writes down the noisy readings, `Noisy<Traced<R>>` the clean ones.
+//!
+//! ```
+//! use roverlab::io::wrappers::{Fault, Faulty, Noise, Noisy, Traced};
+//! use roverlab::io::{Clock, DistanceSensors, ErrorKind, MockRobot, Psd};
+//! use roverlab::random::Stream;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let robot = MockRobot::new().with_distance(Psd::FRONT, 0.5);
+//! let robot = Noisy::new(robot, Noise::default(), &Stream::new(7))?;
+//! let robot = Faulty::new(robot, vec!["lost:front@2".parse::<Fault>()?]);
+//! let mut robot = Traced::new(robot, Vec::new());
+//!
+//! assert!((robot.distance(Psd::FRONT)? - 0.5).abs() < 0.1);
+//! robot.wait(2.0)?;
+//! assert_eq!(robot.distance(Psd::FRONT).unwrap_err().kind(), ErrorKind::Disconnected);
+//!
+//! let (_robot, written) = robot.finish();
+//! assert_eq!(String::from_utf8(written?)?.lines().nth(1), Some("0.0 wait(2.0) -> ok"));
+//! # Ok(())
+//! # }
+//! ```
+
+#[macro_use]
+mod signatures;
+
+mod fault;
+mod faulty;
+mod limited;
+mod memory;
+mod noisy;
+mod trace_text;
+mod traced;
+
+pub use fault::{Fault, FaultKind, Sensor};
+pub use faulty::Faulty;
+pub use limited::{Excess, Limited, Limits};
+pub use noisy::{Noise, Noisy};
+pub use traced::{Stamp, Traced};
+
+#[cfg(test)]
+mod tests;

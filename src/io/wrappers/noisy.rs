@@ -1,0 +1,212 @@
+use std::collections::BTreeMap;
+
+use ambassador::Delegate;
+use image::RgbImage;
+
+use crate::geometry::{Pose, Twist, normalize_angle};
+use crate::io::delegate::{
+    ambassador_impl_Clock, ambassador_impl_Display, ambassador_impl_Encoders, ambassador_impl_Keys,
+    ambassador_impl_Motors, ambassador_impl_Radio, ambassador_impl_Servos,
+};
+use crate::io::{
+    Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font, Key, Keys, Lidar,
+    LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Result, Servos, Viewport,
+};
+use crate::random::Stream;
+use crate::world::Colour;
+
+/// Standard deviations of normally distributed noise; 0 leaves a reading as it is, bit for bit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// Of distance sensors' readings, in metres.
+    pub distance: f64,
+    /// Of each range of a lidar scan, in metres.
+    pub lidar: f64,
+    /// Of odometry's x and y, in metres.
+    pub position: f64,
+    /// Of odometry's heading, in radians.
+    pub heading: f64,
+    /// Of odometry's forward speed, in metres per second.
+    pub linear: f64,
+    /// Of odometry's turning speed, in radians per second.
+    pub angular: f64,
+}
+
+impl Noise {
+    /// No noise at all.
+    pub const NONE: Noise =
+        Noise { distance: 0.0, lidar: 0.0, position: 0.0, heading: 0.0, linear: 0.0, angular: 0.0 };
+
+    /// Fails with the name of the standard deviation that is negative or not finite.
+    pub fn validate(&self) -> Result<()> {
+        for (name, sigma) in [
+            ("noise of distances", self.distance),
+            ("noise of lidar ranges", self.lidar),
+            ("noise of the position", self.position),
+            ("noise of the heading", self.heading),
+            ("noise of the forward speed", self.linear),
+            ("noise of the turning speed", self.angular),
+        ] {
+            if !(sigma.is_finite() && sigma >= 0.0) {
+                return Err(Error::invalid_input(name, sigma, "a finite standard deviation of 0 or more"));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Default for Noise {
+    /// Ten millimetres on every distance, as EyeSim adds when its sensor noise is on, and a little on odometry.
+    fn default() -> Self {
+        Self { distance: 0.01, lidar: 0.01, position: 0.002, heading: 0.005, linear: 0.002, angular: 0.01 }
+    }
+}
+
+/// A robot whose readings carry extra noise: distances, lidar scans and odometry.
+///
+/// Each sensor has its own random stream, so reading one more often changes nothing for another. Noise never makes a
+/// distance negative, never turns "nothing in range" into a distance, and never carries a range beyond the lidar's
+/// reach.
+#[derive(Debug, Clone, Delegate)]
+#[expect(clippy::duplicated_attributes, reason = "every capability has the same target")]
+#[delegate(Clock, target = "inner")]
+#[delegate(Display, target = "inner")]
+#[delegate(Keys, target = "inner")]
+#[delegate(Radio, target = "inner")]
+#[delegate(Motors, target = "inner")]
+#[delegate(Servos, target = "inner")]
+#[delegate(Encoders, target = "inner")]
+pub struct Noisy<R> {
+    inner: R,
+    noise: Noise,
+    parent: Stream,
+    distances: BTreeMap<Psd, Stream>,
+    lidar: Stream,
+    pose: Stream,
+    speed: Stream,
+}
+
+impl<R> Noisy<R> {
+    /// Adds noise to a robot's readings, drawn from children of `stream`. Fails if a standard deviation is negative
+    /// or not finite.
+    pub fn new(inner: R, noise: Noise, stream: &Stream) -> Result<Self> {
+        noise.validate()?;
+        Ok(Self {
+            inner,
+            noise,
+            parent: stream.clone(),
+            distances: BTreeMap::new(),
+            lidar: stream.child("noisy lidar", 0),
+            pose: stream.child("noisy pose", 0),
+            speed: stream.child("noisy speed", 0),
+        })
+    }
+
+    /// The robot inside.
+    pub fn inner(&self) -> &R {
+        &self.inner
+    }
+
+    /// The robot inside, without the noise.
+    pub fn into_inner(self) -> R {
+        self.inner
+    }
+}
+
+/// A value with noise; without noise, nothing is drawn and the bits stay.
+fn add(value: f64, sigma: f64, stream: &mut Stream) -> f64 {
+    if sigma == 0.0 { value } else { value + sigma * stream.normal() }
+}
+
+impl<R: DistanceSensors> DistanceSensors for Noisy<R> {
+    fn distance(&mut self, sensor: Psd) -> Result<f64> {
+        let distance = self.inner.distance(sensor)?;
+        if self.noise.distance == 0.0 {
+            return Ok(distance);
+        }
+        let parent = &self.parent;
+        let stream =
+            self.distances.entry(sensor).or_insert_with(|| parent.child("noisy distance", sensor.0.into()));
+        Ok(add(distance, self.noise.distance, stream).max(0.0))
+    }
+}
+
+impl<R: Lidar> Lidar for Noisy<R> {
+    fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()> {
+        self.inner.scan_into(scan)?;
+        if self.noise.lidar == 0.0 {
+            return Ok(());
+        }
+        for range in &mut scan.ranges {
+            // Drawn for every beam, so that one beam's noise does not depend on what another one hits.
+            let noisy = add(*range, self.noise.lidar, &mut self.lidar);
+            if range.is_finite() {
+                *range = noisy.min(scan.range_max.max(*range)).max(0.0);
+            }
+        }
+        Ok(())
+    }
+
+    fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
+        self.inner.configure_lidar(settings)
+    }
+}
+
+impl<R: Drive> Drive for Noisy<R> {
+    fn set_speed(&mut self, twist: Twist) -> Result<()> {
+        self.inner.set_speed(twist)
+    }
+
+    fn speed(&mut self) -> Result<Twist> {
+        let Twist { linear, angular } = self.inner.speed()?;
+        Ok(Twist::new(
+            add(linear, self.noise.linear, &mut self.speed),
+            add(angular, self.noise.angular, &mut self.speed),
+        ))
+    }
+
+    fn pose(&mut self) -> Result<Pose> {
+        let Pose { x, y, heading } = self.inner.pose()?;
+        Ok(Pose::new(
+            add(x, self.noise.position, &mut self.pose),
+            add(y, self.noise.position, &mut self.pose),
+            normalize_angle(add(heading, self.noise.heading, &mut self.pose)),
+        ))
+    }
+
+    fn set_pose(&mut self, pose: Pose) -> Result<()> {
+        self.inner.set_pose(pose)
+    }
+
+    fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
+        self.inner.straight(distance, speed)
+    }
+
+    fn turn(&mut self, angle: f64, speed: f64) -> Result<()> {
+        self.inner.turn(angle, speed)
+    }
+
+    fn curve(&mut self, length: f64, angle: f64, speed: f64) -> Result<()> {
+        self.inner.curve(length, angle, speed)
+    }
+
+    fn drive_to(&mut self, forward: f64, left: f64, speed: f64) -> Result<()> {
+        self.inner.drive_to(forward, left, speed)
+    }
+
+    fn remaining(&mut self) -> Result<f64> {
+        self.inner.remaining()
+    }
+
+    fn is_done(&mut self) -> Result<bool> {
+        self.inner.is_done()
+    }
+
+    fn wait_done(&mut self) -> Result<()> {
+        self.inner.wait_done()
+    }
+
+    fn is_stalled(&mut self) -> Result<bool> {
+        self.inner.is_stalled()
+    }
+}

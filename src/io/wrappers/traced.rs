@@ -1,0 +1,227 @@
+use std::fmt::Write as _;
+use std::io;
+
+use image::RgbImage;
+
+use super::trace_text::{Digest, Token, put_scan};
+use crate::geometry::{Pose, Twist};
+use crate::io::{
+    Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys, Lidar, LidarScan,
+    LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Result, Servos, Viewport,
+};
+use crate::world::Colour;
+
+/// Which time stands at the head of a trace's lines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Stamp {
+    /// The robot's clock is asked before each call. Where asking takes time, as in the simulator, a traced run is not
+    /// the same as an untraced one.
+    #[default]
+    EachCall,
+    /// The last time that the program itself asked for. The robot sees nothing of the trace.
+    LastKnown,
+}
+
+/// A robot that writes down every call, one line each: the time, the call, its arguments, and its result or error.
+///
+/// ```text
+/// 0.5 set_speed((0.2, 0.0)) -> ok
+/// 0.5 distance(1) -> 0.4375
+/// 0.5 scan_into() -> 360 beams 8c0b2f6a53a1d7e4
+/// 0.6 distance(9) -> error Unsupported "the robot has no PSD 9"
+/// ```
+///
+/// Floats are written with the fewest digits that read back as the same number, and text in quotes with escapes, so
+/// two equal runs write equal bytes, and [`digest`](Traced::digest) compares them in one number. A time that the
+/// robot could not tell is a question mark. Scans and images appear as a digest of their bits; scans in full if
+/// asked for with [`whole_scans`](Traced::whole_scans).
+///
+/// A writer that fails does not disturb the run: the rest of the trace is not written, and
+/// [`finish`](Traced::finish) returns the first error.
+///
+/// ```
+/// use roverlab::geometry::Twist;
+/// use roverlab::io::wrappers::Traced;
+/// use roverlab::io::{Clock, Drive, MockRobot};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut robot = Traced::new(MockRobot::new(), Vec::new());
+/// robot.set_speed(Twist::new(0.1, -0.25))?;
+/// robot.wait(0.5)?;
+/// robot.now()?;
+/// let (_robot, written) = robot.finish();
+/// let text = String::from_utf8(written?)?;
+/// assert_eq!(text, "0.0 set_speed((0.1, -0.25)) -> ok\n0.0 wait(0.5) -> ok\n0.5 now() -> 0.5\n");
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct Traced<R, W> {
+    inner: R,
+    writer: W,
+    failure: Option<io::Error>,
+    digest: Digest,
+    stamp: Stamp,
+    last_time: Option<f64>,
+    whole_scans: bool,
+    line: String,
+}
+
+impl<R, W: io::Write> Traced<R, W> {
+    /// Traces a robot's calls to a writer. A file should be buffered: each line is one write.
+    pub fn new(inner: R, writer: W) -> Self {
+        Self {
+            inner,
+            writer,
+            failure: None,
+            digest: Digest::EMPTY,
+            stamp: Stamp::default(),
+            last_time: None,
+            whole_scans: false,
+            line: String::new(),
+        }
+    }
+
+    /// Chooses the times at the head of the lines.
+    #[must_use]
+    pub fn with_stamp(self, stamp: Stamp) -> Self {
+        Self { stamp, ..self }
+    }
+
+    /// Writes scans in full, behind their digests.
+    #[must_use]
+    pub fn whole_scans(self) -> Self {
+        Self { whole_scans: true, ..self }
+    }
+
+    /// The 64-bit FNV-1a digest of all bytes of the trace so far, those that a failed writer refused included.
+    pub fn digest(&self) -> u64 {
+        self.digest.0
+    }
+
+    /// The robot inside.
+    pub fn inner(&self) -> &R {
+        &self.inner
+    }
+
+    /// The robot inside. The writer is flushed and dropped, and its error with it; [`finish`](Traced::finish)
+    /// returns both.
+    pub fn into_inner(self) -> R {
+        self.finish().0
+    }
+
+    /// The robot inside, and the flushed writer or the first error that it gave.
+    pub fn finish(mut self) -> (R, io::Result<W>) {
+        let written = match self.failure.take() {
+            Some(error) => Err(error),
+            None => self.writer.flush().map(|()| self.writer),
+        };
+        (self.inner, written)
+    }
+
+    /// Begins a line with the call's name.
+    fn open(&mut self, time: Option<f64>, name: &str) {
+        self.line.clear();
+        // Writing to a string cannot fail.
+        let _ = match time {
+            Some(time) => write!(self.line, "{time:?} {name}("),
+            None => write!(self.line, "? {name}("),
+        };
+    }
+
+    fn arguments(&mut self, arguments: &[&dyn Token]) {
+        for (i, argument) in arguments.iter().enumerate() {
+            self.line.push_str(if i == 0 { "" } else { ", " });
+            argument.put(&mut self.line);
+        }
+    }
+
+    /// Ends the line with the result and writes it.
+    fn close<T>(&mut self, result: &Result<T>, put: impl FnOnce(&mut String, &T)) {
+        self.line.push_str(") -> ");
+        match result {
+            Ok(value) => put(&mut self.line, value),
+            Err(error) => {
+                let _ = write!(self.line, "error {:?} {:?}", error.kind(), error.to_string());
+            }
+        }
+        self.line.push('\n');
+        self.digest.update(self.line.bytes());
+        if self.failure.is_none() {
+            self.failure = self.writer.write_all(self.line.as_bytes()).err();
+        }
+    }
+}
+
+impl<R: Clock, W: io::Write> Traced<R, W> {
+    /// The time for a line; `None` if the robot cannot tell.
+    fn time(&mut self) -> Option<f64> {
+        if self.stamp == Stamp::EachCall {
+            return self.inner.now().ok();
+        }
+        self.last_time
+    }
+}
+
+impl<R: Clock, W: io::Write> Clock for Traced<R, W> {
+    fn now(&mut self) -> Result<f64> {
+        let result = self.inner.now();
+        self.last_time = result.as_ref().ok().copied().or(self.last_time);
+        self.open(result.as_ref().ok().copied(), "now");
+        self.close(&result, |line, time| time.put(line));
+        result
+    }
+
+    fn wait(&mut self, seconds: f64) -> Result<()> {
+        let time = self.time();
+        self.open(time, "wait");
+        self.arguments(&[&seconds]);
+        let result = self.inner.wait(seconds);
+        self.close(&result, |line, done| done.put(line));
+        result
+    }
+}
+
+impl<R: Lidar + Clock, W: io::Write> Lidar for Traced<R, W> {
+    fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()> {
+        let time = self.time();
+        self.open(time, "scan_into");
+        let result = self.inner.scan_into(scan);
+        let whole = self.whole_scans;
+        self.close(&result, |line, ()| put_scan(line, scan, whole));
+        result
+    }
+
+    fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
+        let time = self.time();
+        self.open(time, "configure_lidar");
+        self.arguments(&[&settings]);
+        let result = self.inner.configure_lidar(settings);
+        self.close(&result, |line, done| done.put(line));
+        result
+    }
+}
+
+macro_rules! traced_impl {
+    ($capability:ident { $( fn $name:ident($($arg:ident: $type:ty),*) -> $result:ty; )* }) => {
+        impl<R: $capability + Clock, W: io::Write> $capability for Traced<R, W> {
+            $( fn $name(&mut self $(, $arg: $type)*) -> Result<$result> {
+                let time = self.time();
+                self.open(time, stringify!($name));
+                self.arguments(&[$(&$arg),*]);
+                let result = self.inner.$name($($arg),*);
+                self.close(&result, |line, value| value.put(line));
+                result
+            } )*
+        }
+    };
+}
+
+signatures! { Drive => traced_impl!() }
+signatures! { DistanceSensors => traced_impl!() }
+signatures! { Display => traced_impl!() }
+signatures! { Keys => traced_impl!() }
+signatures! { Radio => traced_impl!() }
+signatures! { Motors => traced_impl!() }
+signatures! { Servos => traced_impl!() }
+signatures! { Encoders => traced_impl!() }
