@@ -3,5 +3,7 @@
 pub mod geometry;
 pub mod io;
 pub mod kinematics;
+#[cfg(feature = "picture")]
+pub mod picture;
 pub mod random;
 pub mod world;
