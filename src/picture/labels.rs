@@ -18,7 +18,11 @@ const GAPS: [f64; 4] = [2.0, 14.0, 28.0, 44.0];
 #[derive(Debug, Clone)]
 pub(super) struct Labels {
     page: Aabb,
-    taken: Vec<Aabb>,
+    symbols: Vec<Aabb>,
+    names: Vec<Aabb>,
+    /// Lines from points to names that stand apart.
+    leads: Vec<[Pixel; 2]>,
+    /// Lines that names keep off if there is room elsewhere.
     lines: Vec<[Pixel; 2]>,
 }
 
@@ -33,12 +37,12 @@ pub(super) struct Placed {
 
 impl Labels {
     pub(super) fn new(page: Aabb) -> Self {
-        Self { page, taken: Vec::new(), lines: Vec::new() }
+        Self { page, symbols: Vec::new(), names: Vec::new(), leads: Vec::new(), lines: Vec::new() }
     }
 
     /// Keeps names off a box.
     pub(super) fn keep_off(&mut self, bounds: Aabb) {
-        self.taken.push(bounds);
+        self.symbols.push(bounds);
     }
 
     /// Keeps names off a line, if there is room elsewhere.
@@ -49,33 +53,38 @@ impl Labels {
     /// The best place for a name beside a symbol that reaches `reach` pixels far; `None` if all places are taken.
     pub(super) fn place(&mut self, name: &str, at: Pixel, reach: f64) -> Option<Placed> {
         let extent = Vector::new(text::width(name, SIZE) + 2.0, SIZE + 1.0);
-        let mut best: Option<(usize, Aabb, bool)> = None;
+        let mut best: Option<(usize, Aabb, Option<Pixel>)> = None;
         for (ring, gap) in GAPS.into_iter().enumerate() {
             for towards in DIRECTIONS {
                 let bounds = beside(at, towards, reach + gap, extent);
-                if !self.is_free(&bounds) {
+                let lead = (ring > 0).then(|| nearest(&bounds, at));
+                if !self.is_free(&bounds) || lead.is_some_and(|end| self.hides_a_name([at, end])) {
                     continue;
                 }
-                let cost = 2 * ring + self.crossings(&bounds).min(4);
+                let cost = 2 * ring + self.crossings(&bounds);
                 if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
-                    best = Some((cost, bounds, ring > 0));
+                    best = Some((cost, bounds, lead));
                 }
             }
         }
-        let (_, bounds, apart) = best?;
-        self.taken.push(bounds);
-        let lead = apart.then(|| {
-            Pixel::new(at.x.clamp(bounds.min.x, bounds.max.x), at.y.clamp(bounds.min.y, bounds.max.y))
-        });
+        let (_, bounds, lead) = best?;
+        self.names.push(bounds);
+        self.leads.extend(lead.map(|end| [at, end]));
         Some(Placed { start: Pixel::new(bounds.min.x + 1.0, bounds.max.y - 3.0), lead })
     }
 
     fn is_free(&self, bounds: &Aabb) -> bool {
         self.page.contains(bounds.min)
             && self.page.contains(bounds.max)
-            && !self.taken.iter().any(|taken| overlap(taken, bounds))
+            && !self.symbols.iter().chain(&self.names).any(|taken| overlap(taken, bounds))
+            && !self.leads.iter().any(|lead| crosses(lead, bounds))
     }
 
+    fn hides_a_name(&self, lead: [Pixel; 2]) -> bool {
+        self.names.iter().any(|name| crosses(&lead, name))
+    }
+
+    /// How many lines run through a box, up to four: more make it no worse.
     fn crossings(&self, bounds: &Aabb) -> usize {
         self.lines.iter().filter(|ends| crosses(ends, bounds)).take(4).count()
     }
@@ -86,6 +95,11 @@ fn beside(at: Pixel, (x, y): (f64, f64), distance: f64, extent: Vector) -> Aabb 
     let middle =
         at + Vector::new(x, y) * distance + Vector::new(side(x) * extent.x, side(y) * extent.y) * 0.5;
     Aabb { min: middle - extent * 0.5, max: middle + extent * 0.5 }
+}
+
+/// The point of a box that is nearest to a pixel.
+fn nearest(bounds: &Aabb, at: Pixel) -> Pixel {
+    at.sup(&bounds.min).inf(&bounds.max)
 }
 
 /// The sign of a number, zero for zero.
@@ -136,9 +150,12 @@ mod tests {
             for (i, point) in points.iter().enumerate() {
                 labels.place(&format!("H{i}"), *point, 7.0);
             }
-            for (i, a) in labels.taken.iter().enumerate() {
+            for (i, a) in labels.names.iter().enumerate() {
                 prop_assert!(page().contains(a.min) && page().contains(a.max));
-                prop_assert!(labels.taken[i + 1..].iter().all(|b| !overlap(a, b)));
+                prop_assert!(labels.names[i + 1..].iter().all(|b| !overlap(a, b)));
+                // A lead ends on the edge of its own name, and passes through no other.
+                let crossing = labels.leads.iter().filter(|lead| crosses(lead, &a.inflated(-0.5))).count();
+                prop_assert_eq!(crossing, 0);
             }
         }
 

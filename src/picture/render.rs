@@ -16,7 +16,7 @@ const MARGIN: f64 = 28.0;
 /// Pixels between plot and legend.
 const GUTTER: f64 = 26.0;
 const NARROWEST_PAGE: f64 = 340.0;
-const WIDEST_PAGE: f64 = 1300.0;
+const WIDEST_PAGE: f64 = 1340.0;
 /// Pixels around the world where paths still show.
 const BLEED: f64 = 10.0;
 /// The name of the outline beyond which nothing is drawn.
