@@ -32,6 +32,8 @@ mod legend;
 mod lines;
 mod marks;
 mod names;
+#[cfg(feature = "png")]
+mod raster;
 mod render;
 mod robots;
 mod save;

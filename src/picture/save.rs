@@ -77,39 +77,20 @@ impl Picture {
         let path = path.as_ref();
         let bytes = match FileType::of(path)? {
             FileType::Svg => self.to_svg().into_bytes(),
-            FileType::Png => self.png(path)?,
+            FileType::Png => png(self, path)?,
         };
         replace(path, &bytes).map_err(|source| SaveError::Write { path: path.to_owned(), source })
     }
+}
 
-    #[cfg(feature = "png")]
-    fn png(&self, path: &Path) -> Result<Vec<u8>, SaveError> {
-        self.to_png().map_err(|reason| SaveError::Draw { path: path.to_owned(), reason })
-    }
+#[cfg(feature = "png")]
+fn png(picture: &Picture, path: &Path) -> Result<Vec<u8>, SaveError> {
+    super::raster::png(&picture.to_svg()).map_err(|reason| SaveError::Draw { path: path.to_owned(), reason })
+}
 
-    #[cfg(not(feature = "png"))]
-    fn png(&self, path: &Path) -> Result<Vec<u8>, SaveError> {
-        Err(SaveError::NoPng { path: path.to_owned() })
-    }
-
-    /// The bytes of a PNG file with two pixels for each of the SVG document.
-    #[cfg(feature = "png")]
-    fn to_png(&self) -> Result<Vec<u8>, String> {
-        use resvg::{tiny_skia, usvg};
-        const FINENESS: f32 = 2.0;
-
-        let mut options = usvg::Options { font_family: "DejaVu Sans".into(), ..usvg::Options::default() };
-        let fonts = options.fontdb_mut();
-        fonts.load_font_data(dejavu::sans::regular().to_vec());
-        fonts.load_font_data(dejavu::sans::bold().to_vec());
-        let tree = usvg::Tree::from_str(&self.to_svg(), &options).map_err(|e| e.to_string())?;
-        let (width, height) = (tree.size().width() * FINENESS, tree.size().height() * FINENESS);
-        let mut pixels = tiny_skia::Pixmap::new(width.ceil() as u32, height.ceil() as u32)
-            .ok_or_else(|| format!("{width} by {height} pixels"))?;
-        let zoom = tiny_skia::Transform::from_scale(FINENESS, FINENESS);
-        resvg::render(&tree, zoom, &mut pixels.as_mut());
-        pixels.encode_png().map_err(|e| e.to_string())
-    }
+#[cfg(not(feature = "png"))]
+fn png(_: &Picture, path: &Path) -> Result<Vec<u8>, SaveError> {
+    Err(SaveError::NoPng { path: path.to_owned() })
 }
 
 /// Writes a file beside the one wanted and moves it there once it is complete.
