@@ -4,5 +4,7 @@ pub mod geometry;
 pub mod io;
 pub mod kinematics;
 pub mod nav;
+#[cfg(feature = "picture")]
+pub mod picture;
 pub mod random;
 pub mod world;

@@ -1,0 +1,82 @@
+use std::fmt::Display;
+use std::io::Write;
+use std::path::PathBuf;
+
+use roverlab::geometry::{Point, Pose};
+
+use super::Failure;
+use super::values::{parse_noise, parse_picture, parse_point, parse_pose, parse_seconds};
+
+/// The options that all examples have. Flatten it into an example's own.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Options of all examples (millimetres and degrees)")]
+pub(crate) struct CommonArgs {
+    /// World or scene to run in: .sim, .wld, .maz, or a ROS map.yaml.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) world: Option<PathBuf>,
+
+    /// Robot description [default: the built-in S4].
+    #[arg(long, value_name = "FILE.robi")]
+    pub(crate) robot: Option<PathBuf>,
+
+    /// Where the robot starts.
+    #[arg(long, value_name = "X,Y,DEG", value_parser = parse_pose, allow_hyphen_values = true)]
+    pub(crate) start: Option<Pose>,
+
+    /// Where the robot is to go.
+    #[arg(long, value_name = "X,Y", value_parser = parse_point, allow_hyphen_values = true)]
+    pub(crate) goal: Option<Point>,
+
+    /// Seed of every random stream.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+
+    /// Noise: 0 ideal, 1 as on the real robot, up to 5.
+    #[arg(long, value_name = "F", default_value = "1", value_parser = parse_noise, allow_hyphen_values = true)]
+    pub(crate) noise: f64,
+
+    /// Simulated seconds after which the run ends.
+    #[arg(long, value_name = "S", value_parser = parse_seconds, allow_hyphen_values = true)]
+    pub(crate) time_limit: Option<f64>,
+
+    /// Draw the run into a .svg or .png file.
+    #[arg(long, value_name = "FILE", value_parser = parse_picture)]
+    pub(crate) picture: Option<PathBuf>,
+
+    /// Drive a real EyeBot through this C library.
+    #[arg(long, value_name = "LIB")]
+    pub(crate) robios: Option<PathBuf>,
+
+    /// Print exactly one JSON object on standard output, and nothing else there.
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    /// Pace simulated time by the wall clock.
+    #[arg(long)]
+    pub(crate) realtime: bool,
+
+    /// Inject a fault T seconds into the run: stuck, lost, nan, jump, late, link, hang or clock. May be repeated.
+    #[arg(long, value_name = "KIND@T")]
+    pub(crate) fault: Vec<String>,
+}
+
+impl CommonArgs {
+    /// Fails if this build cannot do what the options ask for.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        match &self.robios {
+            Some(library) => Err(Failure::input(format!(
+                "--robios {}: this build lacks the feature `robios`; expected `cargo run --features robios ...`",
+                library.display()
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// Tells a person what happens during a run. Silent with `--json`.
+    pub(crate) fn tell(&self, event: impl Display) {
+        if !self.json {
+            // A reader that went away, as `head` does, is no reason to stop the run.
+            let _ = writeln!(std::io::stdout(), "{event}");
+        }
+    }
+}

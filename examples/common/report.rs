@@ -1,0 +1,210 @@
+use roverlab::geometry::{Pose, normalize_angle, units};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde_json::Value;
+
+/// How a run ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Outcome {
+    word: String,
+    failed: bool,
+}
+
+impl Outcome {
+    /// The behaviour came to a verdict, such as `reached` or `unreachable`.
+    pub(crate) fn verdict(word: impl Into<String>) -> Self {
+        Self { word: word.into(), failed: false }
+    }
+
+    /// The behaviour did not do its job: `timed_out`, say.
+    pub(crate) fn failure(word: impl Into<String>) -> Self {
+        Self { word: word.into(), failed: true }
+    }
+}
+
+/// What an example says about its run: in JSON, or in words.
+///
+/// What only a simulator knows stays `None` for other robots, and so becomes `null`.
+#[derive(Debug, Clone)]
+pub(crate) struct Report {
+    /// How the run ended, contacts aside.
+    pub(crate) outcome: Outcome,
+    /// Simulated seconds.
+    pub(crate) sim_time: Option<f64>,
+    /// Contacts with walls, objects and robots. Any contact makes the outcome `collided`.
+    pub(crate) collisions: Option<u64>,
+    /// The length of the true path in metres.
+    pub(crate) path_length: Option<f64>,
+    /// Where the robot really is.
+    pub(crate) pose: Option<Pose>,
+    /// Where the robot believes to be.
+    pub(crate) odometry: Option<Pose>,
+    /// The example's own fields; see [`Report::field`].
+    pub(crate) fields: Vec<(String, Value)>,
+}
+
+/// What a report says about the program and its options.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Header {
+    pub(crate) example: &'static str,
+    pub(crate) seed: u64,
+    pub(crate) noise: f64,
+    pub(crate) wall_time: f64,
+}
+
+/// The fields that every example has.
+const COMMON: [&str; 10] = [
+    "example",
+    "outcome",
+    "seed",
+    "noise",
+    "sim_time_s",
+    "wall_time_s",
+    "collisions",
+    "path_length_mm",
+    "pose",
+    "odometry",
+];
+
+impl Report {
+    /// A report that knows the outcome only.
+    pub(crate) fn new(outcome: Outcome) -> Self {
+        Self {
+            outcome,
+            sim_time: None,
+            collisions: None,
+            path_length: None,
+            pose: None,
+            odometry: None,
+            fields: Vec::new(),
+        }
+    }
+
+    /// Adds a field of the example's own. Numbers that are not finite become `null`.
+    ///
+    /// # Panics
+    ///
+    /// If the name is taken, or the value has no form in JSON: both are mistakes in the example.
+    #[must_use]
+    pub(crate) fn field(mut self, name: &str, value: impl Serialize) -> Self {
+        let taken = COMMON.contains(&name) || self.fields.iter().any(|(other, _)| other == name);
+        assert!(!taken, "the report has a field `{name}` already");
+        let value = serde_json::to_value(value).expect("a value that JSON can hold");
+        self.fields.push((name.to_owned(), value));
+        self
+    }
+
+    /// The word for how the run ended, contacts included.
+    pub(crate) fn word(&self) -> &str {
+        if self.collided() { "collided" } else { &self.outcome.word }
+    }
+
+    /// 0 if the behaviour came to a verdict without touching anything, else 1.
+    pub(crate) fn status(&self) -> u8 {
+        u8::from(self.collided() || self.outcome.failed)
+    }
+
+    fn collided(&self) -> bool {
+        self.collisions.is_some_and(|contacts| contacts > 0)
+    }
+
+    /// The JSON object, in one line.
+    pub(crate) fn json(&self, header: Header) -> String {
+        serde_json::to_string(&Object { report: self, header }).expect("names and values that JSON can hold")
+    }
+
+    /// The same for people, in a few lines.
+    pub(crate) fn summary(&self, header: Header) -> String {
+        let mut lines = vec![format!("{}: {}", header.example, self.word())];
+        let mut add = |name: &str, value: String| lines.push(format!("  {name:<18} {value}"));
+        if let Some(time) = self.sim_time {
+            add("simulated time", format!("{time:.2} s ({:.2} s on the wall clock)", header.wall_time));
+        }
+        if let Some(length) = self.path_length {
+            add("path length", format!("{:.0} mm", units::to_mm(length)));
+        }
+        if let Some(contacts) = self.collisions {
+            add("collisions", contacts.to_string());
+        }
+        for (name, pose) in [("pose", self.pose), ("odometry", self.odometry)] {
+            if let Some(pose) = pose {
+                add(name, in_words(pose));
+            }
+        }
+        for (name, value) in &self.fields {
+            add(&name.replace('_', " "), short(value));
+        }
+        add("seed, noise", format!("{}, {}", header.seed, header.noise));
+        lines.join("\n")
+    }
+}
+
+/// A report as one JSON object.
+struct Object<'a> {
+    report: &'a Report,
+    header: Header,
+}
+
+impl Serialize for Object<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (report, header) = (self.report, self.header);
+        let mut object = serializer.serialize_map(None)?;
+        object.serialize_entry("example", header.example)?;
+        object.serialize_entry("outcome", report.word())?;
+        object.serialize_entry("seed", &header.seed)?;
+        object.serialize_entry("noise", &header.noise)?;
+        object.serialize_entry("sim_time_s", &report.sim_time.map(rounded))?;
+        object.serialize_entry("wall_time_s", &rounded(header.wall_time))?;
+        object.serialize_entry("collisions", &report.collisions)?;
+        object.serialize_entry("path_length_mm", &report.path_length.map(|m| rounded(units::to_mm(m))))?;
+        object.serialize_entry("pose", &report.pose.map(JsonPose::from))?;
+        object.serialize_entry("odometry", &report.odometry.map(JsonPose::from))?;
+        for (name, value) in &report.fields {
+            object.serialize_entry(name, value)?;
+        }
+        object.end()
+    }
+}
+
+/// A pose in JSON: millimetres, and degrees from -180 to 180.
+#[derive(serde::Serialize)]
+struct JsonPose {
+    x_mm: f64,
+    y_mm: f64,
+    heading_deg: f64,
+}
+
+impl From<Pose> for JsonPose {
+    fn from(pose: Pose) -> Self {
+        Self {
+            x_mm: rounded(units::to_mm(pose.x)),
+            y_mm: rounded(units::to_mm(pose.y)),
+            heading_deg: rounded(units::to_deg(normalize_angle(pose.heading))),
+        }
+    }
+}
+
+/// Without the tail of digits that a change of unit leaves, and without the sign of zero: a millionth is finer than
+/// any sensor.
+fn rounded(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6 + 0.0
+}
+
+fn in_words(pose: Pose) -> String {
+    let JsonPose { x_mm, y_mm, heading_deg } = pose.into();
+    let (x, y, heading) = (x_mm.round() + 0.0, y_mm.round() + 0.0, (10.0 * heading_deg).round() / 10.0 + 0.0);
+    format!("{x}, {y} mm, {heading:.1} deg")
+}
+
+/// A value in at most a line; of a long list only its length.
+fn short(value: &Value) -> String {
+    const LONGEST: usize = 72;
+    let text = match value {
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    };
+    match value {
+        Value::Array(items) if text.chars().count() > LONGEST => format!("{} entries", items.len()),
+        Value::Object(items) if text.chars().count() > LONGEST => format!("{} entries", items.len()),
+        _ => text,
+    }
+}

@@ -1,0 +1,52 @@
+//! The values of options, and what was expected where they are wrong.
+
+use std::path::PathBuf;
+
+use roverlab::geometry::{Point, Pose, units};
+use roverlab::picture::FileType;
+
+/// `X,Y,DEG` in millimetres and degrees.
+pub(crate) fn parse_pose(text: &str) -> Result<Pose, String> {
+    let [x, y, heading] = numbers(text, "X,Y,DEG: three finite numbers (mm, mm, degrees)")?;
+    Ok(Pose::from_mm_deg(x, y, heading))
+}
+
+/// `X,Y` in millimetres.
+pub(crate) fn parse_point(text: &str) -> Result<Point, String> {
+    let [x, y] = numbers(text, "X,Y: two finite numbers (mm)")?;
+    Ok(Point::new(units::from_mm(x), units::from_mm(y)))
+}
+
+/// A noise level, 0 to 5.
+pub(crate) fn parse_noise(text: &str) -> Result<f64, String> {
+    let expected = "a number from 0 to 5";
+    let [level] = numbers(text, expected)?;
+    if (0.0..=5.0).contains(&level) { Ok(level) } else { Err(wrong(expected)) }
+}
+
+/// A time in seconds, more than 0.
+pub(crate) fn parse_seconds(text: &str) -> Result<f64, String> {
+    let expected = "a finite number of seconds above 0";
+    let [seconds] = numbers(text, expected)?;
+    if seconds > 0.0 { Ok(seconds) } else { Err(wrong(expected)) }
+}
+
+/// The name of a file that a picture can be saved to.
+pub(crate) fn parse_picture(text: &str) -> Result<PathBuf, String> {
+    FileType::of(text).map(|_| PathBuf::from(text)).map_err(|error| error.to_string())
+}
+
+/// Exactly `N` finite numbers with commas between them.
+fn numbers<const N: usize>(text: &str, expected: &str) -> Result<[f64; N], String> {
+    let parsed: Option<Vec<f64>> = text.split(',').map(finite).collect();
+    parsed.and_then(|all| all.try_into().ok()).ok_or_else(|| wrong(expected))
+}
+
+fn finite(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+/// The parser of the command line says itself which option has which value.
+fn wrong(expected: &str) -> String {
+    format!("expected {expected}")
+}

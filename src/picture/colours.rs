@@ -1,0 +1,71 @@
+use crate::world::Colour;
+
+/// Colours that tell things of one kind apart, several robots for instance: the n-th takes the n-th, in a circle.
+/// Readers who see few colours can tell them apart too.
+pub const SERIES: [Colour; 7] = [
+    Colour::from_hex(0x1f_6f_b2),
+    Colour::from_hex(0x1b_92_7a),
+    Colour::from_hex(0xa5_4f_96),
+    Colour::from_hex(0xb0_7d_12),
+    Colour::from_hex(0x5b_5f_c7),
+    Colour::from_hex(0x7a_8b_2a),
+    Colour::from_hex(0x3b_9e_c9),
+];
+
+pub(super) const PAGE: Colour = Colour::from_hex(0xff_ff_ff);
+pub(super) const FLOOR: Colour = Colour::from_hex(0xf8_f6_f1);
+pub(super) const WATER: Colour = Colour::from_hex(0xe3_f0_f5);
+pub(super) const EDGE: Colour = Colour::from_hex(0xd3_cd_be);
+pub(super) const WALL: Colour = Colour::from_hex(0x46_4e_5f);
+pub(super) const HILL: Colour = Colour::from_hex(0xb9_a4_7c);
+pub(super) const INK: Colour = Colour::from_hex(0x26_2d_3a);
+pub(super) const PALE_INK: Colour = Colour::from_hex(0x6d_75_84);
+pub(super) const LETTER: Colour = Colour::from_hex(0xc2_ba_a8);
+pub(super) const ODOMETRY: Colour = Colour::from_hex(0xe2_85_2b);
+pub(super) const GREEN: Colour = Colour::from_hex(0x2e_8b_57);
+pub(super) const RED: Colour = Colour::from_hex(0xc8_3e_4d);
+pub(super) const CLOUD: Colour = Colour::from_hex(0xb8_55_8b);
+
+/// The n-th colour of [`SERIES`], which repeats.
+pub(super) fn series(n: usize) -> Colour {
+    SERIES[n % SERIES.len()]
+}
+
+/// A colour for a number between 0 and 1, from deep blue over green and yellow to red. Numbers outside are clamped.
+pub fn ramp(value: f64) -> Colour {
+    const STOPS: [Colour; 5] = [
+        Colour::from_hex(0x2f_3e_7e),
+        Colour::from_hex(0x23_86_9b),
+        Colour::from_hex(0x5d_b0_6a),
+        Colour::from_hex(0xf0_b8_3c),
+        Colour::from_hex(0xd2_4b_3f),
+    ];
+    let place = value.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
+    let stop = (place as usize).min(STOPS.len() - 2);
+    mix(STOPS[stop], STOPS[stop + 1], place - stop as f64)
+}
+
+/// The colour `share` of the way from `a` to `b`.
+pub(super) fn mix(a: Colour, b: Colour, share: f64) -> Colour {
+    let channel = |a: u8, b: u8| (f64::from(a) + share * (f64::from(b) - f64::from(a))).round() as u8;
+    Colour::new(channel(a.red, b.red), channel(a.green, b.green), channel(a.blue, b.blue))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ramp_has_ends_and_clamps() {
+        assert_eq!(ramp(-1.0), ramp(0.0));
+        assert_eq!(ramp(2.0), ramp(1.0));
+        assert_ne!(ramp(0.0), ramp(1.0));
+        assert_eq!(ramp(0.25), Colour::from_hex(0x23_86_9b));
+    }
+
+    #[test]
+    fn mixing_keeps_the_ends() {
+        let (a, b) = (Colour::new(0, 100, 255), Colour::new(255, 0, 3));
+        assert_eq!((mix(a, b, 0.0), mix(a, b, 1.0)), (a, b));
+    }
+}

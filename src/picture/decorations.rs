@@ -1,0 +1,88 @@
+//! The lines above the picture, and the scale bar below it.
+
+use svg::node::element::Group;
+
+use super::canvas::{line, path_data, words};
+use super::colours::{INK, PALE_INK};
+use super::frame::{Frame, Pixel};
+use super::items::Picture;
+use super::text;
+use crate::geometry::Vector;
+
+const TITLE: f64 = 19.0;
+const CAPTION: f64 = 12.5;
+
+/// The height of title and caption together, with the space below them.
+pub(super) fn heading_height(picture: &Picture) -> f64 {
+    let title = if picture.title.is_some() { 26.0 } else { 0.0 };
+    let caption = if picture.caption.is_some() { 20.0 } else { 0.0 };
+    let space = if title + caption > 0.0 { 12.0 } else { 0.0 };
+    title + caption + space
+}
+
+/// The width that title and caption would like.
+pub(super) fn heading_width(picture: &Picture) -> f64 {
+    let title = picture.title.as_ref().map_or(0.0, |title| bold_width(title));
+    let caption = picture.caption.as_ref().map_or(0.0, |caption| text::width(caption, CAPTION));
+    title.max(caption)
+}
+
+/// Title and caption, cut to the room there is.
+pub(super) fn heading(picture: &Picture, corner: Pixel, room: f64) -> Group {
+    let mut group = Group::new();
+    let mut base = corner.y;
+    if let Some(title) = &picture.title {
+        base += 19.0;
+        let title = text::fit(&text::clean(title), 1.12 * TITLE, room);
+        group = group.add(words(&title, Pixel::new(corner.x, base), TITLE, INK).set("font-weight", "bold"));
+        base += 7.0;
+    }
+    if let Some(caption) = &picture.caption {
+        base += 14.0;
+        let caption = text::fit(&text::clean(caption), CAPTION, room);
+        group = group.add(words(&caption, Pixel::new(corner.x, base), CAPTION, PALE_INK));
+    }
+    group
+}
+
+fn bold_width(title: &str) -> f64 {
+    text::width(title, 1.12 * TITLE)
+}
+
+/// The height of the scale bar with the space above it.
+pub(super) const SCALE_HEIGHT: f64 = 30.0;
+
+/// A bar as long as one step of the grid, with its length, below the frame's lower left corner.
+pub(super) fn scale_bar(frame: &Frame) -> Group {
+    let bounds = frame.pixels();
+    let left = Pixel::new(bounds.min.x, bounds.max.y + 19.0);
+    let step = frame.grid_step();
+    let right = left + Vector::new(frame.length(step), 0.0);
+    let tick = Vector::new(0.0, 4.0);
+    let bar = [[left - tick, left + tick], [left, right], [right - tick, right + tick]];
+    let data = bar.map(|stroke| path_data(&stroke, false)).concat();
+    let text = words(&length_in_words(step), right + Vector::new(9.0, 4.2), 12.0, PALE_INK);
+    Group::new().add(line(data, PALE_INK, 1.6)).add(text)
+}
+
+/// Metres in the unit that needs the fewest digits.
+fn length_in_words(metres: f64) -> String {
+    let (number, unit) = match metres {
+        m if m < 0.000_999 => (m * 1e6, "µm"),
+        m if m < 0.0999 => (m * 1e3, "mm"),
+        m if m < 999.9 => (m, "m"),
+        m => (m / 1e3, "km"),
+    };
+    format!("{} {unit}", super::canvas::number(number))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_have_readable_units() {
+        let lengths = [0.000_05, 0.02, 0.1, 0.5, 20.0, 5000.0].map(length_in_words);
+        assert_eq!(lengths, ["50 µm", "20 mm", "0.1 m", "0.5 m", "20 m", "5 km"]);
+    }
+}

@@ -1,0 +1,212 @@
+//! What the symbols and lines of a picture mean.
+
+use std::collections::BTreeMap;
+
+use svg::node::element::{Group, LinearGradient, Stop};
+
+use super::canvas::{number, rectangle, words};
+use super::colours::{INK, PALE_INK, ramp};
+use super::frame::Pixel;
+use super::items::Picture;
+use super::{Mark, Style, lines, scenery, text};
+use crate::geometry::{Aabb, Vector};
+use crate::world::{Colour, Shape};
+
+const SIZE: f64 = 12.0;
+/// Pixels from the left end of a line's symbol to its text, and from one line to the next.
+const INDENT: f64 = 34.0;
+const ROW: f64 = 23.0;
+/// Pixels between entries that share a row.
+const BETWEEN: f64 = 22.0;
+/// More kinds of objects than these are summed up.
+const MOST_KINDS: usize = 8;
+
+/// The name of the gradient of the speed scale.
+const GRADIENT: &str = "speed";
+
+/// The lines of a legend, in order.
+#[derive(Debug)]
+pub(super) struct Legend {
+    entries: Vec<(Key, String)>,
+}
+
+/// What stands before the text of a line.
+#[derive(Debug)]
+enum Key {
+    Line(Style),
+    Area(Style),
+    Points(Style),
+    Mark(Mark),
+    Object(Shape, Colour),
+    Hills,
+    Speed,
+    Nothing,
+}
+
+/// How the lines are arranged.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Arrangement {
+    /// One below the other.
+    Column,
+    /// Side by side in rows of at most this many pixels.
+    Rows(f64),
+}
+
+impl Legend {
+    pub(super) fn of(picture: &Picture) -> Self {
+        let mut legend = Self { entries: Vec::new() };
+        legend.add_lines(picture);
+        for cloud in &picture.clouds {
+            legend.add_labelled(&cloud.style, Key::Points);
+        }
+        for area in &picture.areas {
+            legend.add_labelled(&area.style, Key::Area);
+        }
+        for robot in &picture.robots {
+            legend.add_labelled(&robot.style, Key::Area);
+        }
+        legend.add_marks(picture);
+        legend.add_objects(picture);
+        if let Some(terrain) = &picture.world.terrain {
+            let height = number(terrain.max_elevation);
+            legend.add(Key::Hills, format!("hills up to {height} m"));
+        }
+        legend
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// Width and height of the legend in pixels.
+    pub(super) fn size(&self, arrangement: Arrangement) -> Vector {
+        let extent = Vector::new(0.0, 0.0);
+        self.places(arrangement).into_iter().zip(&self.entries).fold(extent, |extent, (place, (_, text))| {
+            extent.sup(&Vector::new(place.x + entry_width(text), place.y + ROW))
+        })
+    }
+
+    /// The legend with its upper left corner at `corner`.
+    pub(super) fn draw(&self, corner: Pixel, arrangement: Arrangement) -> Group {
+        let places = self.places(arrangement);
+        places.into_iter().zip(&self.entries).fold(Group::new(), |group, (place, (key, text))| {
+            let middle = corner + place + Vector::new(0.0, 0.5 * ROW);
+            let text = words(text, middle + Vector::new(INDENT, 4.2), SIZE, INK);
+            group.add(key.symbol(middle)).add(text)
+        })
+    }
+
+    /// The upper left corners of the lines.
+    fn places(&self, arrangement: Arrangement) -> Vec<Vector> {
+        let mut next = Vector::new(0.0, 0.0);
+        let mut places = Vec::with_capacity(self.entries.len());
+        for (_, text) in &self.entries {
+            let width = entry_width(text);
+            match arrangement {
+                Arrangement::Rows(room) if next.x > 0.0 && next.x + width > room => {
+                    next = Vector::new(0.0, next.y + ROW);
+                }
+                _ => {}
+            }
+            places.push(next);
+            match arrangement {
+                Arrangement::Column => next.y += ROW,
+                Arrangement::Rows(_) => next.x += width + BETWEEN,
+            }
+        }
+        places
+    }
+
+    fn add(&mut self, key: Key, text: impl Into<String>) {
+        self.entries.push((key, text::fit(&text::clean(&text.into()), SIZE, 260.0)));
+    }
+
+    /// Adds a style's label, unless it is there already.
+    fn add_labelled(&mut self, style: &Style, key: fn(Style) -> Key) {
+        if let Some(label) = &style.label {
+            let label = text::fit(&text::clean(label), SIZE, 260.0);
+            if !self.entries.iter().any(|(_, text)| *text == label) {
+                self.add(key(style.clone()), label);
+            }
+        }
+    }
+
+    fn add_lines(&mut self, picture: &Picture) {
+        for line in picture.lines.iter().filter(|line| line.speeds.is_none()) {
+            self.add_labelled(&line.style, Key::Line);
+        }
+        if picture.lines.iter().any(|line| line.speeds.is_some()) {
+            let top = number(lines::top_speed(picture));
+            self.add(Key::Speed, format!("true path, 0 to {top} m/s"));
+        }
+    }
+
+    fn add_marks(&mut self, picture: &Picture) {
+        let mut counts: BTreeMap<Mark, usize> = BTreeMap::new();
+        for mark in picture.marks.iter().filter_map(|marked| marked.mark) {
+            *counts.entry(mark).or_default() += 1;
+        }
+        for (mark, count) in counts {
+            self.add(Key::Mark(mark), counted(mark.name(), count));
+        }
+    }
+
+    /// The kinds of objects in the order of their first use.
+    fn add_objects(&mut self, picture: &Picture) {
+        let mut kinds: Vec<(&crate::world::ObjectKind, usize)> = Vec::new();
+        for object in &picture.world.objects {
+            match kinds.iter_mut().find(|(kind, _)| kind.name == object.kind.name) {
+                Some((_, count)) => *count += 1,
+                None => kinds.push((&object.kind, 1)),
+            }
+        }
+        for (kind, count) in kinds.iter().take(MOST_KINDS) {
+            self.add(Key::Object(kind.shape, kind.colour), counted(&kind.name, *count));
+        }
+        if kinds.len() > MOST_KINDS {
+            self.add(Key::Nothing, format!("and {} more kinds", kinds.len() - MOST_KINDS));
+        }
+    }
+}
+
+/// A name, with its number if there are several.
+fn counted(name: &str, count: usize) -> String {
+    if count > 1 { format!("{name} ×{count}") } else { name.to_owned() }
+}
+
+fn entry_width(text: &str) -> f64 {
+    INDENT + text::width(text, SIZE)
+}
+
+impl Key {
+    /// The symbol, whose left end and middle height is `at`.
+    fn symbol(&self, at: Pixel) -> Group {
+        let middle = at + Vector::new(12.0, 0.0);
+        let bar = Aabb { min: at + Vector::new(0.0, -4.0), max: at + Vector::new(24.0, 4.0) };
+        match self {
+            Key::Line(style) => lines::stroke(&[at, at + Vector::new(24.0, 0.0)], style),
+            Key::Area(style) => lines::swatch(bar.inflated(1.0), style),
+            Key::Points(style) => {
+                let spread = [(-8.0, 2.0), (-1.0, -3.0), (3.0, 4.0), (9.0, -1.0)];
+                lines::dots(&spread.map(|(x, y)| middle + Vector::new(x, y)), style)
+            }
+            // The flag stands above its point.
+            Key::Mark(Mark::Goal) => Mark::Goal.symbol(middle + Vector::new(-4.0, 8.0)),
+            Key::Mark(mark) => mark.symbol(middle),
+            Key::Object(shape, colour) => scenery::object_symbol(shape, *colour, middle),
+            Key::Hills => scenery::hills_symbol(middle),
+            Key::Speed => {
+                let scale = rectangle(bar, PALE_INK).set("rx", "2").set("fill", format!("url(#{GRADIENT})"));
+                Group::new().add(gradient()).add(scale)
+            }
+            Key::Nothing => Group::new(),
+        }
+    }
+}
+
+fn gradient() -> LinearGradient {
+    (0..=4).map(|i| f64::from(i) / 4.0).fold(LinearGradient::new().set("id", GRADIENT), |gradient, share| {
+        let stop = Stop::new().set("offset", number(share)).set("stop-color", ramp(share).to_string());
+        gradient.add(stop)
+    })
+}

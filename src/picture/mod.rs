@@ -1,0 +1,48 @@
+//! Pictures of worlds and of what robots did in them, as SVG or PNG files.
+//!
+//! A [`Picture`] shows a world from above: floor, walls and objects to scale, and whatever is added to it, such as
+//! robots, paths, marked points and point clouds. Title, scale bar and legend stand outside the floor. The same calls
+//! make the same bytes.
+//!
+//! ```
+//! use roverlab::geometry::{Point, Pose};
+//! use roverlab::picture::{Mark, Picture};
+//! use roverlab::world::{RobotSpec, World};
+//!
+//! let world = World::walled(2.0, 1.0);
+//! let mut picture = Picture::new(&world);
+//! picture
+//!     .title("A short trip")
+//!     .true_path([Point::new(0.3, 0.5), Point::new(1.2, 0.6)])
+//!     .mark(Mark::Goal, Point::new(1.7, 0.5))
+//!     .robot(Pose::new(1.2, 0.6, 0.1), &RobotSpec::s4().footprint);
+//! assert!(picture.to_svg().starts_with("<svg"));
+//! ```
+//!
+//! Coordinates that are not finite numbers are left out: a lidar beam without a return draws nothing, and a path
+//! has a gap. What lies far outside the world is cut off at the frame.
+
+mod canvas;
+mod colours;
+mod decorations;
+mod frame;
+mod items;
+mod labels;
+mod legend;
+mod lines;
+mod marks;
+mod names;
+#[cfg(feature = "png")]
+mod raster;
+mod render;
+mod robots;
+mod save;
+mod scenery;
+mod style;
+mod text;
+
+pub use colours::{SERIES, ramp};
+pub use items::Picture;
+pub use marks::Mark;
+pub use save::{FileType, SaveError};
+pub use style::Style;

@@ -1,0 +1,62 @@
+//! How much room a text takes, without asking a font.
+
+/// The width of a text in pixels at a font size: that of a wide typeface, a little rounded up.
+pub(super) fn width(text: &str, size: f64) -> f64 {
+    text.chars().map(relative_width).sum::<f64>() * size
+}
+
+/// The text, or its beginning and an ellipsis if it is wider than `room` pixels.
+pub(super) fn fit(text: &str, size: f64, room: f64) -> String {
+    if width(text, size) <= room {
+        return text.to_owned();
+    }
+    let mut used = relative_width('…') * size;
+    let mut short = String::new();
+    for c in text.chars() {
+        used += relative_width(c) * size;
+        if used > room {
+            break;
+        }
+        short.push(c);
+    }
+    short.truncate(short.trim_end().len());
+    short.push('…');
+    short
+}
+
+/// One line without characters that XML forbids or that would break the line.
+pub(super) fn clean(text: &str) -> String {
+    let forbidden = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
+    text.chars().map(|c| if forbidden(c) { ' ' } else { c }).collect::<String>().trim().to_owned()
+}
+
+fn relative_width(c: char) -> f64 {
+    match c {
+        'i' | 'j' | 'l' | 'I' | '\'' | '|' | '.' | ',' | ':' | ';' | ' ' | '!' => 0.34,
+        'f' | 'r' | 't' | '(' | ')' | '[' | ']' | '/' | '-' | '"' => 0.42,
+        'm' | 'w' | 'M' | 'W' | '@' | '%' | '…' => 1.0,
+        'A'..='Z' | '+' | '=' | '<' | '>' | '~' | '×' | 'Ω' | 'ω' => 0.8,
+        ' '..='\u{24f}' => 0.64,
+        _ => 1.05,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_fitted_text_fits(text in ".{0,60}", room in 12.0..400.0) {
+            let short = fit(&text, 11.0, room);
+            prop_assert!(width(&short, 11.0) <= room + 1e-9);
+            prop_assert!(short == text || short.ends_with('…'));
+        }
+
+        #[test]
+        fn clean_text_is_one_line(text in any::<String>()) {
+            prop_assert!(!clean(&text).chars().any(char::is_control));
+        }
+    }
+}

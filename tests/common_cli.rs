@@ -1,0 +1,260 @@
+//! The command line and the report that all examples share.
+
+#[path = "../examples/common/mod.rs"]
+mod common;
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::Parser;
+use common::{
+    CommonArgs, Failure, Outcome, Report, parse_noise, parse_point, parse_pose, parse_seconds, run,
+};
+use proptest::prelude::*;
+use roverlab::geometry::{Pose, units};
+use serde_json::{Value, json};
+
+#[derive(Debug, Parser)]
+#[command(after_help = "JSON fields: laps")]
+struct Args {
+    #[command(flatten)]
+    common: CommonArgs,
+    /// An option of this example.
+    #[arg(long, default_value_t = 3)]
+    laps: u32,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// What a program did.
+struct Ended {
+    status: u8,
+    out: String,
+    err: String,
+}
+
+fn run_with(options: &[&str], work: impl FnOnce(&Args) -> Result<Report, Failure>) -> Ended {
+    let command_line = std::iter::once("trial").chain(options.iter().copied()).map(OsString::from);
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    let status = run("trial", command_line, &mut out, &mut err, work);
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    Ended { status, out: text(out), err: text(err) }
+}
+
+fn parse(options: &[&str]) -> Args {
+    Args::try_parse_from(std::iter::once(&"trial").chain(options)).unwrap()
+}
+
+fn never(_: &Args) -> Result<Report, Failure> {
+    panic!("the work begins in spite of a wrong command line")
+}
+
+/// A run's message is one line that holds all of `parts`.
+fn assert_refused(ended: &Ended, parts: &[&str]) {
+    assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{}", ended.err);
+    assert_eq!(ended.err.lines().count(), 1, "{}", ended.err);
+    for part in parts {
+        assert!(ended.err.contains(part), "`{part}` is missing in: {}", ended.err);
+    }
+}
+
+#[test]
+fn without_options_everything_has_its_default() {
+    let args = parse(&[]);
+    let common = args.common;
+    assert_eq!((common.seed, common.noise, args.laps), (1, 1.0, 3));
+    assert!(
+        common.world.is_none() && common.robot.is_none() && common.start.is_none() && common.goal.is_none()
+    );
+    assert!(common.time_limit.is_none() && common.picture.is_none() && common.robios.is_none());
+    assert!(!common.json && !common.realtime && common.fault.is_empty());
+}
+
+#[test]
+fn all_options_are_understood() {
+    let line = "--world a.sim --robot b.robi --start -100,200,90 --goal -1.5,-2e3 --seed 7 --noise 0 --time-limit 60 \
+                --picture run.png --json --realtime --fault stuck@3 --fault lost@4.5 --laps 9";
+    let args = parse(&line.split_whitespace().collect::<Vec<_>>());
+    let common = args.common;
+    assert_eq!(common.world, Some(PathBuf::from("a.sim")));
+    assert_eq!(common.robot, Some(PathBuf::from("b.robi")));
+    assert_eq!(common.start, Some(Pose::from_mm_deg(-100.0, 200.0, 90.0)));
+    assert_eq!(common.goal.map(|goal| (goal.x, goal.y)), Some((-0.0015, -2.0)));
+    assert_eq!((common.seed, common.noise, common.time_limit), (7, 0.0, Some(60.0)));
+    assert_eq!(common.picture, Some(PathBuf::from("run.png")));
+    assert_eq!(common.fault, ["stuck@3", "lost@4.5"]);
+    assert!(common.json && common.realtime && args.laps == 9);
+}
+
+proptest! {
+    #[test]
+    fn poses_survive_the_command_line(x in -1e6..1e6f64, y in -1e6..1e6f64, heading in -720.0..720.0f64) {
+        let separate = parse(&["--start", &format!("{x},{y},{heading}")]);
+        let joined = parse(&[&format!("--start={x}, {y} ,{heading}")]);
+        prop_assert_eq!(separate.common.start, Some(Pose::from_mm_deg(x, y, heading)));
+        prop_assert_eq!(separate.common.start, joined.common.start);
+    }
+
+    #[test]
+    fn no_text_is_taken_for_a_number_that_is_none(text in "[-+0-9a-zA-Z,. ]{0,12}") {
+        for parsed in [parse_noise(&text), parse_seconds(&text)].into_iter().flatten() {
+            prop_assert!(parsed.is_finite() && parsed >= 0.0);
+        }
+        if let Ok(point) = parse_point(&text) {
+            prop_assert!(point.x.is_finite() && point.y.is_finite() && text.matches(',').count() == 1);
+        }
+        if let Ok(pose) = parse_pose(&text) {
+            prop_assert!(pose.is_finite() && text.matches(',').count() == 2);
+        }
+    }
+}
+
+#[test]
+fn wrong_values_are_named_with_what_was_expected() {
+    let cases: [(&[&str], &[&str]); 12] = [
+        (&["--start", "1,2"], &["--start", "'1,2'", "expected X,Y,DEG: three finite numbers"]),
+        (&["--start", "1,2,3,4"], &["--start", "'1,2,3,4'"]),
+        (&["--start", "1,,3"], &["--start", "'1,,3'"]),
+        (&["--start", "nan,2,3"], &["--start", "finite"]),
+        (&["--goal", "inf,0"], &["--goal", "two finite numbers"]),
+        (&["--goal", "--json"], &["--goal", "'--json'"]),
+        (&["--noise", "5.1"], &["--noise", "0 to 5"]),
+        (&["--noise", "-1"], &["--noise", "0 to 5"]),
+        (&["--time-limit", "0"], &["--time-limit", "above 0"]),
+        (&["--seed", "-1"], &["-1"]),
+        (&["--picture", "run.gif"], &["--picture", "run.gif", ".svg or .png"]),
+        (&["--robios", "libeyebot.so"], &["libeyebot.so", "feature `robios`"]),
+    ];
+    for (options, parts) in cases {
+        assert_refused(&run_with(options, never), parts);
+    }
+    assert_refused(&run_with(&["--wrold", "a"], never), &["--wrold", "--help"]);
+    assert_refused(&run_with(&["stray"], never), &["stray"]);
+    assert_refused(&run_with(&["--world"], never), &["--world"]);
+}
+
+#[test]
+fn help_is_no_failure() {
+    let ended = run_with(&["--help"], never);
+    assert_eq!((ended.status, ended.err.as_str()), (0, ""));
+    for word in ["--start <X,Y,DEG>", "--laps", "JSON fields: laps", "[default: 1]"] {
+        assert!(ended.out.contains(word), "{word} is missing in: {}", ended.out);
+    }
+}
+
+fn a_report(outcome: Outcome) -> Report {
+    Report {
+        sim_time: Some(12.5),
+        collisions: Some(0),
+        path_length: Some(1.25),
+        pose: Some(Pose::from_mm_deg(1200.1, 800.0, 450.0)),
+        odometry: Some(Pose::new(f64::NAN, 0.8, 0.0)),
+        ..Report::new(outcome)
+    }
+}
+
+#[test]
+fn json_is_one_object_with_all_fields() {
+    let ended = run_with(&["--json", "--seed", "18446744073709551615"], |args| {
+        Ok(a_report(Outcome::verdict("reached")).field("laps", args.laps).field("best", [1.0, f64::INFINITY]))
+    });
+    assert_eq!((ended.status, ended.err.as_str(), ended.out.lines().count()), (0, "", 1));
+    let mut object: Value = serde_json::from_str(&ended.out).unwrap();
+    let wall_time = object.as_object_mut().unwrap().remove("wall_time_s").unwrap();
+    assert!(wall_time.as_f64().unwrap() >= 0.0);
+    let expected = json!({
+        "example": "trial",
+        "outcome": "reached",
+        "seed": u64::MAX,
+        "noise": 1.0,
+        "sim_time_s": 12.5,
+        "collisions": 0,
+        "path_length_mm": 1250.0,
+        "pose": { "x_mm": 1200.1, "y_mm": 800.0, "heading_deg": 90.0 },
+        "odometry": { "x_mm": null, "y_mm": 800.0, "heading_deg": 0.0 },
+        "laps": 3,
+        "best": [1.0, null],
+    });
+    assert_eq!(object, expected);
+}
+
+#[test]
+fn what_only_a_simulator_knows_is_null_without_one() {
+    let ended = run_with(&["--json"], |_| Ok(Report::new(Outcome::verdict("done"))));
+    let object: Value = serde_json::from_str(&ended.out).unwrap();
+    for name in ["sim_time_s", "collisions", "path_length_mm", "pose", "odometry"] {
+        assert_eq!(object.get(name), Some(&Value::Null), "{name}");
+    }
+}
+
+#[test]
+fn the_status_says_how_the_run_ended() {
+    let status = |report: Report| run_with(&["--json"], |_| Ok(report)).status;
+    assert_eq!(status(a_report(Outcome::verdict("unreachable"))), 0);
+    assert_eq!(status(a_report(Outcome::failure("timed_out"))), 1);
+
+    let touched = Report { collisions: Some(2), ..a_report(Outcome::verdict("reached")) };
+    assert_eq!(touched.word(), "collided");
+    assert_eq!(status(touched), 1);
+}
+
+#[test]
+fn failures_have_one_message_and_their_status() {
+    let file = run_with(&["--json"], |_| Err(Failure::input("a.sim:3:7: found `abc`; expected a number")));
+    assert_eq!((file.status, file.out.as_str()), (2, ""));
+    assert_eq!(file.err, "a.sim:3:7: found `abc`; expected a number\n");
+
+    let source = std::io::Error::other("cable out");
+    let robot = roverlab::io::Error::new(roverlab::io::ErrorKind::Disconnected, "the link is gone")
+        .with_source(source);
+    let lost = run_with(&[], |_| Err(robot.into()));
+    assert_eq!((lost.status, lost.err.as_str()), (1, "the link is gone: cable out\n"));
+}
+
+#[test]
+fn people_get_words() {
+    let ended = run_with(&[], |_| {
+        let hits: Vec<u32> = (0..200).collect();
+        Ok(a_report(Outcome::verdict("reached")).field("leave_points", 4).field("trace", hits))
+    });
+    assert!(ended.out.starts_with("trial: reached\n"), "{}", ended.out);
+    for part in ["12.50 s", "1250 mm", "1200, 800 mm, 90.0 deg", "leave points", "200 entries"] {
+        assert!(ended.out.contains(part), "`{part}` is missing in: {}", ended.out);
+    }
+}
+
+#[test]
+#[should_panic(expected = "`pose` already")]
+fn no_field_can_be_given_twice() {
+    let _ = Report::new(Outcome::verdict("done")).field("pose", units::from_mm(1.0));
+}
+
+/// An output that fails as a full disk or a closed pipe does.
+struct Broken(std::io::ErrorKind);
+
+impl std::io::Write for Broken {
+    fn write(&mut self, _: &[u8]) -> std::io::Result<usize> {
+        Err(self.0.into())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_report_that_cannot_be_written_is_a_failure() {
+    let end = |kind| {
+        let mut err = Vec::new();
+        let work = |_: &Args| Ok(Report::new(Outcome::verdict("done")));
+        let status = run("trial", [OsString::from("trial")], &mut Broken(kind), &mut err, work);
+        (status, String::from_utf8(err).unwrap())
+    };
+    let (status, message) = end(std::io::ErrorKind::StorageFull);
+    assert!(status == 1 && message.contains("standard output"), "{message}");
+    assert_eq!(end(std::io::ErrorKind::BrokenPipe), (0, String::new()));
+}

@@ -1,0 +1,151 @@
+//! Pictures as files: what is shown where, and what happens when a file cannot be written.
+
+use std::fs;
+use std::path::PathBuf;
+
+use proptest::prelude::*;
+use roverlab::geometry::{Point, Pose};
+use roverlab::picture::{FileType, Mark, Picture, SaveError, Style};
+use roverlab::world::{Colour, Footprint, RobotSpec, World};
+
+/// A fresh folder for one test.
+fn folder(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("picture").join(name);
+    if folder.exists() {
+        fs::remove_dir_all(&folder).unwrap();
+    }
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// The centres of all circles of a colour, in pixels.
+fn circles(svg: &str, colour: Colour) -> Vec<(f64, f64)> {
+    let value = |line: &str, name: &str| -> f64 {
+        let (_, rest) = line.split_once(&format!(" {name}=\"")).unwrap();
+        rest.split('"').next().unwrap().parse().unwrap()
+    };
+    svg.lines()
+        .filter(|line| line.starts_with("<circle") && line.contains(&format!("fill=\"{colour}\"")))
+        .map(|line| (value(line, "cx"), value(line, "cy")))
+        .collect()
+}
+
+proptest! {
+    #[test]
+    fn the_picture_keeps_directions_and_proportions(
+        x in 0.0..10.0f64, y in 0.0..6.0f64, dx in -3.0..3.0f64, dy in -3.0..3.0f64,
+    ) {
+        let colour = Colour::new(1, 2, 3);
+        let mut picture = Picture::new(&World::walled(10.0, 6.0));
+        picture.disc(Point::new(x, y), 0.1, Style::new(colour)).disc(Point::new(x + dx, y + dy), 0.1, Style::new(colour));
+        let found = circles(&picture.to_svg(), colour);
+        prop_assert_eq!(found.len(), 2);
+        let (right, up) = (found[1].0 - found[0].0, found[0].1 - found[1].1);
+        // Coordinates have two decimals, so the two products agree to a few hundredths of a pixel.
+        prop_assert!((right * dy - up * dx).abs() < 0.1, "{dx}, {dy} became {right}, {up}");
+        prop_assert!(right * dx + up * dy > -0.1);
+    }
+}
+
+#[test]
+fn beams_without_a_return_draw_nothing() {
+    let mut picture = Picture::new(&World::walled(1.0, 1.0));
+    let without = picture.to_svg();
+    picture.points([Point::new(f64::INFINITY, 0.5)], Style::new(Colour::RED));
+    picture.points([], Style::new(Colour::RED));
+    assert!(!without.contains("h0") && !picture.to_svg().contains("h0"));
+}
+
+#[test]
+fn a_jump_of_the_odometry_does_not_shrink_the_world() {
+    let mut near = Picture::new(&World::walled(2.0, 1.0));
+    near.odometry_path([Point::new(0.5, 0.5), Point::new(1.0, 0.5)]);
+    let mut far = Picture::new(&World::walled(2.0, 1.0));
+    far.odometry_path([Point::new(0.5, 0.5), Point::new(1.0, 0.5), Point::new(1e6, 0.5)]);
+    let size = |picture: &Picture| picture.to_svg().lines().next().unwrap().to_owned();
+    assert_eq!(size(&near), size(&far));
+}
+
+#[test]
+fn long_paths_stay_small() {
+    let mut picture = Picture::new(&World::walled(4.0, 4.0));
+    picture.true_path((0..200_000).map(|i| Point::new(0.5 + 3.0 * f64::from(i) / 200_000.0, 2.0)));
+    assert!(picture.to_svg().len() < 60_000);
+}
+
+#[test]
+fn texts_cannot_break_the_document() {
+    let mut picture = Picture::new(&World::walled(1.0, 1.0));
+    picture.title("</text><script>alert(1)</script> & \u{1}\"'").mark_named(
+        Mark::HitPoint,
+        Point::new(0.5, 0.5),
+        "<b>",
+    );
+    let svg = picture.to_svg();
+    assert!(!svg.contains("<script") && !svg.contains('\u{1}') && svg.contains("&lt;b&gt;"));
+}
+
+#[test]
+fn the_legend_counts_and_says_each_thing_once() {
+    let mut picture = Picture::new(&World::walled(2.0, 2.0));
+    picture.true_path([Point::new(0.1, 0.1), Point::new(1.0, 1.0)]);
+    picture.true_path([Point::new(0.1, 0.3), Point::new(1.0, 1.3)]);
+    picture.mark(Mark::HitPoint, Point::new(0.5, 0.5)).mark(Mark::HitPoint, Point::new(0.6, 0.5));
+    let svg = picture.to_svg();
+    let times = |text: &str| svg.lines().filter(|line| line.contains(text)).count();
+    assert_eq!((times("true path"), times("hit point ×2"), times("leave point")), (1, 1, 0));
+}
+
+#[test]
+fn a_png_shows_what_the_svg_describes() {
+    let path = folder("png").join("run.PNG");
+    let mut picture = Picture::new(&World::walled(2.0, 1.0));
+    picture.title("Title").disc(Point::new(1.0, 0.5), 0.2, Style::new(Colour::new(10, 200, 30)).filled(1.0));
+    picture.save(&path).unwrap();
+    let image =
+        image::ImageReader::open(&path).unwrap().with_guessed_format().unwrap().decode().unwrap().to_rgb8();
+    let svg = picture.to_svg();
+    let (x, y) = circles(&svg, Colour::new(10, 200, 30))[0];
+    assert_eq!(image.get_pixel((2.0 * x) as u32, (2.0 * y) as u32).0, [10, 200, 30]);
+    assert_eq!(image.get_pixel(0, 0).0, [255, 255, 255]);
+    let title = (0..80)
+        .flat_map(|y| (0..200).map(move |x| (x, y)))
+        .filter(|(x, y)| image.get_pixel(*x, *y).0[0] < 100);
+    assert!(title.count() > 100, "the title is drawn with the font that is built in");
+}
+
+#[test]
+fn an_svg_file_holds_the_document() {
+    let path = folder("svg").join("run.svg");
+    let mut picture = Picture::new(&World::empty(1.0, 1.0));
+    picture.robot(Pose::new(0.5, 0.5, 0.0), &RobotSpec::s4().footprint);
+    picture.save(&path).unwrap();
+    picture.robot(Pose::new(0.2, 0.5, 0.0), &Footprint::Disc { radius: 0.1 });
+    picture.save(&path).unwrap();
+    assert_eq!(fs::read_to_string(&path).unwrap(), picture.to_svg());
+}
+
+#[test]
+fn names_of_other_files_are_refused() {
+    for name in ["run.gif", "run", "run.svg.txt", ".svg", ""] {
+        let error = Picture::new(&World::empty(1.0, 1.0)).save(name).unwrap_err();
+        assert!(matches!(error, SaveError::Extension { .. }), "{name}: {error:?}");
+        assert!(error.to_string().ends_with("expected a name that ends in .svg or .png"), "{error}");
+    }
+    assert_eq!(FileType::of("a/b.png").unwrap(), FileType::Png);
+}
+
+#[test]
+fn a_failed_write_is_reported_and_leaves_nothing_behind() {
+    let folder = folder("failed");
+    let picture = Picture::new(&World::empty(1.0, 1.0));
+    let missing = folder.join("no/such/folder/run.svg");
+    let error = picture.save(&missing).unwrap_err();
+    assert!(matches!(error, SaveError::Write { .. }) && error.to_string().contains("run.svg"), "{error}");
+
+    let taken = folder.join("taken.svg");
+    fs::create_dir(&taken).unwrap();
+    assert!(matches!(picture.save(&taken).unwrap_err(), SaveError::Write { .. }));
+    let left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left, ["taken.svg"]);
+}
