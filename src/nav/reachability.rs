@@ -54,6 +54,9 @@ impl Reachability {
     ///
     /// Takes time and memory in proportion to the cells.
     pub fn new(world: &World, radius: f64, resolution: f64) -> Result<Self, RasterError> {
+        if !(radius.is_finite() && radius > 0.0) {
+            return Err(RasterError::Length { parameter: "robot radius", value: radius });
+        }
         let clearance = Clearance::new(world, resolution, radius.next_up())?;
         Ok(Self::from_clearance(&clearance, radius))
     }
@@ -399,6 +402,15 @@ mod tests {
         assert!(!space.is_free(Point::new(f64::NAN, 0.5)));
         assert_eq!(space.shortest_path(Point::new(0.5, 0.5), Point::new(50.0, 0.5)), None);
         assert_eq!(space.region_size(Point::new(0.5, 0.01)), 0);
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        let world = World::walled(1.0, 1.0);
+        let error = Reachability::new(&world, -0.1, 0.005).unwrap_err();
+        assert_eq!(error.to_string(), "robot radius is -0.1 m; expected a positive, finite number");
+        assert!(Reachability::new(&world, f64::NAN, 0.005).is_err());
+        assert!(Reachability::new(&world, 0.06, 0.0).is_err());
     }
 
     #[test]

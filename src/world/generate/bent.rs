@@ -51,7 +51,7 @@ pub(super) fn zigzag(brush: &mut Brush) -> Figure {
     let line = zigzag_line(brush, legs, 2.2 * brush.radius / legs as f64);
     let width = brush.stream.between(0.03, 0.1);
     let inner = line[1..legs].iter().enumerate();
-    let off = |k: usize| if k % 2 == 0 { -0.8 } else { 0.8 } * brush.gap;
+    let off = |k: usize| if k.is_multiple_of(2) { -0.8 } else { 0.8 } * brush.gap;
     let pockets = inner.map(|(k, p)| Point::new(p.x, p.y + off(k))).collect();
     Figure::of(vec![brush.wall_or_stroke(line, width)]).with_pockets(pockets).centred()
 }

@@ -131,7 +131,6 @@ pub(super) fn divider(brush: &mut Brush, field: Field) -> Figure {
         }
     };
     let chambers = vec![Point::new(0.5 * length, 0.35 * y), Point::new(0.2 * length, 0.35 * y)];
-    // The frame on the right side points into the field already; its y axis runs towards smaller x.
     Figure::of(vec![Outline::open(line)]).with_chambers(chambers).placed(frame, false)
 }
 

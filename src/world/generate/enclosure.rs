@@ -1,20 +1,20 @@
 use super::border::{self, Field};
 use super::figure::Figure;
-use super::repertoire::Brush;
+use super::repertoire::{Brush, Drawing};
 use super::{bent, round, straight};
 
-/// A figure that shuts a part of the field off, and whether it stands on the border.
-pub(super) fn draw(brush: &mut Brush, field: Field) -> (Figure, bool) {
+/// A figure that shuts a part of the field off.
+pub(super) fn draw(brush: &mut Brush, field: Field) -> Drawing {
     match brush.stream.below(14) {
-        0 => (border::divider(brush, field), true),
-        1 => (border::shut_corner(brush, field), true),
-        2 | 3 => (border::shut_alcove(brush, field), true),
-        4 => (round::shut_ring(brush), false),
-        5 => (bent::shut_trough(brush), false),
-        6 => (straight::shut_room_in_room(brush), false),
-        7 => (round::hollow_arc(brush), false),
-        8 | 9 => (bent::hollow_bend(brush), false),
-        _ => (ring(brush), false),
+        0 => Drawing::OnBorder(border::divider(brush, field)),
+        1 => Drawing::OnBorder(border::shut_corner(brush, field)),
+        2 | 3 => Drawing::OnBorder(border::shut_alcove(brush, field)),
+        4 => Drawing::Loose(round::shut_ring(brush)),
+        5 => Drawing::Loose(bent::shut_trough(brush)),
+        6 => Drawing::Loose(straight::shut_room_in_room(brush)),
+        7 => Drawing::Loose(round::hollow_arc(brush)),
+        8 | 9 => Drawing::Loose(bent::hollow_bend(brush)),
+        _ => Drawing::Loose(ring(brush)),
     }
 }
 

@@ -1,10 +1,10 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
+use super::CourseOptions;
 use super::border::Field;
 use super::figure::{Figure, Outline, distance_between};
-use super::repertoire::{Brush, ObstacleKind};
-use super::{CourseOptions, enclosure};
+use super::repertoire::{Brush, Drawing, ObstacleKind};
 use crate::geometry::{Aabb, Point, Pose};
 use crate::random::Stream;
 use crate::world::{Object, ObjectKind, Shape, Wall, World};
@@ -88,7 +88,7 @@ impl Layout {
 
     /// Draws an enclosure first, if asked for, then obstacles until there are `count`, as far as they fit.
     pub(super) fn fill(&mut self, stream: &mut Stream, count: usize, enclosed: bool) {
-        // Half the side of the square that falls to each obstacle, and somewhat more.
+        // About the side of the square that falls to each obstacle.
         let share = self.field.shorter() / (count as f64 + 2.0).sqrt();
         if enclosed {
             self.try_kind(stream, ObstacleKind::Enclosure, share);
@@ -108,11 +108,10 @@ impl Layout {
             let shrink = 1.0 - 0.6 * attempt as f64 / TRIES as f64;
             let radius = share * stream.between(0.28, 0.55) * shrink;
             let mut brush = Brush { stream, gap: self.room + thickness, radius };
-            let (figure, on_border) = match kind {
-                ObstacleKind::Enclosure => enclosure::draw(&mut brush, self.field),
-                _ => (kind.draw(&mut brush, self.field), kind.is_on_border()),
+            let (figure, on_border) = match kind.draw(&mut brush, self.field) {
+                Drawing::Loose(figure) => (self.anywhere(stream, figure), false),
+                Drawing::OnBorder(figure) => (figure, true),
             };
-            let figure = if on_border { figure } else { self.anywhere(stream, figure) };
             if self.place(figure, thickness, on_border, kind) {
                 return;
             }

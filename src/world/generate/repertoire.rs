@@ -1,6 +1,6 @@
 use super::border::{self, Field};
 use super::figure::{Figure, Outline, stroke};
-use super::{bent, round, straight};
+use super::{bent, enclosure, round, straight};
 use crate::geometry::Point;
 use crate::random::Stream;
 
@@ -95,15 +95,10 @@ impl ObstacleKind {
         !matches!(self, Self::Polygon | Self::Disc | Self::Ellipse | Self::Bump | Self::Enclosure)
     }
 
-    /// Whether the obstacle stands on the border.
-    pub(super) fn is_on_border(self) -> bool {
-        matches!(self, Self::Spur | Self::Bump | Self::Alcove)
-    }
-
     /// An obstacle of this kind: about the origin, or on the border of the field.
-    pub(super) fn draw(self, brush: &mut Brush, field: Field) -> Figure {
-        match self {
-            Self::Polygon | Self::Enclosure => straight::polygon(brush),
+    pub(super) fn draw(self, brush: &mut Brush, field: Field) -> Drawing {
+        Drawing::Loose(match self {
+            Self::Polygon => straight::polygon(brush),
             Self::Disc => round::disc(brush),
             Self::Ellipse => round::ellipse(brush),
             Self::Star => straight::star(brush),
@@ -124,11 +119,21 @@ impl ObstacleKind {
             Self::Comb => straight::comb(brush),
             Self::Room => straight::room(brush),
             Self::NestedRooms => straight::nested_rooms(brush),
-            Self::Spur => border::spur(brush, field),
-            Self::Bump => border::bump(brush, field),
-            Self::Alcove => border::alcove(brush, field),
-        }
+            Self::Spur => return Drawing::OnBorder(border::spur(brush, field)),
+            Self::Bump => return Drawing::OnBorder(border::bump(brush, field)),
+            Self::Alcove => return Drawing::OnBorder(border::alcove(brush, field)),
+            Self::Enclosure => return enclosure::draw(brush, field),
+        })
     }
+}
+
+/// A figure that is yet to be placed.
+#[derive(Debug)]
+pub(super) enum Drawing {
+    /// About the origin, to be moved anywhere.
+    Loose(Figure),
+    /// At its place on the border.
+    OnBorder(Figure),
 }
 
 /// What figures are drawn with.
@@ -147,7 +152,7 @@ impl Brush<'_> {
         self.stream.between(0.03, 0.09)
     }
 
-    /// A single wall along a line, or the outline of a stroke of a width, with little odds for the former.
+    /// One time in three walls along a line, else around a stroke of a width along it.
     pub(super) fn wall_or_stroke(&mut self, line: Vec<Point>, width: f64) -> Outline {
         if self.stream.chance(0.35) { Outline::open(line) } else { stroke(&line, width) }
     }

@@ -64,15 +64,15 @@ pub(super) fn comb(brush: &mut Brush) -> Figure {
     let spaces = ((2.0 * brush.radius / pitch) as usize).clamp(2, 4);
     let depth = brush.gap * brush.stream.between(1.5, 3.5);
     let spine = brush.stream.between(0.03, 0.08);
-    // Along the tips of the teeth and the grounds between them, then back along the spine.
-    let mut corners = Vec::new();
-    for k in 0..=spaces {
-        let x = k as f64 * pitch;
-        corners.extend([(x, 0.0), (x, depth), (x + tooth, depth), (x + tooth, 0.0)]);
-    }
     let end = spaces as f64 * pitch + tooth;
-    corners[0] = (0.0, -spine);
-    *corners.last_mut().expect("a comb has teeth") = (end, -spine);
+    // Along the back of the spine, then along teeth and spaces from right to left.
+    let mut corners = vec![(0.0, -spine), (end, -spine)];
+    for k in (0..=spaces).rev() {
+        let x = k as f64 * pitch;
+        corners.extend([(x + tooth, 0.0), (x + tooth, depth), (x, depth), (x, 0.0)]);
+    }
+    // The outermost teeth have no foot on their outer sides.
+    corners.retain(|&(x, y)| y != 0.0 || (x != 0.0 && x != end));
     let pockets = (0..spaces)
         .map(|k| Point::new(k as f64 * pitch + tooth + 0.5 * space, (0.6 * brush.gap).max(0.4 * depth)))
         .collect();
@@ -132,7 +132,6 @@ fn room_size(brush: &mut Brush) -> (f64, f64) {
 
 /// The walls of a room from one side of a door in its right wall round to the other.
 fn doored_walls(brush: &mut Brush, a: f64, b: f64) -> Vec<Point> {
-    // The wall may be left off altogether; half a gap of wall, or none, on either side of the door.
     let door = (brush.gap * brush.stream.between(1.3, 2.0)).min(1.8 * b);
     let low = brush.stream.between(-b, b - door);
     let high = low + door;

@@ -50,7 +50,7 @@ impl Survey {
         let raster = clearance.raster();
         let low = raster.regions(|cell| clearance.at(cell) > margins.low);
         let high = raster.regions(|cell| clearance.at(cell) > margins.high);
-        Some(Self { margins, low, high, clearance })
+        Some(Self { margins, clearance, low, high })
     }
 
     pub(super) fn raster(&self) -> &Raster {
