@@ -5,12 +5,14 @@
 
 mod colour;
 pub mod formats;
+mod grid;
 mod object;
 mod robot;
 mod scene;
 mod wall;
 
 pub use colour::Colour;
+pub use grid::{Cell, GridError, OccupancyGrid};
 pub use object::{Marker, Object, ObjectKind, Shape};
 pub use robot::{
     CameraSpec, DriveSpec, Footprint, LidarSpec, MotorSpec, Mount, PsdSpec, RobotSpec, SpecError,

@@ -1,1 +1,18 @@
 //! Readers and writers of the file formats.
+//!
+//! Every reader answers with a [`Parsed`] value and its [`Warning`]s, or with a [`FormatError`] that names file, line,
+//! column, what stands there and what was expected. Files are in millimetres and degrees; values are in SI units.
+
+mod args;
+mod error;
+mod lexer;
+mod limits;
+pub mod maz;
+mod number;
+pub mod ros_map;
+mod source;
+pub mod wld;
+mod yaml;
+
+pub use error::{FormatError, Location, Parsed, Warning};
+pub use source::{DiskFiles, FileSource, MemoryFiles, SourceFile};
