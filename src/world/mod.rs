@@ -3,6 +3,7 @@
 //! A [`Scene`] is a [`World`] with robots in it. The types are plain data in SI units; the readers and writers of
 //! the EyeSim and ROS formats are in [`formats`].
 
+mod body;
 mod colour;
 pub mod formats;
 mod grid;
@@ -11,11 +12,12 @@ mod robot;
 mod scene;
 mod wall;
 
+pub use body::{Axis, Body, Collider, Place3};
 pub use colour::Colour;
 pub use grid::{Cell, GridError, OccupancyGrid};
 pub use object::{Marker, Object, ObjectKind, Shape};
 pub use robot::{
     CameraSpec, DriveSpec, Footprint, LidarSpec, MotorSpec, Mount, PsdSpec, RobotSpec, SpecError,
 };
-pub use scene::{Place, RobotPlacement, Scene, Terrain, World};
+pub use scene::{Place, RobotPlacement, Scene, Settings, Terrain, World};
 pub use wall::Wall;

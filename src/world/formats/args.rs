@@ -7,7 +7,7 @@ use super::lexer::{Line, Word, shown};
 use super::limits::{MAX_DEGREES, MAX_METRES};
 use super::number::{self, MILLI};
 use crate::geometry::units;
-use crate::world::Colour;
+use crate::world::{Colour, Place3};
 
 /// A cursor over the words of a line.
 #[derive(Debug)]
@@ -161,5 +161,36 @@ fn shown_range(range: &RangeInclusive<f64>, power: i32) -> String {
         low if low == f64::MIN_POSITIVE => format!("more than 0 and at most {high}"),
         low if low == -MAX_METRES || low == -MAX_DEGREES => format!("at most {high} either way"),
         low => format!("from {} to {high}", number::print(low, power)),
+    }
+}
+
+/// Places and sizes of 3D models, whose axes point right, up and forward.
+impl Args<'_, '_> {
+    /// A place: right, up, forward.
+    pub(super) fn model_place(&mut self, what: &str) -> Result<Place3, FormatError> {
+        let [right, up, forward] = self.three(what, |args, what| args.length(what))?;
+        Ok([forward, -right, up])
+    }
+
+    /// Sizes of more than zero: to the right, upwards, forward.
+    pub(super) fn model_size(&mut self, what: &str) -> Result<Place3, FormatError> {
+        let [right, up, forward] = self.three(what, |args, what| args.positive_size(what))?;
+        Ok([forward, right, up])
+    }
+
+    fn three(
+        &mut self,
+        what: &str,
+        mut read: impl FnMut(&mut Self, &str) -> Result<f64, FormatError>,
+    ) -> Result<[f64; 3], FormatError> {
+        let mut next = |axis| read(self, &format!("{what} {axis}"));
+        Ok([next("x")?, next("y")?, next("z")?])
+    }
+
+    /// A name that is not empty.
+    pub(super) fn name(&mut self, what: &str) -> Result<String, FormatError> {
+        let at = self.next;
+        let word = self.word(what)?;
+        if word.text.is_empty() { Err(self.line.error(at, what)) } else { Ok(word.text.into()) }
     }
 }

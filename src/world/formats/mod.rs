@@ -5,14 +5,21 @@
 
 mod args;
 mod error;
+pub mod esobj;
 mod lexer;
 mod limits;
+mod load;
 pub mod maz;
 mod number;
+pub mod robi;
 pub mod ros_map;
+pub mod sim;
 mod source;
 pub mod wld;
 mod yaml;
 
 pub use error::{FormatError, Location, Parsed, Warning};
+pub use load::{load_object, load_robot, load_scene};
 pub use source::{DiskFiles, FileSource, MemoryFiles, SourceFile};
+
+use load::stem;

@@ -85,6 +85,18 @@ pub(super) fn degrees(radians: f64) -> String {
     print(best, 0)
 }
 
+/// The number from which taking `shift` away gives `value`, so that it survives being written and read.
+pub(super) fn undo_shift(value: f64, shift: f64) -> f64 {
+    let sum = value + shift;
+    let (mut up, mut down) = (sum, sum);
+    let mut candidates = vec![sum];
+    for _ in 0..8 {
+        (up, down) = (up.next_up(), down.next_down());
+        candidates.extend([up, down]);
+    }
+    candidates.into_iter().find(|&candidate| candidate - shift == value).unwrap_or(sum)
+}
+
 /// The range of angles that files may hold, in degrees.
 pub(super) const ANGLES: RangeInclusive<f64> = -MAX_DEGREES..=MAX_DEGREES;
 
