@@ -3,21 +3,25 @@
 //! A [`Scene`] is a [`World`] with robots in it. The types are plain data in SI units; the readers and writers of
 //! the EyeSim and ROS formats are in [`formats`].
 
+mod body;
 mod clearance;
 mod colour;
 pub mod formats;
 pub mod generate;
+mod grid;
 mod object;
 mod robot;
 mod scene;
 pub mod space;
 mod wall;
 
+pub use body::{Axis, Body, Collider, Place3};
 pub use clearance::{Clearance, Raster, RasterError};
 pub use colour::Colour;
+pub use grid::{Cell, GridError, OccupancyGrid};
 pub use object::{Marker, Object, ObjectKind, Shape};
 pub use robot::{
     CameraSpec, DriveSpec, Footprint, LidarSpec, MotorSpec, Mount, PsdSpec, RobotSpec, SpecError,
 };
-pub use scene::{Place, RobotPlacement, Scene, Terrain, World};
+pub use scene::{Place, RobotPlacement, Scene, Settings, Terrain, World};
 pub use wall::Wall;

@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::Colour;
+use super::{Body, Colour};
 use crate::geometry::{Point, Pose};
 
 /// A solid that stands on the floor, upright.
@@ -66,12 +66,23 @@ pub struct ObjectKind {
     pub buoyancy: Option<f64>,
     /// The 3D model that EyeSim shows, if any.
     pub model: Option<PathBuf>,
+    /// What its description file says about its solid beyond the shape.
+    pub body: Body,
 }
 
 impl ObjectKind {
     /// A kind with a name, a shape and a colour, of 1 kg, movable.
     pub fn new(name: impl Into<String>, shape: Shape, colour: Colour) -> Self {
-        Self { name: name.into(), shape, colour, mass: 1.0, fixed: false, buoyancy: None, model: None }
+        Self {
+            name: name.into(),
+            shape,
+            colour,
+            mass: 1.0,
+            fixed: false,
+            buoyancy: None,
+            model: None,
+            body: Body::default(),
+        }
     }
 
     /// EyeSim's predefined kinds, matched without regard to case: `can`, `soccer`, `golf`, `crate`.

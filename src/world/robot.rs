@@ -1,5 +1,6 @@
 use std::path::PathBuf;
 
+use super::Body;
 use crate::geometry::{Aabb, units};
 
 /// A description of a robot: its drive, outline and sensors. EyeSim's `.robi`.
@@ -25,6 +26,8 @@ pub struct RobotSpec {
     pub camera: Option<CameraSpec>,
     /// The 3D model that EyeSim shows, if any.
     pub model: Option<PathBuf>,
+    /// What its description file says about its solid beyond footprint and height.
+    pub body: Body,
 }
 
 /// How a robot moves.
@@ -187,6 +190,13 @@ pub struct CameraSpec {
     pub max_tilt: f64,
     /// The horizontal field of view, in radians.
     pub field_of_view: f64,
+    /// Whether the lens is a fisheye.
+    pub fisheye: bool,
+}
+
+impl CameraSpec {
+    /// The horizontal field of view of a camera that states none, in radians: 60 degrees.
+    pub const DEFAULT_FIELD_OF_VIEW: f64 = std::f64::consts::FRAC_PI_3;
 }
 
 /// What is wrong with a robot's description.
@@ -223,9 +233,11 @@ impl RobotSpec {
                 tilt: 0.0,
                 max_pan: units::from_deg(90.0),
                 max_tilt: units::from_deg(90.0),
-                field_of_view: units::from_deg(60.0),
+                field_of_view: CameraSpec::DEFAULT_FIELD_OF_VIEW,
+                fisheye: false,
             }),
             model: None,
+            body: Body::default(),
         }
     }
 

@@ -129,11 +129,27 @@ pub struct Scene {
     pub world: World,
     /// The robots, in the order in which they were placed.
     pub robots: Vec<RobotPlacement>,
+    /// What to show of them.
+    pub settings: Settings,
+}
+
+/// What a picture of a scene shows besides its things.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Settings {
+    /// The beams of the robots' sensors: `VIS` in a simulation script.
+    pub show_sensors: bool,
+    /// The paths that the robots drove: `TRACE` in a simulation script.
+    pub show_traces: bool,
 }
 
 impl Scene {
+    /// A world without robots.
+    pub fn new(world: World) -> Self {
+        Self { world, robots: Vec::new(), settings: Settings::default() }
+    }
+
     /// A world with one robot.
     pub fn with_robot(world: World, spec: RobotSpec, pose: Pose) -> Self {
-        Self { world, robots: vec![RobotPlacement::new(Arc::new(spec), pose)] }
+        Self { robots: vec![RobotPlacement::new(Arc::new(spec), pose)], ..Self::new(world) }
     }
 }

@@ -1,1 +1,25 @@
 //! Readers and writers of the file formats.
+//!
+//! Every reader answers with a [`Parsed`] value and its [`Warning`]s, or with a [`FormatError`] that names file, line,
+//! column, what stands there and what was expected. Files are in millimetres and degrees; values are in SI units.
+
+mod args;
+mod error;
+pub mod esobj;
+mod lexer;
+mod limits;
+mod load;
+pub mod maz;
+mod number;
+pub mod robi;
+pub mod ros_map;
+pub mod sim;
+mod source;
+pub mod wld;
+mod yaml;
+
+pub use error::{FormatError, Location, Parsed, Warning};
+pub use load::{load_object, load_robot, load_scene};
+pub use source::{DiskFiles, FileSource, MemoryFiles, SourceFile};
+
+use load::stem;

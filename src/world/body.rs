@@ -1,0 +1,246 @@
+use super::{Footprint, Shape};
+use crate::geometry::{Aabb, Point};
+
+/// A place in three dimensions: metres ahead, to the left and upwards.
+pub type Place3 = [f64; 3];
+
+/// An axis of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Axis {
+    /// From back to front.
+    Forward,
+    /// From right to left.
+    Left,
+    /// Upright.
+    #[default]
+    Up,
+}
+
+/// A solid part of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Collider {
+    /// A cuboid along the body's axes.
+    Box {
+        /// Metres along each axis.
+        size: Place3,
+        /// Its middle.
+        centre: Place3,
+    },
+    /// A ball.
+    Sphere {
+        /// Metres.
+        radius: f64,
+        /// Its middle.
+        centre: Place3,
+    },
+    /// A cylinder with round ends.
+    Capsule {
+        /// Metres.
+        radius: f64,
+        /// Metres from end to end, the round ends included.
+        height: f64,
+        /// The axis along which it lies.
+        axis: Axis,
+        /// Its middle.
+        centre: Place3,
+    },
+}
+
+impl Collider {
+    /// Where it begins and ends along each axis.
+    pub fn extent(&self) -> [(f64, f64); 3] {
+        let (half, centre) = match *self {
+            Collider::Box { size, centre } => (size.map(|s| 0.5 * s), centre),
+            Collider::Sphere { radius, centre } => ([radius; 3], centre),
+            Collider::Capsule { radius, height, axis, centre } => {
+                let mut half = [radius; 3];
+                half[axis as usize] = 0.5 * height;
+                (half, centre)
+            }
+        };
+        [0, 1, 2].map(|i| (centre[i] - half[i], centre[i] + half[i]))
+    }
+
+    /// The radius around the upright axis through a point ahead of the origin, if it is round about it.
+    fn round_about(&self, ahead: f64) -> Option<f64> {
+        match *self {
+            Collider::Sphere { radius, centre }
+            | Collider::Capsule { radius, axis: Axis::Up, centre, .. } => {
+                (centre[0] == ahead && centre[1] == 0.0).then_some(radius)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// What a description file says about the solid of a robot or an object, about the origin of its 3D model.
+///
+/// The simulation uses what is derived from it: a robot's footprint and height, an object's shape.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// The solid parts, in units of the model: to be multiplied by `scale`. Empty if the footprint or shape says all.
+    pub colliders: Vec<Collider>,
+    /// The middle of the mass, in units of the model.
+    pub mass_centre: Place3,
+    /// Metres in a unit of the model.
+    pub scale: f64,
+    /// Where the model is shown: metres to the right, upwards and forward, as its file gives them.
+    pub model_offset: [f64; 3],
+    /// How the model is turned: radians about its right, up and forward axes, as its file gives them.
+    pub model_rotation: [f64; 3],
+    /// Metres from the model's origin forward to the driven axle, and upwards to it.
+    pub axle: [f64; 2],
+    /// Metres from the model's origin upwards to the steered axle.
+    pub turn_axle_height: f64,
+}
+
+impl Default for Body {
+    fn default() -> Self {
+        Self {
+            colliders: Vec::new(),
+            mass_centre: [0.0; 3],
+            scale: 1.0,
+            model_offset: [0.0; 3],
+            model_rotation: [0.0; 3],
+            axle: [0.0; 2],
+            turn_axle_height: 0.0,
+        }
+    }
+}
+
+impl Body {
+    /// The largest robot, in metres from its axle to its farthest side, whose footprint may become a disc.
+    pub const MAX_DISC: f64 = 0.25;
+    /// How round its sides must be: the nearest at least this part of the farthest.
+    pub const MIN_ROUNDNESS: f64 = 0.8;
+
+    /// The footprint about the driven axle and the height above the model's origin that the colliders give; `None`
+    /// without colliders.
+    ///
+    /// A single sphere or upright capsule on the axle is a disc. So is a small, nearly round robot that may turn on the
+    /// spot: its farthest side at most [`Body::MAX_DISC`] away and its nearest at least [`Body::MIN_ROUNDNESS`] of that.
+    /// All others are the rectangle around their colliders.
+    pub fn footprint(&self, turns_on_the_spot: bool) -> Option<(Footprint, f64)> {
+        let [x, y, z] = self.extent()?;
+        let ahead = self.axle[0];
+        if let [single] = self.colliders.as_slice()
+            && let Some(radius) = single.round_about(ahead)
+        {
+            return Some((Footprint::Disc { radius }, z.1));
+        }
+        let sides = [x.1 - ahead, ahead - x.0, y.1, -y.0];
+        let far = sides.into_iter().fold(f64::MIN, f64::max);
+        let near = sides.into_iter().fold(f64::MAX, f64::min);
+        if turns_on_the_spot && far <= Self::MAX_DISC && near >= Self::MIN_ROUNDNESS * far {
+            return Some((Footprint::Disc { radius: far }, z.1));
+        }
+        let corners = (Point::new(x.0 - ahead, y.0), Point::new(x.1 - ahead, y.1));
+        Some((Footprint::Rectangle(Aabb::new(corners.0, corners.1)), z.1))
+    }
+
+    /// The upright shape about the origin that holds all colliders, from the floor up; `None` without colliders.
+    pub fn shape(&self) -> Option<Shape> {
+        let [x, y, z] = self.extent()?;
+        let top = if z.1 > 0.0 { z.1 } else { z.1 - z.0 };
+        if let [single] = self.colliders.as_slice()
+            && let Some(radius) = single.round_about(0.0)
+        {
+            let radius = radius * self.scale;
+            let ball = matches!(single, Collider::Sphere { .. });
+            return Some(if ball {
+                Shape::Sphere { radius }
+            } else {
+                Shape::Cylinder { radius, height: top }
+            });
+        }
+        let across = |(low, high): (f64, f64)| 2.0 * f64::max(-low, high);
+        Some(Shape::Box { length: across(x), width: across(y), height: top })
+    }
+
+    /// The one collider that a footprint of some height needs.
+    pub fn collider_of_footprint(&self, footprint: &Footprint, height: f64) -> Collider {
+        let (ahead, middle) = (self.axle[0], 0.5 * height);
+        match footprint {
+            Footprint::Disc { radius } => {
+                Collider::Capsule { radius: *radius, height, axis: Axis::Up, centre: [ahead, 0.0, middle] }
+            }
+            Footprint::Rectangle(b) => Collider::Box {
+                size: [b.max.x - b.min.x, b.max.y - b.min.y, height],
+                centre: [0.5 * (b.min.x + b.max.x) + ahead, 0.5 * (b.min.y + b.max.y), middle],
+            },
+        }
+    }
+
+    /// The one collider that a shape needs.
+    pub fn collider_of_shape(shape: Shape) -> Collider {
+        let centre = [0.0, 0.0, 0.5 * shape.height()];
+        match shape {
+            Shape::Cylinder { radius, height } => {
+                Collider::Capsule { radius, height, axis: Axis::Up, centre }
+            }
+            Shape::Sphere { radius } => Collider::Sphere { radius, centre },
+            Shape::Box { length, width, height } => Collider::Box { size: [length, width, height], centre },
+        }
+    }
+
+    /// Where the colliders begin and end along each axis, in metres.
+    fn extent(&self) -> Option<[(f64, f64); 3]> {
+        let extents = self.colliders.iter().map(Collider::extent);
+        let joined = extents.reduce(|a, b| [0, 1, 2].map(|i| (a[i].0.min(b[i].0), a[i].1.max(b[i].1))))?;
+        Some(joined.map(|(low, high)| (low * self.scale, high * self.scale)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::math;
+
+    fn body(colliders: &[Collider]) -> Body {
+        Body { colliders: colliders.to_vec(), ..Body::default() }
+    }
+
+    #[test]
+    fn nearly_round_robots_that_turn_become_discs() {
+        let round = body(&[Collider::Box { size: [0.11, 0.1, 0.08], centre: [0.0, 0.0, 0.04] }]);
+        assert_eq!(round.footprint(true), Some((Footprint::Disc { radius: 0.055 }, 0.08)));
+        assert!(matches!(round.footprint(false), Some((Footprint::Rectangle(_), _))));
+        let long = body(&[Collider::Box { size: [0.2, 0.1, 0.08], centre: [0.0, 0.0, 0.04] }]);
+        assert!(matches!(long.footprint(true), Some((Footprint::Rectangle(_), _))));
+    }
+
+    #[test]
+    fn a_rectangle_stands_about_the_axle() {
+        let mut car = body(&[Collider::Box { size: [4.0, 2.0, 1.0], centre: [1.0, 0.0, 0.5] }]);
+        car.axle = [-0.5, 0.3];
+        let expected = Aabb::new(Point::new(-0.5, -1.0), Point::new(3.5, 1.0));
+        assert_eq!(car.footprint(false), Some((Footprint::Rectangle(expected), 1.0)));
+    }
+
+    #[test]
+    fn scaled_colliders_give_the_shape() {
+        let mut pole = body(&[Collider::Capsule {
+            radius: 0.15,
+            height: 14.2,
+            axis: Axis::Up,
+            centre: [0.0, 0.0, 7.5],
+        }]);
+        pole.scale = 0.025;
+        let Some(Shape::Cylinder { radius, height }) = pole.shape() else { panic!("no cylinder") };
+        assert!((radius - 0.003_75).abs() < 1e-12 && (height - 0.365).abs() < 1e-12);
+        let beside = body(&[Collider::Sphere { radius: 1.0, centre: [0.0, 2.0, 1.0] }]);
+        assert_eq!(beside.shape(), Some(Shape::Box { length: 2.0, width: 6.0, height: 2.0 }));
+    }
+
+    #[test]
+    fn one_collider_holds_what_it_was_made_for() {
+        for shape in [
+            Shape::Sphere { radius: 0.3 },
+            Shape::Cylinder { radius: 0.5, height: 0.2 },
+            Shape::Box { length: 0.1, width: 0.7, height: 0.3 },
+        ] {
+            assert_eq!(body(&[Body::collider_of_shape(shape)]).shape(), Some(shape));
+            assert!(math::hypot(shape.bounding_radius(), shape.height()) > 0.0);
+        }
+    }
+}

@@ -1,0 +1,116 @@
+use std::fmt;
+
+/// A place in a text file. Lines and columns count from 1, columns in characters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Location {
+    /// The line.
+    pub line: usize,
+    /// The column.
+    pub column: usize,
+}
+
+impl Location {
+    /// The first character of a file.
+    pub const START: Location = Location { line: 1, column: 1 };
+}
+
+/// Why a file could not be read: where, what stands there, and what should.
+///
+/// A file that is missing is reported at the line that names it.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{file}:{line}:{column}: found {found}; expected {expected}")]
+pub struct FormatError {
+    /// The file as its reader was given it.
+    pub file: String,
+    /// The line, from 1.
+    pub line: usize,
+    /// The column in characters, from 1.
+    pub column: usize,
+    /// What stands there.
+    pub found: String,
+    /// What should stand there.
+    pub expected: String,
+}
+
+impl FormatError {
+    /// An error from its parts.
+    pub fn new(file: &str, at: Location, found: impl Into<String>, expected: impl Into<String>) -> Self {
+        Self {
+            file: file.into(),
+            line: at.line,
+            column: at.column,
+            found: found.into(),
+            expected: expected.into(),
+        }
+    }
+
+    /// Where it is.
+    pub fn location(&self) -> Location {
+        Location { line: self.line, column: self.column }
+    }
+}
+
+/// Something odd in a file that its reader got over.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Warning {
+    /// The file as its reader was given it.
+    pub file: String,
+    /// The line, from 1.
+    pub line: usize,
+    /// The column in characters, from 1.
+    pub column: usize,
+    /// What is odd, and what the reader did about it.
+    pub message: String,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}:{}: {}", self.file, self.line, self.column, self.message)
+    }
+}
+
+/// What a file says, and what was odd about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parsed<T> {
+    /// What the file says.
+    pub value: T,
+    /// What was odd, in the order in which it was met; at most [`Parsed::MAX_WARNINGS`].
+    pub warnings: Vec<Warning>,
+}
+
+impl<T> Parsed<T> {
+    /// Warnings beyond this number are left out, so that a broken file does not fill the memory.
+    pub const MAX_WARNINGS: usize = 1000;
+
+    /// The same warnings about another value.
+    pub fn map<U>(self, change: impl FnOnce(T) -> U) -> Parsed<U> {
+        Parsed { value: change(self.value), warnings: self.warnings }
+    }
+}
+
+/// Collects the warnings about one file and the files that it names.
+#[derive(Debug)]
+pub(super) struct Notes<'f> {
+    pub(super) file: &'f str,
+    list: Vec<Warning>,
+}
+
+impl<'f> Notes<'f> {
+    pub(super) fn new(file: &'f str) -> Self {
+        Self { file, list: Vec::new() }
+    }
+
+    pub(super) fn warn(&mut self, at: Location, message: impl Into<String>) {
+        let (file, message) = (self.file.to_string(), message.into());
+        self.extend([Warning { file, line: at.line, column: at.column, message }]);
+    }
+
+    pub(super) fn extend(&mut self, others: impl IntoIterator<Item = Warning>) {
+        let room = Parsed::<()>::MAX_WARNINGS - self.list.len();
+        self.list.extend(others.into_iter().take(room));
+    }
+
+    pub(super) fn finish<T>(self, value: T) -> Parsed<T> {
+        Parsed { value, warnings: self.list }
+    }
+}

@@ -1,0 +1,24 @@
+//! How large a file may be. Each limit is far beyond any real file and keeps a broken one from filling the memory.
+
+/// Bytes of a text file.
+pub(super) const MAX_TEXT_BYTES: u64 = 16 << 20;
+/// Bytes of an image file.
+pub(super) const MAX_IMAGE_BYTES: u64 = 256 << 20;
+/// Words in a line.
+pub(super) const MAX_WORDS: usize = 100;
+/// Metres of any coordinate or length.
+pub(super) const MAX_METRES: f64 = 1e6;
+/// Degrees of any angle.
+pub(super) const MAX_DEGREES: f64 = 1e6;
+/// Walls of a world.
+pub(super) const MAX_WALLS: usize = 1_000_000;
+/// Poses pushed on the stack of a world file.
+pub(super) const MAX_PUSHES: usize = 1_000;
+/// Cells of a maze.
+pub(super) const MAX_MAZE_CELLS: usize = 4_000_000;
+/// Robots and objects placed by a simulation script.
+pub(super) const MAX_PLACED: usize = 100_000;
+/// Files named by a simulation script.
+pub(super) const MAX_DEFINITIONS: usize = 1_000;
+/// Solid parts and sensors of a robot or an object.
+pub(super) const MAX_PARTS: usize = 10_000;

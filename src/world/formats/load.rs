@@ -1,0 +1,122 @@
+use std::path::Path;
+
+use super::error::{FormatError, Location, Notes, Parsed};
+use super::lexer::shown;
+use super::limits::MAX_TEXT_BYTES;
+use super::source::{DiskFiles, FileSource, decode, read_limited, unreadable};
+use super::{esobj, maz, robi, ros_map, sim, wld};
+use crate::world::{ObjectKind, RobotSpec, Scene, World};
+
+/// Reads a scene from disk: a `.sim`, or the `.wld`, `.maz` or ROS map (`.yaml`, `.yml`) of one without robots.
+///
+/// ```no_run
+/// let scene = roverlab::world::formats::load_scene("worlds/soccer.sim")?;
+/// for warning in &scene.warnings {
+///     eprintln!("{warning}");
+/// }
+/// println!("{} robots", scene.value.robots.len());
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
+pub fn load_scene(path: impl AsRef<Path>) -> Result<Parsed<Scene>, FormatError> {
+    let mut files = DiskFiles::new();
+    read_file(path.as_ref(), |text, file| match kind(file) {
+        Kind::Script => sim::parse(text, file, &mut files),
+        _ => Ok(parse_world(text, file, &mut files, file, Location::START)?.map(Scene::new)),
+    })
+}
+
+/// Reads a robot's description, `.robi`, from disk.
+pub fn load_robot(path: impl AsRef<Path>) -> Result<Parsed<RobotSpec>, FormatError> {
+    read_file(path.as_ref(), robi::parse)
+}
+
+/// Reads an object's description, `.esObj`, from disk.
+pub fn load_object(path: impl AsRef<Path>) -> Result<Parsed<ObjectKind>, FormatError> {
+    read_file(path.as_ref(), esobj::parse)
+}
+
+/// Reads a file and hands its text and its name to a reader.
+fn read_file<T>(
+    path: &Path,
+    read: impl FnOnce(&str, &str) -> Result<Parsed<T>, FormatError>,
+) -> Result<Parsed<T>, FormatError> {
+    let file = path.display().to_string();
+    let bytes = read_limited(path, MAX_TEXT_BYTES)
+        .map_err(|error| unreadable(&error, &file, &file, Location::START, MAX_TEXT_BYTES))?;
+    let mut notes = Notes::new(&file);
+    let text = decode(bytes, &mut notes)?;
+    let parsed = read(&text, &file)?;
+    notes.extend(parsed.warnings);
+    Ok(notes.finish(parsed.value))
+}
+
+/// Finds and reads the world that a file calls `reference` at some place.
+pub(super) fn read_world(
+    reference: &str,
+    referrer: &str,
+    at: Location,
+    files: &mut dyn FileSource,
+) -> Result<Parsed<World>, FormatError> {
+    // A script that names a script, itself for one, is no world: say so before reading it.
+    if !matches!(kind(reference), Kind::World | Kind::Maze | Kind::Map) {
+        return Err(not_a_world(reference, referrer, at));
+    }
+    let source = files
+        .read(reference, referrer, MAX_TEXT_BYTES)
+        .map_err(|error| unreadable(&error, reference, referrer, at, MAX_TEXT_BYTES))?;
+    let mut notes = Notes::new(&source.name);
+    let text = decode(source.bytes, &mut notes)?;
+    let parsed = parse_world(&text, &source.name, files, referrer, at)?;
+    notes.extend(parsed.warnings);
+    Ok(notes.finish(parsed.value))
+}
+
+fn parse_world(
+    text: &str,
+    file: &str,
+    files: &mut dyn FileSource,
+    referrer: &str,
+    at: Location,
+) -> Result<Parsed<World>, FormatError> {
+    match kind(file) {
+        Kind::World => wld::parse(text, file),
+        Kind::Maze => maz::parse(text, file),
+        Kind::Map => {
+            let map = ros_map::parse(text, file, files)?;
+            let world = ros_map::to_world(&map.value, file)?;
+            Ok(map.map(|_| world))
+        }
+        Kind::Script | Kind::Other => Err(not_a_world(file, referrer, at)),
+    }
+}
+
+fn not_a_world(name: &str, referrer: &str, at: Location) -> FormatError {
+    FormatError::new(referrer, at, shown(name), "a file that ends in .wld, .maz, .yaml or .yml")
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Script,
+    World,
+    Maze,
+    Map,
+    Other,
+}
+
+/// The kind of a file by its ending, in any case.
+fn kind(name: &str) -> Kind {
+    let ending = name.rsplit_once('.').map_or(String::new(), |(_, ending)| ending.to_ascii_lowercase());
+    match ending.as_str() {
+        "sim" => Kind::Script,
+        "wld" => Kind::World,
+        "maz" => Kind::Maze,
+        "yaml" | "yml" => Kind::Map,
+        _ => Kind::Other,
+    }
+}
+
+/// The name of a file without folders and ending: the name of robots and objects that state none.
+pub(super) fn stem(file: &str) -> String {
+    let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
+    Path::new(name).file_stem().map_or_else(|| name.into(), |stem| stem.to_string_lossy().into_owned())
+}

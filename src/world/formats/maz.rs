@@ -1,0 +1,471 @@
+//! EyeSim's mazes (`.maz`): walls as a picture of `_` and `|`, one cell every two columns.
+//!
+//! ```text
+//!  _ _ _
+//! |_   _|
+//! | |_  |
+//! |S|_ _|
+//! 360
+//! ```
+//!
+//! * `|` in the first, third, … column is a wall of one cell's height. `_` in the second, fourth, … column is a wall
+//!   below its cell; in the first line, the maze's upper edge.
+//! * A letter in such a column stands in the middle of its cell. A capital has a wall below it as well. `s` and `u`
+//!   head up, `l` left, `d` down, `r` right; `o` is a golf ball, `x` a crate; other letters are places for
+//!   simulation scripts to use. `.` and blanks are empty.
+//! * The cell size in millimetres is a single number before or after the picture; 360 without one.
+//! * The lower left corner of the picture is the origin. Empty lines, comments and lines that begin with anything but
+//!   `|`, `_` or a blank are skipped.
+//!
+//! Walls are as thick and high as EyeSim's default, whatever the size of a cell.
+
+use std::sync::Arc;
+
+use super::error::{FormatError, Location, Notes, Parsed};
+use super::lexer::{self, shown};
+use super::limits::{MAX_MAZE_CELLS, MAX_METRES};
+use super::number::{self, MILLI, millimetres};
+use super::source::check_length;
+use crate::geometry::{Point, Pose, units};
+use crate::world::{Object, ObjectKind, Place, Wall, World};
+
+/// A maze file: a grid of cells with walls between them and letters in them.
+///
+/// Columns count from the left, rows from the bottom, both from 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Maze {
+    columns: usize,
+    rows: usize,
+    /// Metres from one cell to the next.
+    pub cell: f64,
+    /// `rows + 1` lines of `columns` walls, the lower edge first.
+    horizontal: Vec<bool>,
+    /// `rows` lines of `columns + 1` walls, the left edge first.
+    vertical: Vec<bool>,
+    letters: Vec<Option<char>>,
+}
+
+impl Maze {
+    /// The cell size of files that state none, in metres.
+    pub const DEFAULT_CELL: f64 = 0.360;
+
+    /// A maze without walls, of at least one column; `None` if it has more than four million cells.
+    pub fn new(columns: usize, rows: usize, cell: f64) -> Option<Self> {
+        let (columns, lines) = (columns.max(1), rows.checked_add(1)?);
+        let size = (columns + 1).checked_mul(lines).filter(|&size| size <= MAX_MAZE_CELLS)?;
+        Some(Self {
+            columns,
+            rows,
+            cell,
+            horizontal: vec![false; columns * lines],
+            vertical: vec![false; size - columns - 1],
+            letters: vec![None; columns * rows],
+        })
+    }
+
+    /// Cells from left to right.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Cells from bottom to top.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Whether there is a wall below the cell of a column and a row; row [`Maze::rows`] means the upper edge.
+    /// Outside the maze there is none.
+    pub fn wall_below(&self, column: usize, row: usize) -> bool {
+        column < self.columns && self.horizontal.get(row * self.columns + column).is_some_and(|&wall| wall)
+    }
+
+    /// Whether there is a wall to the left of the cell of a column and a row; column [`Maze::columns`] means the
+    /// right edge. Outside the maze there is none.
+    pub fn wall_left(&self, column: usize, row: usize) -> bool {
+        column <= self.columns
+            && self.vertical.get(row * (self.columns + 1) + column).is_some_and(|&wall| wall)
+    }
+
+    /// Builds or removes the wall that [`Maze::wall_below`] tells of. Outside the maze nothing happens.
+    pub fn set_wall_below(&mut self, column: usize, row: usize, wall: bool) {
+        if column < self.columns && row <= self.rows {
+            self.horizontal[row * self.columns + column] = wall;
+        }
+    }
+
+    /// Builds or removes the wall that [`Maze::wall_left`] tells of. Outside the maze nothing happens.
+    pub fn set_wall_left(&mut self, column: usize, row: usize, wall: bool) {
+        if column <= self.columns && row < self.rows {
+            self.vertical[row * (self.columns + 1) + column] = wall;
+        }
+    }
+
+    /// The letter of a cell, in lower case.
+    pub fn letter(&self, column: usize, row: usize) -> Option<char> {
+        if column < self.columns {
+            self.letters.get(row * self.columns + column).copied().flatten()
+        } else {
+            None
+        }
+    }
+
+    /// Puts a letter into a cell, in lower case. What is no ASCII letter empties it; outside the maze nothing happens.
+    pub fn set_letter(&mut self, column: usize, row: usize, letter: Option<char>) {
+        if column < self.columns && row < self.rows {
+            let letter = letter.filter(char::is_ascii_alphabetic).map(|c| c.to_ascii_lowercase());
+            self.letters[row * self.columns + column] = letter;
+        }
+    }
+
+    /// The world that the maze describes. Walls in line are joined into one.
+    pub fn to_world(&self) -> World {
+        let mut world = World::empty(self.columns as f64 * self.cell, self.rows as f64 * self.cell);
+        for row in 0..=self.rows {
+            let runs = runs(self.columns, |column| self.wall_below(column, row));
+            world.walls.extend(runs.map(|(a, b)| Wall::new(self.corner(a, row), self.corner(b, row))));
+        }
+        for column in 0..=self.columns {
+            let runs = runs(self.rows, |row| self.wall_left(column, row));
+            world.walls.extend(runs.map(|(a, b)| Wall::new(self.corner(column, a), self.corner(column, b))));
+        }
+        self.furnish(&mut world);
+        world
+    }
+
+    fn furnish(&self, world: &mut World) {
+        let kind = |name| ObjectKind::predefined(name).map(Arc::new);
+        let (golf, crates) = (kind("golf"), kind("crate"));
+        // As the picture is read: from the upper left corner.
+        let cells = (0..self.rows).rev().flat_map(|row| (0..self.columns).map(move |column| (column, row)));
+        for (column, row) in cells {
+            let Some(letter) = self.letter(column, row) else { continue };
+            let position = Point::new((column as f64 + 0.5) * self.cell, (row as f64 + 0.5) * self.cell);
+            let kind = match letter {
+                'o' => golf.clone(),
+                'x' => crates.clone(),
+                _ => None,
+            };
+            if let Some(kind) = kind {
+                world.objects.push(Object::new(kind, Pose::new(position.x, position.y, 0.0)));
+            } else {
+                let written = if self.wall_below(column, row) { letter.to_ascii_uppercase() } else { letter };
+                world.places.push(Place { letter: written, position, heading: heading(letter) });
+            }
+        }
+        world.start = start(&world.places);
+    }
+
+    fn corner(&self, column: usize, row: usize) -> Point {
+        Point::new(column as f64 * self.cell, row as f64 * self.cell)
+    }
+}
+
+/// The maximal stretches `a..b` of `0..count` on which something holds.
+fn runs(count: usize, holds: impl Fn(usize) -> bool) -> impl Iterator<Item = (usize, usize)> {
+    let mut next = 0;
+    std::iter::from_fn(move || {
+        let first = (next..count).find(|&i| holds(i))?;
+        let end = (first..count).find(|&i| !holds(i)).unwrap_or(count);
+        next = end;
+        Some((first, end))
+    })
+}
+
+/// The heading that a start letter stands for.
+fn heading(letter: char) -> Option<f64> {
+    let degrees = match letter.to_ascii_lowercase() {
+        's' | 'u' => 90.0,
+        'l' => 180.0,
+        'd' => -90.0,
+        'r' => 0.0,
+        _ => return None,
+    };
+    Some(units::from_deg(degrees))
+}
+
+/// The first `s`, or else the first other letter with a heading.
+fn start(places: &[Place]) -> Option<Pose> {
+    let s = places.iter().find(|place| place.letter.eq_ignore_ascii_case(&'s'));
+    let place = s.or_else(|| places.iter().find(|place| place.heading.is_some()))?;
+    Some(Pose::new(place.position.x, place.position.y, place.heading?))
+}
+
+/// Reads a maze as a world: its walls, its start, its places, its balls and crates.
+pub fn parse(text: &str, file: &str) -> Result<Parsed<World>, FormatError> {
+    Ok(parse_maze(text, file)?.map(|maze| maze.to_world()))
+}
+
+/// Reads a maze as a grid.
+pub fn parse_maze(text: &str, file: &str) -> Result<Parsed<Maze>, FormatError> {
+    check_length(text, file)?;
+    let mut picture = Picture { rows: Vec::new(), sizes: Vec::new(), notes: Notes::new(file) };
+    lexer::numbered(text).try_for_each(|(number, line)| picture.line(number, line))?;
+    picture.finish()
+}
+
+/// The lines of a maze file, sorted.
+struct Picture<'a> {
+    /// Line number and text of each row, the uppermost first.
+    rows: Vec<(usize, &'a str)>,
+    /// Line number, rows before it, and metres of each cell size.
+    sizes: Vec<(usize, usize, f64)>,
+    notes: Notes<'a>,
+}
+
+impl<'a> Picture<'a> {
+    fn line(&mut self, number: usize, text: &'a str) -> Result<(), FormatError> {
+        let content = text.trim();
+        let bare = content.split([';', '#']).next().unwrap_or("").trim_end();
+        if text.is_empty() || (bare.is_empty() && !content.is_empty()) {
+            return Ok(());
+        }
+        if number::looks_like_number(bare) {
+            let size = cell_size(bare, self.notes.file, number, text)?;
+            self.sizes.push((number, self.rows.len(), size));
+        } else if text.starts_with(['|', '_']) || text.starts_with(char::is_whitespace) {
+            self.rows.push((number, text.trim_end()));
+        } else {
+            let message = format!("{} is no row of a maze; skipped", shown(content));
+            self.notes.warn(Location { line: number, column: 1 }, message);
+        }
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<Parsed<Maze>, FormatError> {
+        let blank = |row: &(usize, &str)| row.1.is_empty();
+        let first = self.rows.iter().position(|row| !blank(row));
+        let Some(first) = first else {
+            let (found, expected) = ("no row of a maze", "rows of `|`, `_`, letters and blanks");
+            return Err(FormatError::new(self.notes.file, Location::START, found, expected));
+        };
+        let last = self.rows.iter().rposition(|row| !blank(row)).unwrap_or(first);
+        let rows: Vec<_> = self.rows[first..=last].to_vec();
+        let cell = self.choose_size(first, last);
+        let maze = self.draw(&rows, cell)?;
+        Ok(self.notes.finish(maze))
+    }
+
+    fn choose_size(&mut self, first: usize, last: usize) -> f64 {
+        let mut chosen = None;
+        for &(line, before, size) in &self.sizes {
+            let at = Location { line, column: 1 };
+            if before > first && before <= last {
+                self.notes.warn(at, "a number inside the picture; ignored");
+                continue;
+            }
+            if chosen.is_some_and(|other| other != size) {
+                self.notes.warn(at, "a second cell size; this one counts");
+            }
+            chosen = Some(size);
+        }
+        chosen.unwrap_or(Maze::DEFAULT_CELL)
+    }
+
+    fn draw(&mut self, rows: &[(usize, &str)], cell: f64) -> Result<Maze, FormatError> {
+        // The uppermost line holds nothing but the upper edge, unless something stands in it.
+        let roof = usize::from(!rows[0].1.contains(|c: char| c == '|' || c.is_alphabetic()));
+        let count = rows.len() - roof;
+        // The characters of a row reach into column (length / 2), and a `|` behind the last cell adds none.
+        let columns = rows.iter().map(|row| row.1.chars().count() / 2).max().unwrap_or(0);
+        let mut maze = Maze::new(columns, count, cell).ok_or_else(|| {
+            let found = format!("a maze of {columns} by {count} cells");
+            let expected = format!("at most {MAX_MAZE_CELLS} cells");
+            FormatError::new(self.notes.file, Location { line: rows[0].0, column: 1 }, found, expected)
+        })?;
+        for (index, &(number, text)) in rows.iter().enumerate() {
+            let row = rows.len() - 1 - index;
+            for (column, c) in text.chars().enumerate() {
+                if !maze.draw(row, column, c) {
+                    let at = Location { line: number, column: column + 1 };
+                    self.notes.warn(at, format!("{} has no meaning here; ignored", shown(&c.to_string())));
+                }
+            }
+        }
+        Ok(maze)
+    }
+}
+
+impl Maze {
+    /// Enters a character of the picture. Returns whether it has a meaning in its column.
+    fn draw(&mut self, row: usize, column: usize, c: char) -> bool {
+        let in_cell = column % 2 == 1;
+        match c {
+            '|' if !in_cell => self.set_wall_left(column / 2, row, true),
+            '_' if in_cell => self.set_wall_below(column / 2, row, true),
+            _ if in_cell && c.is_ascii_alphabetic() => {
+                self.set_letter(column / 2, row, Some(c));
+                if c.is_ascii_uppercase() {
+                    self.set_wall_below(column / 2, row, true);
+                }
+            }
+            ' ' | '.' | '_' => {}
+            _ => return false,
+        }
+        true
+    }
+
+    fn print_row(&self, row: usize) -> String {
+        let in_cell = |column| match (self.letter(column, row), self.wall_below(column, row)) {
+            (Some(letter), true) => letter.to_ascii_uppercase(),
+            (Some(letter), false) => letter,
+            (None, true) => '_',
+            (None, false) => ' ',
+        };
+        let before = |column| if self.wall_left(column, row) { '|' } else { ' ' };
+        let mut line: String =
+            (0..self.columns).flat_map(|column| [before(column), in_cell(column)]).collect();
+        line.push(before(self.columns));
+        line
+    }
+}
+
+fn cell_size(text: &str, file: &str, number: usize, line: &str) -> Result<f64, FormatError> {
+    let indent = line.chars().take_while(|c| c.is_whitespace()).count();
+    let error = |expected: &str| {
+        let at = Location { line: number, column: indent + 1 };
+        FormatError::new(file, at, shown(text), format!("the size of a cell in millimetres, {expected}"))
+    };
+    let size = number::parse(text, MILLI).ok_or_else(|| error("a single number"))?;
+    if size > 0.0 && size <= MAX_METRES { Ok(size) } else { Err(error("more than 0 and at most 1000000000")) }
+}
+
+/// Writes a maze, so that [`parse_maze`] gives it back.
+pub fn print(maze: &Maze) -> String {
+    let mut lines: Vec<String> = (0..=maze.rows).rev().map(|row| maze.print_row(row)).collect();
+    let width = 2 * maze.columns;
+    if lines.iter().all(|line| line.trim_end().len() < width) {
+        // Nothing stands in the last column: a dot keeps its place.
+        if let Some(last) = lines.last_mut() {
+            last.replace_range(width - 1..width, ".");
+        }
+    }
+    let mut text = String::new();
+    for line in &lines {
+        text.push_str(if line.trim().is_empty() { " ." } else { line.trim_end() });
+        text.push('\n');
+    }
+    text + &millimetres(maze.cell) + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Segment;
+    use proptest::prelude::*;
+
+    fn world(text: &str) -> World {
+        parse(text, "test.maz").unwrap().value
+    }
+
+    fn lines(world: &World) -> Vec<Segment> {
+        world.walls.iter().map(|wall| wall.line).collect()
+    }
+
+    fn segment(ax: f64, ay: f64, bx: f64, by: f64) -> Segment {
+        Segment::new(Point::new(ax, ay), Point::new(bx, by))
+    }
+
+    #[test]
+    fn a_box_of_two_cells() {
+        let world = world(" _ _\n|_ _|\n1000\n");
+        assert_eq!(world.floor.max, Point::new(2.0, 1.0));
+        let expected = [
+            segment(0.0, 0.0, 2.0, 0.0),
+            segment(0.0, 1.0, 2.0, 1.0),
+            segment(0.0, 0.0, 0.0, 1.0),
+            segment(2.0, 0.0, 2.0, 1.0),
+        ];
+        assert_eq!(lines(&world), expected);
+    }
+
+    #[test]
+    fn letters_stand_in_cells_and_capitals_on_walls() {
+        let world = world(" _ _ _\n|a|o x|\n|S b D|\n");
+        let places: Vec<(char, f64, f64)> =
+            world.places.iter().map(|p| (p.letter, p.position.x, p.position.y)).collect();
+        assert_eq!(
+            places,
+            [('a', 0.18, 0.54), ('S', 0.18, 0.18), ('b', 0.54, 0.18), ('D', 2.5 * 0.36, 0.18)]
+        );
+        assert_eq!(world.start, Some(Pose::from_mm_deg(180.0, 180.0, 90.0)));
+        assert_eq!(world.places[3].heading, Some(units::from_deg(-90.0)));
+        let names: Vec<&str> = world.objects.iter().map(|o| o.kind.name.as_str()).collect();
+        assert_eq!(names, ["golf", "crate"]);
+        let bottom: Vec<Segment> =
+            lines(&world).into_iter().filter(|s| s.a.y == 0.0 && s.b.y == 0.0).collect();
+        assert_eq!(bottom, [segment(0.0, 0.0, 0.36, 0.0), segment(0.72, 0.0, 1.08, 0.0)]);
+    }
+
+    #[test]
+    fn the_cell_size_stands_first_or_last_or_nowhere() {
+        let cell = |text: &str| parse_maze(text, "test.maz").unwrap().value.cell;
+        assert_eq!(cell("720\n _\n|_|"), 0.72);
+        assert_eq!(cell(" _\r\n|_|\r\n180 ; small\r\n"), 0.18);
+        assert_eq!(cell("# maze\n\n _\n|_|\n\n  # end\n"), 0.36);
+        assert_eq!(cell(" _\n|_|\n   \n250\n\n"), 0.25);
+        assert_eq!(parse_maze(" _\n|_|\n   \n", "m").unwrap().value.rows(), 1);
+    }
+
+    #[test]
+    fn what_does_not_belong_is_named() {
+        let parsed = parse_maze("180\n _ _\n||7_|\nmaze\n|_ _|\n90\n|_ _|\n360", "m.maz").unwrap();
+        let messages: Vec<String> = parsed.warnings.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            messages,
+            [
+                "m.maz:4:1: `maze` is no row of a maze; skipped",
+                "m.maz:6:1: a number inside the picture; ignored",
+                "m.maz:8:1: a second cell size; this one counts",
+                "m.maz:3:2: `|` has no meaning here; ignored",
+                "m.maz:3:3: `7` has no meaning here; ignored",
+            ]
+        );
+        assert_eq!(parsed.value.cell, 0.36);
+    }
+
+    prop_compose! {
+        fn maze()(columns in 1..6usize, rows in 0..6usize)(
+            walls in proptest::collection::vec(any::<(bool, bool)>(), (columns + 1) * (rows + 1)),
+            letters in proptest::collection::vec(proptest::option::of(proptest::char::range('a', 'z')), columns * rows),
+            cell in 0.001..3.0f64,
+            columns in Just(columns),
+            rows in Just(rows),
+        ) -> Maze {
+            let mut maze = Maze::new(columns, rows, cell).unwrap();
+            for (i, &(below, left)) in walls.iter().enumerate() {
+                maze.set_wall_below(i % (columns + 1), i / (columns + 1), below);
+                maze.set_wall_left(i % (columns + 1), i / (columns + 1), left);
+            }
+            for (i, &letter) in letters.iter().enumerate() {
+                maze.set_letter(i % columns, i / columns, letter);
+            }
+            maze
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_printed_reads_back(maze in maze()) {
+            let parsed = parse_maze(&print(&maze), "m.maz").unwrap();
+            prop_assert_eq!(parsed.warnings, vec![]);
+            prop_assert_eq!(parsed.value, maze);
+        }
+
+        #[test]
+        fn what_was_read_survives_printing(text in "(([|_ .aS7\t]){0,6}\n){0,6}(360|0\\.5|-1|x)?\n?") {
+            if let Ok(parsed) = parse_maze(&text, "m.maz") {
+                prop_assert_eq!(parse_maze(&print(&parsed.value), "m.maz").unwrap().value, parsed.value);
+            }
+        }
+
+        #[test]
+        fn joined_walls_are_as_long_as_single_ones(maze in maze()) {
+            let count = (0..=maze.rows())
+                .flat_map(|row| (0..=maze.columns()).map(move |column| (column, row)))
+                .map(|(c, r)| usize::from(maze.wall_below(c, r)) + usize::from(maze.wall_left(c, r)))
+                .sum::<usize>();
+            let length: f64 = maze.to_world().walls.iter().map(|wall| wall.line.length()).sum();
+            prop_assert!((length - count as f64 * maze.cell).abs() < 1e-9);
+        }
+    }
+}

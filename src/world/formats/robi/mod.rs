@@ -1,0 +1,57 @@
+//! EyeSim's robots (`.robi`).
+//!
+//! | line | meaning |
+//! |---|---|
+//! | `drive DIFFERENTIAL_DRIVE`, `ACKERMANN_DRIVE`, `OMNI_DRIVE` | how it moves; other names are read as differential |
+//! | `name NAME` | by which scenes place it; the file's name without it |
+//! | `model FILE [X Y Z RX RY RZ]` | the 3D model, and how it is shifted and turned |
+//! | `collider box SX SY SZ X Y Z`, `sphere R X Y Z`, `capsule R H X Y Z` | solid parts: sizes, then middle |
+//! | `mass KG X Y Z` | its mass and the middle of it |
+//! | `axis UP FORWARD` | the driven axle |
+//! | `axel drive UP FORWARD`, `axel turn UP FORWARD` | the driven and the steered axle |
+//! | `wheel [drive\|turn] DIAMETER DEG_PER_S TICKS HALF_TRACK` | the wheels |
+//! | `psd ID NAME X Y Z R1 R2 R3`, `psd NAME ID X Y Z R` | a distance sensor |
+//! | `camera X Y Z PAN TILT MAX_PAN MAX_TILT` | the camera |
+//! | `fisheye DEG` | its lens |
+//! | `lidar [X Y Z R1 R2 R3] RANGE TILT POINTS`, `lidar RANGE POINTS TILT`, `lidar POINTS TILT` | the scanner |
+//!
+//! The model's axes point right, up and forward. Sensors and footprint of a [`RobotSpec`](crate::world::RobotSpec)
+//! are about the middle of the driven axle, whose place in the model is in
+//! [`Body::axle`](crate::world::Body::axle); heights are those of the model. The footprint follows from the colliders
+//! by the rule of [`Body::footprint`](crate::world::Body::footprint); without colliders it is a disc that reaches a
+//! wheel's radius beyond the wheels.
+//!
+//! # Where a sensor sits
+//!
+//! The files in use disagree about the columns of `psd`, `lidar` and `camera`. This reader takes them as follows.
+//!
+//! * `psd NAME ID X Y Z R`: forward, left, up; R to the left.
+//! * `psd ID NAME X Y Z R1 R2 R3`: one of the rotations is not zero, and is the yaw. If it is the third in any sensor
+//!   of the file, the columns are side, forward, up and the yaw is clockwise; otherwise they are forward, left, up and
+//!   the yaw is to the left. A sensor called FRONT with X = 0 in a file without any rotation has the former columns.
+//! * A name that says left (LEFT, or L among the letters F, B, R, L as in `PSD_FL`) makes side and yaw left, one that
+//!   says right makes them right.
+//! * `lidar` of nine numbers has the columns of the file's `psd` lines, its own third rotation telling them apart
+//!   without any.
+//! * `camera`: forward, left, up, unless X is 0 and Y is not; then Y is forward.
+//!
+//! # Lines of our own
+//!
+//! EyeSim skips keywords that it does not know, so a description can say here what EyeSim's formats cannot:
+//!
+//! | line | meaning |
+//! |---|---|
+//! | `motor LAG ACCELERATION` | seconds, and millimetres per second squared |
+//! | `steering DEG` | the largest steering angle; 30 without it |
+//! | `outline disc R HEIGHT`, `outline rectangle BACK RIGHT FRONT LEFT HEIGHT` | footprint about the driven axle |
+//! | `psd_range MM` | how far the `psd` of the line before sees |
+//! | `lidar_range MM` | how far the lidar sees |
+//! | `camera_view DEG` | the camera's horizontal field of view |
+
+mod mounts;
+mod parts;
+mod read;
+mod write;
+
+pub use read::parse;
+pub use write::print;

@@ -1,0 +1,132 @@
+//! Where sensors sit: the rules that reconcile the files in use.
+
+use super::super::error::FormatError;
+use super::super::lexer::Line;
+use crate::geometry::units;
+use crate::world::Mount;
+use crate::world::formats::args::Args;
+
+/// What the first three and the rotation columns of a sensor mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Columns {
+    /// Forward, left, up; angles to the left.
+    ForwardLeftUp,
+    /// Side, forward, up; angles clockwise.
+    SideForwardUp,
+}
+
+/// A sensor's numbers as they stand in the file: metres and degrees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Raw {
+    pub(super) place: [f64; 3],
+    pub(super) rotation: [f64; 3],
+}
+
+impl Raw {
+    /// Three coordinates and three angles.
+    pub(super) fn read(args: &mut Args<'_, '_>, what: &str) -> Result<Self, FormatError> {
+        let place = Self::place(args, what)?;
+        let mut angle = |axis| args.direction_degrees(&format!("{what}'s rotation {axis}"));
+        Ok(Self { place, rotation: [angle(1)?, angle(2)?, angle(3)?] })
+    }
+
+    /// Three coordinates and one angle, to the left.
+    pub(super) fn read_with_yaw(args: &mut Args<'_, '_>, what: &str) -> Result<Self, FormatError> {
+        let place = Self::place(args, what)?;
+        Ok(Self { place, rotation: [0.0, args.direction_degrees(&format!("{what}'s rotation"))?, 0.0] })
+    }
+
+    fn place(args: &mut Args<'_, '_>, what: &str) -> Result<[f64; 3], FormatError> {
+        let mut length = |axis| args.length(&format!("{what}'s {axis}"));
+        Ok([length("x")?, length("y")?, length("z")?])
+    }
+
+    /// The pose about the driven axle, `ahead` metres before the model's origin, of a sensor of some name.
+    pub(super) fn mount(&self, columns: Columns, name: &str, ahead: f64) -> Mount {
+        let [a, b, z] = self.place;
+        let (forward, aside, turn) = match columns {
+            Columns::ForwardLeftUp => (a, b, self.turn([1, 2, 0])),
+            Columns::SideForwardUp => (b, a, -self.turn([2, 1, 0])),
+        };
+        let (y, yaw) = match side(name) {
+            Some(Side::Left) => (aside.abs(), turn.abs()),
+            Some(Side::Right) => (-aside.abs(), -turn.abs()),
+            None => (aside, turn),
+        };
+        let yaw = if yaw == -180.0 { 180.0 } else { yaw };
+        Mount { x: forward - ahead, y, z, yaw: units::from_deg(yaw) }
+    }
+
+    /// The first rotation in some order that is not zero.
+    fn turn(&self, order: [usize; 3]) -> f64 {
+        order.into_iter().map(|i| self.rotation[i]).find(|&turn| turn != 0.0).unwrap_or(0.0)
+    }
+}
+
+/// The columns of a file whose sensors have these names and numbers.
+pub(super) fn columns<'n>(sensors: impl Iterator<Item = (&'n str, Raw)> + Clone) -> Columns {
+    let turned = |index: usize| sensors.clone().any(|(_, raw)| raw.rotation[index] != 0.0);
+    let ahead = |(name, raw): (&str, Raw)| {
+        name.to_ascii_uppercase().contains("FRONT") && raw.place[0] == 0.0 && raw.place[1] != 0.0
+    };
+    let straight = !(turned(0) || turned(1) || turned(2));
+    if turned(2) || (straight && sensors.clone().any(ahead)) {
+        Columns::SideForwardUp
+    } else {
+        Columns::ForwardLeftUp
+    }
+}
+
+/// A camera's place: forward, left, up, unless it sits at x = 0 beside the middle, which no camera does.
+pub(super) fn camera_place([a, b, z]: [f64; 3], ahead: f64) -> Mount {
+    let (forward, left) = if a == 0.0 && b != 0.0 { (b, 0.0) } else { (a, b) };
+    Mount { x: forward - ahead, y: left, z, yaw: 0.0 }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    Left,
+    Right,
+}
+
+/// The side that a sensor's name speaks of.
+pub(super) fn side(name: &str) -> Option<Side> {
+    let name = name.to_ascii_uppercase();
+    let parts = || name.split(|c: char| !c.is_ascii_alphabetic());
+    let short = |part: &&str| !part.is_empty() && part.chars().all(|c| "FBLR".contains(c));
+    let says = |word: &str, letter: char| {
+        name.contains(word) || parts().filter(short).any(|part| part.contains(letter))
+    };
+    match (says("LEFT", 'L'), says("RIGHT", 'R')) {
+        (true, false) => Some(Side::Left),
+        (false, true) => Some(Side::Right),
+        _ => None,
+    }
+}
+
+/// Whether a `psd` line begins with the number, and not with the name.
+pub(super) fn number_first(line: &Line<'_>) -> bool {
+    Args::after_keyword(line).numbers_ahead() > 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_tell_sides() {
+        for (name, expected) in [
+            ("PSD_LEFT", Some(Side::Left)),
+            ("psd_right", Some(Side::Right)),
+            ("PSD_FL", Some(Side::Left)),
+            ("PSD_FFR", Some(Side::Right)),
+            ("L", Some(Side::Left)),
+            ("PSD_FRONT", None),
+            ("PSD_BACK", None),
+            ("LEFT_RIGHT", None),
+            ("ROLL", None),
+        ] {
+            assert_eq!(side(name), expected, "{name}");
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! The lines of a robot's solid and wheels.
+
+use super::super::args::Args;
+use super::super::error::FormatError;
+use super::super::lexer::Line;
+use super::super::limits::MAX_DEGREES;
+use crate::geometry::{Aabb, Point, units};
+use crate::world::{Axis, Collider, Footprint};
+
+/// A `wheel` line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Wheel {
+    pub(super) diameter: f64,
+    pub(super) max_speed: f64,
+    pub(super) ticks: f64,
+    pub(super) track: f64,
+}
+
+impl Wheel {
+    /// Diameter, degrees per second, ticks per turn, half of the track.
+    pub(super) fn read(args: &mut Args<'_, '_>) -> Result<Self, FormatError> {
+        Ok(Self {
+            diameter: args.positive_size("the wheel's diameter")?,
+            max_speed: units::from_deg(
+                args.degrees("the wheel's highest speed per second", f64::MIN_POSITIVE..=MAX_DEGREES)?,
+            ),
+            ticks: args.plain("the encoder's ticks per turn", f64::MIN_POSITIVE..=1e9)?,
+            track: 2.0 * args.positive_size("half the distance between the wheels")?,
+        })
+    }
+}
+
+/// A `collider` line.
+pub(super) fn collider(line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<Collider, FormatError> {
+    let expected = "`box`, `sphere` or `capsule`";
+    match args.word(expected)?.text.to_ascii_lowercase().as_str() {
+        "box" => {
+            let size = args.model_size("the box's size")?;
+            Ok(Collider::Box { size, centre: args.model_place("the box's middle")? })
+        }
+        "sphere" => {
+            let radius = args.positive_size("the sphere's radius")?;
+            Ok(Collider::Sphere { radius, centre: args.model_place("the sphere's middle")? })
+        }
+        "capsule" => {
+            let radius = args.positive_size("the capsule's radius")?;
+            let height = args.positive_size("the capsule's height")?;
+            let centre = args.model_place("the capsule's middle")?;
+            Ok(Collider::Capsule { radius, height, axis: Axis::Up, centre })
+        }
+        _ => Err(line.error(1, expected)),
+    }
+}
+
+/// An `axis` or `axel` line: forward and up.
+pub(super) fn axle(args: &mut Args<'_, '_>) -> Result<[f64; 2], FormatError> {
+    let up = args.length("the axle's height")?;
+    Ok([args.length("the axle's distance ahead")?, up])
+}
+
+/// An `outline` line: footprint and height.
+pub(super) fn outline(line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<(Footprint, f64), FormatError> {
+    let expected = "`disc` or `rectangle`";
+    let footprint = match args.word(expected)?.text.to_ascii_lowercase().as_str() {
+        "disc" => Footprint::Disc { radius: args.positive_size("the outline's radius")? },
+        "rectangle" => {
+            let mut side = |what: &str| args.length(&format!("the outline's {what} side"));
+            let (back, right) = (side("back")?, side("right")?);
+            Footprint::Rectangle(Aabb::new(
+                Point::new(back, right),
+                Point::new(side("front")?, side("left")?),
+            ))
+        }
+        _ => return Err(line.error(1, expected)),
+    };
+    Ok((footprint, args.positive_size("the outline's height")?))
+}

@@ -1,0 +1,389 @@
+use std::path::PathBuf;
+
+use super::super::args::Args;
+use super::super::error::{FormatError, Location, Notes, Parsed};
+use super::super::lexer::{self, Line, shown};
+use super::super::limits::{MAX_METRES, MAX_PARTS};
+use super::super::number::MILLI;
+use super::super::source::check_length;
+use super::mounts::{self, Columns, Raw};
+use super::parts::{self, Wheel};
+use crate::geometry::units;
+use crate::world::formats::{number, stem};
+use crate::world::{Body, CameraSpec, DriveSpec, Footprint, LidarSpec, Mount, PsdSpec, RobotSpec};
+
+/// The largest steering angle of cars that state none, in radians: 30 degrees.
+pub(super) const DEFAULT_STEERING: f64 = std::f64::consts::FRAC_PI_6;
+/// The height of robots without colliders, in metres.
+const DEFAULT_HEIGHT: f64 = 0.1;
+
+/// Reads a robot. A `drive` line is required.
+pub fn parse(text: &str, file: &str) -> Result<Parsed<RobotSpec>, FormatError> {
+    check_length(text, file)?;
+    let mut reader = Reader::new(file);
+    for (number, text) in lexer::numbered(text) {
+        if let Some(line) = lexer::line(file, number, text)? {
+            reader.line(&line)?;
+        }
+    }
+    reader.finish()
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Drive {
+    Differential,
+    Ackermann,
+    Omni,
+}
+
+/// A `psd` line.
+struct Psd {
+    id: u8,
+    name: String,
+    raw: Raw,
+    /// Whether its columns are those of the file, and not fixed by its form.
+    shared: bool,
+    max_range: f64,
+}
+
+struct Reader<'f> {
+    spec: RobotSpec,
+    drive: Option<Drive>,
+    wheel: Option<Wheel>,
+    turn_axle: Option<f64>,
+    steering: f64,
+    psds: Vec<Psd>,
+    lidar_mount: Option<Raw>,
+    lidar_range: Option<f64>,
+    camera_place: Option<[f64; 3]>,
+    camera_view: Option<(f64, bool)>,
+    outline: Option<(Footprint, f64)>,
+    notes: Notes<'f>,
+}
+
+impl<'f> Reader<'f> {
+    fn new(file: &'f str) -> Self {
+        let blank = RobotSpec {
+            name: stem(file),
+            mass: 1.0,
+            psds: Vec::new(),
+            lidar: None,
+            camera: None,
+            ..RobotSpec::s4()
+        };
+        Self {
+            spec: blank,
+            drive: None,
+            wheel: None,
+            turn_axle: None,
+            steering: DEFAULT_STEERING,
+            psds: Vec::new(),
+            lidar_mount: None,
+            lidar_range: None,
+            camera_place: None,
+            camera_view: None,
+            outline: None,
+            notes: Notes::new(file),
+        }
+    }
+
+    fn line(&mut self, line: &Line<'_>) -> Result<(), FormatError> {
+        let keyword = line.words[0].text.to_ascii_lowercase();
+        let mut args = Args::after_keyword(line);
+        if self.drive.is_none() && keyword != "drive" {
+            self.notes.warn(line.location(0), "a line before `drive`, which EyeSim wants first");
+        }
+        match keyword.as_str() {
+            "drive" => return self.drive(line, &mut args),
+            "name" => self.spec.name = args.name("a name")?,
+            "model" => self.model(&mut args)?,
+            "collider" => {
+                self.check_parts(line, self.spec.body.colliders.len())?;
+                let collider = parts::collider(line, &mut args)?;
+                self.spec.body.colliders.push(collider);
+            }
+            "mass" => {
+                self.spec.mass = args.plain("a mass in kilograms", 0.0..=1e9)?;
+                self.spec.body.mass_centre = args.model_place("the mass")?;
+            }
+            "axis" => self.spec.body.axle = parts::axle(&mut args)?,
+            "axel" | "axle" => self.axle(line, &mut args)?,
+            "wheel" => self.wheel(&mut args)?,
+            "psd" => self.psd(line, &mut args)?,
+            "lidar" => self.lidar(line, &mut args)?,
+            "camera" => self.camera(&mut args)?,
+            "fisheye" => {
+                let angle = args.degrees("the lens's angle", 1.0..=360.0)?;
+                self.camera_view = Some((units::from_deg(angle), true));
+            }
+            _ if self.own_line(&keyword, line, &mut args)? => {}
+            _ => {
+                let message = format!("unknown keyword {}; the line is skipped", shown(line.words[0].text));
+                self.notes.warn(line.location(0), message);
+                return Ok(());
+            }
+        }
+        args.finish(&mut self.notes);
+        Ok(())
+    }
+
+    /// Lines that EyeSim does not know. Returns whether the keyword is one.
+    fn own_line(
+        &mut self,
+        keyword: &str,
+        line: &Line<'_>,
+        args: &mut Args<'_, '_>,
+    ) -> Result<bool, FormatError> {
+        match keyword {
+            "motor" => {
+                self.spec.motor.time_constant = args.plain("the motors' lag in seconds", 0.0..=1e6)?;
+                self.spec.motor.max_acceleration =
+                    args.positive_size("the highest acceleration per second squared")?;
+            }
+            "steering" => {
+                let degrees = args.degrees("the largest steering angle", f64::MIN_POSITIVE..=90.0)?;
+                self.steering = units::from_deg(degrees);
+            }
+            "outline" => self.outline = Some(parts::outline(line, args)?),
+            "psd_range" => {
+                let range = args.positive_size("the sensor's range")?;
+                let last = self.psds.last_mut().ok_or_else(|| line.error(0, "a `psd` line before it"))?;
+                last.max_range = range;
+            }
+            "lidar_range" => self.lidar_range = Some(args.positive_size("the lidar's range")?),
+            "camera_view" => {
+                let angle = args.degrees("the camera's angle", f64::MIN_POSITIVE..=360.0)?;
+                self.camera_view = Some((units::from_deg(angle), false));
+            }
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    fn drive(&mut self, line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<(), FormatError> {
+        let name = args.word("the name of a drive")?.text;
+        // Further words are of no consequence.
+        self.drive = Some(match name.to_ascii_uppercase().as_str() {
+            "DIFFERENTIAL_DRIVE" => Drive::Differential,
+            "ACKERMANN_DRIVE" => Drive::Ackermann,
+            "OMNI_DRIVE" => Drive::Omni,
+            _ => {
+                let message = format!("unknown drive {}; read as DIFFERENTIAL_DRIVE", shown(name));
+                self.notes.warn(line.location(1), message);
+                Drive::Differential
+            }
+        });
+        Ok(())
+    }
+
+    fn model(&mut self, args: &mut Args<'_, '_>) -> Result<(), FormatError> {
+        self.spec.model = Some(PathBuf::from(args.path("the model's file", &[".obj"], &mut self.notes)?));
+        let body = &mut self.spec.body;
+        if args.left() > 0 {
+            let mut length = |axis| args.length(&format!("the model's {axis}"));
+            body.model_offset = [length("x")?, length("y")?, length("z")?];
+            let mut angle = |axis| args.direction(&format!("the model's rotation {axis}"));
+            body.model_rotation = [angle("x")?, angle("y")?, angle("z")?];
+        }
+        Ok(())
+    }
+
+    fn axle(&mut self, line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<(), FormatError> {
+        match args.word("`drive` or `turn`")?.text.to_ascii_lowercase().as_str() {
+            "drive" => self.spec.body.axle = parts::axle(args)?,
+            "turn" => {
+                let [ahead, up] = parts::axle(args)?;
+                self.spec.body.turn_axle_height = up;
+                self.turn_axle = Some(ahead);
+            }
+            _ => return Err(line.error(1, "`drive` or `turn`")),
+        }
+        Ok(())
+    }
+
+    fn wheel(&mut self, args: &mut Args<'_, '_>) -> Result<(), FormatError> {
+        let first = args.peek().map_or(String::new(), |word| word.text.to_ascii_lowercase());
+        if first == "drive" || first == "turn" {
+            args.word("`drive` or `turn`")?;
+        }
+        let wheel = Wheel::read(args)?;
+        // Steered wheels only roll along: they count if there are no others.
+        if first != "turn" || self.wheel.is_none() {
+            self.wheel = Some(wheel);
+        }
+        Ok(())
+    }
+
+    fn psd(&mut self, line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<(), FormatError> {
+        self.check_parts(line, self.psds.len())?;
+        let shared = mounts::number_first(line);
+        let mut id = 0;
+        if shared {
+            id = args.count("the sensor's number", 0..=255)?;
+        }
+        let name = args.word("the sensor's name")?.text.to_string();
+        if !shared {
+            id = args.count("the sensor's number", 0..=255)?;
+        }
+        let one_angle = !shared || args.numbers_ahead() == 4;
+        let raw =
+            if one_angle { Raw::read_with_yaw(args, "the sensor")? } else { Raw::read(args, "the sensor")? };
+        if raw.rotation.iter().filter(|&&turn| turn != 0.0).count() > 1 {
+            self.notes
+                .warn(line.location(6), "a sensor turned about more than one axis; only its yaw counts");
+        }
+        if self.psds.iter().any(|psd| u32::from(psd.id) == id) {
+            self.notes.warn(line.location(0), format!("a second sensor with the number {id}"));
+        }
+        let max_range = PsdSpec::DEFAULT_MAX_RANGE;
+        self.psds.push(Psd { id: id as u8, name, raw, shared: shared && !one_angle, max_range });
+        Ok(())
+    }
+
+    fn lidar(&mut self, line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<(), FormatError> {
+        let mut lidar = LidarSpec::default();
+        let numbers = args.left();
+        if numbers > 3 {
+            self.lidar_mount = Some(Raw::read(args, "the lidar")?);
+        }
+        if numbers > 2 {
+            lidar.field_of_view =
+                units::from_deg(args.degrees("the lidar's range", f64::MIN_POSITIVE..=360.0)?);
+        }
+        let points = |args: &mut Args<'_, '_>| args.count("the lidar's points", 1..=100_000);
+        let tilt = |args: &mut Args<'_, '_>| args.degrees("the lidar's tilt", -90.0..=90.0);
+        let (count, degrees) = if numbers > 3 {
+            let degrees = tilt(args)?;
+            (points(args)?, degrees)
+        } else if numbers >= 2 {
+            (points(args)?, tilt(args)?)
+        } else {
+            return Err(line.error(1 + numbers, "2, 3 or 9 numbers for the lidar"));
+        };
+        (lidar.points, lidar.tilt) = (count as usize, units::from_deg(degrees));
+        self.spec.lidar = Some(lidar);
+        Ok(())
+    }
+
+    fn camera(&mut self, args: &mut Args<'_, '_>) -> Result<(), FormatError> {
+        let mut length = |axis| args.length(&format!("the camera's {axis}"));
+        self.camera_place = Some([length("x")?, length("y")?, length("z")?]);
+        let pan = args.direction("the camera's pan")?;
+        let tilt = args.direction("the camera's tilt")?;
+        let mut limit = |what| args.degrees(what, 0.0..=3600.0).map(units::from_deg);
+        self.spec.camera = Some(CameraSpec {
+            mount: Mount { yaw: pan, ..Mount::default() },
+            tilt,
+            max_pan: limit("the camera's largest pan")?,
+            max_tilt: limit("the camera's largest tilt")?,
+            field_of_view: CameraSpec::DEFAULT_FIELD_OF_VIEW,
+            fisheye: false,
+        });
+        Ok(())
+    }
+
+    fn check_parts(&self, line: &Line<'_>, count: usize) -> Result<(), FormatError> {
+        if count < MAX_PARTS { Ok(()) } else { Err(line.error(0, format!("at most {MAX_PARTS} of them"))) }
+    }
+
+    fn finish(mut self) -> Result<Parsed<RobotSpec>, FormatError> {
+        let Some(drive) = self.drive else {
+            let (found, expected) = ("no `drive` line", "`drive` and the name of a drive");
+            return Err(FormatError::new(self.notes.file, Location::START, found, expected));
+        };
+        self.spec.drive = self.drive_spec(drive)?;
+        self.place_sensors();
+        self.place_footprint(drive);
+        Ok(self.notes.finish(self.spec))
+    }
+
+    fn drive_spec(&mut self, drive: Drive) -> Result<DriveSpec, FormatError> {
+        let wheel = self.wheel.unwrap_or_else(|| {
+            self.notes.warn(Location::START, "no `wheel` line; the wheels of an S4 are taken");
+            Wheel { diameter: 0.054, max_speed: units::from_deg(3600.0), ticks: 1100.0, track: 0.090 }
+        });
+        let Wheel { diameter: wheel_diameter, max_speed: max_wheel_speed, ticks: ticks_per_turn, track } =
+            wheel;
+        if drive == Drive::Differential {
+            return Ok(DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn });
+        }
+        let wheelbase = self.turn_axle.map_or(track, |ahead| ahead - self.spec.body.axle[0]);
+        if self.turn_axle.is_none() && drive == Drive::Ackermann {
+            self.notes.warn(Location::START, "no `axel turn` line; the axles are as far apart as the wheels");
+        }
+        if wheelbase <= 0.0 || wheelbase > MAX_METRES {
+            let found = format!("axles {} mm apart", number::print(wheelbase, MILLI));
+            return Err(FormatError::new(
+                self.notes.file,
+                Location::START,
+                found,
+                "the steered axle before the driven one",
+            ));
+        }
+        Ok(match drive {
+            Drive::Omni => {
+                DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn }
+            }
+            _ => DriveSpec::Ackermann {
+                wheel_diameter,
+                track,
+                wheelbase,
+                max_steering: self.steering,
+                max_wheel_speed,
+                ticks_per_turn,
+            },
+        })
+    }
+
+    fn place_sensors(&mut self) {
+        let ahead = self.spec.body.axle[0];
+        let shared = self.psds.iter().filter(|psd| psd.shared).map(|psd| (psd.name.as_str(), psd.raw));
+        let columns = mounts::columns(shared);
+        let any_shared = self.psds.iter().any(|psd| psd.shared);
+        for psd in std::mem::take(&mut self.psds) {
+            let columns = if psd.shared { columns } else { Columns::ForwardLeftUp };
+            let mount = psd.raw.mount(columns, &psd.name, ahead);
+            self.spec.psds.push(PsdSpec { id: psd.id, name: psd.name, mount, max_range: psd.max_range });
+        }
+        if let Some(lidar) = &mut self.spec.lidar {
+            if let Some(raw) = self.lidar_mount {
+                let columns = if any_shared { columns } else { mounts::columns(std::iter::once(("", raw))) };
+                lidar.mount = raw.mount(columns, "", ahead);
+            }
+            lidar.max_range = self.lidar_range.unwrap_or(lidar.max_range);
+        }
+        match (&mut self.spec.camera, self.camera_place) {
+            (Some(camera), Some(place)) => {
+                camera.mount = Mount { yaw: camera.mount.yaw, ..mounts::camera_place(place, ahead) };
+                if let Some((view, fisheye)) = self.camera_view {
+                    (camera.field_of_view, camera.fisheye) = (view, fisheye);
+                }
+            }
+            _ if self.camera_view.is_some() => {
+                self.notes.warn(Location::START, "a lens without a `camera` line; ignored");
+            }
+            _ => {}
+        }
+    }
+
+    fn place_footprint(&mut self, drive: Drive) {
+        let body = &mut self.spec.body;
+        let derived = body.footprint(drive == Drive::Differential);
+        let wheels = match self.spec.drive {
+            DriveSpec::Differential { wheel_diameter, track, .. }
+            | DriveSpec::Ackermann { wheel_diameter, track, .. }
+            | DriveSpec::Omni { wheel_diameter, track, .. } => 0.5 * (track + wheel_diameter),
+        };
+        let fallback = (Footprint::Disc { radius: wheels }, DEFAULT_HEIGHT);
+        (self.spec.footprint, self.spec.height) =
+            self.outline.take().or_else(|| derived.clone()).unwrap_or(fallback);
+        if says_all(body, &self.spec.footprint, self.spec.height) {
+            body.colliders.clear();
+        }
+    }
+}
+
+/// Whether footprint and height say all about the colliders.
+fn says_all(body: &Body, footprint: &Footprint, height: f64) -> bool {
+    *body.colliders == [body.collider_of_footprint(footprint, height)]
+}

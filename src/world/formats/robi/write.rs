@@ -1,0 +1,169 @@
+use std::fmt::{Result, Write as _};
+
+use super::super::esobj::model_place;
+use super::super::lexer::quote;
+use super::super::number::{self, degrees, millimetres, undo_shift};
+use super::read::DEFAULT_STEERING;
+use crate::world::{CameraSpec, Collider, DriveSpec, Footprint, MotorSpec, PsdSpec, RobotSpec};
+
+/// Writes a robot, so that [`parse`](super::parse) gives it back.
+///
+/// Sensors are written as `psd ID NAME` with the columns forward, left, up. A sensor on the other side than its name
+/// says comes back on the side of its name.
+pub fn print(spec: &RobotSpec) -> String {
+    let mut text = String::new();
+    write_spec(&mut text, spec).expect("writing to a string does not fail");
+    text
+}
+
+fn write_spec(text: &mut String, spec: &RobotSpec) -> Result {
+    let drive = match spec.drive {
+        DriveSpec::Differential { .. } => "DIFFERENTIAL_DRIVE",
+        DriveSpec::Ackermann { .. } => "ACKERMANN_DRIVE",
+        DriveSpec::Omni { .. } => "OMNI_DRIVE",
+    };
+    writeln!(text, "drive {drive}\nname {}", quote(&spec.name))?;
+    write_model(text, spec)?;
+    writeln!(text, "mass {} {}", number::print(spec.mass, 0), model_place(spec.body.mass_centre))?;
+    write_drive(text, spec)?;
+    write_solid(text, spec)?;
+    write_motor(text, spec)?;
+    spec.psds.iter().try_for_each(|psd| write_psd(text, psd, spec.body.axle[0]))?;
+    write_lidar(text, spec)?;
+    spec.camera.iter().try_for_each(|camera| write_camera(text, camera, spec.body.axle[0]))
+}
+
+fn write_model(text: &mut String, spec: &RobotSpec) -> Result {
+    let Some(model) = &spec.model else { return Ok(()) };
+    write!(text, "model {}", quote(&model.to_string_lossy()))?;
+    let (offset, rotation) = (spec.body.model_offset, spec.body.model_rotation);
+    if offset != [0.0; 3] || rotation != [0.0; 3] {
+        write!(text, " {} {}", offset.map(millimetres).join(" "), rotation.map(degrees).join(" "))?;
+    }
+    writeln!(text)
+}
+
+fn write_drive(text: &mut String, spec: &RobotSpec) -> Result {
+    let [ahead, up] = spec.body.axle.map(millimetres);
+    let axles = |text: &mut String, wheelbase| {
+        let turn = millimetres(undo_shift(wheelbase, spec.body.axle[0]));
+        let turn_up = millimetres(spec.body.turn_axle_height);
+        writeln!(text, "axel drive {up} {ahead}\naxel turn {turn_up} {turn}")
+    };
+    match spec.drive {
+        DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn } => {
+            writeln!(text, "axis {up} {ahead}")?;
+            write_wheel(text, "", [wheel_diameter, max_wheel_speed, ticks_per_turn, track])
+        }
+        DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn } => {
+            axles(text, wheelbase)?;
+            write_wheel(text, "", [wheel_diameter, max_wheel_speed, ticks_per_turn, track])
+        }
+        DriveSpec::Ackermann {
+            wheel_diameter,
+            track,
+            wheelbase,
+            max_steering,
+            max_wheel_speed,
+            ticks_per_turn,
+        } => {
+            axles(text, wheelbase)?;
+            write_wheel(text, "drive ", [wheel_diameter, max_wheel_speed, ticks_per_turn, track])?;
+            write_wheel(text, "turn ", [wheel_diameter, max_wheel_speed, ticks_per_turn, track])?;
+            if max_steering == DEFAULT_STEERING {
+                Ok(())
+            } else {
+                writeln!(text, "steering {}", degrees(max_steering))
+            }
+        }
+    }
+}
+
+fn write_wheel(text: &mut String, which: &str, [diameter, speed, ticks, track]: [f64; 4]) -> Result {
+    let (diameter, half) = (millimetres(diameter), millimetres(0.5 * track));
+    writeln!(text, "wheel {which}{diameter} {} {} {half}", degrees(speed), number::print(ticks, 0))
+}
+
+fn write_solid(text: &mut String, spec: &RobotSpec) -> Result {
+    let mut body = spec.body.clone();
+    if body.colliders.is_empty() {
+        body.colliders = vec![body.collider_of_footprint(&spec.footprint, spec.height)];
+    }
+    body.colliders.iter().try_for_each(|collider| write_collider(text, collider))?;
+    let turns = matches!(spec.drive, DriveSpec::Differential { .. });
+    if body
+        .footprint(turns)
+        .is_some_and(|(footprint, height)| footprint == spec.footprint && height == spec.height)
+    {
+        return Ok(());
+    }
+    let height = millimetres(spec.height);
+    match &spec.footprint {
+        Footprint::Disc { radius } => writeln!(text, "outline disc {} {height}", millimetres(*radius)),
+        Footprint::Rectangle(b) => {
+            let sides = [b.min.x, b.min.y, b.max.x, b.max.y].map(millimetres).join(" ");
+            writeln!(text, "outline rectangle {sides} {height}")
+        }
+    }
+}
+
+fn write_collider(text: &mut String, collider: &Collider) -> Result {
+    match *collider {
+        Collider::Box { size: [forward, left, up], centre } => {
+            let size = [left, up, forward].map(millimetres).join(" ");
+            writeln!(text, "collider box {size} {}", model_place(centre))
+        }
+        Collider::Sphere { radius, centre } => {
+            writeln!(text, "collider sphere {} {}", millimetres(radius), model_place(centre))
+        }
+        // The format's capsules are upright.
+        Collider::Capsule { radius, height, centre, .. } => {
+            let size = [radius, height].map(millimetres).join(" ");
+            writeln!(text, "collider capsule {size} {}", model_place(centre))
+        }
+    }
+}
+
+fn write_motor(text: &mut String, spec: &RobotSpec) -> Result {
+    if spec.motor == MotorSpec::default() {
+        return Ok(());
+    }
+    let lag = number::print(spec.motor.time_constant, 0);
+    writeln!(text, "motor {lag} {}", millimetres(spec.motor.max_acceleration))
+}
+
+fn write_psd(text: &mut String, psd: &PsdSpec, ahead: f64) -> Result {
+    let place = [undo_shift(psd.mount.x, ahead), psd.mount.y, psd.mount.z].map(millimetres).join(" ");
+    writeln!(text, "psd {} {} {place} 0 {} 0", psd.id, quote(&psd.name), degrees(psd.mount.yaw))?;
+    if psd.max_range == PsdSpec::DEFAULT_MAX_RANGE {
+        return Ok(());
+    }
+    writeln!(text, "psd_range {}", millimetres(psd.max_range))
+}
+
+fn write_lidar(text: &mut String, spec: &RobotSpec) -> Result {
+    let Some(lidar) = &spec.lidar else { return Ok(()) };
+    let mount = &lidar.mount;
+    let place = [undo_shift(mount.x, spec.body.axle[0]), mount.y, mount.z].map(millimetres).join(" ");
+    let (yaw, range, tilt) = (degrees(mount.yaw), degrees(lidar.field_of_view), degrees(lidar.tilt));
+    writeln!(text, "lidar {place} 0 {yaw} 0 {range} {tilt} {}", lidar.points)?;
+    if lidar.max_range == PsdSpec::DEFAULT_MAX_RANGE {
+        return Ok(());
+    }
+    writeln!(text, "lidar_range {}", millimetres(lidar.max_range))
+}
+
+fn write_camera(text: &mut String, camera: &CameraSpec, ahead: f64) -> Result {
+    let mount = &camera.mount;
+    let place = [undo_shift(mount.x, ahead), mount.y, mount.z].map(millimetres).join(" ");
+    let angles = [mount.yaw, camera.tilt, camera.max_pan, camera.max_tilt].map(degrees).join(" ");
+    writeln!(text, "camera {place} {angles}")?;
+    let view = degrees(camera.field_of_view);
+    if camera.fisheye {
+        writeln!(text, "fisheye {view}")
+    } else if camera.field_of_view != CameraSpec::DEFAULT_FIELD_OF_VIEW {
+        writeln!(text, "camera_view {view}")
+    } else {
+        Ok(())
+    }
+}

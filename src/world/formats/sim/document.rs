@@ -1,0 +1,103 @@
+use super::super::error::{FormatError, Location};
+use crate::geometry::Pose;
+use crate::world::{Marker, Scene, Settings};
+
+/// A simulation script as written, before the files that it names are read.
+#[derive(Debug, Clone, Default)]
+pub struct SimFile {
+    /// Its lines, without comments and blank lines.
+    pub statements: Vec<Statement>,
+    /// Where the file name or the placed thing of each statement stands; shorter for scripts that were not read.
+    pub(super) places: Vec<Location>,
+    /// Why a line of an unknown word could not be read, if the word turns out to be known.
+    pub(super) broken: Vec<(usize, FormatError)>,
+}
+
+/// Where the statements stand does not count.
+impl PartialEq for SimFile {
+    fn eq(&self, other: &Self) -> bool {
+        self.statements == other.statements
+    }
+}
+
+/// A line of a simulation script.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Statement {
+    /// `world`: the file of the environment.
+    World(String),
+    /// `settings`.
+    Settings(Settings),
+    /// `robot`: the file of a robot.
+    Robot(String),
+    /// `object`: the file of an object.
+    Object(String),
+    /// A robot or an object by its name.
+    Place {
+        /// Its name.
+        name: String,
+        /// Where it starts.
+        at: Position,
+        /// The program of a robot, as written.
+        program: Option<String>,
+    },
+    /// `marker`.
+    Marker(Marker),
+    /// A line that begins with an unknown word and is no placement: its words.
+    Unknown(Vec<String>),
+}
+
+/// Where a simulation script places something.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Position {
+    /// At a pose.
+    Pose {
+        /// The pose.
+        pose: Pose,
+        /// Metres above the floor, if written.
+        elevation: Option<f64>,
+    },
+    /// At each such letter of a maze.
+    Letter {
+        /// The letter, whose case does not matter.
+        letter: char,
+        /// The heading in radians, if written.
+        heading: Option<f64>,
+    },
+}
+
+impl SimFile {
+    /// The script of a scene whose world is in some file.
+    ///
+    /// Robots and objects that not every script knows need `robot` and `object` lines, which the caller adds.
+    pub fn for_scene(scene: &Scene, world: &str) -> Self {
+        let pose = |pose, elevation| {
+            let elevation = if elevation == 0.0 { None } else { Some(elevation) };
+            Position::Pose { pose, elevation }
+        };
+        let mut statements = vec![Statement::World(world.into())];
+        if scene.settings != Settings::default() {
+            statements.push(Statement::Settings(scene.settings));
+        }
+        statements.extend(scene.robots.iter().map(|robot| Statement::Place {
+            name: robot.spec.name.clone(),
+            at: pose(robot.pose, robot.elevation),
+            program: robot.program.clone(),
+        }));
+        statements.extend(scene.world.objects.iter().map(|object| Statement::Place {
+            name: object.kind.name.clone(),
+            at: pose(object.pose, object.elevation),
+            program: None,
+        }));
+        statements.extend(scene.world.markers.iter().copied().map(Statement::Marker));
+        Self { statements, ..Self::default() }
+    }
+
+    pub(super) fn push(&mut self, statement: Statement, at: Location) {
+        self.statements.push(statement);
+        self.places.push(at);
+    }
+
+    pub(super) fn location(&self, index: usize) -> Location {
+        self.places.get(index).copied().unwrap_or(Location { line: index + 1, column: 1 })
+    }
+}

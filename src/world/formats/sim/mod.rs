@@ -1,0 +1,33 @@
+//! EyeSim's simulation scripts (`.sim`): a world, and the robots, objects and marks in it.
+//!
+//! | line | meaning |
+//! |---|---|
+//! | `world FILE` | a `.wld` or `.maz`, or the `.yaml` of a ROS map; without it, a box of 2000 by 2000 mm |
+//! | `settings [VIS] [TRACE]` | what to show |
+//! | `robot FILE`, `robi FILE` | makes a `.robi` known |
+//! | `object FILE`, `obj FILE` | makes an `.esObj` known |
+//! | `ROBOT X Y [Z] PHI [PROGRAM]` | places a robot; PHI counter-clockwise from the x axis |
+//! | `ROBOT LETTER [PHI] [PROGRAM]` | places one at each such letter of the maze |
+//! | `OBJECT X Y [Z] PHI` | places an object |
+//! | `marker X Y [R G B [A]]` | a mark on the floor |
+//!
+//! `S4` and `LabBot`, `can`, `soccer`, `golf` and `crate` are always known; the two robots' names are reserved. Names
+//! are those that the files state or the files' own names, in any case. Lines of EyeSim 6 and lines that begin with
+//! an unknown word are skipped with a warning.
+//!
+//! A robot at a letter without PHI heads where the letter says (see [`maz`](super::maz)). Letters that say nothing
+//! mean a random heading: it is drawn from a stream of random numbers with a fixed seed, so that it is the same each
+//! time; [`SimFile::resolve`] takes another seed.
+//!
+//! [`SimFile`] is the script as written; [`Scene`](crate::world::Scene) is what it describes, with the files that it
+//! names.
+
+mod document;
+mod read;
+mod resolve;
+mod write;
+
+pub use document::{Position, SimFile, Statement};
+pub use read::parse_document;
+pub use resolve::{HEADING_SEED, parse};
+pub use write::print;

@@ -1,0 +1,292 @@
+use std::sync::Arc;
+
+use super::super::error::{FormatError, Location, Notes, Parsed};
+use super::super::lexer::shown;
+use super::super::limits::{MAX_DEFINITIONS, MAX_PLACED, MAX_TEXT_BYTES};
+use super::super::load::{read_world, stem};
+use super::super::source::{FileSource, decode, unreadable};
+use super::super::{esobj, robi};
+use super::document::{Position, SimFile, Statement};
+use super::read::parse_document;
+use crate::geometry::{Pose, units};
+use crate::random::Stream;
+use crate::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
+
+/// The seed of random headings unless another is given.
+pub const HEADING_SEED: u64 = 0;
+
+/// Metres from edge to edge of the world of scripts that name none.
+const DEFAULT_WORLD: f64 = 2.0;
+
+/// Reads a script and all files that it names.
+pub fn parse(text: &str, file: &str, files: &mut dyn FileSource) -> Result<Parsed<Scene>, FormatError> {
+    let document = parse_document(text, file)?;
+    let scene = document.value.resolve(file, files, HEADING_SEED)?;
+    let mut notes = Notes::new(file);
+    notes.extend(document.warnings);
+    notes.extend(scene.warnings);
+    Ok(notes.finish(scene.value))
+}
+
+impl SimFile {
+    /// The scene that the script describes, with the files that it names. `file` is the script's own name, from which
+    /// others are looked up; `seed` is that of headings that the script leaves open.
+    pub fn resolve(
+        &self,
+        file: &str,
+        files: &mut dyn FileSource,
+        seed: u64,
+    ) -> Result<Parsed<Scene>, FormatError> {
+        let mut resolver = Resolver {
+            script: self,
+            notes: Notes::new(file),
+            robots: Vec::new(),
+            objects: Vec::new(),
+            scene: Scene::new(World::walled(DEFAULT_WORLD, DEFAULT_WORLD)),
+            headings: Stream::new(seed).child("heading", 0),
+        };
+        resolver.read_world(files)?;
+        for (index, statement) in self.statements.iter().enumerate() {
+            resolver.statement(index, statement, files)?;
+        }
+        Ok(resolver.notes.finish(resolver.scene))
+    }
+}
+
+/// Something that a file makes known: the file's name without folder and ending, and what it describes.
+type Definition<T> = (String, Arc<T>);
+
+struct Resolver<'a> {
+    script: &'a SimFile,
+    notes: Notes<'a>,
+    robots: Vec<Definition<RobotSpec>>,
+    objects: Vec<Definition<ObjectKind>>,
+    scene: Scene,
+    headings: Stream,
+}
+
+impl Resolver<'_> {
+    /// Letters may be used before the line that names the maze.
+    fn read_world(&mut self, files: &mut dyn FileSource) -> Result<(), FormatError> {
+        let worlds =
+            self.script.statements.iter().enumerate().filter_map(|(index, statement)| match statement {
+                Statement::World(file) => Some((index, file)),
+                _ => None,
+            });
+        let worlds: Vec<_> = worlds.collect();
+        let Some(&(last, file)) = worlds.last() else { return Ok(()) };
+        for &(index, _) in &worlds[..worlds.len() - 1] {
+            self.notes.warn(
+                self.script.location(index),
+                "another `world` line follows, which counts; this one is skipped",
+            );
+        }
+        let world = read_world(file, self.notes.file, self.script.location(last), files)?;
+        self.notes.extend(world.warnings);
+        self.scene.world = world.value;
+        Ok(())
+    }
+
+    fn statement(
+        &mut self,
+        index: usize,
+        statement: &Statement,
+        files: &mut dyn FileSource,
+    ) -> Result<(), FormatError> {
+        let at = self.script.location(index);
+        match statement {
+            Statement::World(_) => {}
+            Statement::Settings(settings) => {
+                self.scene.settings.show_sensors |= settings.show_sensors;
+                self.scene.settings.show_traces |= settings.show_traces;
+            }
+            Statement::Robot(file) => self.define_robot(file, at, files)?,
+            Statement::Object(file) => self.define_object(file, at, files)?,
+            Statement::Place { name, at: position, program } => {
+                self.place(name, *position, program.as_deref(), at)?
+            }
+            Statement::Marker(marker) => self.scene.world.markers.push(*marker),
+            Statement::Unknown(words) => {
+                let name = words.first().map_or("", String::as_str);
+                if self.robot(name).is_some() || self.object(name).is_some() {
+                    let broken = self.script.broken.iter().find(|(i, _)| *i == index);
+                    let error = broken.map(|(_, error)| error.clone());
+                    return Err(
+                        error.unwrap_or_else(|| self.error(at, shown(name), "x, y and heading after it"))
+                    );
+                }
+                self.warn_unknown(name, at);
+            }
+        }
+        Ok(())
+    }
+
+    fn define_robot(
+        &mut self,
+        file: &str,
+        at: Location,
+        files: &mut dyn FileSource,
+    ) -> Result<(), FormatError> {
+        self.check_definitions(at)?;
+        let (name, text) = self.read(file, at, files)?;
+        let parsed = robi::parse(&text, &name)?;
+        self.notes.extend(parsed.warnings);
+        if RobotSpec::predefined(&parsed.value.name).is_some() {
+            let message =
+                format!("the name {} is reserved; the built-in robot is used", shown(&parsed.value.name));
+            self.notes.warn(at, message);
+        }
+        self.robots.push((stem(file), Arc::new(parsed.value)));
+        Ok(())
+    }
+
+    fn define_object(
+        &mut self,
+        file: &str,
+        at: Location,
+        files: &mut dyn FileSource,
+    ) -> Result<(), FormatError> {
+        self.check_definitions(at)?;
+        let (name, text) = self.read(file, at, files)?;
+        let parsed = esobj::parse(&text, &name)?;
+        self.notes.extend(parsed.warnings);
+        self.objects.push((stem(file), Arc::new(parsed.value)));
+        Ok(())
+    }
+
+    fn read(
+        &mut self,
+        file: &str,
+        at: Location,
+        files: &mut dyn FileSource,
+    ) -> Result<(String, String), FormatError> {
+        let source = files
+            .read(file, self.notes.file, MAX_TEXT_BYTES)
+            .map_err(|error| unreadable(&error, file, self.notes.file, at, MAX_TEXT_BYTES))?;
+        let mut notes = Notes::new(&source.name);
+        let text = decode(source.bytes, &mut notes)?;
+        self.notes.extend(notes.finish(()).warnings);
+        Ok((source.name, text))
+    }
+
+    fn check_definitions(&self, at: Location) -> Result<(), FormatError> {
+        if self.robots.len() + self.objects.len() < MAX_DEFINITIONS {
+            return Ok(());
+        }
+        Err(self.error(
+            at,
+            "one more file".into(),
+            &format!("at most {MAX_DEFINITIONS} files of robots and objects"),
+        ))
+    }
+
+    fn place(
+        &mut self,
+        name: &str,
+        position: Position,
+        program: Option<&str>,
+        at: Location,
+    ) -> Result<(), FormatError> {
+        if let Some(spec) = self.robot(name) {
+            return self.place_robot(&spec, position, program, at);
+        }
+        let Some(kind) = self.object(name) else {
+            self.warn_unknown(name, at);
+            return Ok(());
+        };
+        let Position::Pose { pose, elevation } = position else {
+            return Err(self.error(
+                at,
+                format!("{} at a letter", shown(name)),
+                "x, y and heading of the object",
+            ));
+        };
+        if let Some(program) = program {
+            let message =
+                format!("{} is more than belongs in the line of an object; ignored", shown(program));
+            self.notes.warn(at, message);
+        }
+        self.check_placed(at)?;
+        self.scene.world.objects.push(Object { kind, pose, elevation: elevation.unwrap_or(0.0) });
+        Ok(())
+    }
+
+    fn place_robot(
+        &mut self,
+        spec: &Arc<RobotSpec>,
+        position: Position,
+        program: Option<&str>,
+        at: Location,
+    ) -> Result<(), FormatError> {
+        let program = program.map(str::to_string);
+        let (letter, heading) = match position {
+            Position::Pose { pose, elevation } => {
+                self.check_placed(at)?;
+                let (spec, elevation) = (Arc::clone(spec), elevation.unwrap_or(0.0));
+                self.scene.robots.push(RobotPlacement { spec, pose, elevation, program });
+                return Ok(());
+            }
+            Position::Letter { letter, heading } => (letter, heading),
+        };
+        let places: Vec<_> = self
+            .scene
+            .world
+            .places
+            .iter()
+            .filter(|p| p.letter.eq_ignore_ascii_case(&letter))
+            .copied()
+            .collect();
+        if places.is_empty() {
+            return Err(self.error(at, format!("the letter `{letter}`"), "a letter that stands in the maze"));
+        }
+        let mut drawn = false;
+        for place in places {
+            self.check_placed(at)?;
+            let heading = heading.or(place.heading).unwrap_or_else(|| {
+                drawn = true;
+                units::from_deg(self.headings.between(-180.0, 180.0).round())
+            });
+            let pose = Pose::new(place.position.x, place.position.y, heading);
+            let program = program.clone();
+            self.scene.robots.push(RobotPlacement { program, ..RobotPlacement::new(Arc::clone(spec), pose) });
+        }
+        if drawn {
+            self.notes.warn(at, "no heading; random ones are taken, the same each time");
+        }
+        Ok(())
+    }
+
+    fn check_placed(&self, at: Location) -> Result<(), FormatError> {
+        if self.scene.robots.len() + self.scene.world.objects.len() < MAX_PLACED {
+            return Ok(());
+        }
+        Err(self.error(at, "one more robot or object".into(), &format!("at most {MAX_PLACED} of them")))
+    }
+
+    fn robot(&self, name: &str) -> Option<Arc<RobotSpec>> {
+        let reserved = RobotSpec::predefined(name).map(Arc::new);
+        reserved.or_else(|| find(&self.robots, name, |spec| &spec.name))
+    }
+
+    fn object(&self, name: &str) -> Option<Arc<ObjectKind>> {
+        find(&self.objects, name, |kind| &kind.name).or_else(|| ObjectKind::predefined(name).map(Arc::new))
+    }
+
+    fn warn_unknown(&mut self, name: &str, at: Location) {
+        let message =
+            format!("{} is neither a keyword nor a known robot or object; the line is skipped", shown(name));
+        self.notes.warn(at, message);
+    }
+
+    fn error(&self, at: Location, found: String, expected: &str) -> FormatError {
+        FormatError::new(self.notes.file, at, found, expected)
+    }
+}
+
+/// The last definition that states a name, or else the last whose file is called so.
+fn find<T>(definitions: &[Definition<T>], name: &str, stated: impl Fn(&T) -> &str) -> Option<Arc<T>> {
+    let by_name = definitions.iter().rev().find(|(_, value)| stated(value).eq_ignore_ascii_case(name));
+    let found =
+        by_name.or_else(|| definitions.iter().rev().find(|(file, _)| file.eq_ignore_ascii_case(name)));
+    found.map(|(_, value)| Arc::clone(value))
+}

@@ -1,0 +1,378 @@
+//! EyeSim's worlds (`.wld`): a floor and straight walls, in millimetres and degrees.
+//!
+//! | line | meaning |
+//! |---|---|
+//! | `floor W H`, or `width W` and `height H` | a floor from (0, 0) |
+//! | `floor_texture FILE` | an image stretched over it |
+//! | `X1 Y1 X2 Y2 [THICKNESS HEIGHT [R G B]]` | a wall; other counts of numbers use the first four |
+//! | `push X Y PHI` … `pop` | moves the walls between them: by (X, Y), then turned **clockwise** by PHI |
+//! | `position X Y PHI` | the start pose, PHI counter-clockwise |
+//! | `terrain W H ELEVATION FILE` | a height image; sets the floor's size too |
+//! | `water_level Z` | water |
+//!
+//! Keywords are read in any case. A line that begins with anything else is skipped with a warning, and so is a wall
+//! of fewer than four numbers, as EyeSim does. A world without a floor gets one that reaches from (0, 0) as far as
+//! its walls. Objects, marks and places do not belong into this format: simulation scripts hold them.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use super::args::Args;
+use super::error::{FormatError, Notes, Parsed};
+use super::lexer::{self, Line, quote};
+use super::limits::{MAX_METRES, MAX_PUSHES, MAX_WALLS};
+use super::number::{self, degrees, millimetres};
+use super::source::check_length;
+use crate::geometry::{Aabb, Point, Pose, Segment, math, units};
+use crate::world::{Terrain, Wall, World};
+
+/// Reads a world.
+pub fn parse(text: &str, file: &str) -> Result<Parsed<World>, FormatError> {
+    check_length(text, file)?;
+    let mut reader = Reader::new(file);
+    for (number, text) in lexer::numbered(text) {
+        if let Some(line) = lexer::line(file, number, text)? {
+            reader.line(&line)?;
+        }
+    }
+    Ok(reader.finish())
+}
+
+struct Reader<'f> {
+    world: World,
+    width: Option<f64>,
+    height: Option<f64>,
+    frames: Vec<Frame>,
+    notes: Notes<'f>,
+}
+
+impl<'f> Reader<'f> {
+    fn new(file: &'f str) -> Self {
+        let (world, notes) = (World::empty(0.0, 0.0), Notes::new(file));
+        Self { world, width: None, height: None, frames: Vec::new(), notes }
+    }
+
+    fn line(&mut self, line: &Line<'_>) -> Result<(), FormatError> {
+        let keyword = line.words[0].text;
+        if number::looks_like_number(keyword) {
+            return self.wall(line);
+        }
+        let mut args = Args::after_keyword(line);
+        match keyword.to_ascii_lowercase().as_str() {
+            "floor" => self.floor(args.size("the floor's width")?, args.size("the floor's height")?),
+            "width" => self.width = Some(args.size("the floor's width")?),
+            "height" => self.height = Some(args.size("the floor's height")?),
+            "floor_texture" => {
+                let image =
+                    args.path("an image file", &[".png", ".jpg", ".jpeg", ".bmp"], &mut self.notes)?;
+                self.world.floor_texture = Some(PathBuf::from(image));
+            }
+            "push" => self.push(line, &mut args)?,
+            "pop" => {
+                self.frames.pop();
+            }
+            "position" => self.world.start = Some(pose(&mut args)?),
+            "terrain" => self.terrain(&mut args)?,
+            "water_level" => self.world.water_level = Some(args.length("the water level")?),
+            _ => {
+                let message = format!("unknown keyword {}; the line is skipped", lexer::shown(keyword));
+                self.notes.warn(line.location(0), message);
+                return Ok(());
+            }
+        }
+        args.finish(&mut self.notes);
+        Ok(())
+    }
+
+    fn floor(&mut self, width: f64, height: f64) {
+        (self.width, self.height) = (Some(width), Some(height));
+    }
+
+    fn push(&mut self, line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<(), FormatError> {
+        if self.frames.len() == MAX_PUSHES {
+            let mut error = line.error(0, format!("at most {MAX_PUSHES} pushes inside one another"));
+            error.found = "one more `push`".into();
+            return Err(error);
+        }
+        let (x, y) = (args.length("the shift's x")?, args.length("the shift's y")?);
+        let clockwise = args.direction_degrees("the turn")?;
+        let outer = self.frames.last().copied().unwrap_or_default();
+        self.frames.push(outer.inner(x, y, clockwise));
+        Ok(())
+    }
+
+    fn terrain(&mut self, args: &mut Args<'_, '_>) -> Result<(), FormatError> {
+        let width = args.size("the terrain's width")?;
+        let height = args.size("the terrain's height")?;
+        let max_elevation = args.length("the terrain's highest elevation")?;
+        let image = args.path("the terrain's image", &[".png", ".jpg", ".jpeg", ".bmp"], &mut self.notes)?;
+        self.world.terrain = Some(Terrain { width, height, max_elevation, image: PathBuf::from(image) });
+        self.floor(width, height);
+        Ok(())
+    }
+
+    fn wall(&mut self, line: &Line<'_>) -> Result<(), FormatError> {
+        let mut args = Args::all(line);
+        let numbers = args.left();
+        if args.numbers_ahead() == numbers && numbers < 4 {
+            let message = format!("a wall of {numbers} numbers, not 4, 6 or 9; skipped");
+            self.notes.warn(line.location(0), message);
+            return Ok(());
+        }
+        let start = Point::new(args.length("the wall's start x")?, args.length("the wall's start y")?);
+        let end = Point::new(args.length("the wall's end x")?, args.length("the wall's end y")?);
+        let mut wall = Wall::new(self.place(start, line)?, self.place(end, line)?);
+        match numbers {
+            4 => {}
+            6 | 9 => {
+                wall.thickness = args.size("the wall's thickness")?;
+                wall.height = args.size("the wall's height")?;
+                if numbers == 9 {
+                    wall.colour = args.colour("the wall")?;
+                }
+            }
+            _ => {
+                let message = format!("a wall of {numbers} numbers, not 4, 6 or 9; only the first 4 count");
+                self.notes.warn(line.location(4), message);
+            }
+        }
+        if self.world.walls.len() == MAX_WALLS {
+            let mut error = line.error(0, format!("at most {MAX_WALLS} walls"));
+            error.found = "one more wall".into();
+            return Err(error);
+        }
+        self.world.walls.push(wall);
+        Ok(())
+    }
+
+    /// A point of the innermost pushed frame in the world.
+    fn place(&self, point: Point, line: &Line<'_>) -> Result<Point, FormatError> {
+        let Some(frame) = self.frames.last() else { return Ok(point) };
+        let placed = frame.to_world(point);
+        if placed.x.abs() <= MAX_METRES && placed.y.abs() <= MAX_METRES {
+            return Ok(placed);
+        }
+        let mut error = line.error(0, format!("a wall within {} km of the origin", MAX_METRES / 1000.0));
+        error.found = "a wall that `push` moves far away".into();
+        Err(error)
+    }
+
+    fn finish(mut self) -> Parsed<World> {
+        let reach = |axis: fn(&Point) -> f64| {
+            let ends = self.world.walls.iter().flat_map(|w| [w.line.a, w.line.b]);
+            ends.map(|p| axis(&p)).fold(0.0, f64::max)
+        };
+        let width = self.width.unwrap_or_else(|| reach(|p| p.x));
+        let height = self.height.unwrap_or_else(|| reach(|p| p.y));
+        self.world.floor = Aabb::new(Point::origin(), Point::new(width, height));
+        self.notes.finish(self.world)
+    }
+}
+
+/// A pushed pose. Angles stay in degrees, so that quarter turns are exact.
+#[derive(Debug, Clone, Copy, Default)]
+struct Frame {
+    x: f64,
+    y: f64,
+    clockwise: f64,
+}
+
+impl Frame {
+    fn inner(&self, x: f64, y: f64, clockwise: f64) -> Self {
+        let origin = self.to_world(Point::new(x, y));
+        let clockwise = number::normalize_degrees(self.clockwise + clockwise);
+        Self { x: origin.x, y: origin.y, clockwise }
+    }
+
+    fn to_world(self, local: Point) -> Point {
+        let (sin, cos) = match self.clockwise {
+            0.0 => (0.0, 1.0),
+            90.0 => (-1.0, 0.0),
+            -90.0 => (1.0, 0.0),
+            180.0 | -180.0 => (0.0, -1.0),
+            clockwise => math::sin_cos(-units::from_deg(clockwise)),
+        };
+        Point::new(self.x + cos * local.x - sin * local.y, self.y + sin * local.x + cos * local.y)
+    }
+}
+
+fn pose(args: &mut Args<'_, '_>) -> Result<Pose, FormatError> {
+    let (x, y) = (args.length("the start's x")?, args.length("the start's y")?);
+    Ok(Pose::new(x, y, args.direction("the start's heading")?))
+}
+
+/// Writes a world, so that [`parse`] gives it back.
+///
+/// The format's floors begin at (0, 0): of one that begins elsewhere only the upper right corner is kept. Objects,
+/// marks and places are left out.
+pub fn print(world: &World) -> String {
+    let mut text = String::new();
+    write_world(&mut text, world).expect("writing to a string does not fail");
+    text
+}
+
+fn write_world(text: &mut String, world: &World) -> std::fmt::Result {
+    if let Some(t) = &world.terrain {
+        let (width, height, top) =
+            (millimetres(t.width), millimetres(t.height), millimetres(t.max_elevation));
+        writeln!(text, "terrain {width} {height} {top} {}", quote(&t.image.to_string_lossy()))?;
+    }
+    let corner = world.floor.max;
+    writeln!(text, "floor {} {}", millimetres(corner.x.max(0.0)), millimetres(corner.y.max(0.0)))?;
+    if let Some(image) = &world.floor_texture {
+        writeln!(text, "floor_texture {}", quote(&image.to_string_lossy()))?;
+    }
+    if let Some(level) = world.water_level {
+        writeln!(text, "water_level {}", millimetres(level))?;
+    }
+    if let Some(start) = world.start {
+        let heading = degrees(start.heading);
+        writeln!(text, "position {} {} {heading}", millimetres(start.x), millimetres(start.y))?;
+    }
+    world.walls.iter().try_for_each(|wall| write_wall(text, wall))
+}
+
+fn write_wall(text: &mut String, wall: &Wall) -> std::fmt::Result {
+    let Segment { a, b } = wall.line;
+    write!(text, "{} {} {} {}", millimetres(a.x), millimetres(a.y), millimetres(b.x), millimetres(b.y))?;
+    let plain = Wall::new(a, b);
+    if wall.colour != plain.colour {
+        let c = wall.colour;
+        write!(text, " {} {}", millimetres(wall.thickness), millimetres(wall.height))?;
+        write!(text, " {} {} {}", c.red, c.green, c.blue)?;
+    } else if *wall != plain {
+        write!(text, " {} {}", millimetres(wall.thickness), millimetres(wall.height))?;
+    }
+    writeln!(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::Colour;
+    use proptest::prelude::*;
+
+    fn world(text: &str) -> World {
+        parse(text, "test.wld").unwrap().value
+    }
+
+    fn near(point: Point, x: f64, y: f64) -> bool {
+        (point - Point::new(x, y)).norm() < 1e-12
+    }
+
+    #[test]
+    fn all_keywords() {
+        let text = "; a world\r\nFloor 5000 4000\r\nfloor_texture \"my floor.png\"\r\n\
+                    0 0 5000 0\n\t0 0 0 4000 20 500 ; thick 1\n0 1 2 3 10 200 255 0 128\n\
+                    position 100 200 90\nwater_level 150\nterrain 6000 7000 300 ../h/crater.png";
+        let Parsed { value, warnings } = parse(text, "test.wld").unwrap();
+        assert_eq!(warnings, []);
+        assert_eq!(value.floor.max, Point::new(6.0, 7.0));
+        assert_eq!(value.floor_texture, Some("my floor.png".into()));
+        assert_eq!(value.walls[0], Wall::new(Point::new(0.0, 0.0), Point::new(5.0, 0.0)));
+        assert_eq!((value.walls[1].thickness, value.walls[1].height), (0.02, 0.5));
+        assert_eq!(value.walls[2].colour, Colour::new(255, 0, 128));
+        assert_eq!(value.start, Some(Pose::from_mm_deg(100.0, 200.0, 90.0)));
+        assert_eq!(value.water_level, Some(0.15));
+        assert_eq!(value.terrain.unwrap().max_elevation, 0.3);
+    }
+
+    #[test]
+    fn push_turns_clockwise_and_nests() {
+        let world = world(
+            "floor 9000 9000\npush 1000 2000 90\n0 0 500 0\npush 100 0 90\n0 0 500 0\npop\n0 0 0 1\npop\npop\n0 0 1 0",
+        );
+        let lines: Vec<Segment> = world.walls.iter().map(|w| w.line).collect();
+        assert!(near(lines[0].a, 1.0, 2.0) && near(lines[0].b, 1.0, 1.5), "{:?}", lines[0]);
+        assert!(near(lines[1].a, 1.0, 1.9) && near(lines[1].b, 0.5, 1.9), "{:?}", lines[1]);
+        assert!(near(lines[2].b, 1.001, 2.0), "{:?}", lines[2]);
+        assert!(near(lines[3].b, 0.001, 0.0), "{:?}", lines[3]);
+    }
+
+    /// A door of width 1305 turned by `push … 90` fills the gap from 6390 down to 5085, not up from 6390.
+    #[test]
+    fn a_pushed_door_closes_its_gap() {
+        let line = world("push 22280 6390 90\n0 0 1305 0").walls[0].line;
+        assert!(near(line.a, 22.28, 6.39) && near(line.b, 22.28, 5.085));
+    }
+
+    #[test]
+    fn odd_lines_are_skipped_with_their_place() {
+        let parsed =
+            parse("floor 100 100\nush 1 2 3\n5000 0 0\n0 0 1 1 7 ; five\nball 3 4\npop 1", "w.wld").unwrap();
+        let messages: Vec<String> = parsed.warnings.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            messages,
+            [
+                "w.wld:2:1: unknown keyword `ush`; the line is skipped",
+                "w.wld:3:1: a wall of 3 numbers, not 4, 6 or 9; skipped",
+                "w.wld:4:9: a wall of 5 numbers, not 4, 6 or 9; only the first 4 count",
+                "w.wld:5:1: unknown keyword `ball`; the line is skipped",
+                "w.wld:6:5: `1` is more than belongs in this line; ignored",
+            ]
+        );
+        assert_eq!(parsed.value.walls.len(), 1);
+    }
+
+    #[test]
+    fn without_a_floor_it_reaches_as_far_as_the_walls() {
+        assert_eq!(world("-500 0 3000 0\n0 0 0 2000").floor.max, Point::new(3.0, 2.0));
+        assert_eq!(world("width 100\n0 0 0 2000").floor.max, Point::new(0.1, 2.0));
+        assert_eq!(world("").floor.max, Point::origin());
+    }
+
+    fn length() -> impl Strategy<Value = f64> {
+        prop_oneof![(-1e6..1e6f64), (-9999..9999i32).prop_map(|mm| f64::from(mm) / 1000.0)]
+    }
+
+    fn path() -> impl Strategy<Value = PathBuf> {
+        "[a-z\\\\ ./$#;']{1,12}".prop_map(PathBuf::from)
+    }
+
+    fn wall() -> impl Strategy<Value = Wall> {
+        let ends = (length(), length(), length(), length());
+        let body = prop_oneof![Just((0.01, 0.2)), (0.0..1.0f64, 0.0..9.0f64)];
+        let colour =
+            prop_oneof![Just(Colour::WHITE), any::<[u8; 3]>().prop_map(|[r, g, b]| Colour::new(r, g, b))];
+        (ends, body, colour).prop_map(|((ax, ay, bx, by), (thickness, height), colour)| {
+            let line = Segment::new(Point::new(ax, ay), Point::new(bx, by));
+            Wall { line, thickness, height, colour }
+        })
+    }
+
+    prop_compose! {
+        fn any_world()(
+            floor in (0.0..1e6f64, 0.0..1e6f64),
+            floor_texture in proptest::option::of(path()),
+            walls in proptest::collection::vec(wall(), 0..8),
+            start in proptest::option::of((length(), length(), -180..=180i32)),
+            terrain in proptest::option::of((0.0..99.0f64, 0.0..99.0f64, length(), path())),
+            water_level in proptest::option::of(length()),
+        ) -> World {
+            World {
+                floor_texture,
+                walls,
+                start: start.map(|(x, y, deg)| Pose::new(x, y, units::from_deg(f64::from(deg)))),
+                terrain: terrain.map(|(width, height, max_elevation, image)| Terrain { width, height, max_elevation, image }),
+                water_level,
+                ..World::empty(floor.0, floor.1)
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_printed_reads_back(world in any_world()) {
+            let parsed = parse(&print(&world), "w.wld").unwrap();
+            prop_assert_eq!(parsed.warnings, vec![]);
+            prop_assert_eq!(parsed.value, world);
+        }
+
+        #[test]
+        fn what_was_read_survives_printing(text in "((floor|push|pop|position|x|floor_texture| |\n|;|\"|-|[0-9.]{1,3}){1,6}\n){0,8}") {
+            if let Ok(parsed) = parse(&text, "w.wld") {
+                prop_assert_eq!(parse(&print(&parsed.value), "w.wld").unwrap().value, parsed.value);
+            }
+        }
+    }
+}
