@@ -38,7 +38,7 @@ struct Reference {
 struct Hit {
     point: Point,
     range: f64,
-    /// The unit normal of the surface, if the neighbours lie on one line with the point.
+    /// The unit normal of the surface, towards the viewer; `None` where the neighbours lie on no common line.
     normal: Option<Vector>,
 }
 
@@ -87,8 +87,16 @@ const SLIP_PER_METRE: f64 = 6e-5;
 const SLIP_PER_RADIAN: f64 = 2.5e-6;
 /// The least variance of a step, so that no direction ever counts as exactly known.
 const LEAST_VARIANCE: f64 = 1e-10;
-/// How far neighbours may lie from a common line, as a part of their distance.
-const FLATNESS: f64 = 0.1;
+/// How far, in metres, neighbours reach that a line is fitted to, and how many they are on either side.
+const LINE_REACH: f64 = 0.06;
+const MIN_NEIGHBOURS: usize = 2;
+const MAX_NEIGHBOURS: usize = 25;
+/// Neighbouring beams that hit farther apart than this, in metres and as a part of the range, see two surfaces.
+const EDGE_GAP: f64 = 0.02;
+const EDGE_SLANT: f64 = 0.1;
+/// How far neighbours may lie from their line: as a part of its length, and in metres.
+const FLATNESS: f64 = 0.05;
+const ROUGHNESS: f64 = 0.003;
 
 impl ScanMatcher {
     /// A matcher without references, whose corrected frame is odometry's own.
@@ -275,24 +283,76 @@ fn bin_of(point: Point) -> usize {
     ((turn * BINS as f64).round() as i64).rem_euclid(BINS as i64) as usize
 }
 
-/// The normal of the line through a point's neighbours, if the point lies on it.
+/// The normal, towards the viewer at the origin, of the line that a point and its neighbours lie on, if they do. Near surfaces are seen by many beams a few
+/// millimetres apart, so the neighbours reach as far as [`LINE_REACH`], not a fixed number of beams.
 fn normal_at(points: &[Point], index: usize) -> Option<Vector> {
-    let n = points.len();
-    if n < 5 {
+    let centre = points[index];
+    let mut sums = LineSums::default();
+    sums.add(centre.coords);
+    let sides = [1, points.len() - 1].map(|stride| sums.add_side(points, index, stride));
+    if sides.contains(&0) {
         return None;
     }
-    let reach = 2;
-    let before = points[(index + n - reach) % n];
-    let after = points[(index + reach) % n];
-    let along = after - before;
-    let length = along.norm();
-    let range = points[index].coords.norm();
-    // Neighbours across an edge lie much farther apart than beams on one surface do.
-    if length < 1e-6 || length > 0.6 * range.max(0.05) {
-        return None;
+    sums.normal()
+}
+
+/// Sums for a least-squares line.
+#[derive(Debug, Clone, Copy, Default)]
+struct LineSums {
+    count: f64,
+    sum: Vector,
+    squares: Vector,
+    product: f64,
+}
+
+impl LineSums {
+    fn add(&mut self, p: Vector) {
+        self.count += 1.0;
+        self.sum += p;
+        self.squares += p.component_mul(&p);
+        self.product += p.x * p.y;
     }
-    let normal = Vector::new(-along.y, along.x) / length;
-    let off = (points[index] - before).dot(&normal).abs();
-    let facing = if points[index].coords.dot(&normal) < 0.0 { normal } else { -normal };
-    (off < FLATNESS * length).then_some(facing)
+
+    /// Adds the neighbours on one side that belong to the same surface, and returns how many they are.
+    fn add_side(&mut self, points: &[Point], index: usize, stride: usize) -> usize {
+        let centre = points[index];
+        let mut last = centre;
+        let mut at = index;
+        let mut added = 0;
+        while added < MAX_NEIGHBOURS {
+            at = (at + stride) % points.len();
+            let next = points[at];
+            let range = last.coords.norm();
+            // Beams on one surface are about a beam's width apart; across an edge they are much farther.
+            if (next - last).norm() > EDGE_GAP + EDGE_SLANT * range {
+                break;
+            }
+            if added >= MIN_NEIGHBOURS && (next - centre).norm() > LINE_REACH {
+                break;
+            }
+            self.add(next.coords);
+            last = next;
+            added += 1;
+        }
+        added
+    }
+
+    /// The normal of the line through the points, if they lie close to one.
+    fn normal(&self) -> Option<Vector> {
+        let mean = self.sum / self.count;
+        let xx = self.squares.x / self.count - mean.x * mean.x;
+        let yy = self.squares.y / self.count - mean.y * mean.y;
+        let xy = self.product / self.count - mean.x * mean.y;
+        let half_difference = 0.5 * (xx - yy);
+        let spread = math::hypot(half_difference, xy);
+        let across = (0.5 * (xx + yy) - spread).max(0.0);
+        let along = 0.5 * (xx + yy) + spread;
+        if across.sqrt() > FLATNESS * along.sqrt() + ROUGHNESS || along.sqrt() < 2.0 * ROUGHNESS {
+            return None;
+        }
+        let angle = 0.5 * math::atan2(xy, half_difference);
+        let tangent = direction(angle);
+        let normal = Vector::new(-tangent.y, tangent.x);
+        Some(if mean.dot(&normal) < 0.0 { normal } else { -normal })
+    }
 }
