@@ -254,6 +254,7 @@ impl DistBug {
     /// One control step: what the robot shall do until the next.
     pub fn step(&mut self, observation: &DistBugObservation<'_>) -> Result<Twist> {
         self.perceive(observation)?;
+        self.matcher.learn(&self.points);
         if self.goal_distance() <= self.parameters.goal_tolerance {
             self.end(DistBugOutcome::Reached);
         }
@@ -278,17 +279,23 @@ impl DistBug {
             let found = format!("{:?}", observation.odometry);
             return Err(Error::invalid_input("odometry", found, "finite numbers"));
         }
-        self.filter.update(observation.odometry, observation.scan)?;
+        self.pose = self.locate(observation);
+        self.filter.update(self.pose, observation.scan)?;
         self.points.clear();
         self.points.extend(self.filter.points());
-        self.pose = if self.parameters.match_scans {
-            self.matcher.update(observation.odometry, &self.points)
-        } else {
-            observation.odometry
-        };
         let reach = REACH * self.parameters.follow_distances().step;
         self.surroundings.update(self.points.iter().copied(), reach);
         Ok(())
+    }
+
+    /// The pose by odometry, corrected by matching the scan as measured.
+    fn locate(&mut self, observation: &DistBugObservation<'_>) -> Pose {
+        if !self.parameters.match_scans {
+            return observation.odometry;
+        }
+        self.points.clear();
+        self.points.extend(observation.scan.points());
+        self.matcher.update(observation.odometry, &self.points)
     }
 
     /// Bearing and distance of the goal, how far the way there is free, and what ends it.

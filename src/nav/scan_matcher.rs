@@ -19,6 +19,8 @@ pub struct ScanMatcher {
     /// The references that scans are matched against at present, and where they were chosen.
     active: Vec<usize>,
     chosen_at: Point,
+    /// The share of the last scan that found counterparts.
+    overlap: f64,
     /// The pose by odometry of the last scan, and its corrected pose.
     odometry: Pose,
     pose: Pose,
@@ -46,7 +48,7 @@ const COARSE_GATE: f64 = 0.10;
 const FINE_GATE: f64 = 0.03;
 /// Odometry's error as a part of the distance driven and of the angle turned in one step.
 const DISTANCE_ERROR: f64 = 0.03;
-const TURN_ERROR: f64 = 0.01;
+const TURN_ERROR: f64 = 0.02;
 /// The variance that slip adds to the heading: radians squared per metre and per radian.
 const SLIP_PER_METRE: f64 = 6e-5;
 const SLIP_PER_RADIAN: f64 = 2.5e-6;
@@ -78,25 +80,32 @@ impl ScanMatcher {
         self.references.len()
     }
 
-    /// Matches a scan, given as points in the robot's frame in order of bearing, that was made at `odometry`, and
-    /// returns the corrected pose.
+    /// Matches a scan that was made at `odometry`, given as points in the robot's frame in order of bearing, and
+    /// returns the corrected pose. The points shall be as measured: what a filter carries over from earlier scans
+    /// carries odometry's errors with it.
     pub fn update(&mut self, odometry: Pose, points: &[Point]) -> Pose {
         let predicted = self.predict(odometry);
-        if self.references.is_empty() {
-            self.add_reference(points);
+        if self.active.is_empty() {
             return predicted;
         }
         let matched = self.lay_over(predicted, points);
         let strayed = predicted.distance_to(matched.pose.position());
+        self.overlap = matched.overlap;
         if matched.overlap >= MIN_MATCH && strayed < MAX_CORRECTION {
             self.pose = matched.pose;
             self.covariance = matched.covariance;
         }
-        let moved = self.pose.distance_to(self.chosen_at);
-        if moved > CHOICE_SPACING || matched.overlap < MIN_OVERLAP {
+        self.pose
+    }
+
+    /// Takes in what is seen from the present pose, as clean as it is known: where earlier scans share too little
+    /// with it, it becomes a reference for later ones.
+    pub fn learn(&mut self, points: &[Point]) {
+        if self.references.is_empty() {
+            self.add_reference(points);
+        } else if self.pose.distance_to(self.chosen_at) > CHOICE_SPACING || self.overlap < MIN_OVERLAP {
             self.choose_references(points);
         }
-        self.pose
     }
 
     /// Moves pose and covariance on by odometry.

@@ -34,8 +34,8 @@ const OVERLAP_GATE: f64 = 0.03;
 const BINS: usize = 360;
 /// Standard deviation of one matched point, in metres.
 const POINT_NOISE: f64 = 0.01;
-/// How many points count as one: consecutive filtered scans share their noise, and surfaces are not quite straight.
-const POINTS_PER_FACT: f64 = 10.0;
+/// How many points count as one: surfaces are not quite straight, and the reference errs as well.
+const POINTS_PER_FACT: f64 = 2.0;
 /// How far, in metres, neighbours reach that a line is fitted to, and how many they are on either side.
 const LINE_REACH: f64 = 0.06;
 const MIN_NEIGHBOURS: usize = 2;
