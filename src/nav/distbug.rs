@@ -176,6 +176,8 @@ pub struct DistBug {
 #[derive(Debug, Clone)]
 struct Following {
     boundary: BoundaryFollower,
+    /// The nearest that the robot has come to the goal.
+    nearest: f64,
     progress: LoopProgress,
 }
 
@@ -211,6 +213,10 @@ const DOUBT: f64 = 0.02;
 const MAX_DOUBT: f64 = 0.3;
 /// Steps without a free heading after which the robot is boxed in.
 const BOXED_IN_STEPS: u32 = 40;
+/// The position may be wrong by so many times the noise of a range.
+const NOISE_SLACK: f64 = 5.0;
+/// A goal that recedes by this much, in metres, has been passed.
+const PASSING_MARGIN: f64 = 0.02;
 /// Radians per second at which the robot turns to look round.
 const LOOKING_TURN: f64 = 2.0;
 /// Steps, at the start, that only look.
@@ -362,6 +368,7 @@ impl DistBug {
         self.note_boundary(view.distance - view.free);
         self.follower = Some(Following {
             boundary: BoundaryFollower::new(side, distances, self.pose.to_world(obstacle)),
+            nearest: view.distance,
             progress: LoopProgress::new(self.pose),
         });
         self.phase = DistBugPhase::Following(side);
@@ -376,7 +383,15 @@ impl DistBug {
         if self.may_leave(&view) {
             return self.leave(&view);
         }
+        let slack = self.position_slack();
         let following = self.follower.as_mut()?;
+        following.nearest = following.nearest.min(view.distance);
+        // As near as obstacles and the knowledge of the position allow, and going away again.
+        let passed = view.distance > following.nearest + PASSING_MARGIN;
+        if passed && following.nearest <= self.parameters.goal_tolerance + slack {
+            self.end(DistBugOutcome::Reached);
+            return None;
+        }
         let heading = following.boundary.heading(&self.pose, &self.surroundings);
         let all_round = following.progress.update(self.pose, heading, self.parameters.robot_radius);
         if all_round {
@@ -403,6 +418,12 @@ impl DistBug {
         }
         let free = view.free.min(view.distance) * (1.0 - self.doubt);
         view.distance - free <= self.least_distance - self.parameters.step
+    }
+
+    /// How wrong the robot's position may well be, in metres, judged by the noise of its ranges; never as much as
+    /// would let a goal behind a wall count.
+    fn position_slack(&self) -> f64 {
+        (NOISE_SLACK * self.filter.noise()).min(self.parameters.robot_radius)
     }
 
     fn leave(&mut self, view: &GoalView) -> Option<f64> {
