@@ -64,7 +64,8 @@ impl Collider {
     /// The radius around the upright axis through a point ahead of the origin, if it is round about it.
     fn round_about(&self, ahead: f64) -> Option<f64> {
         match *self {
-            Collider::Sphere { radius, centre } | Collider::Capsule { radius, axis: Axis::Up, centre, .. } => {
+            Collider::Sphere { radius, centre }
+            | Collider::Capsule { radius, axis: Axis::Up, centre, .. } => {
                 (centre[0] == ahead && centre[1] == 0.0).then_some(radius)
             }
             _ => None,
@@ -146,7 +147,11 @@ impl Body {
         {
             let radius = radius * self.scale;
             let ball = matches!(single, Collider::Sphere { .. });
-            return Some(if ball { Shape::Sphere { radius } } else { Shape::Cylinder { radius, height: top } });
+            return Some(if ball {
+                Shape::Sphere { radius }
+            } else {
+                Shape::Cylinder { radius, height: top }
+            });
         }
         let across = |(low, high): (f64, f64)| 2.0 * f64::max(-low, high);
         Some(Shape::Box { length: across(x), width: across(y), height: top })
@@ -170,7 +175,9 @@ impl Body {
     pub fn collider_of_shape(shape: Shape) -> Collider {
         let centre = [0.0, 0.0, 0.5 * shape.height()];
         match shape {
-            Shape::Cylinder { radius, height } => Collider::Capsule { radius, height, axis: Axis::Up, centre },
+            Shape::Cylinder { radius, height } => {
+                Collider::Capsule { radius, height, axis: Axis::Up, centre }
+            }
             Shape::Sphere { radius } => Collider::Sphere { radius, centre },
             Shape::Box { length, width, height } => Collider::Box { size: [length, width, height], centre },
         }
@@ -212,7 +219,12 @@ mod tests {
 
     #[test]
     fn scaled_colliders_give_the_shape() {
-        let mut pole = body(&[Collider::Capsule { radius: 0.15, height: 14.2, axis: Axis::Up, centre: [0.0, 0.0, 7.5] }]);
+        let mut pole = body(&[Collider::Capsule {
+            radius: 0.15,
+            height: 14.2,
+            axis: Axis::Up,
+            centre: [0.0, 0.0, 7.5],
+        }]);
         pole.scale = 0.025;
         let Some(Shape::Cylinder { radius, height }) = pole.shape() else { panic!("no cylinder") };
         assert!((radius - 0.003_75).abs() < 1e-12 && (height - 0.365).abs() < 1e-12);

@@ -172,7 +172,8 @@ impl OccupancyGrid {
             for_each_run(self.width, edge, |a, b| found(self.segment((a, row), (b, row))));
         }
         for column in 0..=self.width {
-            let edge = |row| self.is_occupied(column, row) != (column > 0 && self.is_occupied(column - 1, row));
+            let edge =
+                |row| self.is_occupied(column, row) != (column > 0 && self.is_occupied(column - 1, row));
             for_each_run(self.height, edge, |a, b| found(self.segment((column, a), (column, b))));
         }
     }
@@ -258,7 +259,9 @@ mod tests {
         assert_eq!(turned.cell_at(Point::new(-0.25, 0.75)), Some((1, 0)));
         assert_eq!(turned.cell_at(Point::new(0.25, 0.75)), None);
         let b = turned.bounds();
-        assert!((b.min - Point::new(-0.5, 0.0)).norm() < 1e-12 && (b.max - Point::new(0.0, 1.0)).norm() < 1e-12);
+        assert!(
+            (b.min - Point::new(-0.5, 0.0)).norm() < 1e-12 && (b.max - Point::new(0.0, 1.0)).norm() < 1e-12
+        );
     }
 
     #[test]

@@ -51,14 +51,23 @@ impl<'l, 'a> Args<'l, 'a> {
     }
 
     /// A file name with one of some endings. One with blanks outside quotes is accepted with a warning.
-    pub(super) fn path(&mut self, what: &str, endings: &[&str], notes: &mut Notes<'_>) -> Result<&'a str, FormatError> {
+    pub(super) fn path(
+        &mut self,
+        what: &str,
+        endings: &[&str],
+        notes: &mut Notes<'_>,
+    ) -> Result<&'a str, FormatError> {
         let at = self.next;
         let word = self.word(what)?;
         if word.text.is_empty() {
             return Err(self.line.error(at, what));
         }
         let rest = self.line.rest(at);
-        if self.left() > 0 && !word.quoted && !ends_with_any(word.text, endings) && ends_with_any(rest, endings) {
+        if self.left() > 0
+            && !word.quoted
+            && !ends_with_any(word.text, endings)
+            && ends_with_any(rest, endings)
+        {
             notes.warn(self.line.location(at), format!("{} has blanks; read as one file name", shown(rest)));
             self.next = self.line.words.len();
             return Ok(rest);
@@ -79,11 +88,6 @@ impl<'l, 'a> Args<'l, 'a> {
     /// A length of more than zero, in metres.
     pub(super) fn positive_size(&mut self, what: &str) -> Result<f64, FormatError> {
         self.number(what, "in millimetres", MILLI, f64::MIN_POSITIVE..=MAX_METRES)
-    }
-
-    /// An angle in radians, as large as written.
-    pub(super) fn angle(&mut self, what: &str) -> Result<f64, FormatError> {
-        self.degrees(what, number::ANGLES).map(units::from_deg)
     }
 
     /// A direction in degrees, -180 to 180.
@@ -133,16 +137,26 @@ impl<'l, 'a> Args<'l, 'a> {
     pub(super) fn finish(self, notes: &mut Notes<'_>) {
         if self.left() > 0 {
             let extra = shown(self.line.rest(self.next));
-            notes.warn(self.line.location(self.next), format!("{extra} is more than belongs in this line; ignored"));
+            notes.warn(
+                self.line.location(self.next),
+                format!("{extra} is more than belongs in this line; ignored"),
+            );
         }
     }
 
-    fn number(&mut self, what: &str, unit: &str, power: i32, range: RangeInclusive<f64>) -> Result<f64, FormatError> {
+    fn number(
+        &mut self,
+        what: &str,
+        unit: &str,
+        power: i32,
+        range: RangeInclusive<f64>,
+    ) -> Result<f64, FormatError> {
         let at = self.next;
         let what = [what, unit].join(" ");
         let what = what.trim_end();
         let word = self.word(what)?;
-        let value = number::parse(word.text, power).ok_or_else(|| self.line.error(at, format!("{what}, a number")))?;
+        let value = number::parse(word.text, power)
+            .ok_or_else(|| self.line.error(at, format!("{what}, a number")))?;
         if !range.contains(&value) {
             return Err(self.line.error(at, format!("{what}, {}", shown_range(&range, power))));
         }

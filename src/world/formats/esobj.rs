@@ -215,7 +215,9 @@ mod tests {
     #[test]
     fn both_spellings_of_colliders() {
         let old = object("obj pole.obj\nscale 0.025\nmass 2 0 100 0\ncapsule 0 7500 0 150 14200 y\nfixed\n");
-        let new = object("obj pole.obj\nscale 0.025\nmass 2 0 100 0\ncollider capsule 0 7500 0 150 14200 Y\nfixed\n");
+        let new = object(
+            "obj pole.obj\nscale 0.025\nmass 2 0 100 0\ncollider capsule 0 7500 0 150 14200 Y\nfixed\n",
+        );
         assert_eq!(old, new);
         assert_eq!((old.name.as_str(), old.mass, old.fixed), ("Pole", 2.0, true));
         assert_eq!(old.body.mass_centre, [0.0, 0.0, 0.1]);
@@ -252,10 +254,15 @@ mod tests {
         let size = || 0.001..9.0f64;
         let axis = prop_oneof![Just(Axis::Up), Just(Axis::Left), Just(Axis::Forward)];
         prop_oneof![
-            (proptest::array::uniform3(0.001..9.0f64), place()).prop_map(|(size, centre)| Collider::Box { size, centre }),
+            (proptest::array::uniform3(0.001..9.0f64), place())
+                .prop_map(|(size, centre)| Collider::Box { size, centre }),
             (size(), place()).prop_map(|(radius, centre)| Collider::Sphere { radius, centre }),
-            (size(), size(), axis, place())
-                .prop_map(|(radius, height, axis, centre)| Collider::Capsule { radius, height, axis, centre }),
+            (size(), size(), axis, place()).prop_map(|(radius, height, axis, centre)| Collider::Capsule {
+                radius,
+                height,
+                axis,
+                centre
+            }),
         ]
     }
 

@@ -71,7 +71,12 @@ pub(super) fn line<'a>(file: &'a str, number: usize, text: &'a str) -> Result<Op
             return Err(FormatError::new(file, line.at(start), "more words", expected));
         }
         let Ok((text, quoted)) = word.parse_next(&mut input) else {
-            return Err(FormatError::new(file, line.at(start), "a quote that is not closed", "the closing quote"));
+            return Err(FormatError::new(
+                file,
+                line.at(start),
+                "a quote that is not closed",
+                "the closing quote",
+            ));
         };
         line.words.push(Word { text, quoted, start });
         line.end = input.current_token_start();
@@ -150,7 +155,10 @@ mod tests {
     #[test]
     fn an_open_quote_is_named_at_its_place() {
         let error = line("f.sim", 3, "world \"maze.maz").unwrap_err();
-        assert_eq!(error.to_string(), "f.sim:3:7: found a quote that is not closed; expected the closing quote");
+        assert_eq!(
+            error.to_string(),
+            "f.sim:3:7: found a quote that is not closed; expected the closing quote"
+        );
     }
 
     #[test]

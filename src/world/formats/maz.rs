@@ -82,7 +82,8 @@ impl Maze {
     /// Whether there is a wall to the left of the cell of a column and a row; column [`Maze::columns`] means the
     /// right edge. Outside the maze there is none.
     pub fn wall_left(&self, column: usize, row: usize) -> bool {
-        column <= self.columns && self.vertical.get(row * (self.columns + 1) + column).is_some_and(|&wall| wall)
+        column <= self.columns
+            && self.vertical.get(row * (self.columns + 1) + column).is_some_and(|&wall| wall)
     }
 
     /// Builds or removes the wall that [`Maze::wall_below`] tells of. Outside the maze nothing happens.
@@ -101,7 +102,11 @@ impl Maze {
 
     /// The letter of a cell, in lower case.
     pub fn letter(&self, column: usize, row: usize) -> Option<char> {
-        if column < self.columns { self.letters.get(row * self.columns + column).copied().flatten() } else { None }
+        if column < self.columns {
+            self.letters.get(row * self.columns + column).copied().flatten()
+        } else {
+            None
+        }
     }
 
     /// Puts a letter into a cell, in lower case. What is no ASCII letter empties it; outside the maze nothing happens.
@@ -307,7 +312,8 @@ impl Maze {
             (None, false) => ' ',
         };
         let before = |column| if self.wall_left(column, row) { '|' } else { ' ' };
-        let mut line: String = (0..self.columns).flat_map(|column| [before(column), in_cell(column)]).collect();
+        let mut line: String =
+            (0..self.columns).flat_map(|column| [before(column), in_cell(column)]).collect();
         line.push(before(self.columns));
         line
     }
@@ -363,8 +369,12 @@ mod tests {
     fn a_box_of_two_cells() {
         let world = world(" _ _\n|_ _|\n1000\n");
         assert_eq!(world.floor.max, Point::new(2.0, 1.0));
-        let expected =
-            [segment(0.0, 0.0, 2.0, 0.0), segment(0.0, 1.0, 2.0, 1.0), segment(0.0, 0.0, 0.0, 1.0), segment(2.0, 0.0, 2.0, 1.0)];
+        let expected = [
+            segment(0.0, 0.0, 2.0, 0.0),
+            segment(0.0, 1.0, 2.0, 1.0),
+            segment(0.0, 0.0, 0.0, 1.0),
+            segment(2.0, 0.0, 2.0, 1.0),
+        ];
         assert_eq!(lines(&world), expected);
     }
 
@@ -373,12 +383,16 @@ mod tests {
         let world = world(" _ _ _\n|a|o x|\n|S b D|\n");
         let places: Vec<(char, f64, f64)> =
             world.places.iter().map(|p| (p.letter, p.position.x, p.position.y)).collect();
-        assert_eq!(places, [('a', 0.18, 0.54), ('S', 0.18, 0.18), ('b', 0.54, 0.18), ('D', 2.5 * 0.36, 0.18)]);
+        assert_eq!(
+            places,
+            [('a', 0.18, 0.54), ('S', 0.18, 0.18), ('b', 0.54, 0.18), ('D', 2.5 * 0.36, 0.18)]
+        );
         assert_eq!(world.start, Some(Pose::from_mm_deg(180.0, 180.0, 90.0)));
         assert_eq!(world.places[3].heading, Some(units::from_deg(-90.0)));
         let names: Vec<&str> = world.objects.iter().map(|o| o.kind.name.as_str()).collect();
         assert_eq!(names, ["golf", "crate"]);
-        let bottom: Vec<Segment> = lines(&world).into_iter().filter(|s| s.a.y == 0.0 && s.b.y == 0.0).collect();
+        let bottom: Vec<Segment> =
+            lines(&world).into_iter().filter(|s| s.a.y == 0.0 && s.b.y == 0.0).collect();
         assert_eq!(bottom, [segment(0.0, 0.0, 0.36, 0.0), segment(0.72, 0.0, 1.08, 0.0)]);
     }
 

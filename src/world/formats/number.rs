@@ -20,7 +20,8 @@ pub(super) const MILLI: i32 = -3;
 pub(super) fn parse(text: &str, power: i32) -> Option<f64> {
     let (mantissa, exponent) = decimal.parse(text).ok()?;
     // More digits than any exponent needs: beyond that the value is zero or infinite anyway.
-    let exponent = exponent.map_or(0, |e| e.parse::<i64>().unwrap_or(if e.starts_with('-') { -99_999 } else { 99_999 }));
+    let exponent =
+        exponent.map_or(0, |e| e.parse::<i64>().unwrap_or(if e.starts_with('-') { -99_999 } else { 99_999 }));
     let exponent = exponent.clamp(-99_999, 99_999) + i64::from(power);
     format!("{mantissa}e{exponent}").parse().ok()
 }
@@ -112,7 +113,9 @@ mod tests {
 
     #[test]
     fn millimetres_move_the_point() {
-        for (text, metres) in [("22.7", 0.0227), ("-360", -0.36), ("1e3", 1.0), ("+.5", 0.0005), ("7.", 0.007)] {
+        for (text, metres) in
+            [("22.7", 0.0227), ("-360", -0.36), ("1e3", 1.0), ("+.5", 0.0005), ("7.", 0.007)]
+        {
             assert_eq!(parse(text, MILLI), Some(metres), "{text}");
         }
         assert_eq!(millimetres(0.0227), "22.7");

@@ -12,7 +12,8 @@
 //! A pixel of brightness v, 0 to 255, has the occupancy p = (255 - v) / 255, or v / 255 if negated. *Trinary* knows
 //! free, occupied and unknown. *Scale* turns what lies between the thresholds into percent, and transparent pixels
 //! into unknown ones. *Raw* takes v itself as percent, and more than 100 as unknown. The brightness of a colour is the
-//! mean of its channels, to which *trinary* counts the opacity.
+//! mean of red, green and blue. (Some map servers count the opacity as a fourth channel in mode *trinary*, which makes
+//! opaque pixels brighter than they look; this reader does not.)
 
 use std::fmt::Write as _;
 use std::io::Cursor;
@@ -76,12 +77,12 @@ impl RosMap {
         }
     }
 
-    /// The occupancy in percent of a pixel, `None` if unknown. `brightness` is 0 to 1.
+    /// The occupancy in percent of a pixel, `None` if unknown. `brightness` is 0 to 255.
     fn occupancy(&self, brightness: f64, transparent: bool) -> Option<u8> {
-        let occupied = if self.negate { brightness } else { 1.0 - brightness };
+        let occupied = if self.negate { brightness } else { 255.0 - brightness } / 255.0;
         let (high, low) = (self.occupied_threshold, self.free_threshold);
         let percent = match self.mode {
-            Mode::Raw => (brightness * 255.0).round(),
+            Mode::Raw => brightness.round(),
             Mode::Scale if transparent => return None,
             _ if occupied > high => 100.0,
             _ if occupied < low => 0.0,
@@ -113,7 +114,8 @@ pub fn parse(text: &str, file: &str, files: &mut dyn FileSource) -> Result<Parse
     let (image, at) = header.image()?;
     header.warn_about_the_rest();
     let limit = MAX_IMAGE_BYTES;
-    let source = files.read(&image, file, limit).map_err(|error| unreadable(&error, &image, file, at, limit))?;
+    let source =
+        files.read(&image, file, limit).map_err(|error| unreadable(&error, &image, file, at, limit))?;
     let pixels = decode_image(&source)?;
     map.image = image;
     map.grid = OccupancyGrid::unknown(pixels.width() as usize, pixels.height() as usize, resolution, origin)
@@ -250,7 +252,12 @@ impl Header<'_> {
 
     fn require(&mut self, key: &str) -> Result<Value, FormatError> {
         self.take(key).ok_or_else(|| {
-            FormatError::new(self.notes.file, Location::START, format!("no key `{key}`"), format!("`{key}: …`"))
+            FormatError::new(
+                self.notes.file,
+                Location::START,
+                format!("no key `{key}`"),
+                format!("`{key}: …`"),
+            )
         })
     }
 
@@ -261,7 +268,12 @@ impl Header<'_> {
         }
     }
 
-    fn number(&self, scalar: &Scalar, expected: &str, fits: impl Fn(f64) -> bool) -> Result<f64, FormatError> {
+    fn number(
+        &self,
+        scalar: &Scalar,
+        expected: &str,
+        fits: impl Fn(f64) -> bool,
+    ) -> Result<f64, FormatError> {
         let value = Some(scalar).filter(|s| s.plain).and_then(|s| number::parse(&s.text, 0));
         value.filter(|&value| fits(value)).ok_or_else(|| self.wrong(scalar, expected))
     }
@@ -275,7 +287,8 @@ impl Header<'_> {
 const MAX_DECODED_BYTES: u64 = 128 << 20;
 
 fn decode_image(source: &SourceFile) -> Result<DynamicImage, FormatError> {
-    let error = |found: String, expected: &str| FormatError::new(&source.name, Location::START, found, expected);
+    let error =
+        |found: String, expected: &str| FormatError::new(&source.name, Location::START, found, expected);
     let mut reader = ImageReader::new(Cursor::new(&source.bytes));
     let ending = Path::new(&source.name).extension().and_then(|e| e.to_str()).unwrap_or("");
     let by_name = ImageFormat::from_extension(ending);
@@ -303,9 +316,8 @@ impl RosMap {
     fn fill(&mut self, pixels: &DynamicImage) {
         let grays = pixels.as_luma8();
         // Every gray value once, in place of a division for each pixel.
-        let table: Vec<Option<u8>> = (0..=255u8).map(|v| self.occupancy(f64::from(v) / 255.0, false)).collect();
+        let table: Vec<Option<u8>> = (0..=255u8).map(|v| self.occupancy(f64::from(v), false)).collect();
         let colours = if grays.is_none() { Some(pixels.to_rgba8()) } else { None };
-        let has_alpha = pixels.color().has_alpha();
         let height = self.grid.height();
         for row in 0..height {
             let y = (height - 1 - row) as u32;
@@ -313,7 +325,7 @@ impl RosMap {
                 let x = column as u32;
                 let percent = match (grays, &colours) {
                     (Some(gray), _) => table[usize::from(gray.get_pixel(x, y)[0])],
-                    (None, Some(colours)) => self.colour_occupancy(colours.get_pixel(x, y).0, has_alpha),
+                    (None, Some(colours)) => self.colour_occupancy(colours.get_pixel(x, y).0),
                     (None, None) => None,
                 };
                 self.grid.set_occupancy(column, row, percent);
@@ -321,10 +333,8 @@ impl RosMap {
         }
     }
 
-    fn colour_occupancy(&self, [r, g, b, a]: [u8; 4], has_alpha: bool) -> Option<u8> {
-        let sum = f64::from(r) + f64::from(g) + f64::from(b);
-        let mean = if has_alpha && self.mode == Mode::Trinary { (sum + f64::from(a)) / 4.0 } else { sum / 3.0 };
-        self.occupancy(mean / 255.0, a != 255)
+    fn colour_occupancy(&self, [r, g, b, a]: [u8; 4]) -> Option<u8> {
+        self.occupancy((f64::from(r) + f64::from(g) + f64::from(b)) / 3.0, a != 255)
     }
 }
 
@@ -353,8 +363,10 @@ pub fn print(map: &RosMap) -> String {
 /// Fails if no pixel value stands for one of the occupancies under the map's mode and thresholds, or if an unknown
 /// cell in mode *scale* needs a transparent pixel and the format is not PNG.
 pub fn print_image(map: &RosMap) -> Result<Vec<u8>, FormatError> {
-    let error = |found: String, expected: &str| FormatError::new(&map.image, Location::START, found, expected);
-    let ending = Path::new(&map.image).extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+    let error =
+        |found: String, expected: &str| FormatError::new(&map.image, Location::START, found, expected);
+    let ending =
+        Path::new(&map.image).extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     let (format, name) = match ending.as_str() {
         "pgm" => (ImageFormat::Pnm, "PGM"),
         "png" => (ImageFormat::Png, "PNG"),
@@ -389,7 +401,7 @@ impl RosMap {
         let mut shades = [None; 102];
         // From both ends to the middle, so that the plain values, black and white, win.
         for v in (0..128u8).flat_map(|v| [127 - v, 128 + v]) {
-            shades[slot(self.occupancy(f64::from(v) / 255.0, false))] = Some(v);
+            shades[slot(self.occupancy(f64::from(v), false))] = Some(v);
         }
         let (width, height) = (self.grid.width() as u32, self.grid.height() as u32);
         let mut gray = GrayImage::new(width, height);
@@ -424,3 +436,7 @@ pub fn save(map: &RosMap, path: impl AsRef<Path>) -> Result<(), FormatError> {
     write(&path.with_file_name("").join(&map.image), &image)?;
     write(path, print(map).as_bytes())
 }
+
+#[cfg(test)]
+#[path = "ros_map_tests.rs"]
+mod tests;

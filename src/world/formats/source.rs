@@ -114,7 +114,12 @@ pub(super) fn unreadable(error: &io::Error, name: &str, file: &str, at: Location
 /// The text of a file: UTF-8, or Latin-1 with a warning.
 pub(super) fn decode(bytes: Vec<u8>, notes: &mut Notes<'_>) -> Result<String, FormatError> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) || bytes.contains(&0) {
-        return Err(FormatError::new(notes.file, Location::START, "bytes that are no text", "a text file in UTF-8"));
+        return Err(FormatError::new(
+            notes.file,
+            Location::START,
+            "bytes that are no text",
+            "a text file in UTF-8",
+        ));
     }
     String::from_utf8(bytes).or_else(|error| {
         let valid = error.utf8_error().valid_up_to();

@@ -63,7 +63,8 @@ impl<'f> Reader<'f> {
             "width" => self.width = Some(args.size("the floor's width")?),
             "height" => self.height = Some(args.size("the floor's height")?),
             "floor_texture" => {
-                let image = args.path("an image file", &[".png", ".jpg", ".jpeg", ".bmp"], &mut self.notes)?;
+                let image =
+                    args.path("an image file", &[".png", ".jpg", ".jpeg", ".bmp"], &mut self.notes)?;
                 self.world.floor_texture = Some(PathBuf::from(image));
             }
             "push" => self.push(line, &mut args)?,
@@ -212,7 +213,8 @@ pub fn print(world: &World) -> String {
 
 fn write_world(text: &mut String, world: &World) -> std::fmt::Result {
     if let Some(t) = &world.terrain {
-        let (width, height, top) = (millimetres(t.width), millimetres(t.height), millimetres(t.max_elevation));
+        let (width, height, top) =
+            (millimetres(t.width), millimetres(t.height), millimetres(t.max_elevation));
         writeln!(text, "terrain {width} {height} {top} {}", quote(&t.image.to_string_lossy()))?;
     }
     let corner = world.floor.max;
@@ -277,7 +279,9 @@ mod tests {
 
     #[test]
     fn push_turns_clockwise_and_nests() {
-        let world = world("floor 9000 9000\npush 1000 2000 90\n0 0 500 0\npush 100 0 90\n0 0 500 0\npop\n0 0 0 1\npop\npop\n0 0 1 0");
+        let world = world(
+            "floor 9000 9000\npush 1000 2000 90\n0 0 500 0\npush 100 0 90\n0 0 500 0\npop\n0 0 0 1\npop\npop\n0 0 1 0",
+        );
         let lines: Vec<Segment> = world.walls.iter().map(|w| w.line).collect();
         assert!(near(lines[0].a, 1.0, 2.0) && near(lines[0].b, 1.0, 1.5), "{:?}", lines[0]);
         assert!(near(lines[1].a, 1.0, 1.9) && near(lines[1].b, 0.5, 1.9), "{:?}", lines[1]);
@@ -294,7 +298,8 @@ mod tests {
 
     #[test]
     fn odd_lines_are_skipped_with_their_place() {
-        let parsed = parse("floor 100 100\nush 1 2 3\n5000 0 0\n0 0 1 1 7 ; five\nball 3 4\npop 1", "w.wld").unwrap();
+        let parsed =
+            parse("floor 100 100\nush 1 2 3\n5000 0 0\n0 0 1 1 7 ; five\nball 3 4\npop 1", "w.wld").unwrap();
         let messages: Vec<String> = parsed.warnings.iter().map(ToString::to_string).collect();
         assert_eq!(
             messages,
@@ -327,7 +332,8 @@ mod tests {
     fn wall() -> impl Strategy<Value = Wall> {
         let ends = (length(), length(), length(), length());
         let body = prop_oneof![Just((0.01, 0.2)), (0.0..1.0f64, 0.0..9.0f64)];
-        let colour = prop_oneof![Just(Colour::WHITE), any::<[u8; 3]>().prop_map(|[r, g, b]| Colour::new(r, g, b))];
+        let colour =
+            prop_oneof![Just(Colour::WHITE), any::<[u8; 3]>().prop_map(|[r, g, b]| Colour::new(r, g, b))];
         (ends, body, colour).prop_map(|((ax, ay, bx, by), (thickness, height), colour)| {
             let line = Segment::new(Point::new(ax, ay), Point::new(bx, by));
             Wall { line, thickness, height, colour }

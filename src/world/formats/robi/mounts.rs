@@ -2,9 +2,9 @@
 
 use super::super::error::FormatError;
 use super::super::lexer::Line;
-use crate::world::formats::args::Args;
 use crate::geometry::units;
 use crate::world::Mount;
+use crate::world::formats::args::Args;
 
 /// What the first three and the rotation columns of a sensor mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -21,7 +21,9 @@ impl Wheel {
     pub(super) fn read(args: &mut Args<'_, '_>) -> Result<Self, FormatError> {
         Ok(Self {
             diameter: args.positive_size("the wheel's diameter")?,
-            max_speed: units::from_deg(args.degrees("the wheel's highest speed per second", f64::MIN_POSITIVE..=MAX_DEGREES)?),
+            max_speed: units::from_deg(
+                args.degrees("the wheel's highest speed per second", f64::MIN_POSITIVE..=MAX_DEGREES)?,
+            ),
             ticks: args.plain("the encoder's ticks per turn", f64::MIN_POSITIVE..=1e9)?,
             track: 2.0 * args.positive_size("half the distance between the wheels")?,
         })
@@ -64,7 +66,10 @@ pub(super) fn outline(line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<(Footp
         "rectangle" => {
             let mut side = |what: &str| args.length(&format!("the outline's {what} side"));
             let (back, right) = (side("back")?, side("right")?);
-            Footprint::Rectangle(Aabb::new(Point::new(back, right), Point::new(side("front")?, side("left")?)))
+            Footprint::Rectangle(Aabb::new(
+                Point::new(back, right),
+                Point::new(side("front")?, side("left")?),
+            ))
         }
         _ => return Err(line.error(1, expected)),
     };

@@ -128,11 +128,17 @@ impl<'f> Reader<'f> {
     }
 
     /// Lines that EyeSim does not know. Returns whether the keyword is one.
-    fn own_line(&mut self, keyword: &str, line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<bool, FormatError> {
+    fn own_line(
+        &mut self,
+        keyword: &str,
+        line: &Line<'_>,
+        args: &mut Args<'_, '_>,
+    ) -> Result<bool, FormatError> {
         match keyword {
             "motor" => {
                 self.spec.motor.time_constant = args.plain("the motors' lag in seconds", 0.0..=1e6)?;
-                self.spec.motor.max_acceleration = args.positive_size("the highest acceleration per second squared")?;
+                self.spec.motor.max_acceleration =
+                    args.positive_size("the highest acceleration per second squared")?;
             }
             "steering" => {
                 let degrees = args.degrees("the largest steering angle", f64::MIN_POSITIVE..=90.0)?;
@@ -220,9 +226,11 @@ impl<'f> Reader<'f> {
             id = args.count("the sensor's number", 0..=255)?;
         }
         let one_angle = !shared || args.numbers_ahead() == 4;
-        let raw = if one_angle { Raw::read_with_yaw(args, "the sensor")? } else { Raw::read(args, "the sensor")? };
+        let raw =
+            if one_angle { Raw::read_with_yaw(args, "the sensor")? } else { Raw::read(args, "the sensor")? };
         if raw.rotation.iter().filter(|&&turn| turn != 0.0).count() > 1 {
-            self.notes.warn(line.location(6), "a sensor turned about more than one axis; only its yaw counts");
+            self.notes
+                .warn(line.location(6), "a sensor turned about more than one axis; only its yaw counts");
         }
         if self.psds.iter().any(|psd| u32::from(psd.id) == id) {
             self.notes.warn(line.location(0), format!("a second sensor with the number {id}"));
@@ -239,7 +247,8 @@ impl<'f> Reader<'f> {
             self.lidar_mount = Some(Raw::read(args, "the lidar")?);
         }
         if numbers > 2 {
-            lidar.field_of_view = units::from_deg(args.degrees("the lidar's range", f64::MIN_POSITIVE..=360.0)?);
+            lidar.field_of_view =
+                units::from_deg(args.degrees("the lidar's range", f64::MIN_POSITIVE..=360.0)?);
         }
         let points = |args: &mut Args<'_, '_>| args.count("the lidar's points", 1..=100_000);
         let tilt = |args: &mut Args<'_, '_>| args.degrees("the lidar's tilt", -90.0..=90.0);
@@ -293,20 +302,31 @@ impl<'f> Reader<'f> {
             self.notes.warn(Location::START, "no `wheel` line; the wheels of an S4 are taken");
             Wheel { diameter: 0.054, max_speed: units::from_deg(3600.0), ticks: 1100.0, track: 0.090 }
         });
-        let Wheel { diameter: wheel_diameter, max_speed: max_wheel_speed, ticks: ticks_per_turn, track } = wheel;
+        let Wheel { diameter: wheel_diameter, max_speed: max_wheel_speed, ticks: ticks_per_turn, track } =
+            wheel;
         if drive == Drive::Differential {
+            // Nothing steers.
+            self.spec.body.turn_axle_height = 0.0;
             return Ok(DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn });
         }
-        let wheelbase = self.turn_axle.map_or(track, |ahead| ahead - self.spec.body.axle[0]);
+        let ahead = self.spec.body.axle[0];
+        let wheelbase = self.turn_axle.unwrap_or(ahead + track) - ahead;
         if self.turn_axle.is_none() && drive == Drive::Ackermann {
             self.notes.warn(Location::START, "no `axel turn` line; the axles are as far apart as the wheels");
         }
         if wheelbase <= 0.0 || wheelbase > MAX_METRES {
             let found = format!("axles {} mm apart", number::print(wheelbase, MILLI));
-            return Err(FormatError::new(self.notes.file, Location::START, found, "the steered axle before the driven one"));
+            return Err(FormatError::new(
+                self.notes.file,
+                Location::START,
+                found,
+                "the steered axle before the driven one",
+            ));
         }
         Ok(match drive {
-            Drive::Omni => DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn },
+            Drive::Omni => {
+                DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn }
+            }
             _ => DriveSpec::Ackermann {
                 wheel_diameter,
                 track,
@@ -358,7 +378,8 @@ impl<'f> Reader<'f> {
             | DriveSpec::Omni { wheel_diameter, track, .. } => 0.5 * (track + wheel_diameter),
         };
         let fallback = (Footprint::Disc { radius: wheels }, DEFAULT_HEIGHT);
-        (self.spec.footprint, self.spec.height) = self.outline.take().or_else(|| derived.clone()).unwrap_or(fallback);
+        (self.spec.footprint, self.spec.height) =
+            self.outline.take().or_else(|| derived.clone()).unwrap_or(fallback);
         if says_all(body, &self.spec.footprint, self.spec.height) {
             body.colliders.clear();
         }

@@ -60,12 +60,21 @@ fn write_drive(text: &mut String, spec: &RobotSpec) -> Result {
             write_wheel(text, "", [wheel_diameter, max_wheel_speed, ticks_per_turn, track])
         }
         DriveSpec::Ackermann {
-            wheel_diameter, track, wheelbase, max_steering, max_wheel_speed, ticks_per_turn
+            wheel_diameter,
+            track,
+            wheelbase,
+            max_steering,
+            max_wheel_speed,
+            ticks_per_turn,
         } => {
             axles(text, wheelbase)?;
             write_wheel(text, "drive ", [wheel_diameter, max_wheel_speed, ticks_per_turn, track])?;
             write_wheel(text, "turn ", [wheel_diameter, max_wheel_speed, ticks_per_turn, track])?;
-            if max_steering == DEFAULT_STEERING { Ok(()) } else { writeln!(text, "steering {}", degrees(max_steering)) }
+            if max_steering == DEFAULT_STEERING {
+                Ok(())
+            } else {
+                writeln!(text, "steering {}", degrees(max_steering))
+            }
         }
     }
 }
@@ -82,7 +91,10 @@ fn write_solid(text: &mut String, spec: &RobotSpec) -> Result {
     }
     body.colliders.iter().try_for_each(|collider| write_collider(text, collider))?;
     let turns = matches!(spec.drive, DriveSpec::Differential { .. });
-    if body.footprint(turns).is_some_and(|(footprint, height)| footprint == spec.footprint && height == spec.height) {
+    if body
+        .footprint(turns)
+        .is_some_and(|(footprint, height)| footprint == spec.footprint && height == spec.height)
+    {
         return Ok(());
     }
     let height = millimetres(spec.height);

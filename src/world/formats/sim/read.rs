@@ -37,7 +37,9 @@ impl Reader<'_> {
         }
         let mut args = Args::after_keyword(line);
         let (statement, place) = match keyword.as_str() {
-            "world" => (Statement::World(self.path(&mut args, "a world", &[".wld", ".maz", ".yaml", ".yml"])?), 1),
+            "world" => {
+                (Statement::World(self.path(&mut args, "a world", &[".wld", ".maz", ".yaml", ".yml"])?), 1)
+            }
             "robot" | "robi" => (Statement::Robot(self.path(&mut args, "a robot", &[".robi"])?), 1),
             "object" | "obj" => (Statement::Object(self.path(&mut args, "an object", &[".esobj"])?), 1),
             "settings" => (Statement::Settings(self.settings(line, &mut args)), 0),
@@ -84,7 +86,9 @@ fn legacy(keyword: &str, line: &Line<'_>) -> Option<&'static str> {
     let is_number = |index: usize| line.words.get(index).is_some_and(|w| number::parse(w.text, 0).is_some());
     match keyword {
         "maze" if line.words.len() == 2 => Some("`world FILE`"),
-        "robi" if line.words.len() >= 6 && (3..6).all(is_number) => Some("`robot FILE` and `NAME X Y PHI PROGRAM`"),
+        "robi" if line.words.len() >= 6 && (3..6).all(is_number) => {
+            Some("`robot FILE` and `NAME X Y PHI PROGRAM`")
+        }
         "object" if (1..4).all(is_number) => Some("`object FILE` and `NAME X Y PHI`"),
         _ => None,
     }

@@ -31,7 +31,12 @@ pub fn parse(text: &str, file: &str, files: &mut dyn FileSource) -> Result<Parse
 impl SimFile {
     /// The scene that the script describes, with the files that it names. `file` is the script's own name, from which
     /// others are looked up; `seed` is that of headings that the script leaves open.
-    pub fn resolve(&self, file: &str, files: &mut dyn FileSource, seed: u64) -> Result<Parsed<Scene>, FormatError> {
+    pub fn resolve(
+        &self,
+        file: &str,
+        files: &mut dyn FileSource,
+        seed: u64,
+    ) -> Result<Parsed<Scene>, FormatError> {
         let mut resolver = Resolver {
             script: self,
             notes: Notes::new(file),
@@ -63,14 +68,18 @@ struct Resolver<'a> {
 impl Resolver<'_> {
     /// Letters may be used before the line that names the maze.
     fn read_world(&mut self, files: &mut dyn FileSource) -> Result<(), FormatError> {
-        let worlds = self.script.statements.iter().enumerate().filter_map(|(index, statement)| match statement {
-            Statement::World(file) => Some((index, file)),
-            _ => None,
-        });
+        let worlds =
+            self.script.statements.iter().enumerate().filter_map(|(index, statement)| match statement {
+                Statement::World(file) => Some((index, file)),
+                _ => None,
+            });
         let worlds: Vec<_> = worlds.collect();
         let Some(&(last, file)) = worlds.last() else { return Ok(()) };
         for &(index, _) in &worlds[..worlds.len() - 1] {
-            self.notes.warn(self.script.location(index), "another `world` line follows, which counts; this one is skipped");
+            self.notes.warn(
+                self.script.location(index),
+                "another `world` line follows, which counts; this one is skipped",
+            );
         }
         let world = read_world(file, self.notes.file, self.script.location(last), files)?;
         self.notes.extend(world.warnings);
@@ -93,14 +102,18 @@ impl Resolver<'_> {
             }
             Statement::Robot(file) => self.define_robot(file, at, files)?,
             Statement::Object(file) => self.define_object(file, at, files)?,
-            Statement::Place { name, at: position, program } => self.place(name, *position, program.as_deref(), at)?,
+            Statement::Place { name, at: position, program } => {
+                self.place(name, *position, program.as_deref(), at)?
+            }
             Statement::Marker(marker) => self.scene.world.markers.push(*marker),
             Statement::Unknown(words) => {
                 let name = words.first().map_or("", String::as_str);
                 if self.robot(name).is_some() || self.object(name).is_some() {
                     let broken = self.script.broken.iter().find(|(i, _)| *i == index);
                     let error = broken.map(|(_, error)| error.clone());
-                    return Err(error.unwrap_or_else(|| self.error(at, shown(name), "x, y and heading after it")));
+                    return Err(
+                        error.unwrap_or_else(|| self.error(at, shown(name), "x, y and heading after it"))
+                    );
                 }
                 self.warn_unknown(name, at);
             }
@@ -108,20 +121,31 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    fn define_robot(&mut self, file: &str, at: Location, files: &mut dyn FileSource) -> Result<(), FormatError> {
+    fn define_robot(
+        &mut self,
+        file: &str,
+        at: Location,
+        files: &mut dyn FileSource,
+    ) -> Result<(), FormatError> {
         self.check_definitions(at)?;
         let (name, text) = self.read(file, at, files)?;
         let parsed = robi::parse(&text, &name)?;
         self.notes.extend(parsed.warnings);
         if RobotSpec::predefined(&parsed.value.name).is_some() {
-            let message = format!("the name {} is reserved; the built-in robot is used", shown(&parsed.value.name));
+            let message =
+                format!("the name {} is reserved; the built-in robot is used", shown(&parsed.value.name));
             self.notes.warn(at, message);
         }
         self.robots.push((stem(file), Arc::new(parsed.value)));
         Ok(())
     }
 
-    fn define_object(&mut self, file: &str, at: Location, files: &mut dyn FileSource) -> Result<(), FormatError> {
+    fn define_object(
+        &mut self,
+        file: &str,
+        at: Location,
+        files: &mut dyn FileSource,
+    ) -> Result<(), FormatError> {
         self.check_definitions(at)?;
         let (name, text) = self.read(file, at, files)?;
         let parsed = esobj::parse(&text, &name)?;
@@ -149,10 +173,20 @@ impl Resolver<'_> {
         if self.robots.len() + self.objects.len() < MAX_DEFINITIONS {
             return Ok(());
         }
-        Err(self.error(at, "one more file".into(), &format!("at most {MAX_DEFINITIONS} files of robots and objects")))
+        Err(self.error(
+            at,
+            "one more file".into(),
+            &format!("at most {MAX_DEFINITIONS} files of robots and objects"),
+        ))
     }
 
-    fn place(&mut self, name: &str, position: Position, program: Option<&str>, at: Location) -> Result<(), FormatError> {
+    fn place(
+        &mut self,
+        name: &str,
+        position: Position,
+        program: Option<&str>,
+        at: Location,
+    ) -> Result<(), FormatError> {
         if let Some(spec) = self.robot(name) {
             return self.place_robot(&spec, position, program, at);
         }
@@ -161,10 +195,15 @@ impl Resolver<'_> {
             return Ok(());
         };
         let Position::Pose { pose, elevation } = position else {
-            return Err(self.error(at, format!("{} at a letter", shown(name)), "x, y and heading of the object"));
+            return Err(self.error(
+                at,
+                format!("{} at a letter", shown(name)),
+                "x, y and heading of the object",
+            ));
         };
         if let Some(program) = program {
-            let message = format!("{} is more than belongs in the line of an object; ignored", shown(program));
+            let message =
+                format!("{} is more than belongs in the line of an object; ignored", shown(program));
             self.notes.warn(at, message);
         }
         self.check_placed(at)?;
@@ -189,8 +228,14 @@ impl Resolver<'_> {
             }
             Position::Letter { letter, heading } => (letter, heading),
         };
-        let places: Vec<_> =
-            self.scene.world.places.iter().filter(|p| p.letter.eq_ignore_ascii_case(&letter)).copied().collect();
+        let places: Vec<_> = self
+            .scene
+            .world
+            .places
+            .iter()
+            .filter(|p| p.letter.eq_ignore_ascii_case(&letter))
+            .copied()
+            .collect();
         if places.is_empty() {
             return Err(self.error(at, format!("the letter `{letter}`"), "a letter that stands in the maze"));
         }
@@ -228,7 +273,8 @@ impl Resolver<'_> {
     }
 
     fn warn_unknown(&mut self, name: &str, at: Location) {
-        let message = format!("{} is neither a keyword nor a known robot or object; the line is skipped", shown(name));
+        let message =
+            format!("{} is neither a keyword nor a known robot or object; the line is skipped", shown(name));
         self.notes.warn(at, message);
     }
 
@@ -240,6 +286,7 @@ impl Resolver<'_> {
 /// The last definition that states a name, or else the last whose file is called so.
 fn find<T>(definitions: &[Definition<T>], name: &str, stated: impl Fn(&T) -> &str) -> Option<Arc<T>> {
     let by_name = definitions.iter().rev().find(|(_, value)| stated(value).eq_ignore_ascii_case(name));
-    let found = by_name.or_else(|| definitions.iter().rev().find(|(file, _)| file.eq_ignore_ascii_case(name)));
+    let found =
+        by_name.or_else(|| definitions.iter().rev().find(|(file, _)| file.eq_ignore_ascii_case(name)));
     found.map(|(_, value)| Arc::clone(value))
 }

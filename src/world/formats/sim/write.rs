@@ -8,7 +8,11 @@ use crate::world::Marker;
 /// Writes a script, so that [`parse_document`](super::parse_document) gives it back.
 pub fn print(script: &SimFile) -> String {
     let mut text = String::new();
-    script.statements.iter().try_for_each(|s| write_statement(&mut text, s)).expect("writing to a string does not fail");
+    script
+        .statements
+        .iter()
+        .try_for_each(|s| write_statement(&mut text, s))
+        .expect("writing to a string does not fail");
     text
 }
 
@@ -32,7 +36,9 @@ fn write_statement(text: &mut String, statement: &Statement) -> Result {
             writeln!(text)
         }
         Statement::Unknown(words) => {
-            let words: Vec<String> = words.iter().map(|word| quote(word)).collect();
+            // A bare letter would make it the line of a robot in a maze.
+            let word = |word: &String| if word.len() == 1 { format!("\"{word}\"") } else { quote(word) };
+            let words: Vec<String> = words.iter().map(word).collect();
             writeln!(text, "{}", words.join(" "))
         }
     }
