@@ -63,11 +63,8 @@ impl<'l, 'a> Args<'l, 'a> {
             return Err(self.line.error(at, what));
         }
         let rest = self.line.rest(at);
-        if self.left() > 0
-            && !word.quoted
-            && !ends_with_any(word.text, endings)
-            && ends_with_any(rest, endings)
-        {
+        let one_name = !rest.contains(['"', '\'']) && ends_with_any(rest, endings);
+        if self.left() > 0 && one_name && !ends_with_any(word.text, endings) {
             notes.warn(self.line.location(at), format!("{} has blanks; read as one file name", shown(rest)));
             self.next = self.line.words.len();
             return Ok(rest);
@@ -165,7 +162,7 @@ impl<'l, 'a> Args<'l, 'a> {
 }
 
 fn ends_with_any(name: &str, endings: &[&str]) -> bool {
-    let name = name.trim_end_matches(['"', '\'']).to_ascii_lowercase();
+    let name = name.to_ascii_lowercase();
     endings.iter().any(|ending| name.ends_with(ending))
 }
 

@@ -143,6 +143,16 @@ fn built_in_robots_survive() {
     }
 }
 
+#[test]
+fn sensors_beside_the_axle_are_not_mistaken_for_others() {
+    let text = "drive OMNI_DRIVE\nwheel 54 3600 1100 45\npsd PSD_FRONT 1 0 20 30 0\ncamera 1e-9 20 30 0 0 9 9\naxel drive 0 40\n";
+    for text in [text, &text.replace("drive 0 40", "drive 0 0")] {
+        let spec = robot(text);
+        assert_eq!((spec.psds[0].mount.y, spec.camera.unwrap().mount.y), (0.02, 0.02));
+        assert_eq!(robot(&print(&spec)), spec);
+    }
+}
+
 fn metres() -> impl Strategy<Value = f64> {
     prop_oneof![0.001..2.0f64, (1..2000i32).prop_map(|mm| f64::from(mm) / 1000.0)]
 }
