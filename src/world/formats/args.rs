@@ -179,13 +179,13 @@ fn shown_range(range: &RangeInclusive<f64>, power: i32) -> String {
 impl Args<'_, '_> {
     /// A place: right, up, forward.
     pub(super) fn model_place(&mut self, what: &str) -> Result<Place3, FormatError> {
-        let [right, up, forward] = self.three(what, |args, what| args.length(what))?;
+        let [right, up, forward] = self.three(what, Self::length)?;
         Ok([forward, -right, up])
     }
 
     /// Sizes of more than zero: to the right, upwards, forward.
     pub(super) fn model_size(&mut self, what: &str) -> Result<Place3, FormatError> {
-        let [right, up, forward] = self.three(what, |args, what| args.positive_size(what))?;
+        let [right, up, forward] = self.three(what, Self::positive_size)?;
         Ok([forward, right, up])
     }
 

@@ -137,6 +137,14 @@ pub(super) fn quote(word: &str) -> String {
     }
 }
 
+/// What a writer writes.
+pub(super) fn written(write: impl FnOnce(&mut String) -> std::fmt::Result) -> String {
+    let mut text = String::new();
+    // A string takes everything: its writer never fails.
+    let _ = write(&mut text);
+    text
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -206,9 +206,7 @@ fn pose(args: &mut Args<'_, '_>) -> Result<Pose, FormatError> {
 /// The format's floors begin at (0, 0): of one that begins elsewhere only the upper right corner is kept. Objects,
 /// marks and places are left out.
 pub fn print(world: &World) -> String {
-    let mut text = String::new();
-    write_world(&mut text, world).expect("writing to a string does not fail");
-    text
+    lexer::written(|text| write_world(text, world))
 }
 
 fn write_world(text: &mut String, world: &World) -> std::fmt::Result {

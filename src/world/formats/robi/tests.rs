@@ -195,7 +195,7 @@ prop_compose! {
     fn psd()(id in any::<u8>(), x in metres(), y in -1.0..1.0f64, z in -1.0..1.0f64, yaw in degrees(180), range in metres())
         -> PsdSpec
     {
-        let name = if yaw == 0.0 || yaw > 3.14 { "PSD_FRONT" } else if yaw > 0.0 { "PSD_LEFT" } else { "PSD_FR" };
+        let name = if yaw == 0.0 || yaw == std::f64::consts::PI { "PSD_FRONT" } else if yaw > 0.0 { "PSD_LEFT" } else { "PSD_FR" };
         let y = match name { "PSD_LEFT" => y.abs(), "PSD_FR" => -y.abs(), _ => y };
         PsdSpec { id, name: name.into(), mount: Mount { x, y, z, yaw }, max_range: range }
     }

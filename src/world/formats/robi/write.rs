@@ -1,7 +1,7 @@
 use std::fmt::{Result, Write as _};
 
 use super::super::esobj::model_place;
-use super::super::lexer::quote;
+use super::super::lexer::{self, quote};
 use super::super::number::{self, degrees, millimetres, undo_shift};
 use super::read::DEFAULT_STEERING;
 use crate::world::{CameraSpec, Collider, DriveSpec, Footprint, MotorSpec, PsdSpec, RobotSpec};
@@ -11,9 +11,7 @@ use crate::world::{CameraSpec, Collider, DriveSpec, Footprint, MotorSpec, PsdSpe
 /// Sensors are written with the columns forward, left, up. A sensor on the other side than its name says comes back
 /// on the side of its name.
 pub fn print(spec: &RobotSpec) -> String {
-    let mut text = String::new();
-    write_spec(&mut text, spec).expect("writing to a string does not fail");
-    text
+    lexer::written(|text| write_spec(text, spec))
 }
 
 fn write_spec(text: &mut String, spec: &RobotSpec) -> Result {

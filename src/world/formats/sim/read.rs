@@ -49,8 +49,7 @@ impl Reader<'_> {
                 Err(error) if is_predefined(&keyword) => return Err(error),
                 Err(error) => {
                     self.script.broken.push((self.script.statements.len(), error));
-                    let words = line.words.iter().map(|word| word.text.to_string()).collect();
-                    self.script.push(Statement::Unknown(words), line.location(0));
+                    self.script.push(Statement::Unknown(line.rest(0).into()), line.location(0));
                     return Ok(());
                 }
             },

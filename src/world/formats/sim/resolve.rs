@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use super::super::error::{FormatError, Location, Notes, Parsed};
-use super::super::lexer::shown;
+use super::super::lexer::{self, shown};
 use super::super::limits::{MAX_DEFINITIONS, MAX_PLACED, MAX_TEXT_BYTES};
 use super::super::load::{read_world, stem};
 use super::super::source::{FileSource, decode, unreadable};
@@ -103,11 +103,12 @@ impl Resolver<'_> {
             Statement::Robot(file) => self.define_robot(file, at, files)?,
             Statement::Object(file) => self.define_object(file, at, files)?,
             Statement::Place { name, at: position, program } => {
-                self.place(name, *position, program.as_deref(), at)?
+                self.place(name, *position, program.as_deref(), at)?;
             }
             Statement::Marker(marker) => self.scene.world.markers.push(*marker),
-            Statement::Unknown(words) => {
-                let name = words.first().map_or("", String::as_str);
+            Statement::Unknown(text) => {
+                let line = lexer::line(self.notes.file, at.line, text)?;
+                let name = line.as_ref().map_or("", |line| line.words[0].text);
                 if self.robot(name).is_some() || self.object(name).is_some() {
                     let broken = self.script.broken.iter().find(|(i, _)| *i == index);
                     let error = broken.map(|(_, error)| error.clone());
