@@ -79,7 +79,8 @@ impl RosMap {
 
     /// The occupancy in percent of a pixel, `None` if unknown. `brightness` is 0 to 255.
     fn occupancy(&self, brightness: f64, transparent: bool) -> Option<u8> {
-        let occupied = if self.negate { brightness } else { 255.0 - brightness } / 255.0;
+        let paint = if self.negate { brightness } else { 255.0 - brightness };
+        let occupied = paint / 255.0;
         let (high, low) = (self.occupied_threshold, self.free_threshold);
         let percent = match self.mode {
             Mode::Raw => brightness.round(),

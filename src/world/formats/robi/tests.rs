@@ -277,12 +277,14 @@ proptest! {
     ) {
         let text = format!("drive {drive}axis 1 {axle}.{tenths}\n{colliders}{psds}{rest}");
         let spec = robot(&text);
+        prop_assert_eq!(spec.validate(), Ok(()));
         prop_assert_eq!(robot(&print(&spec)), spec);
     }
 
     #[test]
     fn no_text_panics(text in "((drive|psd|lidar|camera|collider|wheel|axel|box|turn| |\n|;|\"|-|[0-9.]{1,3}| 1| 2 3){1,12}\n){0,6}") {
         if let Ok(parsed) = parse(&format!("drive OMNI_DRIVE\n{text}"), "x.robi") {
+            prop_assert_eq!(parsed.value.validate(), Ok(()));
             prop_assert_eq!(robot(&print(&parsed.value)), parsed.value);
         }
     }

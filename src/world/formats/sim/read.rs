@@ -1,6 +1,7 @@
 use super::super::args::Args;
 use super::super::error::{FormatError, Notes, Parsed};
 use super::super::lexer::{self, Line, shown};
+use super::super::limits::MAX_STATEMENTS;
 use super::super::number;
 use super::super::source::check_length;
 use super::document::{Position, SimFile, Statement};
@@ -29,6 +30,11 @@ struct Reader<'f> {
 
 impl Reader<'_> {
     fn line(&mut self, line: &Line<'_>) -> Result<(), FormatError> {
+        if self.script.statements.len() == MAX_STATEMENTS {
+            let mut error = line.error(0, format!("at most {MAX_STATEMENTS} lines"));
+            error.found = "one more line".into();
+            return Err(error);
+        }
         let keyword = line.words[0].text.to_ascii_lowercase();
         if let Some(instead) = legacy(&keyword, line) {
             let message = format!("a line of EyeSim 6, skipped; expected {instead}");
