@@ -306,6 +306,10 @@ fn decode_image(source: &SourceFile) -> Result<DynamicImage, FormatError> {
         };
         error(format!("a broken image ({e})"), expected)
     })?;
+    if decoded.width() == 0 || decoded.height() == 0 {
+        let found = format!("an image of {} by {} pixels", decoded.width(), decoded.height());
+        return Err(error(found, "at least one pixel"));
+    }
     let cells = u64::from(decoded.width()) * u64::from(decoded.height());
     if cells > OccupancyGrid::MAX_CELLS as u64 {
         return Err(error(format!("an image of {cells} pixels"), "at most 33554432 pixels"));
