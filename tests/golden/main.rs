@@ -85,9 +85,9 @@ type Disturbance = fn(usize, u32);
 
 const DISTURBANCES: [(&str, Disturbance); 3] = [
     ("yields", |robot, step| (0..(robot as u32 * 7 + step) % 5).for_each(|_| std::thread::yield_now())),
-    ("early robots sleep", |robot, _| std::thread::sleep(Duration::from_micros(800 >> robot))),
+    ("early robots sleep", |robot, _| std::thread::sleep(Duration::from_micros(400 >> robot))),
     ("naps by chance", |robot, step| {
-        let microseconds = Stream::new(u64::from(step)).child("nap", robot as u64).below(600);
+        let microseconds = Stream::new(u64::from(step)).child("nap", robot as u64).below(300);
         std::thread::sleep(Duration::from_micros(microseconds as u64));
     }),
 ];

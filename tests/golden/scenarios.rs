@@ -177,7 +177,7 @@ fn arcs() -> Result<String> {
 /// Against walls, head on and at a slant, and against what stands about, until the robot stalls.
 fn wall_bump() -> Result<String> {
     let options = SimOptions { time_limit: Some(20.0), ..noise(1.0, 13) };
-    drive(&in_room(0.3, 1.0, 2.9), options, |robot| {
+    drive(&in_room(0.3, 1.0, 3.1), options, |robot| {
         for twist in [
             Twist::new(0.4, 0.0),
             Twist::new(-0.3, 0.4),
