@@ -1,0 +1,26 @@
+use crate::common::CommonArgs;
+
+/// The command line of the example `distbug`.
+#[derive(Debug, clap::Parser)]
+#[command(
+    name = "distbug",
+    about = "Drives a robot with a lidar to a goal among unknown obstacles, or proves that there is no way (DistBug)",
+    after_help = "Without --world, the robot drives through a world of the example's own. A .sim gives robot, start \
+                  and goal (its first robot and its first marker), a .maz start and goal (the letters S and G), a \
+                  .wld the start (`position`); --robot, --start and --goal come before them. Other robots stand \
+                  still.\n\nWithout --time-limit, the time is generous for the size of the world. Without --picture, \
+                  the run is drawn into distbug.svg, except with --json.\n\nJSON fields: goal ([x, y] mm), \
+                  goal_distance_mm (true), hit_points and leave_points (lists of [x, y] mm in the world, as the robot \
+                  takes them), contact_points (true), time_limit_s, picture (the file's name or null), error (why \
+                  the robot failed, after that only). Outcomes: reached, unreachable, timed_out, collided, failed."
+)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
