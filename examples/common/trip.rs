@@ -121,20 +121,20 @@ impl CommonArgs {
         let place = in_mm(start.position());
         if !trip.scene.world.bounds().contains(start.position()) {
             return Err(Failure::input(format!(
-                "{from}: found a start at {place}, outside of the world; expected one {}",
+                "{from}: found a start at {place} mm, outside of the world; expected one {}",
                 within(&trip.scene.world.bounds())
             )));
         }
         if clearance(&trip.scene) <= TOUCHING {
             let radius = units::to_mm(trip.spec().footprint.bounding_radius());
             return Err(Failure::input(format!(
-                "{from}: found a start at {place}, in a wall, an object or another robot; expected free floor \
+                "{from}: found a start at {place} mm, in a wall, an object or another robot; expected free floor \
                  around it for a robot of {radius:.0} mm radius"
             )));
         }
         if trip.goal.coords.amax() > FARTHEST {
             return Err(Failure::input(format!(
-                "--goal: found {}; expected coordinates of at most {} mm",
+                "--goal: found {} mm; expected coordinates of at most {:.0} mm",
                 in_mm(trip.goal),
                 units::to_mm(FARTHEST)
             )));
@@ -157,11 +157,12 @@ impl CommonArgs {
 }
 
 fn in_mm(point: Point) -> String {
-    format!("{:.0}, {:.0} mm", units::to_mm(point.x), units::to_mm(point.y))
+    let [x, y] = [point.x, point.y].map(|metres| units::to_mm(metres).round() + 0.0);
+    format!("{x}, {y}")
 }
 
 fn within(bounds: &Aabb) -> String {
-    format!("from {} to {}", in_mm(bounds.min), in_mm(bounds.max))
+    format!("from {} to {} mm", in_mm(bounds.min), in_mm(bounds.max))
 }
 
 /// Metres from the first robot's outline to the nearest wall, object or other robot; 0 in contact.
