@@ -1,10 +1,15 @@
-use super::fan::Fan;
+use super::cluster::CLUSTER;
+use super::fan::{Fan, Sector};
+use super::grid::Cells;
 use super::polar::PolarBuffer;
 use super::ray::Ray;
 use super::shape::Shape;
 use super::solid::SolidId;
-use super::space::Space;
-use crate::geometry::{Aabb, Point, Pose, Vector, math};
+use super::store::Space;
+use crate::geometry::{Point, Pose, math};
+
+/// Up to so many solids are looked at one by one; more, by the cells they are in.
+const FEW_SOLIDS: usize = 64;
 
 /// A laser scanner's beams, worked out once, and the memory that a scan needs.
 #[derive(Debug, Clone)]
@@ -15,8 +20,11 @@ pub struct Scanner {
     max_range: f64,
     /// Whether the beams go round counter-clockwise, at most once or so: what a polar buffer can draw.
     drawn: bool,
-    /// What may be seen, nearest first: the distance's leading bits, then a number.
+    /// What may be seen; its order, nearest first: the distance's leading bits, then a place in `sights`; and which
+    /// solids are done.
+    sights: Vec<Sight>,
     order: Vec<u64>,
+    seen: Vec<bool>,
 }
 
 impl Scanner {
@@ -33,10 +41,9 @@ impl Scanner {
         tilt: f64,
         max_range: f64,
     ) -> Self {
-        // A fan of less than a hundred thousandth of a turn from beam to beam is cast ray by ray.
-        let drawn = tilt == 0.0 && angle_increment > 6e-5 && angle_increment.is_finite();
+        let drawn = tilt == 0.0 && angle_increment > 1e-6 && angle_increment.is_finite();
         let buffer = PolarBuffer::new(Fan::new(angle_min, angle_increment, beams));
-        Self { buffer, z, tilt, max_range, drawn, order: Vec::new() }
+        Self { buffer, z, tilt, max_range, drawn, sights: Vec::new(), order: Vec::new(), seen: Vec::new() }
     }
 
     /// The number of beams.
@@ -73,54 +80,100 @@ impl Space {
 
     /// Draws what may be seen, from near to far; true if the scanner is in something.
     fn draw(&self, scanner: &mut Scanner, eye: Point, except: Option<SolidId>) -> bool {
-        let Scanner { buffer, order, z, max_range, .. } = scanner;
-        order.clear();
-        self.clusters.for_each_near(eye, *max_range, |number, squared| order.push(key(squared, number)));
-        self.for_each_solid_near(eye, *max_range, |number| {
-            let placed = &self.solids[number];
-            if Some(SolidId(number as u32)) == except || !placed.span.contains(*z) {
-                return;
-            }
-            let bounds = placed.shape.bounds();
-            let reach = (bounds.max - bounds.min) * 0.5;
-            let near = greater_than_zero((bounds.min + reach - eye).norm() - reach.norm());
-            if near <= *max_range {
-                order.push(key(near * near, self.clusters.clusters.len() + number));
-            }
+        let Scanner { buffer, sights, order, seen, z, max_range, .. } = scanner;
+        sights.clear();
+        self.clusters.for_each_near(eye, *max_range, |number, squared| {
+            let sector = buffer.sector_of_box(&self.clusters.clusters[number].bounds);
+            sights.push(Sight { what: Sighted::Cluster(number as u32), sector, near: squared.sqrt() });
         });
+        seen.clear();
+        seen.resize(self.solids.len(), false);
+        if self.solids.len() <= FEW_SOLIDS {
+            (0..self.solids.len() as u32)
+                .for_each(|n| sights.extend(self.sight_solid(buffer, n, *max_range)));
+        } else {
+            let loose = self.grid.loose_solids().iter();
+            sights.extend(loose.filter_map(|&number| self.sight_solid(buffer, number, *max_range)));
+            self.grid.lattice.for_each_block_near(eye, *max_range, |cells, bounds, near| {
+                let sector = buffer.sector_of_box(&bounds);
+                sights.push(Sight { what: Sighted::Block(cells), sector, near });
+            });
+        }
+        if let Some(SolidId(number)) = except
+            && let Some(seen) = seen.get_mut(number as usize)
+        {
+            *seen = true;
+        }
+        order.clear();
+        order.extend(sights.iter().enumerate().map(|(place, sight)| key(sight.near, place)));
         order.sort_unstable();
         order.iter().any(|entry| {
-            let number = (entry & u64::from(u32::MAX)) as usize;
-            match self.clusters.clusters.get(number) {
-                Some(cluster) => {
-                    let near = cluster.squared_distance(eye).sqrt();
-                    if buffer.hides_box(&cluster.bounds, near) {
-                        return false;
-                    }
-                    let walls = self.walls[cluster.members()].iter().filter(|wall| wall.span.contains(*z));
-                    walls.fold(false, |inside, wall| buffer.draw_box(&wall.shape) || inside)
-                }
-                None => match &self.solids[number - self.clusters.clusters.len()].shape {
-                    Shape::Disc { centre, radius } => {
-                        !buffer.hides_disc(*centre, *radius) && buffer.draw_disc(*centre, *radius)
-                    }
-                    Shape::Box(shape) => buffer.draw_box(shape),
-                },
+            let sight = &sights[(entry & u64::from(u32::MAX)) as usize];
+            if buffer.hides(sight.sector, sight.near) {
+                return false;
+            }
+            match sight.what {
+                Sighted::Cluster(number) => self.draw_cluster(buffer, number as usize, *z),
+                Sighted::Solid(number) => self.draw_solid(buffer, number, *z, seen),
+                Sighted::Block(cells) => self.draw_block(buffer, cells, *z, seen),
             }
         })
     }
 
-    /// Visits the solids that may be within reach, some of them perhaps more than once.
-    fn for_each_solid_near(&self, eye: Point, reach: f64, mut visit: impl FnMut(usize)) {
-        let reach = Vector::new(reach, reach);
-        let window = self.grid.lattice.under(&Aabb { min: eye - reach, max: eye + reach });
-        match window {
-            Some((cells, _)) if cells.count() < self.solids.len() => {
-                self.grid.loose_solids().iter().for_each(|&number| visit(number as usize));
-                self.grid.for_each_solid_in(cells, |number, _, _| visit(number as usize));
-            }
-            _ => (0..self.solids.len()).for_each(visit),
+    /// A solid, if it is within reach.
+    fn sight_solid(&self, buffer: &PolarBuffer, number: u32, reach: f64) -> Option<Sight> {
+        let (sector, near) = buffer.sector_of(&self.solids[number as usize].shape);
+        (near <= reach).then_some(Sight { what: Sighted::Solid(number), sector, near })
+    }
+
+    fn draw_cluster(&self, buffer: &mut PolarBuffer, number: usize, z: f64) -> bool {
+        let walls = &self.walls[self.clusters.clusters[number].members()];
+        // First all strokes, then all drawing: the processor works on several strokes at a time.
+        let mut strokes = [None; CLUSTER];
+        for (stroke, wall) in strokes.iter_mut().zip(walls.iter().filter(|wall| wall.span.contains(z))) {
+            *stroke = Some(buffer.stroke(&wall.shape));
         }
+        strokes.iter().flatten().any(|stroke| {
+            if !stroke.inside {
+                buffer.draw(stroke);
+            }
+            stroke.inside
+        })
+    }
+
+    fn draw_solid(&self, buffer: &mut PolarBuffer, number: u32, z: f64, seen: &mut [bool]) -> bool {
+        let placed = &self.solids[number as usize];
+        if std::mem::replace(&mut seen[number as usize], true) || !placed.span.contains(z) {
+            return false;
+        }
+        match &placed.shape {
+            Shape::Disc { centre, radius } => buffer.draw_disc(*centre, *radius),
+            Shape::Box(shape) => {
+                let stroke = buffer.stroke(shape);
+                if !stroke.inside {
+                    buffer.draw(&stroke);
+                }
+                stroke.inside
+            }
+        }
+    }
+
+    /// Draws the solids of some cells, but for those in cells that are hidden.
+    fn draw_block(&self, buffer: &mut PolarBuffer, cells: Cells, z: f64, seen: &mut [bool]) -> bool {
+        let lattice = &self.grid.lattice;
+        cells.iter().any(|(x, y)| {
+            let solids = self.grid.solids_in(lattice.index(x, y));
+            solids.iter().any(|&number| {
+                if seen[number as usize] {
+                    return false;
+                }
+                let (sector, near) = buffer.sector_of(&self.solids[number as usize].shape);
+                let hidden = buffer.hides(sector, near);
+                // What is hidden now stays so.
+                seen[number as usize] = hidden;
+                !hidden && self.draw_solid(buffer, number, z, seen)
+            })
+        })
     }
 
     /// Casts beam by beam, whatever their tilt.
@@ -137,13 +190,176 @@ impl Space {
     }
 }
 
-/// Sorts by distance, then by number.
-#[inline]
-fn key(squared_distance: f64, number: usize) -> u64 {
-    u64::from((squared_distance as f32).to_bits()) << 32 | number as u64
+/// Something that may be seen.
+#[derive(Debug, Clone, Copy)]
+struct Sight {
+    what: Sighted,
+    /// The beams it may be in.
+    sector: Sector,
+    /// Metres to it, at least.
+    near: f64,
 }
 
+#[derive(Debug, Clone, Copy)]
+enum Sighted {
+    Cluster(u32),
+    Solid(u32),
+    /// The solids listed in some cells.
+    Block(Cells),
+}
+
+/// Sorts by distance, then by place.
 #[inline]
-fn greater_than_zero(x: f64) -> f64 {
-    if x > 0.0 { x } else { 0.0 }
+fn key(distance: f64, place: usize) -> u64 {
+    u64::from((distance as f32).to_bits()) << 32 | place as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, TAU};
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::geometry::{Aabb, Vector, direction};
+    use crate::world::space::{Outline, Solid};
+    use crate::world::{Wall, World};
+
+    fn scan(space: &Space, mut scanner: Scanner, pose: Pose) -> Vec<f64> {
+        let mut ranges = vec![-1.0; scanner.beams()];
+        space.scan(&mut scanner, &pose, None, &mut ranges);
+        ranges
+    }
+
+    fn near(ranges: &[f64], expected: &[f64]) -> bool {
+        let same = |(a, b): (&f64, &f64)| a == b || (a - b).abs() < 1e-9;
+        ranges.len() == expected.len() && ranges.iter().zip(expected).all(same)
+    }
+
+    #[test]
+    fn four_beams_in_a_walled_room_see_its_four_faces() {
+        let space = Space::new(&World::walled(4.0, 2.0).walls);
+        let scanner = Scanner::new(0.0, FRAC_PI_2, 4, 0.1, 0.0, 10.0);
+        let pose = Pose::new(1.0, 0.5, 0.0);
+        assert!(near(&scan(&space, scanner.clone(), pose), &[2.995, 1.495, 0.995, 0.495]));
+        let turned = Pose::new(1.0, 0.5, FRAC_PI_2);
+        assert!(near(&scan(&space, scanner, turned), &[1.495, 0.995, 0.495, 2.995]));
+    }
+
+    #[test]
+    fn a_scan_that_goes_clockwise_or_stands_still_is_right_too() {
+        let space = Space::new(&World::walled(4.0, 2.0).walls);
+        let pose = Pose::new(1.0, 0.5, 0.0);
+        let clockwise = Scanner::new(0.0, -FRAC_PI_2, 4, 0.1, 0.0, 10.0);
+        assert!(near(&scan(&space, clockwise, pose), &[2.995, 0.495, 0.995, 1.495]));
+        let still = Scanner::new(0.0, 0.0, 3, 0.1, 0.0, 10.0);
+        assert!(near(&scan(&space, still, pose), &[2.995; 3]));
+        let twice_around = Scanner::new(0.0, FRAC_PI_2, 8, 0.1, 0.0, 10.0);
+        assert!(near(
+            &scan(&space, twice_around, pose),
+            &[2.995, 1.495, 0.995, 0.495, 2.995, 1.495, 0.995, 0.495]
+        ));
+        assert!(scan(&space, Scanner::new(0.0, 0.1, 0, 0.1, 0.0, 10.0), pose).is_empty());
+    }
+
+    #[test]
+    fn there_is_no_return_from_beyond_the_range_or_above_the_walls_or_without_a_beam() {
+        let space = Space::new(&World::walled(4.0, 2.0).walls);
+        let pose = Pose::new(1.0, 0.5, 0.0);
+        let none = f64::INFINITY;
+        let short = Scanner::new(0.0, FRAC_PI_2, 4, 0.1, 0.0, 1.0);
+        assert!(near(&scan(&space, short, pose), &[none, none, 0.995, 0.495]));
+        let high = Scanner::new(0.0, FRAC_PI_2, 4, 0.201, 0.0, 10.0);
+        assert!(near(&scan(&space, high, pose), &[none; 4]));
+        let mut scanner = Scanner::new(0.0, FRAC_PI_2, 2, 0.1, 0.0, 10.0);
+        let (mut long, mut short) = ([-1.0; 3], [-1.0; 1]);
+        space.scan(&mut scanner, &pose, None, &mut long);
+        space.scan(&mut scanner, &pose, None, &mut short);
+        assert!(near(&long, &[2.995, 1.495, none]) && near(&short, &[2.995]));
+    }
+
+    #[test]
+    fn a_robot_does_not_see_itself_but_others_do() {
+        let mut space = Space::new(&World::walled(4.0, 2.0).walls);
+        let pose = Pose::new(1.0, 0.5, 0.0);
+        for outline in [
+            Outline::Disc { radius: 0.1 },
+            Outline::Rectangle(Aabb::new(Point::new(-0.1, -0.1), Point::new(0.1, 0.1))),
+        ] {
+            let id = space.add(Solid { outline, pose, bottom: 0.0, top: 0.15 });
+            let mut scanner = Scanner::new(0.0, FRAC_PI_2, 4, 0.1, 0.0, 10.0);
+            let mut ranges = [0.0; 4];
+            space.scan(&mut scanner, &pose, Some(id), &mut ranges);
+            assert!(near(&ranges, &[2.995, 1.495, 0.995, 0.495]));
+            space.scan(&mut scanner, &pose, None, &mut ranges);
+            assert!(near(&ranges, &[0.0; 4]));
+            space.scan(&mut scanner, &Pose::new(2.0, 0.5, 0.0), None, &mut ranges);
+            assert!(near(&ranges, &[1.995, 1.495, 0.9, 0.495]));
+            space.set_pose(id, Pose::new(3.0, 1.5, 0.0));
+        }
+    }
+
+    #[test]
+    fn tilted_beams_hit_the_floor_or_rise_above_low_walls() {
+        let low = Wall { height: 0.12, ..Wall::new(Point::new(1.0, -1.0), Point::new(1.0, 1.0)) };
+        let high = Wall { height: 1.0, ..Wall::new(Point::new(3.0, -1.0), Point::new(3.0, 1.0)) };
+        let space = Space::new(&[low, high]);
+        let ahead = |tilt: f64| scan(&space, Scanner::new(0.0, 0.1, 1, 0.1, tilt, 10.0), Pose::default())[0];
+        // Rises 0.03 m in 1 m: over the first wall, onto the second.
+        let tilt = math::atan(0.03);
+        assert!((ahead(tilt) - 2.995 / math::cos(tilt)).abs() < 1e-12);
+        // Falls 0.2 m in 1 m: onto the floor after 0.5 m.
+        let tilt = math::atan(-0.2);
+        assert!((ahead(tilt) - 0.5 / math::cos(tilt)).abs() < 1e-12);
+        // From above onto the first wall's top, half way across: 0.6 m down in 1 m from 0.72 m.
+        let tilt = math::atan(-0.6);
+        let scanner = Scanner::new(0.0, 0.1, 1, 0.72, tilt, 10.0);
+        assert!((scan(&space, scanner, Pose::default())[0] - 1.0 / math::cos(tilt)).abs() < 1e-9);
+        assert_eq!(ahead(math::atan(0.5)), f64::INFINITY);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(32))]
+
+        #[test]
+        fn a_tilted_beam_ends_where_a_walk_along_it_first_enters_something(
+            walls in prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64, 0.0..TAU, 0.1..1.0f64, 0.05..0.3f64), 0..8),
+            discs in prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64, 0.05..0.4f64, 0.0..0.3f64), 0..8),
+            tilt in -0.5..0.5f64, z in 0.0..0.3f64,
+        ) {
+            let walls: Vec<Wall> = walls.into_iter().map(|(x, y, angle, length, height)| {
+                let a = Point::new(x, y);
+                Wall { thickness: 0.1, height, ..Wall::new(a, a + direction(angle) * length) }
+            }).collect();
+            let mut space = Space::new(&walls);
+            for &(x, y, radius, bottom) in &discs {
+                let pose = Pose::new(x, y, 0.0);
+                space.add(Solid { outline: Outline::Disc { radius }, pose, bottom, top: bottom + 0.1 });
+            }
+            let filled = |p: Point, h: f64| {
+                let in_wall = |w: &Wall| {
+                    let along = (w.line.b - w.line.a).normalize();
+                    let (u, s) = (along.dot(&(p - w.line.a)), crate::geometry::cross(along, p - w.line.a));
+                    h <= w.height && 0.0 <= u && u <= w.line.length() && s.abs() <= 0.05
+                };
+                let in_disc = |&(x, y, r, b): &(f64, f64, f64, f64)| {
+                    b <= h && h <= b + 0.1 && (p - Point::new(x, y)).norm() <= r
+                };
+                h < 0.0 || walls.iter().any(in_wall) || discs.iter().any(in_disc)
+            };
+            let ranges = scan(&space, Scanner::new(0.0, 0.5, 13, z, tilt, 5.0), Pose::default());
+            let (rise, run) = math::sin_cos(tilt);
+            for (beam, range) in ranges.into_iter().enumerate() {
+                let d: Vector = direction(0.5 * beam as f64) * run;
+                let at = |along: f64| filled(Point::origin() + d * along, z + rise * along);
+                let steps = (range.min(5.0) / 1e-3) as usize;
+                // Nothing before the range but for corners that are only just cut, and something right behind it.
+                let before = (0..steps).filter(|&step| at(1e-3 * step as f64)).count();
+                prop_assert!(before <= 1, "beam {} of {} enters something {} times before", beam, range, before);
+                let behind = [1e-9, 1e-6, 1e-5].map(|past| at(range + past));
+                let grazing = [1e-3, 1e-2].iter().all(|past| !at(range + past));
+                prop_assert!(range == f64::INFINITY || behind.contains(&true) || grazing);
+            }
+        }
+    }
 }
