@@ -12,8 +12,9 @@ pub(crate) fn scene() -> Scene {
     crescent(&mut world);
     hook(&mut world);
     room(&mut world);
+    bystanders(&mut world);
     for (kind, x, y, heading) in
-        [("crate", 420.0, 3500.0, 20.0), ("can", 2450.0, 820.0, 0.0), ("can", 4050.0, 900.0, 0.0)]
+        [("crate", 1150.0, 3950.0, 20.0), ("can", 2450.0, 700.0, 0.0), ("soccer", 3900.0, 600.0, 0.0)]
     {
         let kind = ObjectKind::predefined(kind).expect("a kind that every scene knows");
         world.objects.push(Object::new(Arc::new(kind), Pose::from_mm_deg(x, y, heading)));
@@ -40,7 +41,7 @@ fn c_shape(world: &mut World) {
     add_line(world, &[(950.0, 1500.0), (1550.0, 1500.0), (1550.0, 850.0), (1100.0, 850.0)]);
 }
 
-/// Two arcs that meet in points, the hollow side towards the robot.
+/// A thick arc, its hollow side towards the robot.
 fn crescent(world: &mut World) {
     let (middle, pieces) = (at(2150.0, 2000.0), 24);
     let arc = |radius: f64, shift: f64, reach: f64| {
@@ -57,9 +58,16 @@ fn crescent(world: &mut World) {
     world.add_loop(&outline);
 }
 
-/// A zig-zag with a hook at its end.
+/// A cup that opens towards the robot, with its rim bent inwards.
 fn hook(world: &mut World) {
-    add_line(world, &[(1300.0, 4100.0), (1300.0, 3500.0), (1900.0, 3500.0), (1900.0, 3150.0)]);
+    add_line(world, &[(2750.0, 2900.0), (2750.0, 3500.0), (2250.0, 3500.0), (2250.0, 3250.0)]);
+}
+
+/// A zig-zag and a block that the robot passes by.
+fn bystanders(world: &mut World) {
+    add_line(world, &[(500.0, 2500.0), (900.0, 2750.0), (500.0, 3000.0), (900.0, 3250.0)]);
+    let block = (0..6).map(|i| at(3400.0, 1500.0) + direction(TAU * (f64::from(i) + 0.3) / 6.0) * 0.34);
+    world.add_loop(&block.collect::<Vec<_>>());
 }
 
 /// A room around the goal, whose door looks away from the robot.

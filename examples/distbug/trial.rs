@@ -56,14 +56,16 @@ impl Judgement {
     ];
 
     fn of(ending: &Ending, reachable: bool, goal_distance: f64, noise: f64) -> Self {
-        match ending {
-            Ending::Failed(_) => Self::Failed,
-            Ending::Verdict(DistBugOutcome::TimedOut) => Self::TimedOut,
-            Ending::Verdict(DistBugOutcome::Unreachable) if reachable => Self::NotUnreachable,
-            Ending::Verdict(DistBugOutcome::Unreachable) => Self::Correct,
-            Ending::Verdict(DistBugOutcome::Reached) if !reachable => Self::NotReached,
-            Ending::Verdict(DistBugOutcome::Reached) if goal_distance > tolerance(noise) => Self::FarFromGoal,
-            Ending::Verdict(DistBugOutcome::Reached) => Self::Correct,
+        use DistBugOutcome as Outcome;
+        match (ending, reachable) {
+            (Ending::Failed(_), _) => Self::Failed,
+            (Ending::Verdict(Outcome::TimedOut), _) => Self::TimedOut,
+            (Ending::Verdict(Outcome::Unreachable), true) => Self::NotUnreachable,
+            (Ending::Verdict(Outcome::Reached), false) => Self::NotReached,
+            (Ending::Verdict(Outcome::Reached), true) if goal_distance > tolerance(noise) => Self::FarFromGoal,
+            (Ending::Verdict(Outcome::Unreachable), false) | (Ending::Verdict(Outcome::Reached), true) => {
+                Self::Correct
+            }
         }
     }
 }
