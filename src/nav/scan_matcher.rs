@@ -1,4 +1,4 @@
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix4, Vector4};
 
 use super::scan_reference::{Evidence, Reference};
 use crate::geometry::{Point, Pose, math, normalize_angle};
@@ -13,7 +13,7 @@ use crate::geometry::{Point, Pose, math, normalize_angle};
 ///
 /// Match and odometry are weighed by what each knows: odometry by how far the robot has moved, the match by the
 /// directions in which the visible surfaces hold the scan. Along a bare corridor or in a round room odometry decides.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct ScanMatcher {
     references: Vec<Reference>,
     /// The references that scans are matched against at present, and where they were chosen.
@@ -24,8 +24,10 @@ pub struct ScanMatcher {
     /// The pose by odometry of the last scan, and its corrected pose.
     odometry: Pose,
     pose: Pose,
-    /// The covariance of the corrected pose: metres and radians squared.
-    covariance: Matrix3<f64>,
+    /// By which part of itself odometry underrates every motion: what wheels of other than nominal size do.
+    scale_error: f64,
+    /// The covariance of corrected pose (metres, radians) and scale error.
+    covariance: Matrix4<f64>,
 }
 
 /// References farther away than this, in metres, are not matched against.
@@ -47,8 +49,10 @@ const ITERATIONS: usize = 6;
 const COARSE_GATE: f64 = 0.10;
 const FINE_GATE: f64 = 0.03;
 /// Odometry's error as a part of the distance driven and of the angle turned in one step.
-const DISTANCE_ERROR: f64 = 0.03;
-const TURN_ERROR: f64 = 0.02;
+const DISTANCE_ERROR: f64 = 0.01;
+const TURN_ERROR: f64 = 0.006;
+/// The standard deviation of odometry's scale before anything has been matched.
+const SCALE_ERROR: f64 = 0.015;
 /// The variance that slip adds to the heading: radians squared per metre and per radian.
 const SLIP_PER_METRE: f64 = 6e-5;
 const SLIP_PER_RADIAN: f64 = 2.5e-6;
@@ -59,15 +63,32 @@ const LEAST_VARIANCE: f64 = 1e-10;
 #[derive(Debug, Clone, Copy)]
 struct Match {
     pose: Pose,
-    covariance: Matrix3<f64>,
+    scale_error: f64,
+    covariance: Matrix4<f64>,
     /// The share of points that found counterparts in one reference.
     overlap: f64,
+}
+
+impl Default for ScanMatcher {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl ScanMatcher {
     /// A matcher without references, whose corrected frame is odometry's own.
     pub fn new() -> Self {
-        Self::default()
+        let variances = Vector4::new(0.0, 0.0, 0.0, SCALE_ERROR * SCALE_ERROR);
+        Self {
+            references: Vec::new(),
+            active: Vec::new(),
+            chosen_at: Point::origin(),
+            overlap: 0.0,
+            odometry: Pose::default(),
+            pose: Pose::default(),
+            scale_error: 0.0,
+            covariance: Matrix4::from_diagonal(&variances),
+        }
     }
 
     /// The corrected pose for a pose by odometry, by the last match.
@@ -93,6 +114,7 @@ impl ScanMatcher {
         self.overlap = matched.overlap;
         if matched.overlap >= MIN_MATCH && strayed < MAX_CORRECTION {
             self.pose = matched.pose;
+            self.scale_error = matched.scale_error;
             self.covariance = matched.covariance;
         }
         self.pose
@@ -110,49 +132,60 @@ impl ScanMatcher {
 
     /// Moves pose and covariance on by odometry.
     fn predict(&mut self, odometry: Pose) -> Pose {
-        let motion = self.odometry.inverse().compose(&odometry);
+        let measured = self.odometry.inverse().compose(&odometry);
+        self.odometry = odometry;
+        let scale = 1.0 + self.scale_error;
+        let motion = Pose::new(scale * measured.x, scale * measured.y, scale * measured.heading);
         let before = self.pose;
         self.pose = before.compose(&motion);
-        self.odometry = odometry;
         let (dx, dy) = (self.pose.x - before.x, self.pose.y - before.y);
         let distance = math::hypot(motion.x, motion.y);
         let turn = motion.heading.abs();
-        let carried = Matrix3::new(1.0, 0.0, -dy, 0.0, 1.0, dx, 0.0, 0.0, 1.0);
-        let position = (DISTANCE_ERROR * distance) * (DISTANCE_ERROR * distance) + LEAST_VARIANCE;
-        let heading = (TURN_ERROR * turn) * (TURN_ERROR * turn)
-            + SLIP_PER_METRE * distance
-            + SLIP_PER_RADIAN * turn
-            + LEAST_VARIANCE;
-        self.covariance = carried * self.covariance * carried.transpose()
-            + Matrix3::from_diagonal(&Vector3::new(position, position, heading));
+        let mut carried = Matrix4::identity();
+        carried[(0, 2)] = -dy;
+        carried[(1, 2)] = dx;
+        carried[(0, 3)] = dx;
+        carried[(1, 3)] = dy;
+        carried[(2, 3)] = motion.heading;
+        let square = |x: f64| x * x;
+        let position = square(DISTANCE_ERROR * distance) + LEAST_VARIANCE;
+        let heading =
+            square(TURN_ERROR * turn) + SLIP_PER_METRE * distance + SLIP_PER_RADIAN * turn + LEAST_VARIANCE;
+        let added = Vector4::new(position, position, heading, 0.0);
+        self.covariance = carried * self.covariance * carried.transpose() + Matrix4::from_diagonal(&added);
         self.pose
     }
 
     /// Moves a scan from its predicted pose to where it fits the active references best.
     fn lay_over(&self, predicted: Pose, points: &[Point]) -> Match {
-        let known = self.covariance.try_inverse().unwrap_or_else(Matrix3::zeros);
+        let known = self.covariance.try_inverse().unwrap_or_else(Matrix4::zeros);
         let mut pose = predicted;
+        let mut scale_error = self.scale_error;
         let mut information = known;
         let mut matched = 0;
         for iteration in 0..ITERATIONS {
             let share = iteration as f64 / (ITERATIONS - 1) as f64;
             let found = self.evidence(pose, points, COARSE_GATE + (FINE_GATE - COARSE_GATE) * share);
             matched = found.matched;
-            information = known + found.information;
-            let strayed = Vector3::new(
+            information = known;
+            let mut of_pose = information.fixed_view_mut::<3, 3>(0, 0);
+            of_pose += found.information;
+            let strayed = Vector4::new(
                 predicted.x - pose.x,
                 predicted.y - pose.y,
                 normalize_angle(predicted.heading - pose.heading),
+                self.scale_error - scale_error,
             );
-            let Some(solver) = information.cholesky() else { break };
-            let step = solver.solve(&(known * strayed + found.residual));
+            let residual = known * strayed + found.residual.push(0.0);
+            let Some(step) = information.cholesky().map(|solver| solver.solve(&residual)) else { break };
             pose.x += step.x;
             pose.y += step.y;
             pose.heading = normalize_angle(pose.heading + step.z);
+            scale_error += step.w;
         }
-        let covariance = information.try_inverse().unwrap_or_else(Matrix3::zeros);
+        let covariance = information.try_inverse().unwrap_or_else(Matrix4::zeros);
         let overlap = matched as f64 / points.len().max(1) as f64;
-        Match { pose, covariance, overlap }
+        Match { pose, scale_error, covariance, overlap }
     }
 
     /// The average of what the active references say about a pose; `matched` is that of the one that shares most.
