@@ -37,7 +37,7 @@ mod wall_clock;
 
 pub(crate) use args::CommonArgs;
 pub(crate) use failure::Failure;
-pub(crate) use report::{Outcome, Report, millimetres, rounded};
+pub(crate) use report::{Outcome, Report, millimetres, point_in_mm, rounded};
 pub(crate) use run::{Printed, main, run, run_printing};
 pub(crate) use trip::Trip;
 pub(crate) use values::{parse_noise, parse_picture, parse_point, parse_pose, parse_seconds};

@@ -190,9 +190,14 @@ impl From<Pose> for JsonPose {
     }
 }
 
-/// A point as a report shows it: millimetres.
-pub(crate) fn millimetres(point: Point) -> [f64; 2] {
-    [point.x, point.y].map(|metres| rounded(units::to_mm(metres)))
+/// A length as the fields of examples show it: millimetres, to a thousandth.
+pub(crate) fn millimetres(metres: f64) -> f64 {
+    rounded(units::to_mm(1000.0 * metres).round() / 1000.0)
+}
+
+/// The same for both coordinates of a point.
+pub(crate) fn point_in_mm(point: Point) -> [f64; 2] {
+    [point.x, point.y].map(millimetres)
 }
 
 /// Without the tail of digits that a change of unit leaves, and without the sign of zero: a millionth is finer than

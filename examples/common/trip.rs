@@ -43,7 +43,7 @@ impl Trip {
         let walls: f64 = self.scene.world.walls.iter().map(|wall| wall.line.length()).sum();
         let objects: f64 =
             self.scene.world.objects.iter().map(|object| 4.0 * object.kind.shape.bounding_radius()).sum();
-        (40.0 * (walls + objects) + 20.0 * self.distance()).clamp(600.0, 1e6)
+        (40.0 * (walls + objects) + 20.0 * self.distance()).ceil().clamp(600.0, 1e6)
     }
 }
 

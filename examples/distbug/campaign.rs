@@ -12,10 +12,12 @@ use crate::common::{Failure, Printed, Progress, Stopwatch, parse_noise};
 #[command(
     name = "distbug_campaign",
     about = "Drives DistBug through many generated courses and compares its verdicts with the truth",
-    after_help = "A verdict is correct if it is `unreachable` and there is no way, or `reached`, there is a way, and \
-                  the robot really is within 50 mm of the goal, or within 250 mm with noise. Contacts are counted \
-                  apart. The exit status is 0 if every verdict is correct and nothing was touched, else 1.\n\nThe \
-                  results do not depend on --threads. A course of a seed is that of `--seed SEED --worlds 1`."
+    after_help = "\
+A verdict is correct if it is `unreachable` and there is no way, or `reached`, there is a way, and the robot really is
+within 50 mm of the goal, or within 250 mm with noise. Contacts are counted apart. The exit status is 0 if every verdict
+is correct and nothing was touched, else 1.
+
+The results do not depend on --threads. The course of one seed is that of `--seed SEED --worlds 1`."
 )]
 pub(crate) struct CampaignArgs {
     /// How many courses to draw.

@@ -94,7 +94,7 @@ pub(crate) fn drive(
     let simulation = Simulation::new(&trip.scene, sim_options(options)).map_err(Failure::input)?;
     let start = trip.start();
     let radius = trip.spec().footprint.bounding_radius();
-    let parameters = DistBugParameters { step: radius, ..DistBugParameters::for_radius(radius) };
+    let parameters = DistBugParameters::for_radius(radius);
     let mut bug = DistBug::new(start.to_local(trip.goal), parameters).map_err(Failure::input)?;
     let mut robot = Faulty::new(simulation.robot(0).map_err(Failure::input)?, options.faults.clone());
     let mut log = Log::new(simulation.truth(), start);

@@ -6,7 +6,7 @@ use roverlab::geometry::{Point, units};
 use roverlab::nav::{DistBugOutcome, WallSide};
 
 use super::{Args, Drive, Ending, Event, Happening, Options, drive, picture, scene};
-use crate::common::{CommonArgs, Failure, Outcome, Pacer, Progress, Report, Trip, millimetres, rounded};
+use crate::common::{CommonArgs, Failure, Outcome, Pacer, Progress, Report, Trip, millimetres, point_in_mm};
 
 /// The picture that is drawn unless another file is named.
 const PICTURE: &str = "distbug.svg";
@@ -138,7 +138,7 @@ fn report(trip: &Trip, drive: &Drive, options: &Options, picture: Option<&Path>)
         Ending::Verdict(DistBugOutcome::TimedOut) => (Outcome::failure("timed_out"), None),
         Ending::Failed(error) => (Outcome::failure("failed"), Some(error.clone())),
     };
-    let points = |points: &[Point]| points.iter().copied().map(millimetres).collect::<Vec<_>>();
+    let points = |points: &[Point]| points.iter().copied().map(point_in_mm).collect::<Vec<_>>();
     Report {
         sim_time: Some(drive.sim_time),
         collisions: Some(drive.truth.contacts.into()),
@@ -148,12 +148,12 @@ fn report(trip: &Trip, drive: &Drive, options: &Options, picture: Option<&Path>)
         error,
         ..Report::new(outcome)
     }
-    .field("goal", millimetres(trip.goal))
-    .field("goal_distance_mm", rounded(units::to_mm(drive.goal_distance)))
+    .field("goal", point_in_mm(trip.goal))
+    .field("goal_distance_mm", millimetres(drive.goal_distance))
     .field("hit_points", points(&drive.hit_points()))
     .field("leave_points", points(&drive.leave_points()))
     .field("contact_points", points(&drive.truth.contact_places))
-    .field("time_limit_s", rounded(options.time_limit))
+    .field("time_limit_s", options.time_limit)
     .field("picture", picture)
 }
 

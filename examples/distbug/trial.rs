@@ -62,7 +62,9 @@ impl Judgement {
             (Ending::Verdict(Outcome::TimedOut), _) => Self::TimedOut,
             (Ending::Verdict(Outcome::Unreachable), true) => Self::NotUnreachable,
             (Ending::Verdict(Outcome::Reached), false) => Self::NotReached,
-            (Ending::Verdict(Outcome::Reached), true) if goal_distance > tolerance(noise) => Self::FarFromGoal,
+            (Ending::Verdict(Outcome::Reached), true) if goal_distance > tolerance(noise) => {
+                Self::FarFromGoal
+            }
             (Ending::Verdict(Outcome::Unreachable), false) | (Ending::Verdict(Outcome::Reached), true) => {
                 Self::Correct
             }
