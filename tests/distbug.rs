@@ -213,7 +213,7 @@ fn places_that_make_no_sense_are_refused() {
     assert_refused(&["--world", &data("field.sim"), "--start", "2300,2250,0"], &["another robot"]);
     assert_refused(&["--goal", "nan,0"], &["--goal", "two finite numbers"]);
     assert_refused(&["--goal", "1e300,0"], &["--goal", "at most 1000000000 mm"]);
-    assert_refused(&["--start", "420,3500,0"], &["an object"]);
+    assert_refused(&["--start", "1150,3950,0"], &["an object"]);
 }
 
 #[test]
