@@ -2,7 +2,7 @@ use super::shape::Block;
 use crate::geometry::{Aabb, Point};
 
 /// Walls in a cluster.
-const CLUSTER: usize = 6;
+pub(super) const CLUSTER: usize = 4;
 /// Clusters in a district.
 const DISTRICT: usize = 16;
 

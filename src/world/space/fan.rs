@@ -1,5 +1,6 @@
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
+use super::ray::lesser;
 use crate::geometry::{Vector, cross, math, normalize_angle};
 
 /// The largest error of [`rough_angle`], in radians, with room to spare.
@@ -24,11 +25,20 @@ pub(super) struct Fan {
     margin: f64,
 }
 
-/// What an outline covers of all directions: vectors to its clockwise and its counter-clockwise end.
+/// What an outline covers of all directions: vectors to its ends, and whether the way from one to the other turns
+/// counter-clockwise (1) or clockwise (-1).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Arc {
-    pub(super) start: Vector,
-    pub(super) end: Vector,
+    pub(super) from: Vector,
+    pub(super) to: Vector,
+    pub(super) turn: f64,
+}
+
+/// A range of beams, as fractions counted from the first beam; the start is in the first turn.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sector {
+    start: f64,
+    end: f64,
 }
 
 impl Fan {
@@ -73,70 +83,82 @@ impl Fan {
         self.base = normalize_angle(self.first + heading);
     }
 
-    /// Visits the runs of beams, first and last, that may lie in an arc of at most half a turn: all that do lie in
-    /// it, and at most some at its ends that do not.
+    /// The beams, counted from the first, between the ends of an arc of at most half a turn: a little more than all
+    /// that do lie in it.
     #[inline]
-    pub(super) fn for_each_run(&self, arc: &Arc, mut visit: impl FnMut(usize, usize)) {
-        let from = rough_angle(arc.start);
-        let sweep = rough_angle(arc.end) - from;
-        // An arc of about nothing may come out a little negative: that is no full turn.
+    pub(super) fn sector(&self, arc: &Arc) -> Sector {
+        let (from, to) = (rough_angle(arc.from), rough_angle(arc.to));
+        // From end to end the way it turns, which may come out a little negative for an arc of about nothing.
+        let sweep = arc.turn * (to - from);
         let sweep = if sweep < -1.0 { sweep + TAU } else { sweep };
-        let from = from - self.base;
-        let from = if from < 0.0 { from + TAU } else { from };
-        let last_beam = self.cos.len() as i32 - 1;
-        let mut start = from * self.per_radian - self.margin;
-        let mut end = (from + sweep) * self.per_radian + self.margin;
+        // From the first beam to the clockwise end.
+        let from = from + lesser(arc.turn * sweep, 0.0) - self.base;
+        let from = from - TAU * lesser(0.0, 1.0_f64.copysign(from));
+        let start = from * self.per_radian - self.margin;
+        Sector { start, end: (from + sweep.abs()) * self.per_radian + self.margin }
+    }
+
+    /// Visits the runs of beams in a sector, first and last.
+    #[inline]
+    pub(super) fn for_each_run(&self, sector: Sector, mut visit: impl FnMut(usize, usize)) {
+        let Sector { mut start, mut end } = sector;
         if end >= self.turn {
-            // The arc reaches over the first beam, where the fan begins, or may begin, anew.
+            // It reaches over the first beam, where the fan begins, or may begin, anew.
             (start, end) = (start - self.turn, end - self.turn);
         }
+        let last_beam = self.cos.len() as i32 - 1;
         while start <= f64::from(last_beam) {
-            let first = if start > 0.0 { round_up(start) } else { 0 };
-            let last = (end as i32).min(last_beam);
-            if end >= 0.0 && first <= last {
+            let first = nearest_whole(start + 0.5).max(0);
+            let last = nearest_whole(end - 0.5).min(last_beam);
+            if first <= last {
                 visit(first as usize, last as usize);
             }
             (start, end) = (start + self.turn, end + self.turn);
         }
     }
 
-    /// Visits the runs of beams that lie in an arc of at most half a turn, its ends included.
+    /// Visits the runs of beams that lie in an arc, its ends included, given its sector.
     #[inline]
-    pub(super) fn for_each_exact_run(&self, arc: &Arc, mut visit: impl FnMut(usize, usize)) {
-        self.for_each_run(arc, |mut first, mut last| {
-            while first <= last && cross(arc.start, self.direction(first)) < 0.0 {
+    pub(super) fn for_each_exact_run(&self, arc: &Arc, sector: Sector, mut visit: impl FnMut(usize, usize)) {
+        self.for_each_run(sector, |mut first, mut last| {
+            while first < last && !self.holds(arc, first) {
                 first += 1;
             }
-            while last > first && cross(self.direction(last), arc.end) < 0.0 {
+            while last > first && !self.holds(arc, last) {
                 last -= 1;
             }
-            if first <= last && cross(self.direction(last), arc.end) >= 0.0 {
+            if first < last || self.holds(arc, first) {
                 visit(first, last);
             }
         });
     }
+
+    /// Whether a beam on the arc's side lies between its ends.
+    #[inline]
+    fn holds(&self, arc: &Arc, beam: usize) -> bool {
+        let direction = self.direction(beam);
+        (arc.turn * cross(arc.from, direction) >= 0.0) & (arc.turn * cross(direction, arc.to) >= 0.0)
+    }
 }
 
-/// The next whole number from a positive one.
+/// The whole number next to `x`, which is below 2^31: adding 1.5 * 2^52 leaves it in the sum's last bits.
 #[inline]
-fn round_up(x: f64) -> i32 {
-    let whole = x as i32;
-    if f64::from(whole) < x { whole.saturating_add(1) } else { whole }
+fn nearest_whole(x: f64) -> i32 {
+    (x + 6_755_399_441_055_744.0).to_bits() as i32
 }
 
-/// The angle of a vector, in `-pi..=pi`, to within 2e-5 rad (Abramowitz and Stegun, 4.4.47).
+/// The angle of a vector, in `-pi..=pi`, to within 2e-5 rad (the series is Abramowitz and Stegun, 4.4.47).
 #[inline]
 fn rough_angle(v: Vector) -> f64 {
     let (x, y) = (v.x.abs(), v.y.abs());
-    let steep = y > x;
-    let (low, high) = if steep { (x, y) } else { (y, x) };
-    let q = low / (high + f64::MIN_POSITIVE);
+    // From the diagonal of the quadrant, so that the series serves all of it. No branches: they would be guessed
+    // wrong half of the time.
+    let q = (y - x) / (y + x + f64::MIN_POSITIVE);
     let p = q * q;
     let series = 0.180_141_0 + p * (-0.085_133_0 + p * 0.020_835_1);
-    let angle = q * (0.999_866_0 + p * (-0.330_299_5 + p * series));
-    let angle = if steep { FRAC_PI_2 - angle } else { angle };
-    let angle = if v.x < 0.0 { PI - angle } else { angle };
-    if v.y < 0.0 { -angle } else { angle }
+    let to_diagonal = q * (0.999_866_0 + p * (-0.330_299_5 + p * series));
+    let to_y_axis = FRAC_PI_4 - to_diagonal;
+    (FRAC_PI_2 - to_y_axis.copysign(v.x)).copysign(v.y)
 }
 
 #[cfg(test)]
@@ -158,14 +180,17 @@ mod tests {
             beams in 1..500usize,
             heading in -4.0..4.0f64,
             from in -3.2..3.2f64,
-            sweep in 0.0..3.1f64,
+            sweep in prop_oneof![0.0..3.1f64, PI - 1e-5..PI - 1e-9],
+            clockwise: bool,
         ) {
             let mut fan = Fan::new(first, increment, beams);
             fan.turn_to(heading);
             let end = |angle: f64| Vector::new(math::cos(angle), math::sin(angle)) * 2.5;
-            let arc = Arc { start: end(from), end: end(from + sweep) };
+            let arc = Arc { from: end(from), to: end(from + sweep), turn: 1.0 };
+            let back = Arc { from: arc.to, to: arc.from, turn: -1.0 };
             let mut held = vec![0; beams];
-            fan.for_each_exact_run(&arc, |a, b| held[a..=b].iter_mut().for_each(|times| *times += 1));
+            let arc = if clockwise { back } else { arc };
+            fan.for_each_exact_run(&arc, fan.sector(&arc), |a, b| held[a..=b].iter_mut().for_each(|times| *times += 1));
             for (beam, times) in held.into_iter().enumerate() {
                 let middle = from + 0.5 * sweep;
                 let off = normalize_angle(first + heading + increment * beam as f64 - middle).abs();
@@ -182,7 +207,8 @@ mod tests {
         for beam in [0, 1, 90, 179, 180, 359] {
             let along = fan.direction(beam) * 3.0;
             let mut held = Vec::new();
-            fan.for_each_run(&Arc { start: along, end: along }, |a, b| held.push((a, b)));
+            let sector = fan.sector(&Arc { from: along, to: along, turn: 1.0 });
+            fan.for_each_run(sector, |a, b| held.push((a, b)));
             assert_eq!(held, [(beam, beam)]);
         }
     }

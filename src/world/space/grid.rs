@@ -7,6 +7,9 @@ const FARTHEST: f64 = 1e7;
 /// A solid that covers more cells than this is tested by every question instead of being listed in each.
 const MOST_CELLS_OF_A_SOLID: usize = 64;
 
+/// Cells along a side of a block of cells.
+const BLOCK: usize = 8;
+
 /// A rectangle of cells, its last column and row included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Cells {
@@ -20,6 +23,11 @@ impl Cells {
     #[inline]
     pub(super) fn count(&self) -> usize {
         (self.x1 - self.x0 + 1) as usize * (self.y1 - self.y0 + 1) as usize
+    }
+
+    /// The column and row of each cell, row by row.
+    pub(super) fn iter(self) -> impl Iterator<Item = (i32, i32)> {
+        (self.y0..=self.y1).flat_map(move |y| (self.x0..=self.x1).map(move |x| (x, y)))
     }
 
     /// Whether this cell is the first that two overlapping rectangles share: the one where a pair is met once.
@@ -92,6 +100,29 @@ impl Lattice {
             y1: (y1 as i32).min(self.rows - 1),
         };
         Some((cells, whole))
+    }
+
+    /// Visits blocks of cells within reach of a point, with the box around each and the distance to it.
+    pub(super) fn for_each_block_near(
+        &self,
+        point: Point,
+        reach: f64,
+        mut visit: impl FnMut(Cells, Aabb, f64),
+    ) {
+        let window = Aabb { min: point, max: point }.inflated(reach);
+        let Some((cells, _)) = self.under(&window) else { return };
+        for y0 in (cells.y0..=cells.y1).step_by(BLOCK) {
+            for x0 in (cells.x0..=cells.x1).step_by(BLOCK) {
+                let (x1, y1) = ((x0 + BLOCK as i32 - 1).min(cells.x1), (y0 + BLOCK as i32 - 1).min(cells.y1));
+                let corner =
+                    |x: i32, y: i32| self.origin + Vector::new(f64::from(x), f64::from(y)) * self.pitch;
+                let bounds = Aabb { min: corner(x0, y0), max: corner(x1 + 1, y1 + 1) }.inflated(self.margin);
+                let near = distance(&bounds, point);
+                if near <= reach {
+                    visit(Cells { x0, y0, x1, y1 }, bounds, near);
+                }
+            }
+        }
     }
 
     /// Visits the cells that a box may overlap, row by row, until `visit` returns false.
@@ -370,4 +401,10 @@ fn take(list: &mut Vec<u32>, solid: u32) {
     if let Some(at) = list.iter().position(|&other| other == solid) {
         list.swap_remove(at);
     }
+}
+
+/// The distance from a box to a point; 0 inside.
+fn distance(bounds: &Aabb, point: Point) -> f64 {
+    let nearest = point.sup(&bounds.min).inf(&bounds.max);
+    (nearest - point).norm()
 }

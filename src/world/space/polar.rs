@@ -1,6 +1,6 @@
-use super::fan::{Arc, Fan};
+use super::fan::{Arc, Fan, Sector};
 use super::ray::{greater, lesser};
-use super::shape::OrientedBox;
+use super::shape::{OrientedBox, Shape};
 use crate::geometry::{Aabb, Point, Vector};
 
 /// The nearest thing in each beam of a fan: a z-buffer over directions.
@@ -12,6 +12,17 @@ pub(super) struct PolarBuffer {
     pub(super) fan: Fan,
     inverse: Vec<f64>,
     eye: Point,
+}
+
+/// A box as the eye sees it: in the beams of the arc, the body begins where both lines have been crossed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stroke {
+    arc: Arc,
+    sector: Sector,
+    /// For each of two lines, the unit vector towards it by the distance to it.
+    lines: [Vector; 2],
+    /// Whether the eye is in the box, and the rest means nothing.
+    pub(super) inside: bool,
 }
 
 impl PolarBuffer {
@@ -34,102 +45,94 @@ impl PolarBuffer {
         }
     }
 
-    /// Whether every beam towards a box has hit something before the box, which is `near` metres away.
+    /// The beams that a box may be in; `None` if the eye is in the box.
     #[inline]
-    pub(super) fn hides_box(&self, bounds: &Aabb, near: f64) -> bool {
+    pub(super) fn sector_of_box(&self, bounds: &Aabb) -> Option<Sector> {
         let (min, max) = (bounds.min - self.eye, bounds.max - self.eye);
         let (right, left) = (min.x > 0.0, max.x < 0.0);
         let (above, below) = (min.y > 0.0, max.y < 0.0);
-        if !(right || left || above || below) {
-            return false;
+        if !(right | left | above | below) {
+            return None;
         }
         // The corners that bound the box as seen from each of its eight sides.
-        let start = Vector::new(
-            if above || !(below || right) { max.x } else { min.x },
-            if right || !left && above { min.y } else { max.y },
+        let from = Vector::new(
+            if above | !(below | right) { max.x } else { min.x },
+            if right | (!left & above) { min.y } else { max.y },
         );
-        let end = Vector::new(
-            if above || !below && right { min.x } else { max.x },
-            if left || !right && above { min.y } else { max.y },
+        let to = Vector::new(
+            if above | (!below & right) { min.x } else { max.x },
+            if left | (!right & above) { min.y } else { max.y },
         );
-        self.hides(&Arc { start, end }, near)
+        Some(self.fan.sector(&Arc { from, to, turn: 1.0 }))
     }
 
-    /// Whether every beam towards a disc has hit something before it.
+    /// The beams that a shape may be in, and the distance to it; `None` if the eye is, or may be, in it.
     #[inline]
-    pub(super) fn hides_disc(&self, centre: Point, radius: f64) -> bool {
-        let to_centre = centre - self.eye;
-        let distance = to_centre.norm();
-        distance > radius && self.hides(&disc_arc(to_centre, radius), distance - radius)
+    pub(super) fn sector_of(&self, shape: &Shape) -> Option<(Sector, f64)> {
+        match shape {
+            Shape::Disc { centre, radius } => {
+                let to_centre = centre - self.eye;
+                let near = to_centre.norm() - radius;
+                (near > 0.0).then(|| (self.fan.sector(&disc_arc(to_centre, *radius)), near))
+            }
+            Shape::Box(shape) => {
+                let stroke = self.stroke(shape);
+                let near = (shape.centre - self.eye).norm() - shape.half.norm();
+                (near > 0.0 && !stroke.inside).then_some((stroke.sector, near))
+            }
+        }
     }
 
-    fn hides(&self, arc: &Arc, near: f64) -> bool {
+    /// Whether every beam in a sector has hit something nearer than `near` metres.
+    #[inline]
+    pub(super) fn hides(&self, sector: Sector, near: f64) -> bool {
         let limit = (1.0 + 1e-9) / near;
         let mut hidden = true;
-        self.fan.for_each_run(arc, |first, last| {
-            hidden = hidden && self.inverse[first..=last].iter().all(|&inverse| inverse >= limit);
+        self.fan.for_each_run(sector, |first, last| {
+            hidden = hidden && all_at_least(&self.inverse[first..=last], limit);
         });
         hidden
     }
 
-    /// Draws a box; true if the eye is in it.
+    /// How the eye sees a box.
     #[inline]
-    pub(super) fn draw_box(&mut self, shape: &OrientedBox) -> bool {
-        let seen = shape.local(self.eye);
-        let (along, across) = (seen.x.abs() - shape.half.x, seen.y.abs() - shape.half.y);
-        if along <= 0.0 && across <= 0.0 {
-            return true;
-        }
+    pub(super) fn stroke(&self, shape: &OrientedBox) -> Stroke {
         let to_centre = shape.centre - self.eye;
         let axis = shape.axis;
         let normal = Vector::new(-axis.y, axis.x);
+        let (seen_along, seen_across) = (-axis.dot(&to_centre), -normal.dot(&to_centre));
+        let (along, across) = (seen_along.abs() - shape.half.x, seen_across.abs() - shape.half.y);
+        // Selections instead of branches, which would be guessed wrong half of the time.
+        let (sees_end, sees_side) = (select(along, 1.0, 0.0), select(across, 1.0, 0.0));
         // From the middle towards the end and the side that face the eye.
-        let end = if seen.x < 0.0 { -axis } else { axis };
-        let side = if seen.y < 0.0 { -normal } else { normal };
+        let (to_end, to_side) = (1.0_f64.copysign(seen_along), 1.0_f64.copysign(seen_across));
+        let (end, side) = (axis * to_end, normal * to_side);
         let (e, s) = (end * shape.half.x, side * shape.half.y);
-        let (nearest, past_side, past_end) = (to_centre + e + s, to_centre - e + s, to_centre + e - s);
+        // From the far corner of the side to the far corner of the end, if both are seen.
+        let from = to_centre + s + e * (1.0 - 2.0 * sees_side);
+        let to = to_centre + e + s * (1.0 - 2.0 * sees_end);
         // Seen from the left of its axis, a box's side runs counter-clockwise along the axis.
-        let turns_left = (seen.x < 0.0) == (seen.y < 0.0);
-        let arc = |from: Vector, to: Vector| {
-            if turns_left { Arc { start: from, end: to } } else { Arc { start: to, end: from } }
-        };
-        if along <= 0.0 {
-            self.draw_face(&arc(past_side, nearest), -side / across);
-        } else if across <= 0.0 {
-            self.draw_face(&arc(nearest, past_end), -end / along);
-        } else {
-            self.draw_corner(&arc(past_side, past_end), -side / across, -end / along);
-        }
-        false
+        let arc = Arc { from, to, turn: to_end * to_side };
+        // A line that is not seen is replaced by the other.
+        let per_end = end * (-1.0 / select(along, along, 1.0));
+        let per_side = side * (-1.0 / select(across, across, 1.0));
+        let first = per_side * sees_side + per_end * (1.0 - sees_side);
+        let second = per_end * sees_end + per_side * (1.0 - sees_end);
+        let inside = sees_end + sees_side == 0.0;
+        Stroke { arc, sector: self.fan.sector(&arc), lines: [first, second], inside }
     }
 
-    /// Draws a straight face. `inverse` is the unit vector towards its line, by the distance to it.
+    /// Draws a box that the eye is not in.
     #[inline]
-    fn draw_face(&mut self, arc: &Arc, inverse: Vector) {
+    pub(super) fn draw(&mut self, stroke: &Stroke) {
         let fan = &self.fan;
-        fan.for_each_exact_run(arc, |first, last| {
-            let directions = fan.cos[first..=last].iter().zip(&fan.sin[first..=last]);
-            for ((c, s), nearest) in directions.zip(&mut self.inverse[first..=last]) {
-                *nearest = greater(c * inverse.x + s * inverse.y, *nearest);
-            }
-        });
-    }
-
-    /// Draws two faces that meet at a corner towards the eye: a beam is in the body when it has crossed both lines.
-    #[inline]
-    fn draw_corner(&mut self, arc: &Arc, side: Vector, end: Vector) {
-        let fan = &self.fan;
-        fan.for_each_exact_run(arc, |first, last| {
-            let directions = fan.cos[first..=last].iter().zip(&fan.sin[first..=last]);
-            for ((c, s), nearest) in directions.zip(&mut self.inverse[first..=last]) {
-                let both = lesser(c * side.x + s * side.y, c * end.x + s * end.y);
-                *nearest = greater(both, *nearest);
-            }
+        fan.for_each_exact_run(&stroke.arc, stroke.sector, |first, last| {
+            let run = first..=last;
+            draw_lines(&fan.cos[run.clone()], &fan.sin[run.clone()], &mut self.inverse[run], &stroke.lines);
         });
     }
 
     /// Draws a disc; true if the eye is in it.
-    #[inline]
     pub(super) fn draw_disc(&mut self, centre: Point, radius: f64) -> bool {
         let to_centre = centre - self.eye;
         let distance = to_centre.norm();
@@ -139,7 +142,7 @@ impl PolarBuffer {
         // Near and far distance along any beam have the same product, so the far one gives the near one's inverse.
         let per_product = 1.0 / ((distance - radius) * (distance + radius));
         let fan = &self.fan;
-        fan.for_each_run(&disc_arc(to_centre, radius), |first, last| {
+        fan.for_each_run(fan.sector(&disc_arc(to_centre, radius)), |first, last| {
             let directions = fan.cos[first..=last].iter().zip(&fan.sin[first..=last]);
             for ((c, s), nearest) in directions.zip(&mut self.inverse[first..=last]) {
                 let aside = c * to_centre.y - s * to_centre.x;
@@ -153,11 +156,34 @@ impl PolarBuffer {
     }
 }
 
+/// Draws the farther of two lines in some beams. Not inlined: so the compiler knows that the slices do not overlap.
+#[inline(never)]
+fn draw_lines(cos: &[f64], sin: &[f64], inverse: &mut [f64], [a, b]: &[Vector; 2]) {
+    for ((c, s), nearest) in cos.iter().zip(sin).zip(inverse) {
+        let both = lesser(c * a.x + s * a.y, c * b.x + s * b.y);
+        *nearest = greater(both, *nearest);
+    }
+}
+
+/// Whether no number is below a limit.
+#[inline]
+fn all_at_least(numbers: &[f64], limit: f64) -> bool {
+    let (chunks, rest) = numbers.as_chunks::<8>();
+    chunks.iter().all(|chunk| chunk.iter().fold(true, |all, &x| all & (x >= limit)))
+        && rest.iter().all(|&x| x >= limit)
+}
+
+/// One number where `x` is positive, and another elsewhere.
+#[inline]
+fn select(x: f64, positive: f64, otherwise: f64) -> f64 {
+    if x > 0.0 { positive } else { otherwise }
+}
+
 /// The directions between the two tangents to a disc, from outside it.
 #[inline]
 fn disc_arc(to_centre: Vector, radius: f64) -> Arc {
-    let length = (to_centre.norm_squared() - radius * radius).max(0.0).sqrt();
+    let length = greater(to_centre.norm_squared() - radius * radius, 0.0).sqrt();
     let across = Vector::new(-to_centre.y, to_centre.x) * radius;
     let along = to_centre * length;
-    Arc { start: along - across, end: along + across }
+    Arc { from: along - across, to: along + across, turn: 1.0 }
 }

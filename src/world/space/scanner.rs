@@ -1,10 +1,15 @@
-use super::fan::Fan;
-use super::polar::PolarBuffer;
+use super::cluster::CLUSTER;
+use super::fan::{Fan, Sector};
+use super::grid::Cells;
+use super::polar::{PolarBuffer, Stroke};
 use super::ray::Ray;
 use super::shape::Shape;
 use super::solid::SolidId;
 use super::space::Space;
-use crate::geometry::{Aabb, Point, Pose, Vector, math};
+use crate::geometry::{Point, Pose, math};
+
+/// Up to so many solids are looked at one by one; more, by the cells they are in.
+const FEW_SOLIDS: usize = 64;
 
 /// A laser scanner's beams, worked out once, and the memory that a scan needs.
 #[derive(Debug, Clone)]
@@ -15,8 +20,11 @@ pub struct Scanner {
     max_range: f64,
     /// Whether the beams go round counter-clockwise, at most once or so: what a polar buffer can draw.
     drawn: bool,
-    /// What may be seen, nearest first: the distance's leading bits, then a number.
+    /// What may be seen; its order, nearest first: the distance's leading bits, then a place in `sights`; and which
+    /// solids are done.
+    sights: Vec<Sight>,
     order: Vec<u64>,
+    seen: Vec<bool>,
 }
 
 impl Scanner {
@@ -33,10 +41,9 @@ impl Scanner {
         tilt: f64,
         max_range: f64,
     ) -> Self {
-        // A fan of less than a hundred thousandth of a turn from beam to beam is cast ray by ray.
-        let drawn = tilt == 0.0 && angle_increment > 6e-5 && angle_increment.is_finite();
+        let drawn = tilt == 0.0 && angle_increment > 1e-6 && angle_increment.is_finite();
         let buffer = PolarBuffer::new(Fan::new(angle_min, angle_increment, beams));
-        Self { buffer, z, tilt, max_range, drawn, order: Vec::new() }
+        Self { buffer, z, tilt, max_range, drawn, sights: Vec::new(), order: Vec::new(), seen: Vec::new() }
     }
 
     /// The number of beams.
@@ -73,54 +80,101 @@ impl Space {
 
     /// Draws what may be seen, from near to far; true if the scanner is in something.
     fn draw(&self, scanner: &mut Scanner, eye: Point, except: Option<SolidId>) -> bool {
-        let Scanner { buffer, order, z, max_range, .. } = scanner;
-        order.clear();
-        self.clusters.for_each_near(eye, *max_range, |number, squared| order.push(key(squared, number)));
-        self.for_each_solid_near(eye, *max_range, |number| {
-            let placed = &self.solids[number];
-            if Some(SolidId(number as u32)) == except || !placed.span.contains(*z) {
-                return;
-            }
-            let bounds = placed.shape.bounds();
-            let reach = (bounds.max - bounds.min) * 0.5;
-            let near = greater_than_zero((bounds.min + reach - eye).norm() - reach.norm());
-            if near <= *max_range {
-                order.push(key(near * near, self.clusters.clusters.len() + number));
-            }
+        let Scanner { buffer, sights, order, seen, z, max_range, .. } = scanner;
+        sights.clear();
+        self.clusters.for_each_near(eye, *max_range, |number, squared| {
+            let sector = buffer.sector_of_box(&self.clusters.clusters[number].bounds);
+            sights.push(Sight { what: Sighted::Cluster(number as u32), sector, near: squared.sqrt() });
         });
+        seen.clear();
+        seen.resize(self.solids.len(), false);
+        if self.solids.len() <= FEW_SOLIDS {
+            (0..self.solids.len() as u32)
+                .for_each(|n| sights.extend(self.sight_solid(buffer, n, *max_range)));
+        } else {
+            let loose = self.grid.loose_solids().iter();
+            sights.extend(loose.filter_map(|&number| self.sight_solid(buffer, number, *max_range)));
+            self.grid.lattice.for_each_block_near(eye, *max_range, |cells, bounds, near| {
+                let sector = buffer.sector_of_box(&bounds);
+                sights.push(Sight { what: Sighted::Block(cells), sector, near });
+            });
+        }
+        if let Some(SolidId(number)) = except
+            && let Some(seen) = seen.get_mut(number as usize)
+        {
+            *seen = true;
+        }
+        order.clear();
+        order.extend(sights.iter().enumerate().map(|(place, sight)| key(sight.near, place)));
         order.sort_unstable();
         order.iter().any(|entry| {
-            let number = (entry & u64::from(u32::MAX)) as usize;
-            match self.clusters.clusters.get(number) {
-                Some(cluster) => {
-                    let near = cluster.squared_distance(eye).sqrt();
-                    if buffer.hides_box(&cluster.bounds, near) {
-                        return false;
-                    }
-                    let walls = self.walls[cluster.members()].iter().filter(|wall| wall.span.contains(*z));
-                    walls.fold(false, |inside, wall| buffer.draw_box(&wall.shape) || inside)
-                }
-                None => match &self.solids[number - self.clusters.clusters.len()].shape {
-                    Shape::Disc { centre, radius } => {
-                        !buffer.hides_disc(*centre, *radius) && buffer.draw_disc(*centre, *radius)
-                    }
-                    Shape::Box(shape) => buffer.draw_box(shape),
-                },
+            let sight = &sights[(entry & u64::from(u32::MAX)) as usize];
+            if sight.is_hidden(buffer) {
+                return false;
+            }
+            match sight.what {
+                Sighted::Cluster(number) => self.draw_cluster(buffer, number as usize, *z),
+                Sighted::Solid(number) => self.draw_solid(buffer, number, *z, seen),
+                Sighted::Block(cells) => self.draw_block(buffer, cells, *z, seen),
             }
         })
     }
 
-    /// Visits the solids that may be within reach, some of them perhaps more than once.
-    fn for_each_solid_near(&self, eye: Point, reach: f64, mut visit: impl FnMut(usize)) {
-        let reach = Vector::new(reach, reach);
-        let window = self.grid.lattice.under(&Aabb { min: eye - reach, max: eye + reach });
-        match window {
-            Some((cells, _)) if cells.count() < self.solids.len() => {
-                self.grid.loose_solids().iter().for_each(|&number| visit(number as usize));
-                self.grid.for_each_solid_in(cells, |number, _, _| visit(number as usize));
+    /// A solid, if it is within reach.
+    fn sight_solid(&self, buffer: &PolarBuffer, number: u32, reach: f64) -> Option<Sight> {
+        let sector = buffer.sector_of(&self.solids[number as usize].shape);
+        let near = sector.map_or(0.0, |(_, near)| near);
+        let sector = sector.map(|(sector, _)| sector);
+        (near <= reach).then_some(Sight { what: Sighted::Solid(number), sector, near })
+    }
+
+    fn draw_cluster(&self, buffer: &mut PolarBuffer, number: usize, z: f64) -> bool {
+        let walls = &self.walls[self.clusters.clusters[number].members()];
+        // First all strokes, then all drawing: the processor works on several strokes at a time.
+        let strokes: [Option<Stroke>; CLUSTER] = std::array::from_fn(|i| {
+            walls.get(i).filter(|wall| wall.span.contains(z)).map(|wall| buffer.stroke(&wall.shape))
+        });
+        strokes.iter().flatten().any(|stroke| {
+            if !stroke.inside {
+                buffer.draw(stroke);
             }
-            _ => (0..self.solids.len()).for_each(visit),
+            stroke.inside
+        })
+    }
+
+    fn draw_solid(&self, buffer: &mut PolarBuffer, number: u32, z: f64, seen: &mut [bool]) -> bool {
+        let placed = &self.solids[number as usize];
+        if std::mem::replace(&mut seen[number as usize], true) || !placed.span.contains(z) {
+            return false;
         }
+        match &placed.shape {
+            Shape::Disc { centre, radius } => buffer.draw_disc(*centre, *radius),
+            Shape::Box(shape) => {
+                let stroke = buffer.stroke(shape);
+                if !stroke.inside {
+                    buffer.draw(&stroke);
+                }
+                stroke.inside
+            }
+        }
+    }
+
+    /// Draws the solids of some cells, but for those in cells that are hidden.
+    fn draw_block(&self, buffer: &mut PolarBuffer, cells: Cells, z: f64, seen: &mut [bool]) -> bool {
+        let lattice = &self.grid.lattice;
+        cells.iter().any(|(x, y)| {
+            let solids = self.grid.solids_in(lattice.index(x, y));
+            solids.iter().any(|&number| {
+                if seen[number as usize] {
+                    return false;
+                }
+                let sector = buffer.sector_of(&self.solids[number as usize].shape);
+                let hidden = sector.is_some_and(|(sector, near)| buffer.hides(sector, near));
+                // What is hidden now stays so.
+                seen[number as usize] = hidden;
+                !hidden && self.draw_solid(buffer, number, z, seen)
+            })
+        })
     }
 
     /// Casts beam by beam, whatever their tilt.
@@ -137,13 +191,33 @@ impl Space {
     }
 }
 
-/// Sorts by distance, then by number.
-#[inline]
-fn key(squared_distance: f64, number: usize) -> u64 {
-    u64::from((squared_distance as f32).to_bits()) << 32 | number as u64
+/// Something that may be seen.
+#[derive(Debug, Clone, Copy)]
+struct Sight {
+    what: Sighted,
+    /// The beams it may be in; `None` if the eye is, or may be, in it.
+    sector: Option<Sector>,
+    /// Metres to it, at least.
+    near: f64,
 }
 
+#[derive(Debug, Clone, Copy)]
+enum Sighted {
+    Cluster(u32),
+    Solid(u32),
+    /// The solids listed in some cells.
+    Block(Cells),
+}
+
+impl Sight {
+    #[inline]
+    fn is_hidden(&self, buffer: &PolarBuffer) -> bool {
+        self.sector.is_some_and(|sector| buffer.hides(sector, self.near))
+    }
+}
+
+/// Sorts by distance, then by place.
 #[inline]
-fn greater_than_zero(x: f64) -> f64 {
-    if x > 0.0 { x } else { 0.0 }
+fn key(distance: f64, place: usize) -> u64 {
+    u64::from((distance as f32).to_bits()) << 32 | place as u64
 }
