@@ -39,7 +39,7 @@ impl Cluster {
 
 impl Clusters {
     /// Orders walls so that neighbours of like size stand together, and clusters them.
-    pub(super) fn of(walls: Vec<Block>) -> (Vec<Block>, Self) {
+    pub(super) fn of(walls: &[Block]) -> (Vec<Block>, Self) {
         let boxes: Vec<Aabb> = walls.iter().map(Block::bounds).collect();
         let all = boxes.iter().copied().reduce(|a, b| a.union(&b));
         let all = all.unwrap_or(Aabb::new(Point::origin(), Point::origin()));

@@ -1,6 +1,6 @@
 use super::shape::{OrientedBox, Shape};
 use super::solid::{Outline, SolidId, Span};
-use super::space::Space;
+use super::store::Space;
 use crate::geometry::{Aabb, Pose, Vector};
 
 /// Where an outline touches something or reaches into it.

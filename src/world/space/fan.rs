@@ -1,4 +1,4 @@
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 
 use super::ray::lesser;
 use crate::geometry::{Vector, cross, math, normalize_angle};
@@ -83,6 +83,12 @@ impl Fan {
         self.base = normalize_angle(self.first + heading);
     }
 
+    /// All beams.
+    #[inline]
+    pub(super) fn all(&self) -> Sector {
+        Sector { start: 0.0, end: self.cos.len() as f64 }
+    }
+
     /// The beams, counted from the first, between the ends of an arc of at most half a turn: a little more than all
     /// that do lie in it.
     #[inline]
@@ -163,6 +169,8 @@ fn rough_angle(v: Vector) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
     use proptest::prelude::*;
 

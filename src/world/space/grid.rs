@@ -322,6 +322,17 @@ impl Grid {
         Some(Self { lattice, wall_starts, wall_list, solids, loose_walls, loose_solids: Vec::new() })
     }
 
+    /// The number of cells and of entries in their lists.
+    #[cfg(test)]
+    pub(super) fn size(&self) -> usize {
+        let solids: usize = self.solids.iter().map(Vec::len).sum();
+        self.lattice.count()
+            + self.wall_list.len()
+            + self.loose_walls.len()
+            + solids
+            + self.loose_solids.len()
+    }
+
     /// The walls listed in a cell.
     #[inline]
     pub(super) fn walls_in(&self, cell: usize) -> &[u32] {

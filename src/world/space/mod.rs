@@ -34,11 +34,11 @@ mod ray;
 mod scanner;
 mod shape;
 mod solid;
-mod space;
+mod store;
 #[cfg(test)]
 mod tests;
 
 pub use contact::Contact;
 pub use scanner::Scanner;
 pub use solid::{Outline, Solid, SolidId, Span};
-pub use space::Space;
+pub use store::Space;

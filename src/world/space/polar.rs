@@ -45,45 +45,43 @@ impl PolarBuffer {
         }
     }
 
-    /// The beams that a box may be in; `None` if the eye is in the box.
+    /// The beams that a box may be in; all of them if the eye is in the box.
     #[inline]
-    pub(super) fn sector_of_box(&self, bounds: &Aabb) -> Option<Sector> {
+    pub(super) fn sector_of_box(&self, bounds: &Aabb) -> Sector {
         let (min, max) = (bounds.min - self.eye, bounds.max - self.eye);
         let (right, left) = (min.x > 0.0, max.x < 0.0);
         let (above, below) = (min.y > 0.0, max.y < 0.0);
-        if !(right | left | above | below) {
-            return None;
+        if !(right || left || above || below) {
+            return self.fan.all();
         }
         // The corners that bound the box as seen from each of its eight sides.
         let from = Vector::new(
-            if above | !(below | right) { max.x } else { min.x },
-            if right | (!left & above) { min.y } else { max.y },
+            if above || !(below || right) { max.x } else { min.x },
+            if right || (!left && above) { min.y } else { max.y },
         );
         let to = Vector::new(
-            if above | (!below & right) { min.x } else { max.x },
-            if left | (!right & above) { min.y } else { max.y },
+            if above || (!below && right) { min.x } else { max.x },
+            if left || (!right && above) { min.y } else { max.y },
         );
-        Some(self.fan.sector(&Arc { from, to, turn: 1.0 }))
+        self.fan.sector(&Arc { from, to, turn: 1.0 })
     }
 
-    /// The beams that a shape may be in, and the distance to it; `None` if the eye is, or may be, in it.
+    /// The beams that a shape may be in, and the least distance to it; all beams and 0 if the eye may be in it.
     #[inline]
-    pub(super) fn sector_of(&self, shape: &Shape) -> Option<(Sector, f64)> {
-        match shape {
+    pub(super) fn sector_of(&self, shape: &Shape) -> (Sector, f64) {
+        let (near, sector) = match shape {
             Shape::Disc { centre, radius } => {
                 let to_centre = centre - self.eye;
-                let near = to_centre.norm() - radius;
-                (near > 0.0).then(|| (self.fan.sector(&disc_arc(to_centre, *radius)), near))
+                (to_centre.norm() - radius, self.fan.sector(&disc_arc(to_centre, *radius)))
             }
             Shape::Box(shape) => {
-                let stroke = self.stroke(shape);
-                let near = (shape.centre - self.eye).norm() - shape.half.norm();
-                (near > 0.0 && !stroke.inside).then_some((stroke.sector, near))
+                ((shape.centre - self.eye).norm() - shape.half.norm(), self.stroke(shape).sector)
             }
-        }
+        };
+        if near > 0.0 { (sector, near) } else { (self.fan.all(), 0.0) }
     }
 
-    /// Whether every beam in a sector has hit something nearer than `near` metres.
+    /// Whether every beam in a sector has hit something nearer than `near` metres; never for 0 metres.
     #[inline]
     pub(super) fn hides(&self, sector: Sector, near: f64) -> bool {
         let limit = (1.0 + 1e-9) / near;
@@ -169,8 +167,9 @@ fn draw_lines(cos: &[f64], sin: &[f64], inverse: &mut [f64], [a, b]: &[Vector; 2
 #[inline]
 fn all_at_least(numbers: &[f64], limit: f64) -> bool {
     let (chunks, rest) = numbers.as_chunks::<8>();
-    chunks.iter().all(|chunk| chunk.iter().fold(true, |all, &x| all & (x >= limit)))
-        && rest.iter().all(|&x| x >= limit)
+    // Eight comparisons at a time, without a branch for each.
+    let clear = |chunk: &[f64; 8]| chunk.iter().filter(|&&x| x < limit).count() == 0;
+    chunks.iter().all(clear) && rest.iter().all(|&x| x >= limit)
 }
 
 /// One number where `x` is positive, and another elsewhere.

@@ -1,6 +1,6 @@
 use super::shape::{OrientedBox, Shape};
 use super::solid::{SolidId, Span};
-use super::space::Space;
+use super::store::Space;
 use crate::geometry::{Point, Vector, cross};
 
 /// A ray. Distances along it are measured on the floor.

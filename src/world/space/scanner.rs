@@ -1,11 +1,11 @@
 use super::cluster::CLUSTER;
 use super::fan::{Fan, Sector};
 use super::grid::Cells;
-use super::polar::{PolarBuffer, Stroke};
+use super::polar::PolarBuffer;
 use super::ray::Ray;
 use super::shape::Shape;
 use super::solid::SolidId;
-use super::space::Space;
+use super::store::Space;
 use crate::geometry::{Point, Pose, math};
 
 /// Up to so many solids are looked at one by one; more, by the cells they are in.
@@ -109,7 +109,7 @@ impl Space {
         order.sort_unstable();
         order.iter().any(|entry| {
             let sight = &sights[(entry & u64::from(u32::MAX)) as usize];
-            if sight.is_hidden(buffer) {
+            if buffer.hides(sight.sector, sight.near) {
                 return false;
             }
             match sight.what {
@@ -122,18 +122,17 @@ impl Space {
 
     /// A solid, if it is within reach.
     fn sight_solid(&self, buffer: &PolarBuffer, number: u32, reach: f64) -> Option<Sight> {
-        let sector = buffer.sector_of(&self.solids[number as usize].shape);
-        let near = sector.map_or(0.0, |(_, near)| near);
-        let sector = sector.map(|(sector, _)| sector);
+        let (sector, near) = buffer.sector_of(&self.solids[number as usize].shape);
         (near <= reach).then_some(Sight { what: Sighted::Solid(number), sector, near })
     }
 
     fn draw_cluster(&self, buffer: &mut PolarBuffer, number: usize, z: f64) -> bool {
         let walls = &self.walls[self.clusters.clusters[number].members()];
         // First all strokes, then all drawing: the processor works on several strokes at a time.
-        let strokes: [Option<Stroke>; CLUSTER] = std::array::from_fn(|i| {
-            walls.get(i).filter(|wall| wall.span.contains(z)).map(|wall| buffer.stroke(&wall.shape))
-        });
+        let mut strokes = [None; CLUSTER];
+        for (stroke, wall) in strokes.iter_mut().zip(walls.iter().filter(|wall| wall.span.contains(z))) {
+            *stroke = Some(buffer.stroke(&wall.shape));
+        }
         strokes.iter().flatten().any(|stroke| {
             if !stroke.inside {
                 buffer.draw(stroke);
@@ -168,8 +167,8 @@ impl Space {
                 if seen[number as usize] {
                     return false;
                 }
-                let sector = buffer.sector_of(&self.solids[number as usize].shape);
-                let hidden = sector.is_some_and(|(sector, near)| buffer.hides(sector, near));
+                let (sector, near) = buffer.sector_of(&self.solids[number as usize].shape);
+                let hidden = buffer.hides(sector, near);
                 // What is hidden now stays so.
                 seen[number as usize] = hidden;
                 !hidden && self.draw_solid(buffer, number, z, seen)
@@ -195,8 +194,8 @@ impl Space {
 #[derive(Debug, Clone, Copy)]
 struct Sight {
     what: Sighted,
-    /// The beams it may be in; `None` if the eye is, or may be, in it.
-    sector: Option<Sector>,
+    /// The beams it may be in.
+    sector: Sector,
     /// Metres to it, at least.
     near: f64,
 }
@@ -209,15 +208,158 @@ enum Sighted {
     Block(Cells),
 }
 
-impl Sight {
-    #[inline]
-    fn is_hidden(&self, buffer: &PolarBuffer) -> bool {
-        self.sector.is_some_and(|sector| buffer.hides(sector, self.near))
-    }
-}
-
 /// Sorts by distance, then by place.
 #[inline]
 fn key(distance: f64, place: usize) -> u64 {
     u64::from((distance as f32).to_bits()) << 32 | place as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, TAU};
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::geometry::{Aabb, Vector, direction};
+    use crate::world::space::{Outline, Solid};
+    use crate::world::{Wall, World};
+
+    fn scan(space: &Space, mut scanner: Scanner, pose: Pose) -> Vec<f64> {
+        let mut ranges = vec![-1.0; scanner.beams()];
+        space.scan(&mut scanner, &pose, None, &mut ranges);
+        ranges
+    }
+
+    fn near(ranges: &[f64], expected: &[f64]) -> bool {
+        let same = |(a, b): (&f64, &f64)| a == b || (a - b).abs() < 1e-9;
+        ranges.len() == expected.len() && ranges.iter().zip(expected).all(same)
+    }
+
+    #[test]
+    fn four_beams_in_a_walled_room_see_its_four_faces() {
+        let space = Space::new(&World::walled(4.0, 2.0).walls);
+        let scanner = Scanner::new(0.0, FRAC_PI_2, 4, 0.1, 0.0, 10.0);
+        let pose = Pose::new(1.0, 0.5, 0.0);
+        assert!(near(&scan(&space, scanner.clone(), pose), &[2.995, 1.495, 0.995, 0.495]));
+        let turned = Pose::new(1.0, 0.5, FRAC_PI_2);
+        assert!(near(&scan(&space, scanner, turned), &[1.495, 0.995, 0.495, 2.995]));
+    }
+
+    #[test]
+    fn a_scan_that_goes_clockwise_or_stands_still_is_right_too() {
+        let space = Space::new(&World::walled(4.0, 2.0).walls);
+        let pose = Pose::new(1.0, 0.5, 0.0);
+        let clockwise = Scanner::new(0.0, -FRAC_PI_2, 4, 0.1, 0.0, 10.0);
+        assert!(near(&scan(&space, clockwise, pose), &[2.995, 0.495, 0.995, 1.495]));
+        let still = Scanner::new(0.0, 0.0, 3, 0.1, 0.0, 10.0);
+        assert!(near(&scan(&space, still, pose), &[2.995; 3]));
+        let twice_around = Scanner::new(0.0, FRAC_PI_2, 8, 0.1, 0.0, 10.0);
+        assert!(near(
+            &scan(&space, twice_around, pose),
+            &[2.995, 1.495, 0.995, 0.495, 2.995, 1.495, 0.995, 0.495]
+        ));
+        assert!(scan(&space, Scanner::new(0.0, 0.1, 0, 0.1, 0.0, 10.0), pose).is_empty());
+    }
+
+    #[test]
+    fn there_is_no_return_from_beyond_the_range_or_above_the_walls_or_without_a_beam() {
+        let space = Space::new(&World::walled(4.0, 2.0).walls);
+        let pose = Pose::new(1.0, 0.5, 0.0);
+        let none = f64::INFINITY;
+        let short = Scanner::new(0.0, FRAC_PI_2, 4, 0.1, 0.0, 1.0);
+        assert!(near(&scan(&space, short, pose), &[none, none, 0.995, 0.495]));
+        let high = Scanner::new(0.0, FRAC_PI_2, 4, 0.201, 0.0, 10.0);
+        assert!(near(&scan(&space, high, pose), &[none; 4]));
+        let mut scanner = Scanner::new(0.0, FRAC_PI_2, 2, 0.1, 0.0, 10.0);
+        let (mut long, mut short) = ([-1.0; 3], [-1.0; 1]);
+        space.scan(&mut scanner, &pose, None, &mut long);
+        space.scan(&mut scanner, &pose, None, &mut short);
+        assert!(near(&long, &[2.995, 1.495, none]) && near(&short, &[2.995]));
+    }
+
+    #[test]
+    fn a_robot_does_not_see_itself_but_others_do() {
+        let mut space = Space::new(&World::walled(4.0, 2.0).walls);
+        let pose = Pose::new(1.0, 0.5, 0.0);
+        for outline in [
+            Outline::Disc { radius: 0.1 },
+            Outline::Rectangle(Aabb::new(Point::new(-0.1, -0.1), Point::new(0.1, 0.1))),
+        ] {
+            let id = space.add(Solid { outline, pose, bottom: 0.0, top: 0.15 });
+            let mut scanner = Scanner::new(0.0, FRAC_PI_2, 4, 0.1, 0.0, 10.0);
+            let mut ranges = [0.0; 4];
+            space.scan(&mut scanner, &pose, Some(id), &mut ranges);
+            assert!(near(&ranges, &[2.995, 1.495, 0.995, 0.495]));
+            space.scan(&mut scanner, &pose, None, &mut ranges);
+            assert!(near(&ranges, &[0.0; 4]));
+            space.scan(&mut scanner, &Pose::new(2.0, 0.5, 0.0), None, &mut ranges);
+            assert!(near(&ranges, &[1.995, 1.495, 0.9, 0.495]));
+            space.set_pose(id, Pose::new(3.0, 1.5, 0.0));
+        }
+    }
+
+    #[test]
+    fn tilted_beams_hit_the_floor_or_rise_above_low_walls() {
+        let low = Wall { height: 0.12, ..Wall::new(Point::new(1.0, -1.0), Point::new(1.0, 1.0)) };
+        let high = Wall { height: 1.0, ..Wall::new(Point::new(3.0, -1.0), Point::new(3.0, 1.0)) };
+        let space = Space::new(&[low, high]);
+        let ahead = |tilt: f64| scan(&space, Scanner::new(0.0, 0.1, 1, 0.1, tilt, 10.0), Pose::default())[0];
+        // Rises 0.03 m in 1 m: over the first wall, onto the second.
+        let tilt = math::atan(0.03);
+        assert!((ahead(tilt) - 2.995 / math::cos(tilt)).abs() < 1e-12);
+        // Falls 0.2 m in 1 m: onto the floor after 0.5 m.
+        let tilt = math::atan(-0.2);
+        assert!((ahead(tilt) - 0.5 / math::cos(tilt)).abs() < 1e-12);
+        // From above onto the first wall's top, half way across: 0.6 m down in 1 m from 0.72 m.
+        let tilt = math::atan(-0.6);
+        let scanner = Scanner::new(0.0, 0.1, 1, 0.72, tilt, 10.0);
+        assert!((scan(&space, scanner, Pose::default())[0] - 1.0 / math::cos(tilt)).abs() < 1e-9);
+        assert_eq!(ahead(math::atan(0.5)), f64::INFINITY);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(32))]
+
+        #[test]
+        fn a_tilted_beam_ends_where_a_walk_along_it_first_enters_something(
+            walls in prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64, 0.0..TAU, 0.1..1.0f64, 0.05..0.3f64), 0..8),
+            discs in prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64, 0.05..0.4f64, 0.0..0.3f64), 0..8),
+            tilt in -0.5..0.5f64, z in 0.0..0.3f64,
+        ) {
+            let walls: Vec<Wall> = walls.into_iter().map(|(x, y, angle, length, height)| {
+                let a = Point::new(x, y);
+                Wall { thickness: 0.1, height, ..Wall::new(a, a + direction(angle) * length) }
+            }).collect();
+            let mut space = Space::new(&walls);
+            for &(x, y, radius, bottom) in &discs {
+                let pose = Pose::new(x, y, 0.0);
+                space.add(Solid { outline: Outline::Disc { radius }, pose, bottom, top: bottom + 0.1 });
+            }
+            let filled = |p: Point, h: f64| {
+                let in_wall = |w: &Wall| {
+                    let along = (w.line.b - w.line.a).normalize();
+                    let (u, s) = (along.dot(&(p - w.line.a)), crate::geometry::cross(along, p - w.line.a));
+                    h <= w.height && 0.0 <= u && u <= w.line.length() && s.abs() <= 0.05
+                };
+                let in_disc = |&(x, y, r, b): &(f64, f64, f64, f64)| {
+                    b <= h && h <= b + 0.1 && (p - Point::new(x, y)).norm() <= r
+                };
+                h < 0.0 || walls.iter().any(in_wall) || discs.iter().any(in_disc)
+            };
+            let ranges = scan(&space, Scanner::new(0.0, 0.5, 13, z, tilt, 5.0), Pose::default());
+            let (rise, run) = math::sin_cos(tilt);
+            for (beam, range) in ranges.into_iter().enumerate() {
+                let d: Vector = direction(0.5 * beam as f64) * run;
+                let at = |along: f64| filled(Point::origin() + d * along, z + rise * along);
+                let steps = (range.min(5.0) / 1e-3) as usize;
+                // Nothing before the range but for corners that are only just cut, and something right behind it.
+                let before = (0..steps).filter(|&step| at(1e-3 * step as f64)).count();
+                prop_assert!(before <= 1, "beam {} of {} enters something {} times before", beam, range, before);
+                let behind = [1e-9, 1e-6, 1e-5].map(|past| at(range + past));
+                let grazing = [1e-3, 1e-2].iter().all(|past| !at(range + past));
+                prop_assert!(range == f64::INFINITY || behind.contains(&true) || grazing);
+            }
+        }
+    }
 }

@@ -20,8 +20,15 @@ impl OrientedBox {
     /// The foot of a wall. A wall without length is a line across, of the wall's thickness.
     pub(super) fn of_wall(wall: &Wall) -> Self {
         let along = wall.line.b - wall.line.a;
-        let length = along.norm();
-        let axis = if length > 0.0 && length.is_finite() { along / length } else { Vector::x() };
+        // Scaled, so that no square overflows.
+        let scale = along.amax();
+        let (axis, length) = if scale > 0.0 && scale.is_finite() {
+            let scaled = along / scale;
+            let length = scaled.norm();
+            (scaled / length, length * scale)
+        } else {
+            (Vector::x(), 0.0)
+        };
         let half = Vector::new(0.5 * length + OVERLAP, 0.5 * wall.thickness.max(0.0));
         Self { centre: wall.line.a + along * 0.5, axis, half }
     }

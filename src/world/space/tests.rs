@@ -26,11 +26,11 @@ fn walls() -> impl Strategy<Value = Vec<Wall>> {
     prop::collection::vec(wall, 0..40)
 }
 
-fn pose() -> impl Strategy<Value = Pose> {
+fn pose() -> impl Strategy<Value = Pose> + Clone {
     (-6.0..6.0f64, -6.0..6.0f64, -PI..PI).prop_map(|(x, y, heading)| Pose::new(x, y, heading))
 }
 
-fn outline() -> impl Strategy<Value = Outline> {
+fn outline() -> impl Strategy<Value = Outline> + Clone {
     let rectangle =
         (-0.5..0.5f64, -0.5..0.5f64, 0.0..1.0f64, 0.0..1.0f64).prop_map(|(x, y, length, width)| {
             Outline::Rectangle(Aabb::new(Point::new(x, y), Point::new(x + length, y + width)))
@@ -41,7 +41,8 @@ fn outline() -> impl Strategy<Value = Outline> {
 fn solids() -> impl Strategy<Value = Vec<Solid>> {
     let solid = (outline(), pose(), 0.0..0.1f64, 0.05..0.3f64)
         .prop_map(|(outline, pose, bottom, height)| Solid { outline, pose, bottom, top: bottom + height });
-    prop::collection::vec(solid, 0..30)
+    // Many of them are looked at by the cells they are in, few one by one.
+    prop_oneof![prop::collection::vec(solid.clone(), 0..20), prop::collection::vec(solid, 65..150)]
 }
 
 fn filled(walls: &[Wall], solids: &[Solid]) -> Space {
