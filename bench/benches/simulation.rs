@@ -1,5 +1,8 @@
 //! The questions that a simulator asks a world, beside parry2d's answers to the same.
 
+#[path = "simulation/robots.rs"]
+mod robots;
+
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
@@ -261,5 +264,15 @@ fn building_time(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, scans, rays, discs, contacts, building_time);
+criterion_group!(
+    benches,
+    scans,
+    rays,
+    discs,
+    contacts,
+    building_time,
+    robots::one_robot,
+    robots::fleet,
+    robots::growth
+);
 criterion_main!(benches);

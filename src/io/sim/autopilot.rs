@@ -96,12 +96,14 @@ impl Autopilot {
         }
     }
 
+    /// What is left of the manoeuvre; nothing, once the encoders cannot tell it from its end.
     pub(super) fn remaining(&self, drive: &Drivetrain) -> f64 {
         match &self.mode {
             Mode::Speeds(_) => 0.0,
             Mode::Manoeuvre(manoeuvre) => {
                 let rest = manoeuvre.rest(drive);
-                rest[0].abs().max(rest[1].abs()) * manoeuvre.unit
+                let farther = rest[0].abs().max(rest[1].abs());
+                if farther <= drive.resolution() { 0.0 } else { farther * manoeuvre.unit }
             }
         }
     }
