@@ -68,12 +68,16 @@ fn discs() -> World {
     world
 }
 
-/// Seconds that pass in the world for one of ours.
+/// Seconds that pass in the world for one of ours, by the fastest of many slices: what else the machine does counts as
+/// little as can be.
 #[allow(clippy::disallowed_methods)] // A benchmark is about real time.
-fn real_time_factor(seconds: f64, mut run: impl FnMut()) -> f64 {
-    let start = Instant::now();
-    run();
-    seconds / start.elapsed().as_secs_f64()
+fn real_time_factor(slices: usize, seconds: f64, mut run: impl FnMut()) -> f64 {
+    let times = (0..slices).map(|_| {
+        let start = Instant::now();
+        run();
+        start.elapsed().as_secs_f64()
+    });
+    seconds / times.fold(f64::INFINITY, f64::min)
 }
 
 /// Checks that the robot gets about and hurts nobody, and that the same seed gives the same run.
@@ -88,7 +92,7 @@ fn check_looker(world: &World, noise: f64) -> f64 {
     assert!(told.contacts == 0 || noise > 0.0, "{} contacts", told.contacts);
     assert_eq!(told, end(), "the same seed");
     let mut looker = Looker::new(world.clone(), noise);
-    real_time_factor(2000.0, || (0..2000).for_each(|_| looker.drive_a_second().expect("nothing fails")))
+    real_time_factor(200, 5.0, || (0..5).for_each(|_| looker.drive_a_second().expect("nothing fails")))
 }
 
 /// One robot with a lidar of 180 beams: a second of its life.
@@ -167,7 +171,7 @@ pub(crate) fn fleet(c: &mut Criterion) {
     check_fleet(&world, 1000);
     let mut fleet = avoiders(&world, 1000);
     run(&mut fleet, 2.0);
-    let factor = real_time_factor(10.0, || run(&mut fleet, 10.0));
+    let factor = real_time_factor(200, PERIOD, || run(&mut fleet, PERIOD));
     println!("1000 robots with three PSDs, {} walls: {factor:.0} times real time", world.walls.len());
     let mut group = c.benchmark_group("a second of a fleet");
     group.sample_size(20);
@@ -184,8 +188,7 @@ pub(crate) fn growth(_: &mut Criterion) {
         let world = thicket(walls, 2);
         let mut fleet = avoiders(&world, robots);
         run(&mut fleet, 1.0);
-        let seconds = 10_000.0 / robots as f64;
-        let factor = real_time_factor(seconds, || run(&mut fleet, seconds));
+        let factor = real_time_factor(100, PERIOD, || run(&mut fleet, PERIOD));
         let tick = 1e9 / (factor * 100.0 * robots as f64);
         println!("{robots:>6} {walls:>6} {factor:>17.0} {tick:>22.0}");
     }

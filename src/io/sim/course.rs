@@ -68,9 +68,11 @@ impl Course {
 /// `sin(x) / x` and the cosine of a small angle, to the last bit or two.
 fn small_sinc_cos(x: f64) -> (f64, f64) {
     let s = x * x;
-    // What the series leave out is below 3e-17 for |x| up to 0.1.
-    let sinc = 1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0)));
-    let cos = 1.0 - s / 2.0 * (1.0 - s / 12.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0)));
+    // What the series leave out is below 3e-17 for |x| up to 0.1. Products are several times as fast as quotients.
+    let sinc = 1.0
+        - s * (1.0 / 6.0) * (1.0 - s * (1.0 / 20.0) * (1.0 - s * (1.0 / 42.0) * (1.0 - s * (1.0 / 72.0))));
+    let cos = 1.0
+        - s * (1.0 / 2.0) * (1.0 - s * (1.0 / 12.0) * (1.0 - s * (1.0 / 30.0) * (1.0 - s * (1.0 / 56.0))));
     (sinc, cos)
 }
 
