@@ -6,11 +6,12 @@ mod robots;
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use parry2d_f64::math::{Pose as ParryPose, Vector as ParryVector};
-use parry2d_f64::query::{Ray as ParryRay, RayCast};
-use parry2d_f64::shape::{Compound, Cuboid, Polyline, SharedShape};
-use roverlab::geometry::{Point, Pose, Vector, direction};
+use parry2d_f64::query::{self, Ray as ParryRay, RayCast};
+use parry2d_f64::shape::{Ball, Compound, Cuboid, Polyline, SharedShape};
+use roverlab::geometry::{Point, Pose, Vector, direction, math};
 use roverlab::random::Stream;
 use roverlab::world::World;
 use roverlab::world::space::{Outline, Scanner, Solid, SolidId, Space, Span};
@@ -26,7 +27,7 @@ fn parry_boxes(world: &World) -> Compound {
     let parts = world.walls.iter().map(|wall| {
         let along = wall.line.b - wall.line.a;
         let middle = wall.line.a + along * 0.5;
-        let pose = ParryPose::new(ParryVector::new(middle.x, middle.y), along.y.atan2(along.x));
+        let pose = ParryPose::new(ParryVector::new(middle.x, middle.y), math::atan2(along.y, along.x));
         let half = ParryVector::new(0.5 * along.norm(), 0.5 * wall.thickness);
         (pose, SharedShape::new(Cuboid::new(half)))
     });
@@ -171,7 +172,7 @@ fn discs(c: &mut Criterion) {
     group.finish();
 }
 
-/// A crowd of robots among the walls of a building, or on a bare floor of its size.
+/// A crowd of robots among the walls of a world.
 fn crowd(world: &World, robots: usize) -> (Space, Vec<(SolidId, Pose)>) {
     let mut space = Space::new(&world.walls);
     let poses = free_poses(world, robots, 0.07, 6);
@@ -182,66 +183,85 @@ fn crowd(world: &World, robots: usize) -> (Space, Vec<(SolidId, Pose)>) {
 
 fn contacts(c: &mut Criterion) {
     let world = building(1);
+    let boxes = parry_boxes(&world);
+    let parry_distance = |pose: &Pose| {
+        let (at, robot) = (ParryPose::new(ParryVector::new(pose.x, pose.y), 0.0), Ball::new(0.06));
+        let distance = query::distance(&at, &robot, &ParryPose::IDENTITY, &boxes);
+        distance.expect("parry knows these shapes").distance
+    };
     let mut group = c.benchmark_group("600 walls, robots");
-    group.throughput(Throughput::Elements(1));
     for robots in [10, 1_000, 10_000] {
         let (mut space, placed) = crowd(&world, robots);
         let mut out = Vec::new();
-        let free = free_poses(&world, 4096, 0.2, 7);
-        let free: Vec<Pose> = free
-            .into_iter()
-            .filter(|pose| space.clearance(&ROBOT, pose, ROBOT_SPAN, 0.05, None) >= 0.05)
-            .collect();
-        for pose in &free {
+        let mut poses = free_poses(&world, 4096, 0.2, 7);
+        poses.retain(|pose| space.clearance(&ROBOT, pose, ROBOT_SPAN, 0.05, None) >= 0.05);
+        for pose in &poses {
             space.contacts(&ROBOT, pose, ROBOT_SPAN, None, &mut out);
             assert!(out.is_empty());
+            let clearance = space.walls_clearance(&ROBOT, pose, ROBOT_SPAN, 0.5);
+            assert!((clearance - parry_distance(pose).min(0.5)).abs() < 1e-9);
         }
-        let mut next = free.iter().cycle();
-        group.bench_with_input(
-            BenchmarkId::new("contacts of a disc, nothing near", robots),
-            &robots,
-            |b, _| {
-                b.iter(|| {
-                    space.contacts(
-                        &ROBOT,
-                        black_box(next.next().expect("endless")),
-                        ROBOT_SPAN,
-                        None,
-                        &mut out,
-                    )
-                });
-            },
-        );
-        group.bench_with_input(
-            BenchmarkId::new("clearance of a disc up to 0.05 m", robots),
-            &robots,
-            |b, _| {
-                b.iter(|| space.clearance(&ROBOT, next.next().expect("endless"), ROBOT_SPAN, 0.05, None));
-            },
-        );
-        group.bench_with_input(BenchmarkId::new("walls_clearance up to 0.5 m", robots), &robots, |b, _| {
+        group.throughput(Throughput::Elements(1));
+        let mut next = poses.iter().cycle();
+        group.bench_function(BenchmarkId::new("contacts of a disc, nothing near", robots), |b| {
+            b.iter(|| {
+                let pose = next.next().expect("endless");
+                space.contacts(&ROBOT, pose, ROBOT_SPAN, None, &mut out);
+                out.len()
+            });
+        });
+        group.bench_function(BenchmarkId::new("clearance of a disc up to 0.05 m", robots), |b| {
+            b.iter(|| space.clearance(&ROBOT, next.next().expect("endless"), ROBOT_SPAN, 0.05, None));
+        });
+        group.bench_function(BenchmarkId::new("walls_clearance up to 0.5 m", robots), |b| {
             b.iter(|| space.walls_clearance(&ROBOT, next.next().expect("endless"), ROBOT_SPAN, 0.5));
         });
-        let mut next = placed.iter().cycle();
-        let mut step = 0.0001;
-        group.bench_with_input(BenchmarkId::new("set_pose by 0.1 mm", robots), &robots, |b, _| {
-            b.iter(|| {
-                let &(id, pose) = next.next().expect("endless");
-                step = -step;
-                space.set_pose(id, Pose::new(pose.x + step, pose.y, pose.heading));
-            });
+        group.bench_function(BenchmarkId::new("parry distance to walls", robots), |b| {
+            b.iter(|| parry_distance(next.next().expect("endless")));
         });
-        let mut scanner = Scanner::new(0.0, TAU / 360.0, 360, 0.05, 0.0, MAX_RANGE);
-        let mut ranges = vec![0.0; 360];
-        let mut next = placed.iter().cycle();
-        group.bench_with_input(BenchmarkId::new("scan of 360 beams", robots), &robots, |b, _| {
-            b.iter(|| {
-                let (id, pose) = next.next().expect("endless");
-                space.scan(&mut scanner, pose, Some(*id), &mut ranges);
-            });
-        });
+        set_pose(&mut group, &mut space, &placed);
+        crowded_scan(&mut group, &space, &placed);
     }
     group.finish();
+}
+
+fn set_pose(group: &mut BenchmarkGroup<'_, WallTime>, space: &mut Space, placed: &[(SolidId, Pose)]) {
+    let mut step = 0.0001;
+    for &(id, pose) in placed {
+        space.set_pose(id, Pose::new(pose.x + step, pose.y, pose.heading));
+        let there = space.cast_ray(Point::new(pose.x + step, pose.y + 0.05), Vector::x(), 0.05, 1.0, None);
+        assert_eq!(there, 0.0, "a robot is where it was put");
+    }
+    let mut next = placed.iter().cycle();
+    group.bench_function(BenchmarkId::new("set_pose by 0.1 mm", placed.len()), |b| {
+        b.iter(|| {
+            let &(id, pose) = next.next().expect("endless");
+            step = -step;
+            space.set_pose(id, Pose::new(pose.x + step, pose.y, pose.heading));
+        });
+    });
+}
+
+fn crowded_scan(group: &mut BenchmarkGroup<'_, WallTime>, space: &Space, placed: &[(SolidId, Pose)]) {
+    let z = 0.05;
+    let mut scanner = Scanner::new(0.0, TAU / 360.0, 360, z, 0.0, MAX_RANGE);
+    let mut ranges = vec![0.0; 360];
+    for &(id, pose) in placed.iter().take(100) {
+        space.scan(&mut scanner, &pose, Some(id), &mut ranges);
+        let ray = |i: usize| {
+            let d = direction(pose.heading + TAU / 360.0 * i as f64);
+            space.cast_ray(pose.position(), d, z, MAX_RANGE, Some(id))
+        };
+        check("rays", ranges.iter().enumerate().map(|(i, &range)| (range, ray(i))));
+    }
+    group.throughput(Throughput::Elements(360));
+    let mut next = placed.iter().cycle();
+    group.bench_function(BenchmarkId::new("scan of 360 beams", placed.len()), |b| {
+        b.iter(|| {
+            let (id, pose) = next.next().expect("endless");
+            space.scan(&mut scanner, pose, Some(*id), &mut ranges);
+        });
+    });
 }
 
 fn building_time(c: &mut Criterion) {
@@ -258,6 +278,15 @@ fn building_time(c: &mut Criterion) {
                 wall
             })
             .collect();
+        let space = Space::new(&many);
+        for wall in &many {
+            let middle = wall.line.a + (wall.line.b - wall.line.a) * 0.5;
+            assert_eq!(
+                space.cast_ray(middle, Vector::x(), Z, 1.0, None),
+                0.0,
+                "every wall is where it was put"
+            );
+        }
         group.throughput(Throughput::Elements(walls as u64));
         group.bench_with_input(BenchmarkId::new("walls", walls), &walls, |b, _| b.iter(|| Space::new(&many)));
     }

@@ -156,6 +156,10 @@ pub struct DistBug {
     parameters: DistBugParameters,
     goal: Point,
     phase: DistBugPhase,
+    /// `d_min`: the smallest distance to the goal that a boundary has had.
+    least_distance: f64,
+    /// The part of a free range that is not relied upon.
+    doubt: f64,
     follower: Option<Following>,
     filter: ScanFilter,
     matcher: ScanMatcher,
@@ -169,8 +173,6 @@ pub struct DistBug {
 #[derive(Debug, Clone)]
 struct Following {
     boundary: BoundaryFollower,
-    /// The smallest distance to the goal that the boundary has had.
-    least_distance: f64,
     progress: LoopProgress,
 }
 
@@ -192,6 +194,10 @@ struct LoopProgress {
 const EXPECTED_NOISE: f64 = 0.010;
 /// How far round the robot points count for its next step, in steps.
 const REACH: f64 = 2.4;
+/// The part of a free range that is not relied upon at first, and at the most: gaps between beams and errors of
+/// the pose grow with the distance.
+const DOUBT: f64 = 0.02;
+const MAX_DOUBT: f64 = 0.3;
 /// Steps without a free heading after which the robot is boxed in.
 const BOXED_IN_STEPS: u32 = 40;
 /// Steps, at the start, that only look.
@@ -208,6 +214,8 @@ impl DistBug {
             parameters,
             goal,
             phase: DistBugPhase::ToGoal,
+            least_distance: f64::INFINITY,
+            doubt: DOUBT,
             follower: None,
             filter: ScanFilter::new(EXPECTED_NOISE),
             matcher: ScanMatcher::new(),
@@ -246,6 +254,7 @@ impl DistBug {
     /// One control step: what the robot shall do until the next.
     pub fn step(&mut self, observation: &DistBugObservation<'_>) -> Result<Twist> {
         self.perceive(observation)?;
+        self.matcher.learn(&self.points);
         if self.goal_distance() <= self.parameters.goal_tolerance {
             self.end(DistBugOutcome::Reached);
         }
@@ -270,17 +279,23 @@ impl DistBug {
             let found = format!("{:?}", observation.odometry);
             return Err(Error::invalid_input("odometry", found, "finite numbers"));
         }
-        self.filter.update(observation.odometry, observation.scan)?;
+        self.pose = self.locate(observation);
+        self.filter.update(self.pose, observation.scan)?;
         self.points.clear();
         self.points.extend(self.filter.points());
-        self.pose = if self.parameters.match_scans {
-            self.matcher.update(observation.odometry, &self.points)
-        } else {
-            observation.odometry
-        };
         let reach = REACH * self.parameters.follow_distances().step;
         self.surroundings.update(self.points.iter().copied(), reach);
         Ok(())
+    }
+
+    /// The pose by odometry, corrected by matching the scan as measured.
+    fn locate(&mut self, observation: &DistBugObservation<'_>) -> Pose {
+        if !self.parameters.match_scans {
+            return observation.odometry;
+        }
+        self.points.clear();
+        self.points.extend(observation.scan.points());
+        self.matcher.update(observation.odometry, &self.points)
     }
 
     /// Bearing and distance of the goal, how far the way there is free, and what ends it.
@@ -310,9 +325,9 @@ impl DistBug {
             .side
             .unwrap_or_else(|| nearer_side(view.bearing, obstacle, &self.surroundings, distances));
         let point = self.pose.position();
+        self.note_boundary(view.distance - view.free);
         self.follower = Some(Following {
             boundary: BoundaryFollower::new(side, distances, self.pose.to_world(obstacle)),
-            least_distance: view.distance - view.free,
             progress: LoopProgress::new(self.pose),
         });
         self.phase = DistBugPhase::Following(side);
@@ -323,12 +338,11 @@ impl DistBug {
     /// Follows the boundary until it can be left or is closed; the heading to take.
     fn follow(&mut self) -> Option<f64> {
         let view = self.look_at_goal();
-        let following = self.follower.as_mut()?;
-        following.least_distance = following.least_distance.min(view.distance);
-        let within_sight = view.free >= view.distance;
-        if within_sight || view.distance - view.free <= following.least_distance - self.parameters.step {
+        self.least_distance = self.least_distance.min(view.distance);
+        if self.may_leave(&view) {
             return self.leave(&view);
         }
+        let following = self.follower.as_mut()?;
         let heading = following.boundary.heading(&self.pose, &self.surroundings);
         let all_round = following.progress.update(self.pose, heading, self.parameters.robot_radius);
         if all_round {
@@ -336,6 +350,25 @@ impl DistBug {
             return None;
         }
         heading
+    }
+
+    /// Takes in how near to the goal the boundary of a new obstacle begins. If the last leave has not brought the
+    /// robot as much nearer as it promised, free ranges are relied upon less from now on; so the robot cannot go back
+    /// and forth for ever because of errors.
+    fn note_boundary(&mut self, distance: f64) {
+        if distance > self.least_distance - 0.5 * self.parameters.step && self.least_distance.is_finite() {
+            self.doubt = (2.0 * self.doubt).min(MAX_DOUBT);
+        }
+        self.least_distance = self.least_distance.min(distance);
+    }
+
+    /// The leave condition.
+    fn may_leave(&self, view: &GoalView) -> bool {
+        if view.free >= view.distance && view.distance < self.parameters.robot_radius {
+            return true;
+        }
+        let free = view.free.min(view.distance) * (1.0 - self.doubt);
+        view.distance - free <= self.least_distance - self.parameters.step
     }
 
     fn leave(&mut self, view: &GoalView) -> Option<f64> {

@@ -6,6 +6,7 @@ mod distbug;
 mod reachability;
 mod scan_filter;
 mod scan_matcher;
+mod scan_reference;
 mod surroundings;
 
 pub use boundary::WallSide;

@@ -33,13 +33,13 @@ struct Beam {
 
 const UNKNOWN: Beam = Beam { range: f64::INFINITY, weight: 0.0 };
 /// The most readings that an estimate counts for, so that it still follows small changes.
-const MAX_WEIGHT: f64 = 10.0;
+const MAX_WEIGHT: f64 = 20.0;
 /// Readings farther from their prediction than this many standard deviations start anew.
 const GATE: f64 = 4.0;
 /// The smallest such distance, in metres: a wall seen at a slant moves by this between beams.
 const MIN_GATE: f64 = 0.015;
 /// Beams whose hits lie closer together than this, in metres, see the same piece of surface.
-const SMOOTHING_ARC: f64 = 0.008;
+const SMOOTHING_ARC: f64 = 0.015;
 
 impl ScanFilter {
     /// A filter without a scan. `noise` is the standard deviation in metres that one range of the sensor is expected
@@ -208,7 +208,7 @@ impl ScanFilter {
             return here.range;
         }
         let reach = (SMOOTHING_ARC / arc) as usize;
-        let reach = reach.min(6);
+        let reach = reach.min(10);
         let gate = (2.0 * self.noise).max(0.005) + 2.0 * SMOOTHING_ARC;
         let n = self.beams.len();
         let (mut sum, mut weights) = (here.range * here.weight, here.weight);

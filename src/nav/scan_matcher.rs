@@ -1,8 +1,7 @@
-use std::f64::consts::TAU;
+use nalgebra::{Matrix4, Vector4};
 
-use nalgebra::{Matrix3, Vector3};
-
-use crate::geometry::{Point, Pose, Vector, cross, direction, math, normalize_angle};
+use super::scan_reference::{Evidence, Reference};
+use crate::geometry::{Point, Pose, math, normalize_angle};
 
 /// Corrects odometry by matching scans against earlier ones.
 ///
@@ -14,56 +13,30 @@ use crate::geometry::{Point, Pose, Vector, cross, direction, math, normalize_ang
 ///
 /// Match and odometry are weighed by what each knows: odometry by how far the robot has moved, the match by the
 /// directions in which the visible surfaces hold the scan. Along a bare corridor or in a round room odometry decides.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct ScanMatcher {
     references: Vec<Reference>,
-    /// The reference that scans are matched against at present.
-    current: usize,
+    /// The references that scans are matched against at present, and where they were chosen.
+    active: Vec<usize>,
+    chosen_at: Point,
+    /// The share of the last scan that found counterparts.
+    overlap: f64,
     /// The pose by odometry of the last scan, and its corrected pose.
     odometry: Pose,
     pose: Pose,
-    /// The covariance of the corrected pose: metres and radians squared.
-    covariance: Matrix3<f64>,
+    /// By which part of itself odometry underrates every motion: what wheels of other than nominal size do.
+    scale_error: f64,
+    /// The covariance of corrected pose (metres, radians) and scale error.
+    covariance: Matrix4<f64>,
 }
 
-/// A scan that later ones are matched against.
-#[derive(Debug, Clone)]
-struct Reference {
-    pose: Pose,
-    /// Where each beam hit, in the robot's frame, in the order of bearing; `None` where nothing was seen.
-    hits: Vec<Option<Hit>>,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Hit {
-    point: Point,
-    range: f64,
-    /// The unit normal of the surface, if the neighbours lie on one line with the point.
-    normal: Option<Vector>,
-}
-
-/// The result of laying a scan over a reference.
-#[derive(Debug, Clone, Copy)]
-struct Match {
-    pose: Pose,
-    covariance: Matrix3<f64>,
-    /// The share of points that found a counterpart.
-    overlap: f64,
-}
-
-/// Gauss-Newton's equations for a pose, from the points that have counterparts.
-#[derive(Debug, Clone, Default)]
-struct Evidence {
-    information: Matrix3<f64>,
-    residual: Vector3<f64>,
-    matched: usize,
-}
-
-/// Bearings that a reference is divided into.
-const BINS: usize = 360;
-/// Farther from its reference than this, in metres, a scan becomes a reference itself.
-const REFERENCE_SPACING: f64 = 0.5;
-/// So it does when less than this share of its points matches.
+/// References farther away than this, in metres, are not matched against.
+const REFERENCE_REACH: f64 = 0.8;
+/// How many references a scan is matched against at most.
+const ACTIVE_REFERENCES: usize = 3;
+/// After so many metres they are chosen anew.
+const CHOICE_SPACING: f64 = 0.1;
+/// A scan of which less than this share matches any reference becomes one itself.
 const MIN_OVERLAP: f64 = 0.6;
 /// References that are kept at most.
 const MAX_REFERENCES: usize = 10_000;
@@ -75,25 +48,47 @@ const ITERATIONS: usize = 6;
 /// Points farther from the reference's surface than this, in metres, have no counterpart: first and last iteration.
 const COARSE_GATE: f64 = 0.10;
 const FINE_GATE: f64 = 0.03;
-/// Standard deviation of one matched point, in metres.
-const POINT_NOISE: f64 = 0.01;
-/// How many points count as one: consecutive filtered scans share their noise, and surfaces are not quite straight.
-const POINTS_PER_FACT: f64 = 10.0;
 /// Odometry's error as a part of the distance driven and of the angle turned in one step.
-const DISTANCE_ERROR: f64 = 0.03;
-const TURN_ERROR: f64 = 0.01;
+const DISTANCE_ERROR: f64 = 0.01;
+const TURN_ERROR: f64 = 0.006;
+/// The standard deviation of odometry's scale before anything has been matched.
+const SCALE_ERROR: f64 = 0.015;
 /// The variance that slip adds to the heading: radians squared per metre and per radian.
 const SLIP_PER_METRE: f64 = 6e-5;
 const SLIP_PER_RADIAN: f64 = 2.5e-6;
 /// The least variance of a step, so that no direction ever counts as exactly known.
 const LEAST_VARIANCE: f64 = 1e-10;
-/// How far neighbours may lie from a common line, as a part of their distance.
-const FLATNESS: f64 = 0.1;
+
+/// The result of laying a scan over the references.
+#[derive(Debug, Clone, Copy)]
+struct Match {
+    pose: Pose,
+    scale_error: f64,
+    covariance: Matrix4<f64>,
+    /// The share of points that found counterparts in one reference.
+    overlap: f64,
+}
+
+impl Default for ScanMatcher {
+    fn default() -> Self {
+        Self::new()
+    }
+}
 
 impl ScanMatcher {
     /// A matcher without references, whose corrected frame is odometry's own.
     pub fn new() -> Self {
-        Self::default()
+        let variances = Vector4::new(0.0, 0.0, 0.0, SCALE_ERROR * SCALE_ERROR);
+        Self {
+            references: Vec::new(),
+            active: Vec::new(),
+            chosen_at: Point::origin(),
+            overlap: 0.0,
+            odometry: Pose::default(),
+            pose: Pose::default(),
+            scale_error: 0.0,
+            covariance: Matrix4::from_diagonal(&variances),
+        }
     }
 
     /// The corrected pose for a pose by odometry, by the last match.
@@ -106,193 +101,131 @@ impl ScanMatcher {
         self.references.len()
     }
 
-    /// Matches a scan, given as points in the robot's frame in order of bearing, that was made at `odometry`, and
-    /// returns the corrected pose.
+    /// Matches a scan that was made at `odometry`, given as points in the robot's frame in order of bearing, and
+    /// returns the corrected pose. The points shall be as measured: what a filter carries over from earlier scans
+    /// carries odometry's errors with it.
     pub fn update(&mut self, odometry: Pose, points: &[Point]) -> Pose {
         let predicted = self.predict(odometry);
-        let Some(reference) = self.references.get(self.current) else {
-            self.references.push(Reference::new(predicted, points));
+        if self.active.is_empty() {
             return predicted;
-        };
-        let matched = reference.lay_over(predicted, &self.covariance, points);
+        }
+        let matched = self.lay_over(predicted, points);
         let strayed = predicted.distance_to(matched.pose.position());
+        self.overlap = matched.overlap;
         if matched.overlap >= MIN_MATCH && strayed < MAX_CORRECTION {
             self.pose = matched.pose;
+            self.scale_error = matched.scale_error;
             self.covariance = matched.covariance;
         }
-        let distance = reference.pose.distance_to(self.pose.position());
-        if distance > REFERENCE_SPACING || matched.overlap < MIN_OVERLAP {
-            self.change_reference(points);
-        }
         self.pose
+    }
+
+    /// Takes in what is seen from the present pose, as clean as it is known: where earlier scans share too little
+    /// with it, it becomes a reference for later ones.
+    pub fn learn(&mut self, points: &[Point]) {
+        if self.references.is_empty() {
+            self.add_reference(points);
+        } else if self.pose.distance_to(self.chosen_at) > CHOICE_SPACING || self.overlap < MIN_OVERLAP {
+            self.choose_references(points);
+        }
     }
 
     /// Moves pose and covariance on by odometry.
     fn predict(&mut self, odometry: Pose) -> Pose {
-        let motion = self.odometry.inverse().compose(&odometry);
+        let measured = self.odometry.inverse().compose(&odometry);
+        self.odometry = odometry;
+        let scale = 1.0 + self.scale_error;
+        let motion = Pose::new(scale * measured.x, scale * measured.y, scale * measured.heading);
         let before = self.pose;
         self.pose = before.compose(&motion);
-        self.odometry = odometry;
         let (dx, dy) = (self.pose.x - before.x, self.pose.y - before.y);
         let distance = math::hypot(motion.x, motion.y);
         let turn = motion.heading.abs();
-        let carried = Matrix3::new(1.0, 0.0, -dy, 0.0, 1.0, dx, 0.0, 0.0, 1.0);
-        let position = (DISTANCE_ERROR * distance) * (DISTANCE_ERROR * distance) + LEAST_VARIANCE;
-        let heading = (TURN_ERROR * turn) * (TURN_ERROR * turn)
-            + SLIP_PER_METRE * distance
-            + SLIP_PER_RADIAN * turn
-            + LEAST_VARIANCE;
-        self.covariance = carried * self.covariance * carried.transpose()
-            + Matrix3::from_diagonal(&Vector3::new(position, position, heading));
+        let mut carried = Matrix4::identity();
+        carried[(0, 2)] = -dy;
+        carried[(1, 2)] = dx;
+        carried[(0, 3)] = dx;
+        carried[(1, 3)] = dy;
+        carried[(2, 3)] = motion.heading;
+        let square = |x: f64| x * x;
+        let position = square(DISTANCE_ERROR * distance) + LEAST_VARIANCE;
+        let heading =
+            square(TURN_ERROR * turn) + SLIP_PER_METRE * distance + SLIP_PER_RADIAN * turn + LEAST_VARIANCE;
+        let added = Vector4::new(position, position, heading, 0.0);
+        self.covariance = carried * self.covariance * carried.transpose() + Matrix4::from_diagonal(&added);
         self.pose
     }
 
-    /// Goes over to the earlier reference near by that shares most with a scan, or makes the scan one.
-    fn change_reference(&mut self, points: &[Point]) {
-        let pose = self.pose;
-        let near = |r: &Reference| r.pose.distance_to(pose.position()) <= REFERENCE_SPACING;
-        let candidates = self.references.iter().enumerate().filter(|(_, r)| near(r));
-        let best = candidates
-            .map(|(index, reference)| (index, reference.overlap(pose, points)))
-            .max_by(|a, b| a.1.total_cmp(&b.1));
-        match best {
-            Some((index, share)) if share >= MIN_OVERLAP => self.current = index,
-            _ if self.references.len() == MAX_REFERENCES => {}
-            _ => {
-                self.current = self.references.len();
-                self.references.push(Reference::new(pose, points));
-            }
-        }
-    }
-}
-
-impl Reference {
-    fn new(pose: Pose, points: &[Point]) -> Self {
-        let mut hits: Vec<Option<Hit>> = vec![None; BINS];
-        for (i, &point) in points.iter().enumerate() {
-            let range = point.coords.norm();
-            let bin = bin_of(point);
-            if hits[bin].is_none_or(|hit| range < hit.range) {
-                hits[bin] = Some(Hit { point, range, normal: normal_at(points, i) });
-            }
-        }
-        Self { pose, hits }
-    }
-
-    /// Moves a scan from its predicted pose to where it fits this reference best.
-    fn lay_over(&self, predicted: Pose, covariance: &Matrix3<f64>, points: &[Point]) -> Match {
-        let to_local = self.rotation().transpose();
-        let prior = self.pose.inverse().compose(&predicted);
-        let known =
-            (to_local * covariance * to_local.transpose()).try_inverse().unwrap_or_else(Matrix3::zeros);
-        let mut relative = prior;
-        let mut found = Evidence::default();
+    /// Moves a scan from its predicted pose to where it fits the active references best.
+    fn lay_over(&self, predicted: Pose, points: &[Point]) -> Match {
+        let known = self.covariance.try_inverse().unwrap_or_else(Matrix4::zeros);
+        let mut pose = predicted;
+        let mut scale_error = self.scale_error;
         let mut information = known;
+        let mut matched = 0;
         for iteration in 0..ITERATIONS {
             let share = iteration as f64 / (ITERATIONS - 1) as f64;
-            let gate = COARSE_GATE + (FINE_GATE - COARSE_GATE) * share;
-            found = self.evidence(relative, points, gate);
-            information = known + found.information;
-            let strayed = Vector3::new(
-                prior.x - relative.x,
-                prior.y - relative.y,
-                normalize_angle(prior.heading - relative.heading),
+            let found = self.evidence(pose, points, COARSE_GATE + (FINE_GATE - COARSE_GATE) * share);
+            matched = found.matched;
+            information = known;
+            let mut of_pose = information.fixed_view_mut::<3, 3>(0, 0);
+            of_pose += found.information;
+            let strayed = Vector4::new(
+                predicted.x - pose.x,
+                predicted.y - pose.y,
+                normalize_angle(predicted.heading - pose.heading),
+                self.scale_error - scale_error,
             );
-            let Some(solver) = information.cholesky() else { break };
-            let step = solver.solve(&(known * strayed + found.residual));
-            relative.x += step.x;
-            relative.y += step.y;
-            relative.heading = normalize_angle(relative.heading + step.z);
+            let residual = known * strayed + found.residual.push(0.0);
+            let Some(step) = information.cholesky().map(|solver| solver.solve(&residual)) else { break };
+            pose.x += step.x;
+            pose.y += step.y;
+            pose.heading = normalize_angle(pose.heading + step.z);
+            scale_error += step.w;
         }
-        let rotation = self.rotation();
-        let covariance = information.try_inverse().unwrap_or_else(Matrix3::zeros);
-        Match {
-            pose: self.pose.compose(&relative),
-            covariance: rotation * covariance * rotation.transpose(),
-            overlap: found.matched as f64 / points.len().max(1) as f64,
+        let covariance = information.try_inverse().unwrap_or_else(Matrix4::zeros);
+        let overlap = matched as f64 / points.len().max(1) as f64;
+        Match { pose, scale_error, covariance, overlap }
+    }
+
+    /// The average of what the active references say about a pose; `matched` is that of the one that shares most.
+    fn evidence(&self, pose: Pose, points: &[Point], gate: f64) -> Evidence {
+        let mut sum = Evidence::default();
+        for &index in &self.active {
+            let found = self.references[index].evidence(pose, points, gate);
+            sum.information += found.information;
+            sum.residual += found.residual;
+            sum.matched = sum.matched.max(found.matched);
         }
+        let part = 1.0 / self.active.len().max(1) as f64;
+        Evidence { information: sum.information * part, residual: sum.residual * part, ..sum }
     }
 
-    /// The rotation from this reference's frame to the world's, for pose covariances.
-    fn rotation(&self) -> Matrix3<f64> {
-        let d = direction(self.pose.heading);
-        Matrix3::new(d.x, -d.y, 0.0, d.y, d.x, 0.0, 0.0, 0.0, 1.0)
-    }
-
-    /// The share of a scan's points that have counterparts at a pose.
-    fn overlap(&self, pose: Pose, points: &[Point]) -> f64 {
-        let relative = self.pose.inverse().compose(&pose);
-        let found = self.evidence(relative, points, FINE_GATE);
-        found.matched as f64 / points.len().max(1) as f64
-    }
-
-    /// What the counterparts of a scan's points say about its pose relative to this reference.
-    fn evidence(&self, relative: Pose, points: &[Point], gate: f64) -> Evidence {
-        let mut evidence = Evidence::default();
-        let along = direction(relative.heading);
-        for point in points {
-            let turned =
-                Vector::new(along.x * point.x - along.y * point.y, along.y * point.x + along.x * point.y);
-            let placed = Point::new(relative.x + turned.x, relative.y + turned.y);
-            let Some((normal, error)) = self.counterpart(placed, relative.position(), gate) else { continue };
-            evidence.matched += 1;
-            // Large errors count less, so that what has no true counterpart does not pull.
-            let deviations = error / POINT_NOISE;
-            let robust = 1.0 / (1.0 + 0.25 * deviations * deviations);
-            let weight = robust / (POINT_NOISE * POINT_NOISE * POINTS_PER_FACT);
-            let gradient = Vector3::new(normal.x, normal.y, cross(turned, normal));
-            evidence.information += gradient * gradient.transpose() * weight;
-            evidence.residual -= gradient * (weight * error);
-        }
-        evidence
-    }
-
-    /// The surface's normal and the signed distance to it, where a point has a counterpart.
-    ///
-    /// A surface has only one visible side: from `viewer` behind it, a thin wall's other face is seen.
-    fn counterpart(&self, point: Point, viewer: Point, gate: f64) -> Option<(Vector, f64)> {
-        let bin = bin_of(point);
-        let range = point.coords.norm();
-        // Near surfaces spread over many bins: the best of the neighbours is the nearest point.
-        let candidates = [bin, (bin + 1) % BINS, (bin + BINS - 1) % BINS];
-        let hit = candidates
+    /// Makes those references active that are near and share most with a scan; where none shares enough, the scan
+    /// becomes a reference itself.
+    fn choose_references(&mut self, points: &[Point]) {
+        let pose = self.pose;
+        self.chosen_at = pose.position();
+        let mut candidates: Vec<(usize, f64)> = self
+            .references
             .iter()
-            .filter_map(|&b| self.hits[b])
-            .min_by(|a, b| (a.range - range).abs().total_cmp(&(b.range - range).abs()))?;
-        let normal = hit.normal?;
-        if (viewer - hit.point).dot(&normal) <= 0.0 {
-            return None;
+            .enumerate()
+            .filter(|(_, r)| r.pose.distance_to(pose.position()) <= REFERENCE_REACH)
+            .map(|(index, reference)| (index, reference.overlap(pose, points)))
+            .filter(|&(_, overlap)| overlap >= MIN_MATCH)
+            .collect();
+        candidates.sort_by(|a, b| b.1.total_cmp(&a.1));
+        candidates.truncate(ACTIVE_REFERENCES);
+        self.active = candidates.iter().map(|&(index, _)| index).collect();
+        let best = candidates.first().map_or(0.0, |&(_, overlap)| overlap);
+        if best < MIN_OVERLAP && self.references.len() < MAX_REFERENCES {
+            self.add_reference(points);
         }
-        let error = (point - hit.point).dot(&normal);
-        let apart = (point - hit.point).norm_squared();
-        let spread = 3.0 * range * TAU / BINS as f64 + gate;
-        (error.abs() < gate && apart < spread * spread).then_some((normal, error))
     }
-}
 
-fn bin_of(point: Point) -> usize {
-    let turn = math::atan2(point.y, point.x) / TAU;
-    ((turn * BINS as f64).round() as i64).rem_euclid(BINS as i64) as usize
-}
-
-/// The normal of the line through a point's neighbours, if the point lies on it.
-fn normal_at(points: &[Point], index: usize) -> Option<Vector> {
-    let n = points.len();
-    if n < 5 {
-        return None;
+    fn add_reference(&mut self, points: &[Point]) {
+        self.active.truncate(ACTIVE_REFERENCES - 1);
+        self.active.push(self.references.len());
+        self.references.push(Reference::new(self.pose, points));
     }
-    let reach = 2;
-    let before = points[(index + n - reach) % n];
-    let after = points[(index + reach) % n];
-    let along = after - before;
-    let length = along.norm();
-    let range = points[index].coords.norm();
-    // Neighbours across an edge lie much farther apart than beams on one surface do.
-    if length < 1e-6 || length > 0.6 * range.max(0.05) {
-        return None;
-    }
-    let normal = Vector::new(-along.y, along.x) / length;
-    let off = (points[index] - before).dot(&normal).abs();
-    let facing = if points[index].coords.dot(&normal) < 0.0 { normal } else { -normal };
-    (off < FLATNESS * length).then_some(facing)
 }

@@ -190,7 +190,13 @@ mod tests {
             from in -3.2..3.2f64,
             sweep in prop_oneof![0.0..3.1f64, PI - 1e-5..PI - 1e-9],
             clockwise: bool,
+            close in prop::option::of((0..500usize, 0..500usize, -4e-5..4e-5f64, -4e-5..4e-5f64)),
         ) {
+            // Either an arc at random, or one whose ends are close to beams.
+            let (from, sweep) = close.map_or((from, sweep), |(start, run, before, behind)| {
+                let run = (run as f64).min((3.0 / increment).trunc());
+                (first + heading + increment * start as f64 + before, (increment * run + behind).max(0.0))
+            });
             let mut fan = Fan::new(first, increment, beams);
             fan.turn_to(heading);
             let end = |angle: f64| Vector::new(math::cos(angle), math::sin(angle)) * 2.5;
@@ -198,7 +204,9 @@ mod tests {
             let back = Arc { from: arc.to, to: arc.from, turn: -1.0 };
             let mut held = vec![0; beams];
             let arc = if clockwise { back } else { arc };
-            fan.for_each_exact_run(&arc, fan.sector(&arc), |a, b| held[a..=b].iter_mut().for_each(|times| *times += 1));
+            fan.for_each_exact_run(&arc, fan.sector(&arc), |a, b| {
+                held[a..=b].iter_mut().for_each(|times| *times += 1);
+            });
             for (beam, times) in held.into_iter().enumerate() {
                 let middle = from + 0.5 * sweep;
                 let off = normalize_angle(first + heading + increment * beam as f64 - middle).abs();

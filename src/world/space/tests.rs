@@ -266,3 +266,41 @@ proptest! {
         }
     }
 }
+
+/// A crowd on a floor with some walls, from the same numbers every time.
+fn crowd(walls: &[Wall], robots: usize) -> Space {
+    let mut stream = crate::random::Stream::new(11);
+    let mut space = Space::new(walls);
+    for _ in 0..robots {
+        let pose = Pose::new(stream.between(-5.0, 5.0), stream.between(-5.0, 5.0), stream.between(-PI, PI));
+        let radius = stream.between(0.01, 0.08);
+        let rectangle = Aabb::new(Point::new(-radius, -radius), Point::new(2.0 * radius, radius));
+        let outline =
+            if stream.chance(0.5) { Outline::Disc { radius } } else { Outline::Rectangle(rectangle) };
+        space.add(Solid { outline, pose, bottom: 0.0, top: 0.2 });
+    }
+    space
+}
+
+#[test]
+fn scans_in_a_crowd_equal_rays() {
+    let walls: Vec<Wall> = (-4..4)
+        .map(|i| Wall::new(Point::new(f64::from(i), -3.0), Point::new(f64::from(i), 2.0 + f64::from(i))))
+        .collect();
+    let mut stream = crate::random::Stream::new(12);
+    for robots in [65, 300, 3000] {
+        let space = crowd(&walls, robots);
+        let mut scanner = Scanner::new(0.0, TAU / 360.0, 360, Z, 0.0, 8.0);
+        let mut ranges = [0.0; 360];
+        for _ in 0..40 {
+            let pose =
+                Pose::new(stream.between(-5.5, 5.5), stream.between(-5.5, 5.5), stream.between(-PI, PI));
+            space.scan(&mut scanner, &pose, None, &mut ranges);
+            for (beam, &range) in ranges.iter().enumerate() {
+                let angle = pose.heading + TAU / 360.0 * beam as f64;
+                let ray = |d: Vector| space.cast_ray(pose.position(), d, Z, 8.0, None);
+                assert!(agrees(range, angle, 8.0, ray), "{robots} robots, beam {beam}: {range}");
+            }
+        }
+    }
+}

@@ -1,0 +1,208 @@
+use std::f64::consts::TAU;
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::geometry::{Point, Pose, Vector, cross, direction, math};
+
+/// A scan that later ones are matched against.
+#[derive(Debug, Clone)]
+pub(super) struct Reference {
+    pub(super) pose: Pose,
+    /// Where each beam hit, in the robot's frame, in the order of bearing; `None` where nothing was seen.
+    hits: Vec<Option<Hit>>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Hit {
+    point: Point,
+    range: f64,
+    /// The unit normal of the surface, towards the viewer; `None` where the neighbours lie on no common line.
+    normal: Option<Vector>,
+}
+
+/// Gauss-Newton's equations for a pose, from the points that have counterparts.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Evidence {
+    pub(super) information: Matrix3<f64>,
+    pub(super) residual: Vector3<f64>,
+    pub(super) matched: usize,
+}
+
+/// Points farther from a surface than this, in metres, do not count as shared.
+const OVERLAP_GATE: f64 = 0.03;
+/// Bearings that a reference is divided into.
+const BINS: usize = 360;
+/// Standard deviation of one matched point, in metres.
+const POINT_NOISE: f64 = 0.01;
+/// How many points count as one: surfaces are not quite straight, and the reference errs as well.
+const POINTS_PER_FACT: f64 = 2.0;
+/// How far, in metres, neighbours reach that a line is fitted to, and how many they are on either side.
+const LINE_REACH: f64 = 0.06;
+const MIN_NEIGHBOURS: usize = 2;
+const MAX_NEIGHBOURS: usize = 25;
+/// Neighbouring beams that hit farther apart than this, in metres and as a part of the range, see two surfaces.
+const EDGE_GAP: f64 = 0.02;
+const EDGE_SLANT: f64 = 0.1;
+/// How far neighbours may lie from their line: as a part of its length, and in metres.
+const FLATNESS: f64 = 0.05;
+const ROUGHNESS: f64 = 0.003;
+
+impl Reference {
+    pub(super) fn new(pose: Pose, points: &[Point]) -> Self {
+        let mut hits: Vec<Option<Hit>> = vec![None; BINS];
+        for (i, &point) in points.iter().enumerate() {
+            let range = point.coords.norm();
+            let bin = bin_of(point);
+            if hits[bin].is_none_or(|hit| range < hit.range) {
+                hits[bin] = Some(Hit { point, range, normal: normal_at(points, i) });
+            }
+        }
+        Self { pose, hits }
+    }
+
+    /// The rotation from this reference's frame to the world's, for pose covariances.
+    fn rotation(&self) -> Matrix3<f64> {
+        let d = direction(self.pose.heading);
+        Matrix3::new(d.x, -d.y, 0.0, d.y, d.x, 0.0, 0.0, 0.0, 1.0)
+    }
+
+    /// The share of a scan's points that have counterparts when it was made at `pose`.
+    pub(super) fn overlap(&self, pose: Pose, points: &[Point]) -> f64 {
+        let found = self.evidence(pose, points, OVERLAP_GATE);
+        found.matched as f64 / points.len().max(1) as f64
+    }
+
+    /// What the counterparts of a scan's points say about its pose.
+    pub(super) fn evidence(&self, pose: Pose, points: &[Point], gate: f64) -> Evidence {
+        let relative = self.pose.inverse().compose(&pose);
+        let local = self.local_evidence(relative, points, gate);
+        let rotation = self.rotation();
+        Evidence {
+            information: rotation * local.information * rotation.transpose(),
+            residual: rotation * local.residual,
+            matched: local.matched,
+        }
+    }
+
+    /// The same in this reference's frame.
+    fn local_evidence(&self, relative: Pose, points: &[Point], gate: f64) -> Evidence {
+        let mut evidence = Evidence::default();
+        let along = direction(relative.heading);
+        for point in points {
+            let turned =
+                Vector::new(along.x * point.x - along.y * point.y, along.y * point.x + along.x * point.y);
+            let placed = Point::new(relative.x + turned.x, relative.y + turned.y);
+            let Some((normal, error)) = self.counterpart(placed, relative.position(), gate) else { continue };
+            evidence.matched += 1;
+            // Large errors count less, so that what has no true counterpart does not pull.
+            let deviations = error / POINT_NOISE;
+            let robust = 1.0 / (1.0 + 0.25 * deviations * deviations);
+            let weight = robust / (POINT_NOISE * POINT_NOISE * POINTS_PER_FACT);
+            let gradient = Vector3::new(normal.x, normal.y, cross(turned, normal));
+            evidence.information += gradient * gradient.transpose() * weight;
+            evidence.residual -= gradient * (weight * error);
+        }
+        evidence
+    }
+
+    /// The surface's normal and the signed distance to it, where a point has a counterpart.
+    ///
+    /// A surface has only one visible side: from `viewer` behind it, a thin wall's other face is seen.
+    fn counterpart(&self, point: Point, viewer: Point, gate: f64) -> Option<(Vector, f64)> {
+        let bin = bin_of(point);
+        let range = point.coords.norm();
+        // Near surfaces spread over many bins: the best of the neighbours is the nearest point.
+        let candidates = [bin, (bin + 1) % BINS, (bin + BINS - 1) % BINS];
+        let hit = candidates
+            .iter()
+            .filter_map(|&b| self.hits[b])
+            .min_by(|a, b| (a.range - range).abs().total_cmp(&(b.range - range).abs()))?;
+        let normal = hit.normal?;
+        if (viewer - hit.point).dot(&normal) <= 0.0 {
+            return None;
+        }
+        let error = (point - hit.point).dot(&normal);
+        let apart = (point - hit.point).norm_squared();
+        let spread = 3.0 * range * TAU / BINS as f64 + gate;
+        (error.abs() < gate && apart < spread * spread).then_some((normal, error))
+    }
+}
+
+fn bin_of(point: Point) -> usize {
+    let turn = math::atan2(point.y, point.x) / TAU;
+    ((turn * BINS as f64).round() as i64).rem_euclid(BINS as i64) as usize
+}
+
+/// The normal, towards the viewer at the origin, of the line that a point and its neighbours lie on, if they do. Near surfaces are seen by many beams a few
+/// millimetres apart, so the neighbours reach as far as [`LINE_REACH`], not a fixed number of beams.
+fn normal_at(points: &[Point], index: usize) -> Option<Vector> {
+    let centre = points[index];
+    let mut sums = LineSums::default();
+    sums.add(centre.coords);
+    let sides = [1, points.len() - 1].map(|stride| sums.add_side(points, index, stride));
+    if sides.contains(&0) {
+        return None;
+    }
+    sums.normal()
+}
+
+/// Sums for a least-squares line.
+#[derive(Debug, Clone, Copy, Default)]
+struct LineSums {
+    count: f64,
+    sum: Vector,
+    squares: Vector,
+    product: f64,
+}
+
+impl LineSums {
+    fn add(&mut self, p: Vector) {
+        self.count += 1.0;
+        self.sum += p;
+        self.squares += p.component_mul(&p);
+        self.product += p.x * p.y;
+    }
+
+    /// Adds the neighbours on one side that belong to the same surface, and returns how many they are.
+    fn add_side(&mut self, points: &[Point], index: usize, stride: usize) -> usize {
+        let centre = points[index];
+        let mut last = centre;
+        let mut at = index;
+        let mut added = 0;
+        while added < MAX_NEIGHBOURS {
+            at = (at + stride) % points.len();
+            let next = points[at];
+            let range = last.coords.norm();
+            // Beams on one surface are about a beam's width apart; across an edge they are much farther.
+            if (next - last).norm() > EDGE_GAP + EDGE_SLANT * range {
+                break;
+            }
+            if added >= MIN_NEIGHBOURS && (next - centre).norm() > LINE_REACH {
+                break;
+            }
+            self.add(next.coords);
+            last = next;
+            added += 1;
+        }
+        added
+    }
+
+    /// The normal of the line through the points, if they lie close to one.
+    fn normal(&self) -> Option<Vector> {
+        let mean = self.sum / self.count;
+        let xx = self.squares.x / self.count - mean.x * mean.x;
+        let yy = self.squares.y / self.count - mean.y * mean.y;
+        let xy = self.product / self.count - mean.x * mean.y;
+        let half_difference = 0.5 * (xx - yy);
+        let spread = math::hypot(half_difference, xy);
+        let across = (0.5 * (xx + yy) - spread).max(0.0);
+        let along = 0.5 * (xx + yy) + spread;
+        if across.sqrt() > FLATNESS * along.sqrt() + ROUGHNESS || along.sqrt() < 2.0 * ROUGHNESS {
+            return None;
+        }
+        let angle = 0.5 * math::atan2(xy, half_difference);
+        let tangent = direction(angle);
+        let normal = Vector::new(-tangent.y, tangent.x);
+        Some(if mean.dot(&normal) < 0.0 { normal } else { -normal })
+    }
+}
