@@ -14,6 +14,10 @@ use crate::common::{open_floor, robots, start};
 
 const START: Pose = Pose::new(1.0, 1.0, 0.0);
 
+type Call = fn(&mut SimRobot, LidarSettings) -> Result<(), Error>;
+type Program = fn(&mut SimRobot) -> Result<(), Error>;
+type Change = fn(&mut SimOptions);
+
 fn assert_error<T: std::fmt::Debug>(result: Result<T, Error>, kind: ErrorKind, says: &str) {
     let error = result.unwrap_err();
     assert_eq!(error.kind(), kind, "{error}");
@@ -39,7 +43,6 @@ fn what_the_robot_lacks_is_an_error_that_names_it() {
 fn wrong_arguments_are_named() {
     let (mut robot, truth) = start(&open_floor(START), SimOptions::ideal());
     let lidar = LidarSettings { field_of_view: 1.0, tilt: 0.0, points: 3 };
-    type Call = fn(&mut SimRobot, LidarSettings) -> Result<(), Error>;
     let calls: [(&str, Call); 21] = [
         ("linear speed is NaN", |r, _| r.set_speed(Twist::new(f64::NAN, 0.0))),
         ("angular speed is inf", |r, _| r.set_speed(Twist::new(0.0, f64::INFINITY))),
@@ -61,7 +64,7 @@ fn wrong_arguments_are_named() {
         ("lidar points is 0", |r, s| r.configure_lidar(LidarSettings { points: 0, ..s })),
         ("lidar field of view", |r, s| r.configure_lidar(LidarSettings { field_of_view: 7.0, ..s })),
         ("radio receiver is 2", |r, _| r.send(2, b"nobody")),
-        ("radio message length", |r, _| r.send(1, &[0; 70_000])),
+        ("radio message length", |r, _| r.send(1, &vec![0; 70_000])),
     ];
     for (says, call) in calls {
         assert_error(call(&mut robot, lidar), ErrorKind::InvalidInput, says);
@@ -86,12 +89,12 @@ fn the_largest_commands_do_no_harm() {
 
 #[test]
 fn options_out_of_range_are_named() {
-    let with = |change: fn(&mut SimOptions)| {
+    let with = |change: Change| {
         let mut options = SimOptions::ideal();
         change(&mut options);
         Simulation::new(&open_floor(START), options).map(|_| ())
     };
-    let bad: [(&str, fn(&mut SimOptions)); 8] = [
+    let bad: [(&str, Change); 8] = [
         ("wheel scale", |o| o.noise.wheel_scale = -0.1),
         ("slip", |o| o.noise.slip = f64::NAN),
         ("range error", |o| o.noise.range = f64::INFINITY),
@@ -150,7 +153,6 @@ fn scenes_that_make_no_sense_are_refused() {
 #[test]
 fn time_ends_exactly_at_the_limit() {
     let limited = |limit| SimOptions { time_limit: Some(limit), ..SimOptions::ideal() };
-    type Program = fn(&mut SimRobot) -> Result<(), Error>;
     let programs: [Program; 4] = [
         |robot| robot.wait(1e6),
         |robot| loop {

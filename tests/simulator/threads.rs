@@ -89,7 +89,7 @@ fn a_panic_in_one_program_leaves_the_others_running() {
                     robot.wait(2.0).unwrap();
                     robot.now().unwrap()
                 });
-                let ended = catch_unwind(move || program());
+                let ended = catch_unwind(program);
                 assert_eq!(ended.is_err(), number == 1);
             });
         }

@@ -10,8 +10,9 @@ use criterion::{BenchmarkId, Criterion, Throughput};
 use roverlab::geometry::{Pose, Twist};
 use roverlab::io::sim::{Fleet, FleetRobot, NoiseModel, SimOptions, SimRobot, Simulation, Truth};
 use roverlab::io::{Clock, DistanceSensors, Drive, Lidar, LidarScan, LidarSettings, Psd, Result};
+use roverlab::world::space::{Solid, Space, Span};
 use roverlab::world::{
-    Colour, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Shape, World, space::Span,
+    Colour, Footprint, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Shape, World,
 };
 use roverlab_bench::{building, free_poses, thicket};
 
@@ -134,8 +135,7 @@ fn avoiders(world: &World, robots: usize) -> Fleet<'static> {
 
 /// The first so many poses at which no two robots overlap.
 fn apart(poses: Vec<Pose>, robots: usize) -> Vec<Pose> {
-    use roverlab::world::space::{Outline, Solid, Space};
-    let (outline, span) = (Outline::Disc { radius: 0.06 }, Span { bottom: 0.0, top: 0.09 });
+    let (outline, span) = (Footprint::Disc { radius: 0.06 }, Span { bottom: 0.0, top: 0.09 });
     let mut space = Space::new(&[]);
     let mut kept = Vec::with_capacity(robots);
     for pose in poses {

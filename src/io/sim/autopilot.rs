@@ -74,13 +74,10 @@ impl Autopilot {
     pub(super) fn command(&mut self, drive: &Drivetrain) -> [f64; 2] {
         match &self.mode {
             Mode::Speeds(speeds) => *speeds,
-            Mode::Manoeuvre(manoeuvre) => match manoeuvre.command(drive) {
-                Some(speeds) => speeds,
-                None => {
-                    self.mode = Mode::Speeds([0.0; 2]);
-                    [0.0; 2]
-                }
-            },
+            Mode::Manoeuvre(manoeuvre) => manoeuvre.command(drive).unwrap_or_else(|| {
+                self.mode = Mode::Speeds([0.0; 2]);
+                [0.0; 2]
+            }),
         }
     }
 

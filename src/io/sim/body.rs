@@ -8,7 +8,7 @@ use super::{Lcd, SimOptions};
 use crate::geometry::{Point, Pose, Vector, direction};
 use crate::io::{Error, Key, LidarSettings, Psd, RadioMessage, Result};
 use crate::random::Stream;
-use crate::world::space::{Outline, Scanner, Solid, SolidId, Span};
+use crate::world::space::{Scanner, Solid, SolidId, Span};
 use crate::world::{DriveSpec, Footprint, RobotPlacement, RobotSpec};
 
 /// One robot in the engine: its mechanics, its devices and what is true about it.
@@ -19,7 +19,7 @@ pub(super) struct Body {
     /// Where it truly is.
     pub(super) course: Course,
     pub(super) span: Span,
-    pub(super) outline: Outline,
+    pub(super) outline: Footprint,
     /// The radius of the circle about its origin that just holds its outline.
     pub(super) radius: f64,
     /// How far its outline may move at once without jumping over anything.
@@ -183,7 +183,7 @@ impl Body {
             solid,
             course: Course::new(placement.pose),
             span: span(placement),
-            outline: Outline::from(&spec.footprint),
+            outline: spec.footprint,
             radius: spec.footprint.bounding_radius(),
             stride: stride(&spec.footprint),
             drivetrain,
@@ -207,12 +207,7 @@ impl Body {
     /// The robot as others see it.
     pub(super) fn as_solid(placement: &RobotPlacement) -> Solid {
         let span = span(placement);
-        Solid {
-            outline: Outline::from(&placement.spec.footprint),
-            pose: placement.pose,
-            bottom: span.bottom,
-            top: span.top,
-        }
+        Solid { outline: placement.spec.footprint, pose: placement.pose, bottom: span.bottom, top: span.top }
     }
 
     pub(super) fn lcd(&mut self) -> &mut Lcd {
@@ -254,7 +249,8 @@ impl Body {
 
     /// The oldest key press that is due.
     pub(super) fn take_key(&mut self, now: f64) -> Option<Key> {
-        self.keys.pop_front_if(|press| press.time <= now).map(|press| press.key)
+        let due = self.keys.front().is_some_and(|press| press.time <= now);
+        if due { self.keys.pop_front().map(|press| press.key) } else { None }
     }
 }
 

@@ -6,8 +6,8 @@ use crate::io::error::{require_finite, require_positive};
 use crate::io::{Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Result};
 use crate::kinematics::Displacement;
 use crate::random::Stream;
-use crate::world::space::{Contact, Outline, Solid, Space};
-use crate::world::{Object, RobotPlacement, Scene, Shape, World};
+use crate::world::space::{Contact, Solid, Space};
+use crate::world::{Footprint, Object, RobotPlacement, Scene, Shape, World};
 
 /// A world and its robots at one instant, and how they get to the next.
 #[derive(Debug)]
@@ -79,7 +79,7 @@ impl Engine {
     }
 
     pub(super) fn press_key(&mut self, robot: usize, time: f64, key: Key) -> Result<()> {
-        if !(time.abs() <= LONGEST) {
+        if time.is_nan() || time.abs() > LONGEST {
             let expected = format!("at most {LONGEST} s");
             return Err(Error::invalid_input("time of the key press", time, &expected));
         }
@@ -134,7 +134,7 @@ impl Engine {
 
     pub(super) fn set_twist(&mut self, index: usize, twist: Twist) -> Result<()> {
         for (name, speed) in [("linear speed", twist.linear), ("angular speed", twist.angular)] {
-            if !(speed.abs() <= MAX_COMMAND) {
+            if speed.is_nan() || speed.abs() > MAX_COMMAND {
                 return Err(Error::invalid_input(name, speed, "a finite number of at most 1e9 either way"));
             }
         }
@@ -150,7 +150,7 @@ impl Engine {
         require_positive("speed", speed.abs())?;
         let body = &mut self.bodies[index];
         let seconds = body.drivetrain.least_seconds(motion, speed);
-        if !(seconds <= LONGEST) {
+        if seconds.is_nan() || seconds > LONGEST {
             let found = format!("{seconds} s long");
             return Err(Error::invalid_input("manoeuvre", found, &format!("at most {LONGEST} s")));
         }
@@ -262,10 +262,10 @@ fn check_placement(placement: &RobotPlacement) -> Result<()> {
 /// An object as robots meet it.
 fn solid_of(object: &Object) -> Solid {
     let outline = match object.kind.shape {
-        Shape::Cylinder { radius, .. } | Shape::Sphere { radius } => Outline::Disc { radius },
+        Shape::Cylinder { radius, .. } | Shape::Sphere { radius } => Footprint::Disc { radius },
         Shape::Box { length, width, .. } => {
             let corner = Point::new(0.5 * length, 0.5 * width);
-            Outline::Rectangle(Aabb::new(-corner, corner))
+            Footprint::Rectangle(Aabb::new(-corner, corner))
         }
     };
     let bottom = object.elevation;

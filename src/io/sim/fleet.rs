@@ -40,9 +40,11 @@ pub struct Fleet<'a> {
     members: Vec<Option<Member<'a>>>,
 }
 
+type Behaviour<'a> = dyn FnMut(&mut FleetRobot<'_>) -> Result<ControlFlow<()>> + 'a;
+
 /// A robot's behaviour and when it is due.
 struct Member<'a> {
-    behaviour: Box<dyn FnMut(&mut FleetRobot<'_>) -> Result<ControlFlow<()>> + 'a>,
+    behaviour: Box<Behaviour<'a>>,
     period: u64,
     due: u64,
 }
