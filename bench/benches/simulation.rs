@@ -1,5 +1,8 @@
 //! The questions that a simulator asks a world, beside parry2d's answers to the same.
 
+#[path = "simulation/robots.rs"]
+mod robots;
+
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
@@ -10,13 +13,13 @@ use parry2d_f64::query::{self, Ray as ParryRay, RayCast};
 use parry2d_f64::shape::{Ball, Compound, Cuboid, Polyline, SharedShape};
 use roverlab::geometry::{Point, Pose, Vector, direction, math};
 use roverlab::random::Stream;
-use roverlab::world::World;
-use roverlab::world::space::{Outline, Scanner, Solid, SolidId, Space, Span};
+use roverlab::world::space::{Scanner, Solid, SolidId, Space, Span};
+use roverlab::world::{Footprint, World};
 use roverlab_bench::{building, free_poses};
 
 const Z: f64 = 0.1;
 const MAX_RANGE: f64 = 9.999;
-const ROBOT: Outline = Outline::Disc { radius: 0.06 };
+const ROBOT: Footprint = Footprint::Disc { radius: 0.06 };
 const ROBOT_SPAN: Span = Span { bottom: 0.0, top: 0.09 };
 
 /// The walls as one body of parry's, under its tree.
@@ -145,7 +148,7 @@ fn discs(c: &mut Criterion) {
     let world = World::walled(4.0, 4.0);
     let mut space = Space::new(&world.walls);
     for pose in free_poses(&world, 20, 0.2, 4) {
-        space.add(Solid { outline: Outline::Disc { radius: 0.1 }, pose, bottom: 0.0, top: 0.2 });
+        space.add(Solid { outline: Footprint::Disc { radius: 0.1 }, pose, bottom: 0.0, top: 0.2 });
     }
     let alone = |pose: &Pose| space.clearance(&ROBOT, pose, ROBOT_SPAN, 1.0, None) > 0.0;
     let poses: Vec<Pose> = free_poses(&world, 256, 0.1, 5).into_iter().filter(alone).collect();
@@ -290,5 +293,15 @@ fn building_time(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, scans, rays, discs, contacts, building_time);
+criterion_group!(
+    benches,
+    scans,
+    rays,
+    discs,
+    contacts,
+    building_time,
+    robots::one_robot,
+    robots::fleet,
+    robots::growth
+);
 criterion_main!(benches);

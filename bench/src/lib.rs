@@ -36,6 +36,24 @@ pub fn building(seed: u64) -> World {
     world
 }
 
+/// A square floor with four outer walls and so many short walls in all directions, one on each half of a square metre.
+///
+/// ```
+/// let world = roverlab_bench::thicket(200, 1);
+/// assert_eq!((world.walls.len(), world.floor.size().x), (204, 10.0));
+/// ```
+pub fn thicket(walls: usize, seed: u64) -> World {
+    let extent = (0.5 * walls as f64).sqrt();
+    let mut world = World::walled(extent, extent);
+    let mut stream = Stream::new(seed);
+    for _ in 0..walls {
+        let middle = Point::new(stream.between(0.0, extent), stream.between(0.0, extent));
+        let half = direction(stream.between(0.0, std::f64::consts::PI)) * stream.between(0.05, 0.2);
+        world.walls.push(Wall::new(middle - half, middle + half));
+    }
+    world
+}
+
 /// One side of a room: two walls on either side of a door of 0.9 m.
 fn add_side(world: &mut World, stream: &mut Stream, place: impl Fn(f64) -> Point) {
     let door = stream.between(0.4, ROOM - 1.3);

@@ -105,7 +105,7 @@ impl Picture {
 
     /// A robot in a style of its own: pale for where it started, say.
     pub fn robot_with(&mut self, pose: Pose, footprint: &Footprint, style: Style) -> &mut Self {
-        self.robots.push(Robot { pose, footprint: footprint.clone(), style });
+        self.robots.push(Robot { pose, footprint: *footprint, style });
         self
     }
 

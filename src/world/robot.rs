@@ -91,16 +91,16 @@ impl Default for MotorSpec {
     }
 }
 
-/// A robot's outline on the floor, in its own frame.
-#[derive(Debug, Clone, PartialEq)]
+/// The outline on the floor of a robot or another solid, in its own frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Footprint {
-    /// A disc about the middle of the driven axle.
+    /// A disc about the origin: for a robot, the middle of the driven axle.
     Disc {
         /// Metres.
         radius: f64,
     },
-    /// A rectangle along the robot's axes.
+    /// A rectangle along the frame's axes.
     Rectangle(Aabb),
 }
 

@@ -26,8 +26,8 @@ struct Manoeuvre {
     unit: f64,
 }
 
-/// The braking, in m/s², that a manoeuvre plans with: half of what the motors can do.
-const BRAKING: f64 = 1.0;
+/// The part of what the motors can do that a manoeuvre plans to brake with.
+const BRAKING: f64 = 0.5;
 /// How fast the last millimetres are closed, per second.
 const APPROACH_RATE: f64 = 20.0;
 /// The rim speed, in m/s, below which a wheel at its target stands.
@@ -74,13 +74,10 @@ impl Autopilot {
     pub(super) fn command(&mut self, drive: &Drivetrain) -> [f64; 2] {
         match &self.mode {
             Mode::Speeds(speeds) => *speeds,
-            Mode::Manoeuvre(manoeuvre) => match manoeuvre.command(drive) {
-                Some(speeds) => speeds,
-                None => {
-                    self.mode = Mode::Speeds([0.0; 2]);
-                    [0.0; 2]
-                }
-            },
+            Mode::Manoeuvre(manoeuvre) => manoeuvre.command(drive).unwrap_or_else(|| {
+                self.mode = Mode::Speeds([0.0; 2]);
+                [0.0; 2]
+            }),
         }
     }
 
@@ -96,12 +93,14 @@ impl Autopilot {
         }
     }
 
+    /// What is left of the manoeuvre; nothing, once the encoders cannot tell it from its end.
     pub(super) fn remaining(&self, drive: &Drivetrain) -> f64 {
         match &self.mode {
             Mode::Speeds(_) => 0.0,
             Mode::Manoeuvre(manoeuvre) => {
                 let rest = manoeuvre.rest(drive);
-                rest[0].abs().max(rest[1].abs()) * manoeuvre.unit
+                let farther = rest[0].abs().max(rest[1].abs());
+                if farther <= drive.resolution() { 0.0 } else { farther * manoeuvre.unit }
             }
         }
     }
@@ -125,7 +124,8 @@ impl Manoeuvre {
             let standing = speeds[0].abs().max(speeds[1].abs()) < STANDING;
             return if standing { None } else { Some(speeds.map(|v| follow(0.0, v, drive.decay()))) };
         }
-        let pace = self.speed.min((2.0 * BRAKING * farther).sqrt()).min(APPROACH_RATE * farther);
+        let braking = BRAKING * drive.max_acceleration();
+        let pace = self.speed.min((2.0 * braking * farther).sqrt()).min(APPROACH_RATE * farther);
         Some([0, 1].map(|w| follow(pace * rest[w] / farther, speeds[w], drive.decay())))
     }
 }

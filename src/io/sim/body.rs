@@ -2,26 +2,33 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::autopilot::Autopilot;
+use super::course::Course;
 use super::drivetrain::{DifferentialSpec, Drivetrain};
 use super::{Lcd, SimOptions};
-use crate::geometry::{Point, Pose, direction};
+use crate::geometry::{Point, Pose, Vector, direction};
 use crate::io::{Error, Key, LidarSettings, Psd, RadioMessage, Result};
 use crate::random::Stream;
-use crate::world::space::{Contact, Outline, Scanner, Solid, SolidId, Span};
-use crate::world::{DriveSpec, Mount, RobotPlacement, RobotSpec};
+use crate::world::space::{Scanner, Solid, SolidId, Span};
+use crate::world::{DriveSpec, Footprint, RobotPlacement, RobotSpec};
 
 /// One robot in the engine: its mechanics, its devices and what is true about it.
 #[derive(Debug)]
 pub(super) struct Body {
     pub(super) spec: Arc<RobotSpec>,
     pub(super) solid: SolidId,
-    pub(super) pose: Pose,
+    /// Where it truly is.
+    pub(super) course: Course,
     pub(super) span: Span,
-    pub(super) outline: Outline,
+    pub(super) outline: Footprint,
+    /// The radius of the circle about its origin that just holds its outline.
+    pub(super) radius: f64,
+    /// How far its outline may move at once without jumping over anything.
+    pub(super) stride: f64,
     pub(super) drivetrain: Drivetrain,
     pub(super) autopilot: Autopilot,
-    pub(super) lidar: Option<LidarDevice>,
+    psds: Box<[PsdDevice]>,
     pub(super) psd_noise: Stream,
+    pub(super) lidar: Option<Box<LidarDevice>>,
     pub(super) mailbox: VecDeque<RadioMessage>,
     pub(super) keys: VecDeque<KeyPress>,
     /// Made when the program first draws: most robots of a fleet never do.
@@ -72,6 +79,9 @@ const MAX_CONTACT_PLACES: usize = 1000;
 /// Ticks for which a robot must be held to count as stalled: half a second.
 const STALL_TICKS: u32 = 50;
 
+/// The fastest robot, in metres per second.
+const MAX_TOP_SPEED: f64 = 100.0;
+
 impl Touch {
     pub(super) fn begin(&mut self, place: Point) {
         if !self.touching {
@@ -83,15 +93,33 @@ impl Touch {
         self.touching = true;
     }
 
+    /// Forgets what the robot touches: it is taken elsewhere.
+    pub(super) fn leave(&mut self) {
+        self.touching = false;
+        self.held_ticks = 0;
+    }
+
     pub(super) fn is_stalled(&self) -> bool {
         self.held_ticks >= STALL_TICKS
     }
 }
 
+/// A distance sensor of one ray, in the robot's frame.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PsdDevice {
+    id: u8,
+    pub(super) offset: Vector,
+    pub(super) direction: Vector,
+    /// Metres above the world's floor.
+    pub(super) height: f64,
+    pub(super) max_range: f64,
+}
+
 /// A lidar with the settings that the program has given it.
 #[derive(Debug)]
 pub(super) struct LidarDevice {
-    pub(super) mount: Mount,
+    /// Where it sits in the robot's frame.
+    pub(super) mount: Pose,
     /// Metres above the world's floor.
     height: f64,
     pub(super) max_range: f64,
@@ -123,6 +151,7 @@ impl Body {
     ) -> Result<Self> {
         let spec = &placement.spec;
         let drive = differential(spec)?;
+        check_top_speed(spec, &drive)?;
         let drivetrain = Drivetrain::new(
             &drive,
             spec.motor,
@@ -134,24 +163,34 @@ impl Body {
             let settings =
                 LidarSettings { field_of_view: lidar.field_of_view, tilt: lidar.tilt, points: lidar.points };
             let height = placement.elevation + lidar.mount.z;
-            LidarDevice {
-                mount: lidar.mount,
+            Box::new(LidarDevice {
+                mount: Pose::new(lidar.mount.x, lidar.mount.y, lidar.mount.yaw),
                 height,
                 max_range: lidar.max_range,
                 settings,
                 scanner: scanner(height, lidar.max_range, &settings),
                 noise: streams.child("lidar", 0),
-            }
+            })
+        });
+        let psds = spec.psds.iter().map(|psd| PsdDevice {
+            id: psd.id,
+            offset: Vector::new(psd.mount.x, psd.mount.y),
+            direction: direction(psd.mount.yaw),
+            height: placement.elevation + psd.mount.z,
+            max_range: psd.max_range,
         });
         Ok(Self {
             solid,
-            pose: placement.pose,
+            course: Course::new(placement.pose),
             span: span(placement),
-            outline: Outline::from(&spec.footprint),
+            outline: spec.footprint,
+            radius: spec.footprint.bounding_radius(),
+            stride: stride(&spec.footprint),
             drivetrain,
             autopilot: Autopilot::new(),
-            lidar,
+            psds: psds.collect(),
             psd_noise: streams.child("psd", 0),
+            lidar,
             mailbox: VecDeque::new(),
             keys: VecDeque::new(),
             lcd: None,
@@ -168,55 +207,38 @@ impl Body {
     /// The robot as others see it.
     pub(super) fn as_solid(placement: &RobotPlacement) -> Solid {
         let span = span(placement);
-        Solid {
-            outline: Outline::from(&placement.spec.footprint),
-            pose: placement.pose,
-            bottom: span.bottom,
-            top: span.top,
-        }
+        Solid { outline: placement.spec.footprint, pose: placement.pose, bottom: span.bottom, top: span.top }
     }
 
     pub(super) fn lcd(&mut self) -> &mut Lcd {
         self.lcd.get_or_insert_with(|| Box::new(Lcd::new()))
     }
 
-    /// Where a device on the robot is, and where it looks, in the world.
-    pub(super) fn device_pose(&self, mount: &Mount) -> Pose {
-        self.pose.compose(&Pose::new(mount.x, mount.y, mount.yaw))
+    /// Where it truly is.
+    pub(super) fn pose(&self) -> Pose {
+        self.course.pose()
     }
 
-    /// Metres above the world's floor of a device at height `z` on the robot.
-    pub(super) fn device_height(&self, z: f64) -> f64 {
-        self.span.bottom + z
+    pub(super) fn psd(&self, psd: Psd) -> Result<&PsdDevice> {
+        self.psds.iter().find(|device| device.id == psd.0).ok_or_else(|| Error::unsupported(psd))
     }
 
-    /// The mount and the largest range of a PSD.
-    pub(super) fn psd(&self, psd: Psd) -> Result<(Mount, f64)> {
-        let device = self.spec.psds.iter().find(|device| device.id == psd.0);
-        device.map(|device| (device.mount, device.max_range)).ok_or_else(|| Error::unsupported(psd))
-    }
-
-    /// Notes how the motion of a tick turned out.
+    /// Notes how far the outline moved instead of as far as the wheels wished.
     pub(super) fn note_motion(&mut self, wished: f64, moved: f64) {
-        self.path_length += moved;
         let held = self.touch.touching && moved < 0.2 * wished && self.autopilot.is_driving();
-        self.touch.held_ticks = if held { self.touch.held_ticks + 1 } else { 0 };
+        self.touch.held_ticks = if held { self.touch.held_ticks.saturating_add(1) } else { 0 };
     }
 
-    /// An encoder's count.
+    /// An encoder's count since the last reset.
     pub(super) fn encoder(&self, motor: u8) -> Result<i64> {
         let wheel = wheel_index(motor, "encoder")?;
-        Ok(self.encoder_count(wheel) - self.encoder_offsets[wheel])
+        Ok(self.drivetrain.count(wheel) - self.encoder_offsets[wheel])
     }
 
     pub(super) fn reset_encoder(&mut self, motor: u8) -> Result<()> {
         let wheel = wheel_index(motor, "encoder")?;
-        self.encoder_offsets[wheel] = self.encoder_count(wheel);
+        self.encoder_offsets[wheel] = self.drivetrain.count(wheel);
         Ok(())
-    }
-
-    fn encoder_count(&self, wheel: usize) -> i64 {
-        (self.drivetrain.measured()[wheel] / self.drivetrain.tick_length()).round() as i64
     }
 
     /// Adds a key press, in order of time; of two at one time, the one scheduled first comes first.
@@ -227,7 +249,8 @@ impl Body {
 
     /// The oldest key press that is due.
     pub(super) fn take_key(&mut self, now: f64) -> Option<Key> {
-        self.keys.pop_front_if(|press| press.time <= now).map(|press| press.key)
+        let due = self.keys.front().is_some_and(|press| press.time <= now);
+        if due { self.keys.pop_front().map(|press| press.key) } else { None }
     }
 }
 
@@ -253,24 +276,25 @@ fn differential(spec: &RobotSpec) -> Result<DifferentialSpec> {
     }
 }
 
+/// Faster robots would cross walls and worlds within a tick.
+fn check_top_speed(spec: &RobotSpec, drive: &DifferentialSpec) -> Result<()> {
+    let speed = 0.5 * drive.wheel_diameter * drive.max_wheel_speed;
+    if speed <= MAX_TOP_SPEED {
+        return Ok(());
+    }
+    let name = format!("robot {}: top speed", spec.name);
+    Err(Error::invalid_input(&name, format!("{speed} m/s"), &format!("at most {MAX_TOP_SPEED} m/s")))
+}
+
 fn span(placement: &RobotPlacement) -> Span {
     Span { bottom: placement.elevation, top: placement.elevation + placement.spec.height }
 }
 
-/// The sum of the pushes that free an outline from its contacts: the deepest push along each direction.
-pub(super) fn push_out(contacts: &[Contact]) -> crate::geometry::Vector {
-    let mut push = crate::geometry::Vector::zeros();
-    for contact in contacts {
-        // What earlier pushes already achieve along this normal need not be pushed again.
-        let missing = contact.depth - push.dot(&contact.normal);
-        if missing > 0.0 {
-            push += contact.normal * missing;
-        }
-    }
-    push
-}
-
-/// The beam directions of a device are relative to its yaw.
-pub(super) fn ray(pose: &Pose) -> (Point, crate::geometry::Vector) {
-    (pose.position(), direction(pose.heading))
+/// A quarter of the outline's least width: within it, the way out of a wall is the way it came.
+fn stride(footprint: &Footprint) -> f64 {
+    let width = match footprint {
+        Footprint::Disc { radius } => 2.0 * radius,
+        Footprint::Rectangle(rectangle) => rectangle.size().min(),
+    };
+    (0.25 * width).max(1e-4)
 }

@@ -1,7 +1,8 @@
+use super::course::Course;
 use super::{NoiseModel, TICK};
 use crate::geometry::{Pose, Twist, math};
 use crate::io::Result;
-use crate::kinematics::{Differential, Displacement, WheelSpeeds, advance};
+use crate::kinematics::{Differential, Displacement, WheelSpeeds};
 use crate::random::Stream;
 use crate::world::MotorSpec;
 
@@ -16,12 +17,16 @@ pub(super) struct Drivetrain {
     motor: MotorSpec,
     /// The part of a speed difference that the lag leaves after one tick.
     decay: f64,
+    /// Metres of roll in an encoder tick, and its inverse.
     tick_length: f64,
+    ticks_per_metre: f64,
     ideal_encoders: bool,
     speeds: [f64; 2],
     roll: [f64; 2],
+    /// Encoder counts, and the roll that they stand for.
+    counts: [i64; 2],
     measured: [f64; 2],
-    odometry: Pose,
+    odometry: Course,
     errors: DriveErrors,
     stream: Stream,
 }
@@ -56,21 +61,24 @@ impl Drivetrain {
     ) -> Self {
         let scale = noise.wheel_scale * stream.normal();
         let mismatch = 0.5 * noise.wheel_mismatch * stream.normal();
-        let track = spec.track * (1.0 + noise.track * stream.normal());
+        let track = spec.track * positive(1.0 + noise.track * stream.normal());
         let lag = motor.time_constant;
+        let tick_length = std::f64::consts::PI * spec.wheel_diameter / spec.ticks_per_turn;
         Self {
             nominal: Differential { track: spec.track },
             limit: 0.5 * spec.wheel_diameter * spec.max_wheel_speed,
             motor,
             decay: if lag > 0.0 { math::exp(-TICK / lag) } else { 0.0 },
-            tick_length: std::f64::consts::PI * spec.wheel_diameter / spec.ticks_per_turn,
+            tick_length,
+            ticks_per_metre: 1.0 / tick_length,
             ideal_encoders,
             speeds: [0.0; 2],
             roll: [0.0; 2],
+            counts: [0; 2],
             measured: [0.0; 2],
-            odometry: Pose::default(),
+            odometry: Course::new(Pose::default()),
             errors: DriveErrors {
-                wheel: [1.0 + scale - mismatch, 1.0 + scale + mismatch],
+                wheel: [1.0 + scale - mismatch, 1.0 + scale + mismatch].map(positive),
                 actual: Differential { track },
                 slip: noise.slip,
                 command: noise.command,
@@ -125,15 +133,16 @@ impl Drivetrain {
     /// Advances odometry by what the encoders counted in this tick.
     fn measure(&mut self) {
         let before = self.measured;
-        self.measured = self.roll.map(|roll| self.quantised(roll));
+        for wheel in [0, 1] {
+            let roll = self.roll[wheel];
+            self.counts[wheel] = floor(roll * self.ticks_per_metre);
+            let counted = self.counts[wheel] as f64 * self.tick_length;
+            self.measured[wheel] = if self.ideal_encoders { roll } else { counted };
+        }
         let [left, right] = [self.measured[0] - before[0], self.measured[1] - before[1]];
         if left != 0.0 || right != 0.0 {
-            self.odometry = advance(self.odometry, self.nominal.displacement(left, right));
+            self.odometry.advance(self.nominal.displacement(left, right));
         }
-    }
-
-    fn quantised(&self, roll: f64) -> f64 {
-        if self.ideal_encoders { roll } else { (roll / self.tick_length).floor() * self.tick_length }
     }
 
     /// What a wheel that rolled so far moves over the ground.
@@ -179,8 +188,21 @@ impl Drivetrain {
         if self.ideal_encoders { 5e-5 } else { 0.5 * self.tick_length }
     }
 
-    pub(super) fn tick_length(&self) -> f64 {
-        self.tick_length
+    /// An encoder's count since the start.
+    pub(super) fn count(&self, wheel: usize) -> i64 {
+        self.counts[wheel]
+    }
+
+    /// The largest change of a wheel's rim speed, in m/s².
+    pub(super) fn max_acceleration(&self) -> f64 {
+        self.motor.max_acceleration
+    }
+
+    /// The shortest time that a motion along one arc takes at a speed, which the wheels may not reach.
+    pub(super) fn least_seconds(&self, motion: Displacement, speed: f64) -> f64 {
+        let farther = self.rolls_for(motion).into_iter().map(f64::abs).fold(0.0, f64::max);
+        let whole = if motion.length == 0.0 { motion.angle } else { motion.length };
+        (whole / speed).abs().max(farther / self.limit)
     }
 
     pub(super) fn twist(&self) -> Twist {
@@ -188,14 +210,25 @@ impl Drivetrain {
     }
 
     pub(super) fn odometry(&self) -> Pose {
-        self.odometry
+        self.odometry.pose()
     }
 
     pub(super) fn set_odometry(&mut self, pose: Pose) -> Result<()> {
         if !pose.is_finite() {
             return Err(crate::io::Error::invalid_input("pose", format!("{pose:?}"), "finite numbers"));
         }
-        self.odometry = pose;
+        self.odometry = Course::new(pose);
         Ok(())
     }
+}
+
+/// A factor that the strongest noise could make negative; a wheel or an axle stays one.
+fn positive(factor: f64) -> f64 {
+    factor.max(0.1)
+}
+
+/// The largest whole number up to `x`, without a call to the platform's library.
+fn floor(x: f64) -> i64 {
+    let whole = x as i64;
+    whole - i64::from(x < whole as f64)
 }

@@ -1,12 +1,16 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
+use super::body::Body;
 use super::engine::Engine;
+use super::engine::no_robot;
+use super::options::ticks_in;
+use super::robot::{check_duration, time_is_over};
 use super::truth::robot_truth;
-use super::{RobotTruth, SimOptions, TICK};
+use super::{RobotTruth, SimOptions};
 use crate::geometry::Pose;
 use crate::io::error::require_positive;
-use crate::io::{Error, ErrorKind, Result};
+use crate::io::{Error, ErrorKind, Key, Result};
 use crate::world::Scene;
 
 /// Any number of robots whose behaviours are stepped in one thread.
@@ -36,9 +40,11 @@ pub struct Fleet<'a> {
     members: Vec<Option<Member<'a>>>,
 }
 
+type Behaviour<'a> = dyn FnMut(&mut FleetRobot<'_>) -> Result<ControlFlow<()>> + 'a;
+
 /// A robot's behaviour and when it is due.
 struct Member<'a> {
-    behaviour: Box<dyn FnMut(&mut FleetRobot<'_>) -> Result<ControlFlow<()>> + 'a>,
+    behaviour: Box<Behaviour<'a>>,
     period: u64,
     due: u64,
 }
@@ -90,10 +96,8 @@ impl<'a> Fleet<'a> {
         require_positive("control period", period)?;
         let robots = self.members.len();
         let due = self.engine.tick;
-        let Some(member) = self.members.get_mut(robot) else {
-            return Err(Error::invalid_input("robot", robot, &format!("an index below {robots}")));
-        };
-        let period = ((period / TICK).round() as u64).max(1);
+        let member = self.members.get_mut(robot).ok_or_else(|| no_robot(robot, robots))?;
+        let period = ticks_in(period).max(1);
         *member = Some(Member { behaviour: Box::new(behaviour), period, due });
         Ok(())
     }
@@ -101,8 +105,8 @@ impl<'a> Fleet<'a> {
     /// Lets the world run, and steps each behaviour when it is due, for `seconds` or until all behaviours have
     /// ended. The first error of a behaviour ends the run; the robots stay as they are.
     pub fn run_for(&mut self, seconds: f64) -> Result<()> {
-        crate::io::error::require_finite("duration", seconds)?;
-        let end = self.engine.tick + (seconds.max(0.0) / TICK).round() as u64;
+        check_duration("duration", seconds)?;
+        let end = self.engine.tick + ticks_in(seconds.max(0.0));
         while self.engine.tick < end {
             self.step_behaviours()?;
             if self.members.iter().all(Option::is_none) {
@@ -120,13 +124,18 @@ impl<'a> Fleet<'a> {
             if member.due > tick {
                 continue;
             }
-            member.due = tick + member.period;
+            member.due = tick.saturating_add(member.period);
             let mut robot = FleetRobot { engine: &mut self.engine, index };
             if (member.behaviour)(&mut robot)?.is_break() {
                 *slot = None;
             }
         }
         Ok(())
+    }
+
+    /// Schedules a key press on a robot, in seconds since the start. One whose time has passed is due at once.
+    pub fn press_key(&mut self, robot: usize, time: f64, key: Key) -> Result<()> {
+        self.engine.press_key(robot, time, key)
     }
 
     /// Seconds since the start.
@@ -136,7 +145,7 @@ impl<'a> Fleet<'a> {
 
     /// A robot's true pose in the world.
     pub fn pose(&self, robot: usize) -> Option<Pose> {
-        self.engine.bodies.get(robot).map(|body| body.pose)
+        self.engine.bodies.get(robot).map(Body::pose)
     }
 
     /// All that is true about a robot.
@@ -147,11 +156,14 @@ impl<'a> Fleet<'a> {
 
 impl FleetRobot<'_> {
     pub(super) fn call<T>(&mut self, ask: impl FnOnce(&mut Engine, usize) -> Result<T>) -> Result<T> {
+        if self.engine.options.time_limit.is_some_and(|limit| self.engine.time() >= limit) {
+            return Err(time_is_over());
+        }
         ask(self.engine, self.index)
     }
 
     pub(super) fn time(&mut self) -> Result<f64> {
-        Ok(self.engine.time())
+        self.call(|engine, _| Ok(engine.time()))
     }
 
     #[allow(clippy::unused_self)] // The blocking robot's counterpart needs it.
@@ -163,7 +175,7 @@ impl FleetRobot<'_> {
         &mut self,
         mut ask: impl FnMut(&mut Engine, usize) -> Result<Option<T>>,
     ) -> Result<T> {
-        ask(self.engine, self.index)?.ok_or_else(cannot_wait)
+        self.call(&mut ask)?.ok_or_else(cannot_wait)
     }
 }
 

@@ -24,6 +24,8 @@
 
 mod autopilot;
 mod body;
+mod collision;
+mod course;
 mod drivetrain;
 mod engine;
 mod fleet;
@@ -47,3 +49,7 @@ pub use truth::{RobotTruth, Truth};
 
 /// Seconds in which the world advances at a time.
 pub const TICK: f64 = 0.010;
+const TICKS_PER_SECOND: f64 = 100.0;
+
+/// The longest time, in seconds, that one call may let pass: twelve days. Beyond it a program waits by mistake.
+const LONGEST: f64 = 1e6;

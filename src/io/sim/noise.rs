@@ -1,3 +1,5 @@
+use crate::io::{Error, Result};
+
 /// How far a simulated robot is from an ideal one, as standard deviations.
 ///
 /// `NoiseModel::real()` is noise factor 1 of every example and campaign; [`scaled`](NoiseModel::scaled) multiplies
@@ -52,5 +54,22 @@ impl NoiseModel {
             range: self.range * factor,
             command: self.command * factor,
         }
+    }
+
+    /// Fails with the name of the error that is out of range.
+    pub(super) fn validate(&self) -> Result<()> {
+        for (name, value, limit) in [
+            ("wheel scale error", self.wheel_scale, 1.0),
+            ("wheel mismatch", self.wheel_mismatch, 1.0),
+            ("track error", self.track, 1.0),
+            ("slip", self.slip, 1.0),
+            ("range error", self.range, 1000.0),
+            ("command error", self.command, 1.0),
+        ] {
+            if !(0.0..=limit).contains(&value) {
+                return Err(Error::invalid_input(name, value, &format!("0 to {limit}")));
+            }
+        }
+        Ok(())
     }
 }

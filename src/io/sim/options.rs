@@ -1,4 +1,4 @@
-use super::{NoiseModel, TICK};
+use super::{NoiseModel, TICK, TICKS_PER_SECOND};
 use crate::io::{Error, Result};
 
 /// How a simulation runs.
@@ -16,6 +16,11 @@ pub struct SimOptions {
     pub time_limit: Option<f64>,
     /// Seconds between the points of each robot's trail; none is kept without it.
     pub trail_interval: Option<f64>,
+}
+
+/// The whole number of ticks nearest to a time.
+pub(super) fn ticks_in(seconds: f64) -> u64 {
+    (seconds * TICKS_PER_SECOND).round() as u64
 }
 
 impl Default for SimOptions {
@@ -45,19 +50,10 @@ impl SimOptions {
 
     /// Fails with the name of the option that is out of range.
     pub(super) fn validate(&self) -> Result<()> {
-        let n = &self.noise;
-        for (name, value) in [
-            ("wheel scale error", n.wheel_scale),
-            ("wheel mismatch", n.wheel_mismatch),
-            ("track error", n.track),
-            ("slip", n.slip),
-            ("range error", n.range),
-            ("command error", n.command),
-            ("time limit", self.time_limit.unwrap_or(0.0)),
-        ] {
-            if !(value.is_finite() && value >= 0.0) {
-                return Err(Error::invalid_input(name, value, "a finite number of at least 0"));
-            }
+        self.noise.validate()?;
+        let limit = self.time_limit.unwrap_or(0.0);
+        if !(limit.is_finite() && limit >= 0.0) {
+            return Err(Error::invalid_input("time limit", limit, "a finite number of at least 0"));
         }
         let interval = self.trail_interval.unwrap_or(TICK);
         if !(interval.is_finite() && interval >= TICK) {

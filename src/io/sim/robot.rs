@@ -1,9 +1,8 @@
 use std::sync::Arc;
 
-use super::TICK;
 use super::engine::Engine;
 use super::shared::Shared;
-use crate::io::error::require_finite;
+use super::{LONGEST, TICK};
 use crate::io::{Error, ErrorKind, Result};
 
 /// A simulated robot for a blocking program: every capability of a full robot, in virtual time.
@@ -42,7 +41,7 @@ impl SimRobot {
         if self.clock >= self.time_limit {
             // The world still advances to the limit, so that what is true then can be looked at.
             drop(self.shared.reach(self.index, self.time_limit / TICK_NANOSECONDS)?);
-            return Err(Error::new(ErrorKind::TimedOut, "the time limit of the simulation is over"));
+            return Err(time_is_over());
         }
         let mut state = self.shared.reach(self.index, self.clock / TICK_NANOSECONDS)?;
         let answer = ask(&mut state.engine, self.index);
@@ -57,7 +56,7 @@ impl SimRobot {
     }
 
     pub(super) fn pause(&mut self, seconds: f64) -> Result<()> {
-        require_finite("waiting time", seconds)?;
+        check_duration("waiting time", seconds)?;
         self.clock = self.clock.saturating_add((seconds.max(0.0) * NANOSECONDS).round() as u64);
         self.call(|_, _| Ok(()))
     }
@@ -80,4 +79,16 @@ impl Drop for SimRobot {
     fn drop(&mut self) {
         self.shared.release(self.index, self.clock.min(self.time_limit) / TICK_NANOSECONDS);
     }
+}
+
+pub(super) fn time_is_over() -> Error {
+    Error::new(ErrorKind::TimedOut, "the time limit of the simulation is over")
+}
+
+/// Fails unless a program may let so many seconds pass at once.
+pub(super) fn check_duration(name: &str, seconds: f64) -> Result<()> {
+    if seconds.is_finite() && seconds <= LONGEST {
+        return Ok(());
+    }
+    Err(Error::invalid_input(name, seconds, &format!("a finite number of at most {LONGEST} s")))
 }

@@ -12,9 +12,11 @@ use crate::kinematics::Displacement;
 use crate::world::Colour;
 use image::RgbImage;
 
-/// Answers whether the running manoeuvre has ended.
+/// Answers when the running manoeuvre has ended or stalled.
+#[allow(clippy::unnecessary_wraps)] // Other questions that a poll asks may fail.
 fn arrival(engine: &mut Engine, index: usize) -> Result<Option<()>> {
-    Ok(engine.bodies[index].autopilot.is_done().then_some(()))
+    let body = &engine.bodies[index];
+    Ok((body.autopilot.is_done() || body.touch.is_stalled()).then_some(()))
 }
 
 /// Answers with the next key press, and fails when none can come.

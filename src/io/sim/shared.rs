@@ -1,7 +1,7 @@
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, ThreadId};
 
-use super::engine::Engine;
+use super::engine::{Engine, no_robot};
 use crate::io::{Error, ErrorKind, Result};
 
 /// An engine that several robots' programs share in lockstep.
@@ -76,10 +76,7 @@ impl Shared {
         let mut state = self.lock();
         let robots = state.agents.len();
         let tick = state.engine.tick;
-        let Some(agent) = state.agents.get_mut(index) else {
-            let expected = format!("an index below {robots}, the number of robots");
-            return Err(Error::invalid_input("robot", index, &expected));
-        };
+        let agent = state.agents.get_mut(index).ok_or_else(|| no_robot(index, robots))?;
         if agent.phase == Phase::Running {
             return Err(Error::new(
                 ErrorKind::InvalidInput,
@@ -93,13 +90,17 @@ impl Shared {
     /// Waits until the world stands at `tick`, and returns it.
     pub(super) fn reach(&self, index: usize, tick: u64) -> Result<MutexGuard<'_, State>> {
         let mut state = self.lock();
+        let alone = state.agents.len() == 1;
+        if !alone {
+            state.agents[index].thread = Some(thread::current().id());
+        }
         if state.engine.tick == tick {
             return Ok(state);
         }
         state.agents[index].tick = tick;
-        state.agents[index].thread = Some(thread::current().id());
+        let before = state.engine.tick;
         state.advance();
-        if state.agents.len() > 1 {
+        if !alone && state.engine.tick != before {
             self.advanced.notify_all();
         }
         while state.engine.tick < tick {

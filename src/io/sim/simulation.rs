@@ -3,14 +3,15 @@ use std::sync::Arc;
 use super::engine::Engine;
 use super::shared::Shared;
 use super::{SimOptions, SimRobot, Truth};
-use crate::io::{Error, Key, Result};
+use crate::io::{Key, Result};
 use crate::world::Scene;
 
 /// A simulated world whose robots are driven by ordinary blocking programs.
 ///
 /// One robot needs no thread. Of several, each gets a thread of its own; take all of them with
-/// [`robot`](Simulation::robot) before the first one drives, because the world waits for those that are taken. A
-/// robot that nobody takes stands still; one whose handle is dropped keeps its last command.
+/// [`robot`](Simulation::robot) before the first one drives, because the world waits for those that are taken, from
+/// the start. A robot that nobody takes stands still; one whose handle is dropped keeps its last command. A thread
+/// that drives two robots gets an error instead of waiting for itself, if it has used both.
 #[derive(Debug, Clone)]
 pub struct Simulation {
     shared: Arc<Shared>,
@@ -33,17 +34,8 @@ impl Simulation {
         Truth::new(Arc::clone(&self.shared))
     }
 
-    /// Schedules a key press on a robot, in seconds since the start.
+    /// Schedules a key press on a robot, in seconds since the start. One whose time has passed is due at once.
     pub fn press_key(&self, robot: usize, time: f64, key: Key) -> Result<()> {
-        let mut state = self.shared.lock();
-        let robots = state.engine.bodies.len();
-        let Some(body) = state.engine.bodies.get_mut(robot) else {
-            return Err(Error::invalid_input("robot", robot, &format!("an index below {robots}")));
-        };
-        if !time.is_finite() {
-            return Err(Error::invalid_input("time of the key press", time, "a finite number"));
-        }
-        body.schedule_key(time, key);
-        Ok(())
+        self.shared.lock().engine.press_key(robot, time, key)
     }
 }

@@ -41,9 +41,7 @@ impl Truth {
 
     /// A robot's pose in the world.
     pub fn pose(&self, robot: usize) -> Result<Pose> {
-        let state = self.shared.lock();
-        check(&state.engine, robot)?;
-        Ok(state.engine.bodies[robot].pose)
+        Ok(self.shared.lock().engine.body(robot)?.pose())
     }
 
     /// All that is true about a robot.
@@ -54,7 +52,7 @@ impl Truth {
     /// Puts a robot somewhere else, as a hand would. Its odometry does not notice.
     pub fn set_pose(&self, robot: usize, pose: Pose) -> Result<()> {
         let mut state = self.shared.lock();
-        check(&state.engine, robot)?;
+        state.engine.body(robot)?;
         if !pose.is_finite() {
             return Err(Error::invalid_input("pose", format!("{pose:?}"), "finite numbers"));
         }
@@ -63,20 +61,10 @@ impl Truth {
     }
 }
 
-fn check(engine: &Engine, robot: usize) -> Result<()> {
-    let robots = engine.bodies.len();
-    if robot < robots {
-        Ok(())
-    } else {
-        Err(Error::invalid_input("robot", robot, &format!("an index below {robots}, the number of robots")))
-    }
-}
-
 pub(super) fn robot_truth(engine: &Engine, robot: usize) -> Result<RobotTruth> {
-    check(engine, robot)?;
-    let body = &engine.bodies[robot];
+    let body = engine.body(robot)?;
     Ok(RobotTruth {
-        pose: body.pose,
+        pose: body.pose(),
         odometry: body.drivetrain.odometry(),
         contacts: body.touch.contacts,
         contact_places: body.touch.places.clone(),

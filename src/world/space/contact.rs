@@ -1,7 +1,8 @@
 use super::shape::{OrientedBox, Shape};
-use super::solid::{Outline, SolidId, Span};
+use super::solid::{SolidId, Span};
 use super::store::Space;
 use crate::geometry::{Aabb, Pose, Vector};
+use crate::world::Footprint;
 
 /// Where an outline touches something or reaches into it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +32,7 @@ impl Space {
     /// depth 0; standing on top of something does not. The solid `except` is overlooked.
     pub fn contacts(
         &self,
-        outline: &Outline,
+        outline: &Footprint,
         pose: &Pose,
         span: Span,
         except: Option<SolidId>,
@@ -45,7 +46,7 @@ impl Space {
     /// [`walls_clearance`](Self::walls_clearance) that no wall is near.
     pub fn contacts_with_solids(
         &self,
-        outline: &Outline,
+        outline: &Footprint,
         pose: &Pose,
         span: Span,
         except: Option<SolidId>,
@@ -59,7 +60,7 @@ impl Space {
     /// `limit`, and 0 in contact. The solid `except` is overlooked.
     pub fn clearance(
         &self,
-        outline: &Outline,
+        outline: &Footprint,
         pose: &Pose,
         span: Span,
         limit: f64,
@@ -71,7 +72,7 @@ impl Space {
 
     /// As [`clearance`](Self::clearance), to walls alone. Walls stay, so an outline that moves (and turns) by less
     /// than this touches none.
-    pub fn walls_clearance(&self, outline: &Outline, pose: &Pose, span: Span, limit: f64) -> f64 {
+    pub fn walls_clearance(&self, outline: &Footprint, pose: &Pose, span: Span, limit: f64) -> f64 {
         let query = Query { shape: outline.at(pose), span, walls: true, solids: false, except: None };
         self.find_clearance(&query, limit)
     }
@@ -79,7 +80,7 @@ impl Space {
     /// As [`clearance`](Self::clearance), to solids alone.
     pub fn solids_clearance(
         &self,
-        outline: &Outline,
+        outline: &Footprint,
         pose: &Pose,
         span: Span,
         limit: f64,

@@ -222,7 +222,8 @@ mod tests {
 
     use super::*;
     use crate::geometry::{Aabb, Vector, direction};
-    use crate::world::space::{Outline, Solid};
+    use crate::world::Footprint;
+    use crate::world::space::Solid;
     use crate::world::{Wall, World};
 
     fn scan(space: &Space, mut scanner: Scanner, pose: Pose) -> Vec<f64> {
@@ -283,8 +284,8 @@ mod tests {
         let mut space = Space::new(&World::walled(4.0, 2.0).walls);
         let pose = Pose::new(1.0, 0.5, 0.0);
         for outline in [
-            Outline::Disc { radius: 0.1 },
-            Outline::Rectangle(Aabb::new(Point::new(-0.1, -0.1), Point::new(0.1, 0.1))),
+            Footprint::Disc { radius: 0.1 },
+            Footprint::Rectangle(Aabb::new(Point::new(-0.1, -0.1), Point::new(0.1, 0.1))),
         ] {
             let id = space.add(Solid { outline, pose, bottom: 0.0, top: 0.15 });
             let mut scanner = Scanner::new(0.0, FRAC_PI_2, 4, 0.1, 0.0, 10.0);
@@ -334,7 +335,7 @@ mod tests {
             let mut space = Space::new(&walls);
             for &(x, y, radius, bottom) in &discs {
                 let pose = Pose::new(x, y, 0.0);
-                space.add(Solid { outline: Outline::Disc { radius }, pose, bottom, top: bottom + 0.1 });
+                space.add(Solid { outline: Footprint::Disc { radius }, pose, bottom, top: bottom + 0.1 });
             }
             let filled = |p: Point, h: f64| {
                 let in_wall = |w: &Wall| {

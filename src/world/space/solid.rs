@@ -1,12 +1,12 @@
 use super::shape::{OrientedBox, Shape};
-use crate::geometry::{Aabb, Pose};
+use crate::geometry::Pose;
 use crate::world::Footprint;
 
 /// What stands upright: an outline on the floor between two heights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solid {
     /// Its outline, in its own frame.
-    pub outline: Outline,
+    pub outline: Footprint,
     /// Where its frame is in the world.
     pub pose: Pose,
     /// Metres from the floor to its foot.
@@ -22,35 +22,13 @@ impl Solid {
     }
 }
 
-/// An outline on the floor, in its own frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Outline {
-    /// A disc about the origin.
-    Disc {
-        /// Metres.
-        radius: f64,
-    },
-    /// A rectangle along the frame's axes.
-    Rectangle(Aabb),
-}
-
-impl Outline {
+impl Footprint {
     /// The outline where `pose` puts it.
     #[inline]
     pub(super) fn at(&self, pose: &Pose) -> Shape {
         match self {
-            Outline::Disc { radius } => Shape::Disc { centre: pose.position(), radius: *radius },
-            Outline::Rectangle(rectangle) => Shape::Box(OrientedBox::placed(rectangle, pose)),
-        }
-    }
-}
-
-impl From<&Footprint> for Outline {
-    fn from(footprint: &Footprint) -> Self {
-        match footprint {
-            Footprint::Disc { radius } => Outline::Disc { radius: *radius },
-            Footprint::Rectangle(rectangle) => Outline::Rectangle(*rectangle),
+            Footprint::Disc { radius } => Shape::Disc { centre: pose.position(), radius: *radius },
+            Footprint::Rectangle(rectangle) => Shape::Box(OrientedBox::placed(rectangle, pose)),
         }
     }
 }

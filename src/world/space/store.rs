@@ -130,10 +130,11 @@ impl Space {
 mod tests {
     use super::*;
     use crate::geometry::{Point, Vector};
+    use crate::world::Footprint;
     use crate::world::World;
-    use crate::world::space::{Outline, Scanner};
+    use crate::world::space::Scanner;
 
-    const DISC: Outline = Outline::Disc { radius: 0.1 };
+    const DISC: Footprint = Footprint::Disc { radius: 0.1 };
 
     fn disc(x: f64, y: f64) -> Solid {
         Solid { outline: DISC, pose: Pose::new(x, y, 0.0), bottom: 0.0, top: 0.2 }

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::geometry::{Aabb, Point, Pose, Segment, Vector, cross, direction};
-use crate::world::Wall;
+use crate::world::{Footprint, Wall};
 
 const Z: f64 = 0.1;
 const LOW: Span = Span { bottom: 0.0, top: 0.1 };
@@ -30,12 +30,12 @@ fn pose() -> impl Strategy<Value = Pose> + Clone {
     (-6.0..6.0f64, -6.0..6.0f64, -PI..PI).prop_map(|(x, y, heading)| Pose::new(x, y, heading))
 }
 
-fn outline() -> impl Strategy<Value = Outline> + Clone {
+fn outline() -> impl Strategy<Value = Footprint> + Clone {
     let rectangle =
         (-0.5..0.5f64, -0.5..0.5f64, 0.0..1.0f64, 0.0..1.0f64).prop_map(|(x, y, length, width)| {
-            Outline::Rectangle(Aabb::new(Point::new(x, y), Point::new(x + length, y + width)))
+            Footprint::Rectangle(Aabb::new(Point::new(x, y), Point::new(x + length, y + width)))
         });
-    prop_oneof![(0.01..0.5f64).prop_map(|radius| Outline::Disc { radius }), rectangle]
+    prop_oneof![(0.01..0.5f64).prop_map(|radius| Footprint::Disc { radius }), rectangle]
 }
 
 fn solids() -> impl Strategy<Value = Vec<Solid>> {
@@ -70,12 +70,12 @@ fn parry_shapes(walls: &[Wall], solids: &[Solid], z: f64) -> Vec<(ParryPose, Box
     walls.chain(solids).collect()
 }
 
-fn parry_shape(outline: &Outline, pose: &Pose) -> (ParryPose, Box<dyn ParryShape>) {
+fn parry_shape(outline: &Footprint, pose: &Pose) -> (ParryPose, Box<dyn ParryShape>) {
     match outline {
-        Outline::Disc { radius } => {
+        Footprint::Disc { radius } => {
             (ParryPose::new(ParryVector::new(pose.x, pose.y), 0.0), Box::new(Ball::new(*radius)))
         }
-        Outline::Rectangle(r) => {
+        Footprint::Rectangle(r) => {
             let middle = pose.to_world(r.min + r.size() * 0.5);
             let half = r.size() * 0.5;
             let half = ParryVector::new(half.x, half.y);
@@ -102,7 +102,7 @@ fn brute_force(walls: &[Wall], solids: &[Solid], eye: Point, d: Vector, z: f64) 
         rectangle(wall.line.a + along * 0.5, unit, Vector::new(0.5 * length, 0.5 * wall.thickness))
     });
     let solids = solids.iter().filter(|s| s.bottom <= z && z <= s.top).map(|s| match s.outline {
-        Outline::Disc { radius } => {
+        Footprint::Disc { radius } => {
             let g = s.pose.position() - eye;
             let root = radius * radius - cross(d, g) * cross(d, g);
             let near = d.dot(&g) - root.sqrt();
@@ -115,7 +115,7 @@ fn brute_force(walls: &[Wall], solids: &[Solid], eye: Point, d: Vector, z: f64) 
                 f64::INFINITY
             }
         }
-        Outline::Rectangle(r) => {
+        Footprint::Rectangle(r) => {
             rectangle(s.pose.to_world(r.min + r.size() * 0.5), s.pose.forward(), r.size() * 0.5)
         }
     });
@@ -276,7 +276,7 @@ fn crowd(walls: &[Wall], robots: usize) -> Space {
         let radius = stream.between(0.01, 0.08);
         let rectangle = Aabb::new(Point::new(-radius, -radius), Point::new(2.0 * radius, radius));
         let outline =
-            if stream.chance(0.5) { Outline::Disc { radius } } else { Outline::Rectangle(rectangle) };
+            if stream.chance(0.5) { Footprint::Disc { radius } } else { Footprint::Rectangle(rectangle) };
         space.add(Solid { outline, pose, bottom: 0.0, top: 0.2 });
     }
     space

@@ -1,0 +1,195 @@
+//! Robots that drive: how much faster than real time a world runs.
+
+use std::f64::consts::PI;
+use std::hint::black_box;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Instant;
+
+use criterion::{BenchmarkId, Criterion, Throughput};
+use roverlab::geometry::{Pose, Twist};
+use roverlab::io::sim::{Fleet, FleetRobot, NoiseModel, SimOptions, SimRobot, Simulation, Truth};
+use roverlab::io::{Clock, DistanceSensors, Drive, Lidar, LidarScan, LidarSettings, Psd, Result};
+use roverlab::world::space::{Solid, Space, Span};
+use roverlab::world::{
+    Colour, Footprint, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Shape, World,
+};
+use roverlab_bench::{building, free_poses, thicket};
+
+/// Seconds between a robot's decisions.
+const PERIOD: f64 = 0.1;
+
+/// A robot that looks around with its lidar ten times a second.
+struct Looker {
+    robot: SimRobot,
+    truth: Truth,
+    scan: LidarScan,
+}
+
+impl Looker {
+    fn new(world: World, noise: f64) -> Self {
+        let pose = free_poses(&world, 1, 0.3, 5)[0];
+        let scene = Scene::with_robot(world, RobotSpec::s4(), pose);
+        let simulation = Simulation::new(&scene, SimOptions::with_noise(noise, 1)).expect("a good scene");
+        let mut robot = simulation.robot(0).expect("the only robot");
+        let settings = LidarSettings { field_of_view: PI, tilt: 0.0, points: 180 };
+        robot.configure_lidar(settings).expect("an S4 has a lidar");
+        Self { robot, truth: simulation.truth(), scan: LidarScan::default() }
+    }
+
+    /// One second: ten scans, ten commands, a hundred ticks.
+    fn drive_a_second(&mut self) -> Result<()> {
+        for _ in 0..10 {
+            self.robot.scan_into(&mut self.scan)?;
+            let ranges = &self.scan.ranges;
+            let nearest = |beams: &[f64]| beams.iter().copied().fold(1.0, f64::min);
+            let (right, ahead, left) =
+                (nearest(&ranges[..70]), nearest(&ranges[70..110]), nearest(&ranges[110..]));
+            self.robot.set_speed(avoid(ahead, left, right))?;
+            self.robot.wait(PERIOD - 3e-4)?;
+        }
+        Ok(())
+    }
+}
+
+/// Ahead where there is room, and away from the nearer side.
+fn avoid(ahead: f64, left: f64, right: f64) -> Twist {
+    let room = (ahead - 0.15).clamp(0.0, 0.3);
+    let turn = if room < 0.1 { 2.0 } else { (left.min(0.5) - right.min(0.5)).clamp(-1.0, 1.0) };
+    Twist::new(room, turn)
+}
+
+/// Four walls and twenty discs.
+fn discs() -> World {
+    let mut world = World::walled(4.0, 4.0);
+    let kind = ObjectKind::new("drum", Shape::Cylinder { radius: 0.1, height: 0.2 }, Colour::RED);
+    let kind = Arc::new(kind);
+    world.objects =
+        free_poses(&world, 20, 0.3, 4).into_iter().map(|p| Object::new(Arc::clone(&kind), p)).collect();
+    world
+}
+
+/// Seconds that pass in the world for one of ours, by the fastest of many slices: what else the machine does counts as
+/// little as can be.
+#[allow(clippy::disallowed_methods)] // A benchmark is about real time.
+fn real_time_factor(slices: usize, seconds: f64, mut run: impl FnMut()) -> f64 {
+    let times = (0..slices).map(|_| {
+        let start = Instant::now();
+        run();
+        start.elapsed().as_secs_f64()
+    });
+    seconds / times.fold(f64::INFINITY, f64::min)
+}
+
+/// Checks that the robot gets about and hurts nobody, and that the same seed gives the same run.
+fn check_looker(world: &World, noise: f64) -> f64 {
+    let end = || {
+        let mut looker = Looker::new(world.clone(), noise);
+        (0..60).for_each(|_| looker.drive_a_second().expect("nothing fails"));
+        looker.truth.robot(0).expect("the only robot")
+    };
+    let told = end();
+    assert!(told.path_length > 3.0, "it drove {} m in a minute", told.path_length);
+    assert!(told.contacts == 0 || noise > 0.0, "{} contacts", told.contacts);
+    assert_eq!(told, end(), "the same seed");
+    let mut looker = Looker::new(world.clone(), noise);
+    real_time_factor(200, 5.0, || (0..5).for_each(|_| looker.drive_a_second().expect("nothing fails")))
+}
+
+/// One robot with a lidar of 180 beams: a second of its life.
+pub(crate) fn one_robot(c: &mut Criterion) {
+    let mut group = c.benchmark_group("a second of a robot with a lidar");
+    for (name, world) in [("20 discs, 4 walls", discs()), ("600 walls", building(1))] {
+        for noise in [0.0, 1.0] {
+            let factor = check_looker(&world, noise);
+            println!("one robot, {name}, noise {noise}: {factor:.0} times real time");
+            let mut looker = Looker::new(world.clone(), noise);
+            group.bench_function(BenchmarkId::new(name, format!("noise {noise}")), |b| {
+                b.iter(|| looker.drive_a_second().expect("nothing fails"));
+            });
+        }
+    }
+    group.finish();
+}
+
+/// So many S4s in a world, that read three PSDs and avoid what they see, ten times a second.
+fn avoiders(world: &World, robots: usize) -> Fleet<'static> {
+    let spec = Arc::new(RobotSpec::s4());
+    let placed = apart(free_poses(world, 3 * robots, 0.1, 6), robots);
+    let robots = placed.into_iter().map(|pose| RobotPlacement::new(Arc::clone(&spec), pose));
+    let scene = Scene { robots: robots.collect(), ..Scene::new(world.clone()) };
+    let options = SimOptions { noise: NoiseModel::real(), ..SimOptions::default() };
+    let mut fleet = Fleet::new(&scene, options).expect("a good scene");
+    for robot in 0..fleet.len() {
+        fleet
+            .control(robot, PERIOD, |robot: &mut FleetRobot<'_>| {
+                let ahead = robot.distance(Psd::FRONT)?;
+                let (left, right) = (robot.distance(Psd::LEFT)?, robot.distance(Psd::RIGHT)?);
+                robot.set_speed(avoid(ahead, left, right))?;
+                Ok(ControlFlow::Continue(()))
+            })
+            .expect("a robot and a period");
+    }
+    fleet
+}
+
+/// The first so many poses at which no two robots overlap.
+fn apart(poses: Vec<Pose>, robots: usize) -> Vec<Pose> {
+    let (outline, span) = (Footprint::Disc { radius: 0.06 }, Span { bottom: 0.0, top: 0.09 });
+    let mut space = Space::new(&[]);
+    let mut kept = Vec::with_capacity(robots);
+    for pose in poses {
+        if kept.len() < robots && space.clearance(&outline, &pose, span, 0.02, None) > 0.01 {
+            space.add(Solid { outline, pose, bottom: span.bottom, top: span.top });
+            kept.push(pose);
+        }
+    }
+    assert_eq!(kept.len(), robots, "the floor is too small");
+    kept
+}
+
+fn run(fleet: &mut Fleet<'_>, seconds: f64) {
+    fleet.run_for(black_box(seconds)).expect("nothing fails");
+}
+
+/// Checks that most robots get about, and that two runs are the same.
+fn check_fleet(world: &World, robots: usize) {
+    let ends = || {
+        let mut fleet = avoiders(world, robots);
+        run(&mut fleet, 5.0);
+        (0..robots).map(|robot| fleet.truth(robot).expect("a robot")).collect::<Vec<_>>()
+    };
+    let told = ends();
+    let movers = told.iter().filter(|robot| robot.path_length > 0.3).count();
+    assert!(movers * 10 > robots * 8, "{movers} of {robots} move");
+    assert!(told == ends(), "the same seed");
+}
+
+/// A thousand robots at once: a second of their lives.
+pub(crate) fn fleet(c: &mut Criterion) {
+    let world = thicket(2000, 1);
+    check_fleet(&world, 1000);
+    let mut fleet = avoiders(&world, 1000);
+    run(&mut fleet, 2.0);
+    let factor = real_time_factor(200, PERIOD, || run(&mut fleet, PERIOD));
+    println!("1000 robots with three PSDs, {} walls: {factor:.0} times real time", world.walls.len());
+    let mut group = c.benchmark_group("a second of a fleet");
+    group.sample_size(20);
+    group.throughput(Throughput::Elements(1000));
+    group.bench_function("1000 robots, 2000 walls", |b| b.iter(|| run(&mut fleet, 1.0)));
+    group.finish();
+}
+
+/// How the time grows with robots and walls, at one density of both.
+pub(crate) fn growth(_: &mut Criterion) {
+    println!("robots  walls   times real time   ns of a robot's tick");
+    let rows = [(100, 100), (100, 1000), (100, 10_000), (1000, 1000), (1000, 10_000), (10_000, 10_000)];
+    for (robots, walls) in rows {
+        let world = thicket(walls, 2);
+        let mut fleet = avoiders(&world, robots);
+        run(&mut fleet, 1.0);
+        let factor = real_time_factor(100, PERIOD, || run(&mut fleet, PERIOD));
+        let tick = 1e9 / (factor * 100.0 * robots as f64);
+        println!("{robots:>6} {walls:>6} {factor:>17.0} {tick:>22.0}");
+    }
+}

@@ -1,0 +1,210 @@
+//! How robots move among walls, objects and each other.
+//!
+//! Bodies are rigid and nothing gives way: a robot is pushed out of what its wheels drove it into, which makes it slide
+//! along a slanted wall and stand before a straight one. Robots move one after the other within a tick.
+
+use super::body::Body;
+use super::course::Course;
+use super::engine::Engine;
+use crate::geometry::{Pose, Vector};
+use crate::kinematics::Displacement;
+use crate::world::Footprint;
+use crate::world::space::Contact;
+
+/// How far a look for obstacles reaches, in metres: a longer one costs more and comes less often.
+const LOOK_AHEAD: f64 = 0.25;
+/// A robot that touched something and is still this near to it touches it still.
+const TOUCH_MARGIN: f64 = 5e-4;
+/// Attempts to push a robot out of what it ran into before it stays where it was.
+const PUSH_ATTEMPTS: usize = 4;
+/// The largest depth, in metres, that counts as pushed out.
+const PUSH_TOLERANCE: f64 = 1e-6;
+/// What a push may add to a robot's own motion in a tick.
+const SLACK: f64 = 2.0 * PUSH_TOLERANCE;
+
+impl Engine {
+    /// Moves all robots by their motions of this tick.
+    pub(super) fn move_bodies(&mut self, motions: &[Displacement]) {
+        // No robot moves farther than this in this tick.
+        let reaches = self.bodies.iter().zip(motions).map(|(body, &motion)| reach(body, motion));
+        let farthest = reaches.fold(0.0, f64::max) + SLACK;
+        for (index, &motion) in motions.iter().enumerate() {
+            let body = &mut self.bodies[index];
+            body.solid_budget -= farthest;
+            if motion == Displacement::default() {
+                self.stand(index);
+                continue;
+            }
+            let reach = reach(body, motion);
+            body.wall_budget -= reach;
+            body.solid_budget -= reach;
+            if body.wall_budget > 0.0 && body.solid_budget > 0.0 {
+                body.course.advance(motion);
+                body.path_length += motion.length.abs();
+                body.touch.held_ticks = 0;
+            } else {
+                self.move_among_things(index, motion, reach);
+            }
+            let body = &self.bodies[index];
+            self.space.set_pose(body.solid, body.pose());
+        }
+    }
+
+    /// A robot without motion may have been touched, and its toucher gone away again.
+    fn stand(&mut self, index: usize) {
+        let body = &mut self.bodies[index];
+        body.touch.held_ticks = 0;
+        if body.touch.touching {
+            let limit = 2.0 * TOUCH_MARGIN;
+            let (outline, me) = (&body.outline, Some(body.solid));
+            let clearance = self.space.clearance(outline, &body.pose(), body.span, limit, me);
+            body.touch.touching = clearance <= TOUCH_MARGIN;
+        }
+    }
+
+    /// Moves a robot that has something near it, in strides that cannot jump over anything.
+    fn move_among_things(&mut self, index: usize, motion: Displacement, reach: f64) {
+        let body = &self.bodies[index];
+        let start = body.pose();
+        let strides = (reach / body.stride).ceil().max(1.0);
+        let part = Displacement { length: motion.length / strides, angle: motion.angle / strides };
+        for _ in 0..strides as u32 {
+            self.stride(index, part, reach / strides);
+        }
+        let body = &mut self.bodies[index];
+        let end = body.pose();
+        let moved = (end.position() - start.position()).norm();
+        body.path_length += moved;
+        let turned = crate::geometry::angle_difference(end.heading, start.heading).abs();
+        body.note_motion(reach, moved + spin_radius(body) * turned);
+    }
+
+    fn stride(&mut self, index: usize, motion: Displacement, reach: f64) {
+        let body = &mut self.bodies[index];
+        let before = body.course;
+        body.course.advance(motion);
+        let wished = body.course;
+        let (outline, span, me) = (body.outline, body.span, Some(body.solid));
+        body.wall_budget = self.space.walls_clearance(&outline, &wished.pose(), span, LOOK_AHEAD);
+        body.solid_budget = self.space.solids_clearance(&outline, &wished.pose(), span, LOOK_AHEAD, me);
+        let nearest = body.wall_budget.min(body.solid_budget);
+        if nearest > TOUCH_MARGIN {
+            body.touch.touching = false;
+        } else if nearest <= 0.0 {
+            self.free(index, before, wished, reach);
+        }
+    }
+
+    /// Frees a robot from what its wish ran into. Usually it ends within `reach` of where it was.
+    fn free(&mut self, index: usize, before: Course, wished: Course, reach: f64) {
+        let pushed = self.pushed_out(index, wished);
+        let way = |course: &Course| (course.pose().position() - before.pose().position()).norm();
+        let within_reach = pushed.as_ref().is_some_and(|course| way(course) <= reach + SLACK);
+        let end = match pushed {
+            Some(course) if within_reach => course,
+            // One that was put into something gets out of it at once.
+            Some(course) if self.depth_at(index, &before.pose()) > SLACK => {
+                self.look_around_again();
+                course
+            }
+            _ => stay(&self.bodies[index].spec.footprint, before, wished),
+        };
+        let body = &mut self.bodies[index];
+        body.course = end;
+        // The looks were taken from the wished pose.
+        let aside = (end.pose().position() - wished.pose().position()).norm() + reach;
+        body.wall_budget -= aside;
+        body.solid_budget -= aside;
+    }
+
+    /// Where a robot comes to be when it is pushed out of all that it ran into; `None` if that does not free it.
+    fn pushed_out(&mut self, index: usize, mut course: Course) -> Option<Course> {
+        for _ in 0..PUSH_ATTEMPTS {
+            if self.depth_at(index, &course.pose()) <= PUSH_TOLERANCE {
+                return Some(course);
+            }
+            self.note_touch(index, &course.pose());
+            course.move_to(course.pose().position() + push_out(&self.contacts));
+        }
+        None
+    }
+
+    /// How deep a robot at a pose would be in something. Leaves the contacts in `self.contacts`.
+    fn depth_at(&mut self, index: usize, pose: &Pose) -> f64 {
+        let body = &self.bodies[index];
+        self.space.contacts(&body.outline, pose, body.span, Some(body.solid), &mut self.contacts);
+        self.contacts.iter().map(|contact| contact.depth).fold(0.0, f64::max)
+    }
+
+    /// Counts the present contacts for a robot at a pose and for the robots that it touches.
+    fn note_touch(&mut self, index: usize, pose: &Pose) {
+        let normal = self.contacts.first().map_or_else(Vector::zeros, |contact| contact.normal);
+        let body = &mut self.bodies[index];
+        let place = pose.position() - normal * body.spec.footprint.bounding_radius();
+        body.touch.begin(place);
+        // Objects were added to the space first, then the robots.
+        let objects = self.space.solids() - self.bodies.len();
+        for contact in &self.contacts {
+            let other = contact.with.and_then(|solid| solid.index().checked_sub(objects));
+            if let Some(other) = other {
+                self.bodies[other].touch.begin(place);
+                self.bodies[other].solid_budget = 0.0;
+            }
+        }
+    }
+
+    /// Puts a robot somewhere else.
+    pub(super) fn place(&mut self, index: usize, pose: Pose) {
+        let body = &mut self.bodies[index];
+        body.course = Course::new(pose);
+        body.wall_budget = 0.0;
+        body.touch.leave();
+        self.space.set_pose(body.solid, pose);
+        self.look_around_again();
+    }
+
+    /// Lets every robot look for solids before it moves: one of them has come from afar.
+    fn look_around_again(&mut self) {
+        for body in &mut self.bodies {
+            body.solid_budget = 0.0;
+        }
+    }
+}
+
+/// No point of the robot's outline moves farther than this.
+fn reach(body: &Body, motion: Displacement) -> f64 {
+    motion.length.abs() + spin_radius(body) * motion.angle.abs()
+}
+
+/// The radius within which turning on the spot moves the robot's outline.
+fn spin_radius(body: &Body) -> f64 {
+    match body.spec.footprint {
+        Footprint::Disc { .. } => 0.0,
+        Footprint::Rectangle(_) => body.radius,
+    }
+}
+
+/// Where a robot stays that cannot be freed: a disc still turns on its spot.
+fn stay(footprint: &Footprint, before: Course, wished: Course) -> Course {
+    match footprint {
+        Footprint::Disc { .. } => {
+            let mut turned = wished;
+            turned.move_to(before.pose().position());
+            turned
+        }
+        Footprint::Rectangle(_) => before,
+    }
+}
+
+/// The sum of the pushes that free an outline from its contacts: the deepest push along each direction.
+fn push_out(contacts: &[Contact]) -> Vector {
+    let mut push = Vector::zeros();
+    for contact in contacts {
+        // What earlier pushes already achieve along this normal need not be pushed again.
+        let missing = contact.depth - push.dot(&contact.normal);
+        if missing > 0.0 {
+            push += contact.normal * missing;
+        }
+    }
+    push
+}

@@ -1,0 +1,17 @@
+//! The simulator as a whole: motion, collisions, noise, time, radio and lockstep, through the public interface alone.
+
+#[path = "simulator/common.rs"]
+mod common;
+
+#[path = "simulator/collisions.rs"]
+mod collisions;
+#[path = "simulator/limits.rs"]
+mod limits;
+#[path = "simulator/lockstep.rs"]
+mod lockstep;
+#[path = "simulator/motion.rs"]
+mod motion;
+#[path = "simulator/noise.rs"]
+mod noise;
+#[path = "simulator/threads.rs"]
+mod threads;
