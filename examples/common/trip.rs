@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use roverlab::geometry::{Aabb, Point, Pose, units};
 use roverlab::world::formats::{self, FormatError, Parsed};
-use roverlab::world::space::{Outline, Solid, Space, Span};
+use roverlab::world::space::{Solid, Space, Span};
 use roverlab::world::{Object, RobotPlacement, RobotSpec, Scene, Shape};
 
 use super::{CommonArgs, Failure};
@@ -170,29 +170,12 @@ fn clearance(scene: &Scene) -> f64 {
     const NEAR: f64 = 0.1;
     let mut space = Space::new(&scene.world.walls);
     for object in &scene.world.objects {
-        space.add(object_solid(object));
+        space.add(Solid::from(object));
     }
     for other in &scene.robots[1..] {
-        space.add(robot_solid(other));
+        space.add(Solid::from(other));
     }
-    let solid = robot_solid(&scene.robots[0]);
+    let solid = Solid::from(&scene.robots[0]);
     let span = Span { bottom: solid.bottom, top: solid.top };
     space.clearance(&solid.outline, &solid.pose, span, NEAR, None)
-}
-
-fn robot_solid(robot: &RobotPlacement) -> Solid {
-    let outline = Outline::from(&robot.spec.footprint);
-    Solid { outline, pose: robot.pose, bottom: robot.elevation, top: robot.elevation + robot.spec.height }
-}
-
-fn object_solid(object: &Object) -> Solid {
-    let outline = match object.kind.shape {
-        Shape::Box { length, width, .. } => {
-            let corner = Point::new(0.5 * length, 0.5 * width);
-            Outline::Rectangle(Aabb::new(-corner, corner))
-        }
-        shape => Outline::Disc { radius: shape.bounding_radius() },
-    };
-    let bottom = object.elevation;
-    Solid { outline, pose: object.pose, bottom, top: bottom + object.kind.shape.height() }
 }

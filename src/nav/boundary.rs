@@ -14,7 +14,7 @@ pub enum WallSide {
 
 impl WallSide {
     /// The sense in which headings are tried from the obstacle outwards: +1 counter-clockwise, -1 clockwise.
-    fn sense(self) -> f64 {
+    pub(super) fn sense(self) -> f64 {
         match self {
             WallSide::Left => -1.0,
             WallSide::Right => 1.0,

@@ -282,7 +282,7 @@ impl DistBug {
             self.end(DistBugOutcome::Reached);
         }
         let heading = match self.phase {
-            DistBugPhase::ToGoal => self.to_goal(),
+            DistBugPhase::ToGoal => self.head_for_goal(),
             DistBugPhase::Following(_) => self.follow(),
             DistBugPhase::LookingRound | DistBugPhase::Ended(_) => None,
         };
@@ -348,7 +348,7 @@ impl DistBug {
     }
 
     /// Drives at the goal; the heading to take.
-    fn to_goal(&mut self) -> Option<f64> {
+    fn head_for_goal(&mut self) -> Option<f64> {
         let view = self.look_at_goal();
         let near = self.parameters.follow_distances().wished - self.parameters.robot_radius;
         match view.obstacle {
@@ -379,9 +379,12 @@ impl DistBug {
     /// Follows the boundary until it can be left or is closed; the heading to take.
     fn follow(&mut self) -> Option<f64> {
         let view = self.look_at_goal();
-        self.least_distance = self.least_distance.min(view.distance);
-        if self.may_leave(&view) {
-            return self.leave(&view);
+        let along_boundary = self.is_at_followed_boundary(&view);
+        let boundary = if along_boundary { view.distance - view.free } else { view.distance };
+        self.least_distance = self.least_distance.min(boundary);
+        if !along_boundary && self.may_leave(&view) {
+            self.leave(&view);
+            return Some(view.bearing);
         }
         let slack = self.position_slack();
         let following = self.follower.as_mut()?;
@@ -411,6 +414,16 @@ impl DistBug {
         self.least_distance = self.least_distance.min(distance);
     }
 
+    /// Whether what ends the way to the goal is the followed obstacle itself, a margin away: then the disc pushed up
+    /// to it is a point of the boundary, not a place to leave for.
+    fn is_at_followed_boundary(&self, view: &GoalView) -> bool {
+        let DistBugPhase::Following(side) = self.phase else { return false };
+        let distances = self.parameters.follow_distances();
+        let margin = distances.wished - distances.least + self.parameters.step;
+        let towards_it = math::sin(view.bearing) * side.sense() < 0.2;
+        towards_it && view.free < margin && view.free < view.distance
+    }
+
     /// The leave condition.
     fn may_leave(&self, view: &GoalView) -> bool {
         if view.free >= view.distance && view.distance < self.parameters.robot_radius {
@@ -426,12 +439,11 @@ impl DistBug {
         (NOISE_SLACK * self.filter.noise()).min(self.parameters.robot_radius)
     }
 
-    fn leave(&mut self, view: &GoalView) -> Option<f64> {
+    fn leave(&mut self, view: &GoalView) {
         self.follower = None;
         self.phase = DistBugPhase::ToGoal;
         let point = self.pose.position();
         self.events.push(DistBugEvent::Leave { point, free: view.free.min(view.distance) });
-        Some(view.bearing)
     }
 
     /// The twist that turns the robot to a heading and drives it on.

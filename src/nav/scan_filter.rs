@@ -40,6 +40,8 @@ const GATE: f64 = 4.0;
 const MIN_GATE: f64 = 0.015;
 /// Beams whose hits lie closer together than this, in metres, see the same piece of surface.
 const SMOOTHING_ARC: f64 = 0.015;
+/// Neighbours on either side that are averaged at most.
+const MAX_SMOOTHING: usize = 10;
 
 impl ScanFilter {
     /// A filter without a scan. `noise` is the standard deviation in metres that one range of the sensor is expected
@@ -61,11 +63,11 @@ impl ScanFilter {
     /// Takes in a scan that was made at `pose` by odometry. The scan must cover a full turn; the first one fixes the
     /// number of beams.
     pub fn update(&mut self, pose: Pose, scan: &LidarScan) -> Result<()> {
-        self.check(scan)?;
-        if self.beams.len() != scan.ranges.len() {
-            self.restart(scan);
-        } else {
+        check(scan)?;
+        if self.beams.len() == scan.ranges.len() {
             self.predict(pose);
+        } else {
+            self.restart(scan);
         }
         self.pose = pose;
         self.correct(&scan.ranges);
@@ -89,15 +91,6 @@ impl ScanFilter {
     /// The standard deviation of the sensor's ranges as found so far, in metres.
     pub fn noise(&self) -> f64 {
         self.noise
-    }
-
-    fn check(&self, scan: &LidarScan) -> Result<()> {
-        let covered = scan.angle_increment * scan.ranges.len() as f64;
-        if scan.ranges.len() < 36 || (covered - TAU).abs() > 0.02 * TAU {
-            let found = format!("{} beams over {:.2} rad", scan.ranges.len(), covered);
-            return Err(Error::invalid_input("lidar scan", found, "at least 36 beams over a full turn"));
-        }
-        Ok(())
     }
 
     fn restart(&mut self, scan: &LidarScan) {
@@ -173,7 +166,7 @@ impl ScanFilter {
         self.scratch.clear();
         for (beam, &reading) in self.beams.iter_mut().zip(ranges) {
             let surprise = reading - beam.range;
-            if beam.weight == 0.0 || !(surprise.abs() <= gate) {
+            if beam.weight == 0.0 || surprise.is_nan() || surprise.abs() > gate {
                 let weight = if reading.is_finite() { 1.0 } else { 0.0 };
                 *beam = Beam { range: if reading.is_nan() { f64::INFINITY } else { reading }, weight };
                 continue;
@@ -204,11 +197,10 @@ impl ScanFilter {
     fn smoothed(&self, index: usize) -> f64 {
         let here = self.beams[index];
         let arc = here.range * self.angle_increment;
-        if !(arc < SMOOTHING_ARC) {
+        if arc.is_infinite() {
             return here.range;
         }
-        let reach = (SMOOTHING_ARC / arc) as usize;
-        let reach = reach.min(10);
+        let reach = ((SMOOTHING_ARC / arc) as usize).min(MAX_SMOOTHING);
         let gate = (2.0 * self.noise).max(0.005) + 2.0 * SMOOTHING_ARC;
         let n = self.beams.len();
         let (mut sum, mut weights) = (here.range * here.weight, here.weight);
@@ -216,7 +208,8 @@ impl ScanFilter {
             // Neighbours come in pairs, so that the slope of the surface cancels.
             let before = self.beams[(index + n - step) % n];
             let after = self.beams[(index + step) % n];
-            if !((before.range - here.range).abs() < gate && (after.range - here.range).abs() < gate) {
+            let farther = (before.range - here.range).abs().max((after.range - here.range).abs());
+            if farther.is_nan() || farther >= gate {
                 break;
             }
             let weight = before.weight.min(after.weight);
@@ -225,4 +218,14 @@ impl ScanFilter {
         }
         sum / weights
     }
+}
+
+/// Fails unless a scan covers a full turn.
+fn check(scan: &LidarScan) -> Result<()> {
+    let covered = scan.angle_increment * scan.ranges.len() as f64;
+    if scan.ranges.len() < 36 || (covered - TAU).abs() > 0.02 * TAU {
+        let found = format!("{} beams over {:.2} rad", scan.ranges.len(), covered);
+        return Err(Error::invalid_input("lidar scan", found, "at least 36 beams over a full turn"));
+    }
+    Ok(())
 }

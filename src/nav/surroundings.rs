@@ -25,11 +25,6 @@ impl Surroundings {
         self.clearance = nearest.sqrt();
     }
 
-    /// The distance to the nearest point, at most the reach.
-    pub(super) fn clearance(&self) -> f64 {
-        self.clearance
-    }
-
     /// How near the robot's middle comes to anything on a straight step of `length` metres in a direction.
     ///
     /// What the step leaves behind, or moves away from fast enough, does not count: a robot that is too close to a

@@ -8,7 +8,7 @@ use super::{Lcd, SimOptions};
 use crate::geometry::{Point, Pose, Vector, direction};
 use crate::io::{Error, Key, LidarSettings, Psd, RadioMessage, Result};
 use crate::random::Stream;
-use crate::world::space::{Scanner, Solid, SolidId, Span};
+use crate::world::space::{Scanner, SolidId, Span};
 use crate::world::{DriveSpec, Footprint, RobotPlacement, RobotSpec};
 
 /// One robot in the engine: its mechanics, its devices and what is true about it.
@@ -202,12 +202,6 @@ impl Body {
             solid_budget: 0.0,
             spec: Arc::clone(spec),
         })
-    }
-
-    /// The robot as others see it.
-    pub(super) fn as_solid(placement: &RobotPlacement) -> Solid {
-        let span = span(placement);
-        Solid { outline: placement.spec.footprint, pose: placement.pose, bottom: span.bottom, top: span.top }
     }
 
     pub(super) fn lcd(&mut self) -> &mut Lcd {

@@ -1,13 +1,13 @@
 use super::body::Body;
 use super::options::ticks_in;
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
-use crate::geometry::{Aabb, Point, Twist};
+use crate::geometry::Twist;
 use crate::io::error::{require_finite, require_positive};
 use crate::io::{Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Result};
 use crate::kinematics::Displacement;
 use crate::random::Stream;
 use crate::world::space::{Contact, Solid, Space};
-use crate::world::{Footprint, Object, RobotPlacement, Scene, Shape, World};
+use crate::world::{RobotPlacement, Scene, World};
 
 /// A world and its robots at one instant, and how they get to the next.
 #[derive(Debug)]
@@ -44,13 +44,13 @@ impl Engine {
         check_world(&scene.world)?;
         let mut space = Space::new(&scene.world.walls);
         for object in &scene.world.objects {
-            space.add(solid_of(object));
+            space.add(Solid::from(object));
         }
         let root = Stream::new(options.seed);
         let mut bodies = Vec::with_capacity(scene.robots.len());
         for (index, placement) in scene.robots.iter().enumerate() {
             check_placement(placement)?;
-            let solid = space.add(Body::as_solid(placement));
+            let solid = space.add(Solid::from(placement));
             bodies.push(Body::new(placement, solid, &options, &root.child("robot", index as u64))?);
         }
         let motions = vec![Displacement::default(); bodies.len()];
@@ -257,19 +257,6 @@ fn check_placement(placement: &RobotPlacement) -> Result<()> {
     }
     let found = format!("{:?} at an elevation of {}", placement.pose, placement.elevation);
     Err(Error::invalid_input("robot pose", found, "finite numbers"))
-}
-
-/// An object as robots meet it.
-fn solid_of(object: &Object) -> Solid {
-    let outline = match object.kind.shape {
-        Shape::Cylinder { radius, .. } | Shape::Sphere { radius } => Footprint::Disc { radius },
-        Shape::Box { length, width, .. } => {
-            let corner = Point::new(0.5 * length, 0.5 * width);
-            Footprint::Rectangle(Aabb::new(-corner, corner))
-        }
-    };
-    let bottom = object.elevation;
-    Solid { outline, pose: object.pose, bottom, top: bottom + object.kind.shape.height() }
 }
 
 /// A reading with its noise; no return stays no return.

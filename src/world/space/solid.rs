@@ -1,6 +1,6 @@
-use super::shape::{OrientedBox, Shape};
-use crate::geometry::Pose;
-use crate::world::Footprint;
+use super::shape::{OrientedBox, Shape as Placed};
+use crate::geometry::{Aabb, Point, Pose};
+use crate::world::{Footprint, Object, RobotPlacement, Shape};
 
 /// What stands upright: an outline on the floor between two heights.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,11 +25,34 @@ impl Solid {
 impl Footprint {
     /// The outline where `pose` puts it.
     #[inline]
-    pub(super) fn at(&self, pose: &Pose) -> Shape {
+    pub(super) fn at(&self, pose: &Pose) -> Placed {
         match self {
-            Footprint::Disc { radius } => Shape::Disc { centre: pose.position(), radius: *radius },
-            Footprint::Rectangle(rectangle) => Shape::Box(OrientedBox::placed(rectangle, pose)),
+            Footprint::Disc { radius } => Placed::Disc { centre: pose.position(), radius: *radius },
+            Footprint::Rectangle(rectangle) => Placed::Box(OrientedBox::placed(rectangle, pose)),
         }
+    }
+}
+
+impl From<&Object> for Solid {
+    /// An object as robots meet it.
+    fn from(object: &Object) -> Self {
+        let outline = match object.kind.shape {
+            Shape::Cylinder { radius, .. } | Shape::Sphere { radius } => Footprint::Disc { radius },
+            Shape::Box { length, width, .. } => {
+                let corner = Point::new(0.5 * length, 0.5 * width);
+                Footprint::Rectangle(Aabb::new(-corner, corner))
+            }
+        };
+        let bottom = object.elevation;
+        Self { outline, pose: object.pose, bottom, top: bottom + object.kind.shape.height() }
+    }
+}
+
+impl From<&RobotPlacement> for Solid {
+    /// A robot as others meet it.
+    fn from(robot: &RobotPlacement) -> Self {
+        let bottom = robot.elevation;
+        Self { outline: robot.spec.footprint, pose: robot.pose, bottom, top: bottom + robot.spec.height }
     }
 }
 

@@ -375,7 +375,7 @@ impl<'f> Reader<'f> {
         };
         let fallback = (Footprint::Disc { radius: wheels }, DEFAULT_HEIGHT);
         (self.spec.footprint, self.spec.height) =
-            self.outline.take().or_else(|| derived.clone()).unwrap_or(fallback);
+            self.outline.take().or(derived).unwrap_or(fallback);
         if says_all(body, &self.spec.footprint, self.spec.height) {
             body.colliders.clear();
         }
