@@ -1,4 +1,65 @@
-//! Every system of a robotics textbook as a library.
+//! The systems of a robotics textbook as a library: driving, mapping, navigating, seeing and learning robots, after
+//! *Robot Adventures in Python and C* (Thomas Bräunl, 2020).
+//!
+//! An algorithm is written once, against small traits for what a robot can do ([`io`]), and does not know whether
+//! the robot is simulated, recorded or real. The same seed, world and program give the same run, to the last bit, on
+//! every platform.
+//!
+//! # Example
+//!
+//! A robot with a lidar finds its way past a wall, and nothing is touched:
+//!
+//! ```
+//! use roverlab::geometry::{Point, Pose};
+//! use roverlab::io::sim::{SimOptions, Simulation};
+//! use roverlab::nav::{DistBug, DistBugOutcome, DistBugParameters};
+//! use roverlab::world::{RobotSpec, Scene, Wall, World};
+//!
+//! # fn main() -> roverlab::io::Result<()> {
+//! let mut world = World::walled(3.0, 2.0);
+//! world.walls.push(Wall::new(Point::new(1.5, 0.5), Point::new(1.5, 1.6)));
+//! let start = Pose::new(0.5, 1.0, 0.0);
+//! let scene = Scene::with_robot(world, RobotSpec::s4(), start);
+//! let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 7))?;
+//! let mut robot = simulation.robot(0)?;
+//!
+//! let goal = Point::new(2.5, 1.0);
+//! let mut bug = DistBug::new(start.to_local(goal), DistBugParameters::default())?;
+//! let outcome = bug.run(&mut robot, 120.0, |_, _| {})?;
+//!
+//! let truth = simulation.truth().robot(0)?;
+//! assert_eq!((outcome, truth.contacts), (DistBugOutcome::Reached, 0));
+//! assert!(truth.pose.distance_to(goal) < 0.1);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Chapters and modules
+//!
+//! What is not listed is not there yet.
+//!
+//! | chapter | what | where |
+//! |---|---|---|
+//! | 1 Robots and simulation | simulated worlds and robots | [`io::sim`] |
+//! | 1 Robots and simulation | EyeSim's files: `.sim`, `.wld`, `.maz`, `.robi`, `.esObj` | [`world::formats`] |
+//! | 2 Sensors and programs | what a robot can be asked: distance sensors, keys, display, radio | [`io`] |
+//! | 3 Driving | the v-omega drive, encoders; kinematics of the differential drive | [`io`], [`kinematics`] |
+//! | 4 Lidar | scans, and taking their noise out | [`io`], [`nav`] |
+//! | 5 Swarms | any number of robots in one world | [`io::sim`] |
+//! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`world::formats`] |
+//!
+//! Beside the chapters: [`geometry`] has poses, angles and units; [`random`] seeded random streams; [`world`] what a
+//! world and a robot are, with random courses in [`world::generate`]; `picture` (with the feature of that name) draws
+//! worlds and runs.
+//!
+//! # Conventions
+//!
+//! Metres, radians, seconds; x forward, y left, angles counter-clockwise. A sensor that sees nothing reads
+//! `f64::INFINITY`; one that is missing is an error. Nothing panics on what a user, a file or a robot gives it.
+//!
+//! # Features
+//!
+//! None is on by default. `picture` adds pictures as SVG, `png` the same as PNG.
 
 pub mod geometry;
 pub mod io;
@@ -8,3 +69,8 @@ pub mod nav;
 pub mod picture;
 pub mod random;
 pub mod world;
+
+/// The programs in the README run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -3,6 +3,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use roverlab::geometry::{Point, Pose};
+use roverlab::io::wrappers::Fault;
 
 use super::Failure;
 use super::values::{parse_noise, parse_picture, parse_point, parse_pose, parse_seconds};
@@ -78,5 +79,18 @@ impl CommonArgs {
             // A reader that went away, as `head` does, is no reason to stop the run.
             let _ = writeln!(std::io::stdout(), "{event}");
         }
+    }
+
+    /// Tells a person of something odd. Silent with `--json`.
+    pub(crate) fn warn(&self, warning: impl Display) {
+        if !self.json {
+            let _ = writeln!(std::io::stderr(), "{warning}");
+        }
+    }
+
+    /// The faults to inject.
+    pub(crate) fn faults(&self) -> Result<Vec<Fault>, Failure> {
+        let parse = |text: &String| text.parse().map_err(|error| Failure::input(format!("--fault: {error}")));
+        self.fault.iter().map(parse).collect()
     }
 }

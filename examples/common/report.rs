@@ -1,4 +1,4 @@
-use roverlab::geometry::{Pose, normalize_angle, units};
+use roverlab::geometry::{Point, Pose, normalize_angle, units};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::Value;
 
@@ -38,6 +38,8 @@ pub(crate) struct Report {
     pub(crate) pose: Option<Pose>,
     /// Where the robot believes to be.
     pub(crate) odometry: Option<Pose>,
+    /// What the robot failed with, if that ended the run.
+    pub(crate) error: Option<String>,
     /// The example's own fields; see [`Report::field`].
     pub(crate) fields: Vec<(String, Value)>,
 }
@@ -51,8 +53,8 @@ pub(crate) struct Header {
     pub(crate) wall_time: f64,
 }
 
-/// The fields that every example has.
-const COMMON: [&str; 10] = [
+/// The fields that every example has; `error` only after one.
+const COMMON: [&str; 11] = [
     "example",
     "outcome",
     "seed",
@@ -63,6 +65,7 @@ const COMMON: [&str; 10] = [
     "path_length_mm",
     "pose",
     "odometry",
+    "error",
 ];
 
 impl Report {
@@ -75,6 +78,7 @@ impl Report {
             path_length: None,
             pose: None,
             odometry: None,
+            error: None,
             fields: Vec::new(),
         }
     }
@@ -158,6 +162,9 @@ impl Serialize for Object<'_> {
         object.serialize_entry("path_length_mm", &report.path_length.map(|m| rounded(units::to_mm(m))))?;
         object.serialize_entry("pose", &report.pose.map(JsonPose::from))?;
         object.serialize_entry("odometry", &report.odometry.map(JsonPose::from))?;
+        if let Some(error) = &report.error {
+            object.serialize_entry("error", error)?;
+        }
         for (name, value) in &report.fields {
             object.serialize_entry(name, value)?;
         }
@@ -183,9 +190,19 @@ impl From<Pose> for JsonPose {
     }
 }
 
+/// A length as the fields of examples show it: millimetres, to a thousandth.
+pub(crate) fn millimetres(metres: f64) -> f64 {
+    rounded(units::to_mm(1000.0 * metres).round() / 1000.0)
+}
+
+/// The same for both coordinates of a point.
+pub(crate) fn point_in_mm(point: Point) -> [f64; 2] {
+    [point.x, point.y].map(millimetres)
+}
+
 /// Without the tail of digits that a change of unit leaves, and without the sign of zero: a millionth is finer than
 /// any sensor.
-fn rounded(value: f64) -> f64 {
+pub(crate) fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6 + 0.0
 }
 

@@ -1,11 +1,11 @@
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
 
 use clap::error::ErrorKind;
 
 use super::report::Header;
+use super::wall_clock::Stopwatch;
 use super::{CommonArgs, Failure, Report};
 
 /// The main function of an example: reads the command line, does the work, prints the report or one message, and
@@ -30,6 +30,36 @@ pub(crate) fn run<A>(
 where
     A: clap::Parser + AsRef<CommonArgs>,
 {
+    run_printing(command_line, out, err, |args: &A| {
+        let common = args.as_ref();
+        let stopwatch = Stopwatch::start();
+        common.check()?;
+        let report = work(args)?;
+        let (seed, noise, wall_time) = (common.seed, common.noise, stopwatch.seconds());
+        let header = Header { example, seed, noise, wall_time };
+        let text = if common.json { report.json(header) } else { report.summary(header) };
+        Ok(Printed { text, message: report.error.clone(), status: report.status() })
+    })
+}
+
+/// What is left to be printed when a program's work is done.
+#[derive(Debug)]
+pub(crate) struct Printed {
+    /// For standard output.
+    pub(crate) text: String,
+    /// For standard error.
+    pub(crate) message: Option<String>,
+    /// The exit status.
+    pub(crate) status: u8,
+}
+
+/// As [`run`], for a program with options and a report of its own.
+pub(crate) fn run_printing<A: clap::Parser>(
+    command_line: impl IntoIterator<Item = OsString>,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+    work: impl FnOnce(&A) -> Result<Printed, Failure>,
+) -> u8 {
     let args = match A::try_parse_from(command_line) {
         Ok(args) => args,
         Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
@@ -37,15 +67,14 @@ where
         }
         Err(error) => return complain(err, &Failure::input(in_one_line(&error))),
     };
-    let common = args.as_ref();
-    let stopwatch = Stopwatch::start();
-    match common.check().and_then(|()| work(&args)) {
+    match work(&args) {
         Err(failure) => complain(err, &failure),
-        Ok(report) => {
-            let wall_time = stopwatch.elapsed().as_secs_f64();
-            let header = Header { example, seed: common.seed, noise: common.noise, wall_time };
-            let text = if common.json { report.json(header) } else { report.summary(header) };
-            written(writeln!(out, "{text}"), err, report.status())
+        Ok(printed) => {
+            if let Some(message) = printed.message {
+                // Without standard error there is nobody left to tell; the status still does.
+                let _ = writeln!(err, "{message}");
+            }
+            written(writeln!(out, "{}", printed.text), err, printed.status)
         }
     }
 }
@@ -75,19 +104,5 @@ fn written(result: io::Result<()>, err: &mut dyn Write, status: u8) -> u8 {
             complain(err, &Failure::run(format!("standard output cannot be written: {error}")))
         }
         _ => status,
-    }
-}
-
-/// The wall clock, for `wall_time_s` alone: nothing else may depend on it.
-struct Stopwatch(Instant);
-
-impl Stopwatch {
-    #[allow(clippy::disallowed_methods, reason = "the report tells how long the run took on the wall clock")]
-    fn start() -> Self {
-        Self(Instant::now())
-    }
-
-    fn elapsed(&self) -> Duration {
-        self.0.elapsed()
     }
 }

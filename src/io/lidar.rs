@@ -88,7 +88,7 @@ impl LidarSettings {
                 "more than 0 and at most a full turn",
             ));
         }
-        if !(self.tilt.abs() <= TAU / 4.0) {
+        if self.tilt.is_nan() || self.tilt.abs() > TAU / 4.0 {
             return Err(Error::invalid_input("lidar tilt", self.tilt, "at most a quarter turn up or down"));
         }
         if !(1..=Self::MAX_POINTS).contains(&self.points) {

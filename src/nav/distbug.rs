@@ -2,7 +2,7 @@ use super::boundary::{BoundaryFollower, FollowDistances, WallSide, nearer_side};
 use super::surroundings::Surroundings;
 use super::{ScanFilter, ScanMatcher};
 use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math, normalize_angle};
-use crate::io::{Clock, Drive, Error, ErrorKind, Lidar, LidarScan, Result};
+use crate::io::{Clock, Drive, Error, Lidar, LidarScan, Result};
 
 /// What DistBug goes by. Lengths in metres, speeds in metres per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,6 +90,8 @@ pub enum DistBugOutcome {
 /// What the robot is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DistBugPhase {
+    /// Looking round: standing, then turning once on the spot, which shows how true odometry's turns are.
+    LookingRound,
     /// Driving straight to the goal.
     ToGoal,
     /// Following the boundary of an obstacle.
@@ -156,6 +158,7 @@ pub struct DistBug {
     parameters: DistBugParameters,
     goal: Point,
     phase: DistBugPhase,
+    look: LookRound,
     /// `d_min`: the smallest distance to the goal that a boundary has had.
     least_distance: f64,
     /// The part of a free range that is not relied upon.
@@ -173,7 +176,17 @@ pub struct DistBug {
 #[derive(Debug, Clone)]
 struct Following {
     boundary: BoundaryFollower,
+    /// The nearest that the robot has come to the goal.
+    nearest: f64,
     progress: LoopProgress,
+}
+
+/// How far the robot has looked round.
+#[derive(Debug, Clone, Default)]
+struct LookRound {
+    steps: u32,
+    turned: f64,
+    last: Option<f64>,
 }
 
 /// Whether the robot has been all round.
@@ -200,6 +213,12 @@ const DOUBT: f64 = 0.02;
 const MAX_DOUBT: f64 = 0.3;
 /// Steps without a free heading after which the robot is boxed in.
 const BOXED_IN_STEPS: u32 = 40;
+/// The position may be wrong by so many times the noise of a range.
+const NOISE_SLACK: f64 = 5.0;
+/// A goal that recedes by this much, in metres, has been passed.
+const PASSING_MARGIN: f64 = 0.02;
+/// Radians per second at which the robot turns to look round.
+const LOOKING_TURN: f64 = 2.0;
 /// Steps, at the start, that only look.
 const SETTLING_STEPS: u32 = 12;
 
@@ -213,7 +232,8 @@ impl DistBug {
         Ok(Self {
             parameters,
             goal,
-            phase: DistBugPhase::ToGoal,
+            phase: DistBugPhase::LookingRound,
+            look: LookRound::default(),
             least_distance: f64::INFINITY,
             doubt: DOUBT,
             follower: None,
@@ -254,6 +274,9 @@ impl DistBug {
     /// One control step: what the robot shall do until the next.
     pub fn step(&mut self, observation: &DistBugObservation<'_>) -> Result<Twist> {
         self.perceive(observation)?;
+        if self.phase == DistBugPhase::LookingRound {
+            return Ok(self.look_round());
+        }
         self.matcher.learn(&self.points);
         if self.goal_distance() <= self.parameters.goal_tolerance {
             self.end(DistBugOutcome::Reached);
@@ -261,9 +284,26 @@ impl DistBug {
         let heading = match self.phase {
             DistBugPhase::ToGoal => self.to_goal(),
             DistBugPhase::Following(_) => self.follow(),
-            DistBugPhase::Ended(_) => None,
+            DistBugPhase::LookingRound | DistBugPhase::Ended(_) => None,
         };
         Ok(heading.map_or(Twist::STOP, |heading| self.steer(heading, observation.speed)))
+    }
+
+    /// Stands until the filter has something to go by, then turns once on the spot.
+    fn look_round(&mut self) -> Twist {
+        self.look.steps += 1;
+        if self.look.steps < SETTLING_STEPS {
+            return Twist::STOP;
+        }
+        self.matcher.learn(&self.points);
+        let heading = self.pose.heading;
+        self.look.turned += self.look.last.map_or(0.0, |last| angle_difference(heading, last));
+        self.look.last = Some(heading);
+        if !self.parameters.match_scans || self.look.turned >= std::f64::consts::TAU {
+            self.phase = DistBugPhase::ToGoal;
+            return Twist::STOP;
+        }
+        Twist::new(0.0, LOOKING_TURN)
     }
 
     /// Ends the run with a verdict from outside, such as that the time is over.
@@ -328,6 +368,7 @@ impl DistBug {
         self.note_boundary(view.distance - view.free);
         self.follower = Some(Following {
             boundary: BoundaryFollower::new(side, distances, self.pose.to_world(obstacle)),
+            nearest: view.distance,
             progress: LoopProgress::new(self.pose),
         });
         self.phase = DistBugPhase::Following(side);
@@ -342,7 +383,15 @@ impl DistBug {
         if self.may_leave(&view) {
             return self.leave(&view);
         }
+        let slack = self.position_slack();
         let following = self.follower.as_mut()?;
+        following.nearest = following.nearest.min(view.distance);
+        // As near as obstacles and the knowledge of the position allow, and going away again.
+        let passed = view.distance > following.nearest + PASSING_MARGIN;
+        if passed && following.nearest <= self.parameters.goal_tolerance + slack {
+            self.end(DistBugOutcome::Reached);
+            return None;
+        }
         let heading = following.boundary.heading(&self.pose, &self.surroundings);
         let all_round = following.progress.update(self.pose, heading, self.parameters.robot_radius);
         if all_round {
@@ -369,6 +418,12 @@ impl DistBug {
         }
         let free = view.free.min(view.distance) * (1.0 - self.doubt);
         view.distance - free <= self.least_distance - self.parameters.step
+    }
+
+    /// How wrong the robot's position may well be, in metres, judged by the noise of its ranges; never as much as
+    /// would let a goal behind a wall count.
+    fn position_slack(&self) -> f64 {
+        (NOISE_SLACK * self.filter.noise()).min(self.parameters.robot_radius)
     }
 
     fn leave(&mut self, view: &GoalView) -> Option<f64> {
@@ -415,7 +470,7 @@ impl DistBug {
         let mut scan = LidarScan::default();
         let begin = robot.now()?;
         let mut next = begin;
-        for step in 0_u32.. {
+        loop {
             let now = robot.now()?;
             if now - begin >= time_limit {
                 self.end(DistBugOutcome::TimedOut);
@@ -423,8 +478,7 @@ impl DistBug {
             robot.scan_into(&mut scan)?;
             let observation =
                 DistBugObservation { odometry: robot.pose()?, speed: robot.speed()?, scan: &scan };
-            let twist =
-                if step < SETTLING_STEPS { self.look(&observation)? } else { self.step(&observation)? };
+            let twist = self.step(&observation)?;
             robot.set_speed(twist)?;
             observe(self, now);
             if let DistBugPhase::Ended(outcome) = self.phase {
@@ -434,13 +488,6 @@ impl DistBug {
             let pause = next - robot.now()?;
             robot.wait(pause)?;
         }
-        Err(Error::new(ErrorKind::Other, "more control steps than a number can count"))
-    }
-
-    /// A step that only looks, so that the filter has something to go by before the robot moves.
-    pub fn look(&mut self, observation: &DistBugObservation<'_>) -> Result<Twist> {
-        self.perceive(observation)?;
-        Ok(Twist::STOP)
     }
 }
 

@@ -1,4 +1,4 @@
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Matrix5, Vector2, Vector5};
 
 use super::scan_reference::{Evidence, Reference};
 use crate::geometry::{Point, Pose, math, normalize_angle};
@@ -24,10 +24,11 @@ pub struct ScanMatcher {
     /// The pose by odometry of the last scan, and its corrected pose.
     odometry: Pose,
     pose: Pose,
-    /// By which part of itself odometry underrates every motion: what wheels of other than nominal size do.
-    scale_error: f64,
-    /// The covariance of corrected pose (metres, radians) and scale error.
-    covariance: Matrix4<f64>,
+    /// By which part of themselves odometry underrates distances and turns: what wheels of other than nominal size
+    /// and a track of other than nominal width do.
+    scale_errors: Vector2<f64>,
+    /// The covariance of corrected pose (metres, radians) and scale errors.
+    covariance: Matrix5<f64>,
 }
 
 /// References farther away than this, in metres, are not matched against.
@@ -51,8 +52,9 @@ const FINE_GATE: f64 = 0.03;
 /// Odometry's error as a part of the distance driven and of the angle turned in one step.
 const DISTANCE_ERROR: f64 = 0.01;
 const TURN_ERROR: f64 = 0.006;
-/// The standard deviation of odometry's scale before anything has been matched.
+/// The standard deviations of wheels' size and of the track before anything has been matched.
 const SCALE_ERROR: f64 = 0.015;
+const TRACK_ERROR: f64 = 0.005;
 /// The variance that slip adds to the heading: radians squared per metre and per radian.
 const SLIP_PER_METRE: f64 = 6e-5;
 const SLIP_PER_RADIAN: f64 = 2.5e-6;
@@ -63,8 +65,8 @@ const LEAST_VARIANCE: f64 = 1e-10;
 #[derive(Debug, Clone, Copy)]
 struct Match {
     pose: Pose,
-    scale_error: f64,
-    covariance: Matrix4<f64>,
+    scale_errors: Vector2<f64>,
+    covariance: Matrix5<f64>,
     /// The share of points that found counterparts in one reference.
     overlap: f64,
 }
@@ -78,7 +80,12 @@ impl Default for ScanMatcher {
 impl ScanMatcher {
     /// A matcher without references, whose corrected frame is odometry's own.
     pub fn new() -> Self {
-        let variances = Vector4::new(0.0, 0.0, 0.0, SCALE_ERROR * SCALE_ERROR);
+        // Both scales err by the wheels' size; turns also by the track.
+        let wheels = SCALE_ERROR * SCALE_ERROR;
+        let mut covariance = Matrix5::zeros();
+        covariance.fixed_view_mut::<2, 2>(3, 3).fill(wheels);
+        covariance[(3, 3)] += LEAST_VARIANCE;
+        covariance[(4, 4)] += TRACK_ERROR * TRACK_ERROR;
         Self {
             references: Vec::new(),
             active: Vec::new(),
@@ -86,8 +93,8 @@ impl ScanMatcher {
             overlap: 0.0,
             odometry: Pose::default(),
             pose: Pose::default(),
-            scale_error: 0.0,
-            covariance: Matrix4::from_diagonal(&variances),
+            scale_errors: Vector2::zeros(),
+            covariance,
         }
     }
 
@@ -114,7 +121,7 @@ impl ScanMatcher {
         self.overlap = matched.overlap;
         if matched.overlap >= MIN_MATCH && strayed < MAX_CORRECTION {
             self.pose = matched.pose;
-            self.scale_error = matched.scale_error;
+            self.scale_errors = matched.scale_errors;
             self.covariance = matched.covariance;
         }
         self.pose
@@ -134,33 +141,33 @@ impl ScanMatcher {
     fn predict(&mut self, odometry: Pose) -> Pose {
         let measured = self.odometry.inverse().compose(&odometry);
         self.odometry = odometry;
-        let scale = 1.0 + self.scale_error;
-        let motion = Pose::new(scale * measured.x, scale * measured.y, scale * measured.heading);
+        let (far, round) = (1.0 + self.scale_errors.x, 1.0 + self.scale_errors.y);
+        let motion = Pose::new(far * measured.x, far * measured.y, round * measured.heading);
         let before = self.pose;
         self.pose = before.compose(&motion);
         let (dx, dy) = (self.pose.x - before.x, self.pose.y - before.y);
         let distance = math::hypot(motion.x, motion.y);
         let turn = motion.heading.abs();
-        let mut carried = Matrix4::identity();
+        let mut carried = Matrix5::identity();
         carried[(0, 2)] = -dy;
         carried[(1, 2)] = dx;
         carried[(0, 3)] = dx;
         carried[(1, 3)] = dy;
-        carried[(2, 3)] = motion.heading;
+        carried[(2, 4)] = motion.heading;
         let square = |x: f64| x * x;
         let position = square(DISTANCE_ERROR * distance) + LEAST_VARIANCE;
         let heading =
             square(TURN_ERROR * turn) + SLIP_PER_METRE * distance + SLIP_PER_RADIAN * turn + LEAST_VARIANCE;
-        let added = Vector4::new(position, position, heading, 0.0);
-        self.covariance = carried * self.covariance * carried.transpose() + Matrix4::from_diagonal(&added);
+        let added = Vector5::new(position, position, heading, 0.0, 0.0);
+        self.covariance = carried * self.covariance * carried.transpose() + Matrix5::from_diagonal(&added);
         self.pose
     }
 
     /// Moves a scan from its predicted pose to where it fits the active references best.
     fn lay_over(&self, predicted: Pose, points: &[Point]) -> Match {
-        let known = self.covariance.try_inverse().unwrap_or_else(Matrix4::zeros);
+        let known = self.covariance.try_inverse().unwrap_or_else(Matrix5::zeros);
         let mut pose = predicted;
-        let mut scale_error = self.scale_error;
+        let mut scale_errors = self.scale_errors;
         let mut information = known;
         let mut matched = 0;
         for iteration in 0..ITERATIONS {
@@ -170,22 +177,23 @@ impl ScanMatcher {
             information = known;
             let mut of_pose = information.fixed_view_mut::<3, 3>(0, 0);
             of_pose += found.information;
-            let strayed = Vector4::new(
+            let strayed = Vector5::new(
                 predicted.x - pose.x,
                 predicted.y - pose.y,
                 normalize_angle(predicted.heading - pose.heading),
-                self.scale_error - scale_error,
+                self.scale_errors.x - scale_errors.x,
+                self.scale_errors.y - scale_errors.y,
             );
-            let residual = known * strayed + found.residual.push(0.0);
+            let residual = known * strayed + found.residual.push(0.0).push(0.0);
             let Some(step) = information.cholesky().map(|solver| solver.solve(&residual)) else { break };
             pose.x += step.x;
             pose.y += step.y;
             pose.heading = normalize_angle(pose.heading + step.z);
-            scale_error += step.w;
+            scale_errors += step.fixed_rows::<2>(3);
         }
-        let covariance = information.try_inverse().unwrap_or_else(Matrix4::zeros);
+        let covariance = information.try_inverse().unwrap_or_else(Matrix5::zeros);
         let overlap = matched as f64 / points.len().max(1) as f64;
-        Match { pose, scale_error, covariance, overlap }
+        Match { pose, scale_errors, covariance, overlap }
     }
 
     /// The average of what the active references say about a pose; `matched` is that of the one that shares most.

@@ -122,26 +122,26 @@ impl Body {
     /// All others are the rectangle around their colliders.
     pub fn footprint(&self, turns_on_the_spot: bool) -> Option<(Footprint, f64)> {
         let [x, y, z] = self.extent()?;
-        let ahead = self.axle[0];
+        let (ahead, top) = (self.axle[0], top(z));
         if let [single] = self.colliders.as_slice()
             && let Some(radius) = single.round_about(ahead)
         {
-            return Some((Footprint::Disc { radius }, z.1));
+            return Some((Footprint::Disc { radius }, top));
         }
         let sides = [x.1 - ahead, ahead - x.0, y.1, -y.0];
         let far = sides.into_iter().fold(f64::MIN, f64::max);
         let near = sides.into_iter().fold(f64::MAX, f64::min);
         if turns_on_the_spot && far <= Self::MAX_DISC && near >= Self::MIN_ROUNDNESS * far {
-            return Some((Footprint::Disc { radius: far }, z.1));
+            return Some((Footprint::Disc { radius: far }, top));
         }
         let corners = (Point::new(x.0 - ahead, y.0), Point::new(x.1 - ahead, y.1));
-        Some((Footprint::Rectangle(Aabb::new(corners.0, corners.1)), z.1))
+        Some((Footprint::Rectangle(Aabb::new(corners.0, corners.1)), top))
     }
 
     /// The upright shape about the origin that holds all colliders, from the floor up; `None` without colliders.
     pub fn shape(&self) -> Option<Shape> {
         let [x, y, z] = self.extent()?;
-        let top = if z.1 > 0.0 { z.1 } else { z.1 - z.0 };
+        let top = top(z);
         if let [single] = self.colliders.as_slice()
             && let Some(radius) = single.round_about(0.0)
         {
@@ -189,6 +189,11 @@ impl Body {
         let joined = extents.reduce(|a, b| [0, 1, 2].map(|i| (a[i].0.min(b[i].0), a[i].1.max(b[i].1))))?;
         Some(joined.map(|(low, high)| (low * self.scale, high * self.scale)))
     }
+}
+
+/// The height above the model's origin, or that of a body below it.
+fn top((low, high): (f64, f64)) -> f64 {
+    if high > 0.0 { high } else { high - low }
 }
 
 #[cfg(test)]

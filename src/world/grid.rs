@@ -167,6 +167,10 @@ impl OccupancyGrid {
     }
 
     fn for_each_outline(&self, mut found: impl FnMut(Segment)) {
+        // A grid without rows may still have billions of columns.
+        if self.values.is_empty() {
+            return;
+        }
         for row in 0..=self.height {
             let edge = |column| self.is_occupied(column, row) != self.is_occupied_below(column, row);
             for_each_run(self.width, edge, |a, b| found(self.segment((a, row), (b, row))));
@@ -250,6 +254,7 @@ mod tests {
         assert_eq!(grid(&["#"], Pose::default()).count_walls(), 4);
         assert_eq!(grid(&["?"], Pose::default()).count_walls(), 0);
         assert_eq!(grid(&["#?#"], Pose::default()).count_walls(), 8);
+        assert_eq!(OccupancyGrid::unknown(usize::MAX, 0, 1.0, Pose::default()).unwrap().count_walls(), 0);
     }
 
     #[test]

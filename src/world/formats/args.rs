@@ -63,11 +63,8 @@ impl<'l, 'a> Args<'l, 'a> {
             return Err(self.line.error(at, what));
         }
         let rest = self.line.rest(at);
-        if self.left() > 0
-            && !word.quoted
-            && !ends_with_any(word.text, endings)
-            && ends_with_any(rest, endings)
-        {
+        let one_name = !rest.contains(['"', '\'']) && ends_with_any(rest, endings);
+        if self.left() > 0 && one_name && !ends_with_any(word.text, endings) {
             notes.warn(self.line.location(at), format!("{} has blanks; read as one file name", shown(rest)));
             self.next = self.line.words.len();
             return Ok(rest);
@@ -88,11 +85,6 @@ impl<'l, 'a> Args<'l, 'a> {
     /// A length of more than zero, in metres.
     pub(super) fn positive_size(&mut self, what: &str) -> Result<f64, FormatError> {
         self.number(what, "in millimetres", MILLI, f64::MIN_POSITIVE..=MAX_METRES)
-    }
-
-    /// An angle in radians, as large as written.
-    pub(super) fn angle(&mut self, what: &str) -> Result<f64, FormatError> {
-        self.degrees(what, number::ANGLES).map(units::from_deg)
     }
 
     /// A direction in degrees, -180 to 180.
@@ -170,7 +162,7 @@ impl<'l, 'a> Args<'l, 'a> {
 }
 
 fn ends_with_any(name: &str, endings: &[&str]) -> bool {
-    let name = name.trim_end_matches(['"', '\'']).to_ascii_lowercase();
+    let name = name.to_ascii_lowercase();
     endings.iter().any(|ending| name.ends_with(ending))
 }
 
@@ -187,13 +179,13 @@ fn shown_range(range: &RangeInclusive<f64>, power: i32) -> String {
 impl Args<'_, '_> {
     /// A place: right, up, forward.
     pub(super) fn model_place(&mut self, what: &str) -> Result<Place3, FormatError> {
-        let [right, up, forward] = self.three(what, |args, what| args.length(what))?;
+        let [right, up, forward] = self.three(what, Self::length)?;
         Ok([forward, -right, up])
     }
 
     /// Sizes of more than zero: to the right, upwards, forward.
     pub(super) fn model_size(&mut self, what: &str) -> Result<Place3, FormatError> {
-        let [right, up, forward] = self.three(what, |args, what| args.positive_size(what))?;
+        let [right, up, forward] = self.three(what, Self::positive_size)?;
         Ok([forward, right, up])
     }
 

@@ -146,9 +146,7 @@ impl Reader<'_> {
 ///
 /// A shape that is not that of the kind's colliders is written in their place.
 pub fn print(kind: &ObjectKind) -> String {
-    let mut text = String::new();
-    write_kind(&mut text, kind).expect("writing to a string does not fail");
-    text
+    lexer::written(|text| write_kind(text, kind))
 }
 
 fn write_kind(text: &mut String, kind: &ObjectKind) -> std::fmt::Result {

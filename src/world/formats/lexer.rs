@@ -1,7 +1,7 @@
 //! Lines and words, as all of EyeSim's text formats share them.
 //!
 //! Words stand between blanks; `"…"` and `'…'` hold blanks together. A `;` outside quotes and a `#` at the start of a
-//! word begin a comment. Lines end with LF, CR LF or CR; a byte order mark is skipped.
+//! word begin a comment. Lines end with LF, CR LF or CR; byte order marks are skipped.
 
 use winnow::combinator::{alt, delimited, not, preceded, terminated};
 use winnow::prelude::*;
@@ -86,8 +86,13 @@ pub(super) fn line<'a>(file: &'a str, number: usize, text: &'a str) -> Result<Op
 
 type Input<'a> = LocatingSlice<&'a str>;
 
+/// A byte order mark in the middle of a file is as invisible as a blank.
+fn is_blank(c: char) -> bool {
+    c.is_whitespace() || c == '\u{feff}'
+}
+
 fn blanks<'a>(input: &mut Input<'a>) -> ModalResult<&'a str> {
-    take_while(0.., char::is_whitespace).parse_next(input)
+    take_while(0.., is_blank).parse_next(input)
 }
 
 /// The place of the next word, unless the line or its content ends here.
@@ -100,7 +105,7 @@ fn word<'a>(input: &mut Input<'a>) -> ModalResult<(&'a str, bool)> {
     let quoted = |quote: char| {
         delimited(quote, take_till(0.., move |c| c == quote), quote).map(|text: &'a str| (text, true))
     };
-    let bare = take_till(1.., |c: char| c.is_whitespace() || c == ';').map(|text: &'a str| (text, false));
+    let bare = take_till(1.., |c: char| is_blank(c) || c == ';').map(|text: &'a str| (text, false));
     let unquoted = terminated(winnow::combinator::empty, not(winnow::token::one_of(['"', '\''])));
     alt((quoted('"'), quoted('\''), preceded(unquoted, bare))).parse_next(input)
 }
@@ -119,8 +124,8 @@ pub(super) fn shown(word: &str) -> String {
 /// Line ends and a second kind of quote cannot be written and become blanks and `'`.
 pub(super) fn quote(word: &str) -> String {
     let bare = !word.is_empty()
-        && !word.starts_with(['"', '\'', '#', '\u{feff}'])
-        && !word.contains(|c: char| c.is_whitespace() || c == ';');
+        && !word.starts_with(['"', '\'', '#'])
+        && !word.contains(|c: char| is_blank(c) || c == ';');
     if bare {
         return word.into();
     }
@@ -130,6 +135,14 @@ pub(super) fn quote(word: &str) -> String {
         (true, false) => format!("'{one_line}'"),
         (true, true) => format!("\"{}\"", one_line.replace('"', "'")),
     }
+}
+
+/// What a writer writes.
+pub(super) fn written(write: impl FnOnce(&mut String) -> std::fmt::Result) -> String {
+    let mut text = String::new();
+    // A string takes everything: its writer never fails.
+    let _ = write(&mut text);
+    text
 }
 
 #[cfg(test)]

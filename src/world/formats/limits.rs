@@ -15,9 +15,11 @@ pub(super) const MAX_WALLS: usize = 1_000_000;
 /// Poses pushed on the stack of a world file.
 pub(super) const MAX_PUSHES: usize = 1_000;
 /// Cells of a maze.
-pub(super) const MAX_MAZE_CELLS: usize = 4_000_000;
+pub(super) const MAX_MAZE_CELLS: usize = 1_000_000;
 /// Robots and objects placed by a simulation script.
 pub(super) const MAX_PLACED: usize = 100_000;
+/// Lines of a simulation script that say something.
+pub(super) const MAX_STATEMENTS: usize = 200_000;
 /// Files named by a simulation script.
 pub(super) const MAX_DEFINITIONS: usize = 1_000;
 /// Solid parts and sensors of a robot or an object.

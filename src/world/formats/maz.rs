@@ -49,7 +49,7 @@ impl Maze {
     /// The cell size of files that state none, in metres.
     pub const DEFAULT_CELL: f64 = 0.360;
 
-    /// A maze without walls, of at least one column; `None` if it has more than four million cells.
+    /// A maze without walls, of at least one column; `None` if it has more than a million cells.
     pub fn new(columns: usize, rows: usize, cell: f64) -> Option<Self> {
         let (columns, lines) = (columns.max(1), rows.checked_add(1)?);
         let size = (columns + 1).checked_mul(lines).filter(|&size| size <= MAX_MAZE_CELLS)?;
@@ -221,14 +221,24 @@ impl<'a> Picture<'a> {
         }
         if number::looks_like_number(bare) {
             let size = cell_size(bare, self.notes.file, number, text)?;
+            self.check_count(number, self.sizes.len())?;
             self.sizes.push((number, self.rows.len(), size));
         } else if text.starts_with(['|', '_']) || text.starts_with(char::is_whitespace) {
+            self.check_count(number, self.rows.len())?;
             self.rows.push((number, text.trim_end()));
         } else {
             let message = format!("{} is no row of a maze; skipped", shown(content));
             self.notes.warn(Location { line: number, column: 1 }, message);
         }
         Ok(())
+    }
+
+    fn check_count(&self, line: usize, count: usize) -> Result<(), FormatError> {
+        if count < MAX_MAZE_CELLS {
+            return Ok(());
+        }
+        let expected = format!("at most {MAX_MAZE_CELLS} lines");
+        Err(FormatError::new(self.notes.file, Location { line, column: 1 }, "one more line", expected))
     }
 
     fn finish(mut self) -> Result<Parsed<Maze>, FormatError> {

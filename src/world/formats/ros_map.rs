@@ -12,7 +12,8 @@
 //! A pixel of brightness v, 0 to 255, has the occupancy p = (255 - v) / 255, or v / 255 if negated. *Trinary* knows
 //! free, occupied and unknown. *Scale* turns what lies between the thresholds into percent, and transparent pixels
 //! into unknown ones. *Raw* takes v itself as percent, and more than 100 as unknown. The brightness of a colour is the
-//! mean of its channels, to which *trinary* counts the opacity.
+//! mean of red, green and blue. (Some map servers count the opacity as a fourth channel in mode *trinary*, which makes
+//! opaque pixels brighter than they look; this reader does not.)
 
 use std::fmt::Write as _;
 use std::io::Cursor;
@@ -76,12 +77,13 @@ impl RosMap {
         }
     }
 
-    /// The occupancy in percent of a pixel, `None` if unknown. `brightness` is 0 to 1.
+    /// The occupancy in percent of a pixel, `None` if unknown. `brightness` is 0 to 255.
     fn occupancy(&self, brightness: f64, transparent: bool) -> Option<u8> {
-        let occupied = if self.negate { brightness } else { 1.0 - brightness };
+        let paint = if self.negate { brightness } else { 255.0 - brightness };
+        let occupied = paint / 255.0;
         let (high, low) = (self.occupied_threshold, self.free_threshold);
         let percent = match self.mode {
-            Mode::Raw => (brightness * 255.0).round(),
+            Mode::Raw => brightness.round(),
             Mode::Scale if transparent => return None,
             _ if occupied > high => 100.0,
             _ if occupied < low => 0.0,
@@ -304,6 +306,10 @@ fn decode_image(source: &SourceFile) -> Result<DynamicImage, FormatError> {
         };
         error(format!("a broken image ({e})"), expected)
     })?;
+    if decoded.width() == 0 || decoded.height() == 0 {
+        let found = format!("an image of {} by {} pixels", decoded.width(), decoded.height());
+        return Err(error(found, "at least one pixel"));
+    }
     let cells = u64::from(decoded.width()) * u64::from(decoded.height());
     if cells > OccupancyGrid::MAX_CELLS as u64 {
         return Err(error(format!("an image of {cells} pixels"), "at most 33554432 pixels"));
@@ -315,10 +321,8 @@ impl RosMap {
     fn fill(&mut self, pixels: &DynamicImage) {
         let grays = pixels.as_luma8();
         // Every gray value once, in place of a division for each pixel.
-        let table: Vec<Option<u8>> =
-            (0..=255u8).map(|v| self.occupancy(f64::from(v) / 255.0, false)).collect();
+        let table: Vec<Option<u8>> = (0..=255u8).map(|v| self.occupancy(f64::from(v), false)).collect();
         let colours = if grays.is_none() { Some(pixels.to_rgba8()) } else { None };
-        let has_alpha = pixels.color().has_alpha();
         let height = self.grid.height();
         for row in 0..height {
             let y = (height - 1 - row) as u32;
@@ -326,7 +330,7 @@ impl RosMap {
                 let x = column as u32;
                 let percent = match (grays, &colours) {
                     (Some(gray), _) => table[usize::from(gray.get_pixel(x, y)[0])],
-                    (None, Some(colours)) => self.colour_occupancy(colours.get_pixel(x, y).0, has_alpha),
+                    (None, Some(colours)) => self.colour_occupancy(colours.get_pixel(x, y).0),
                     (None, None) => None,
                 };
                 self.grid.set_occupancy(column, row, percent);
@@ -334,11 +338,8 @@ impl RosMap {
         }
     }
 
-    fn colour_occupancy(&self, [r, g, b, a]: [u8; 4], has_alpha: bool) -> Option<u8> {
-        let sum = f64::from(r) + f64::from(g) + f64::from(b);
-        let mean =
-            if has_alpha && self.mode == Mode::Trinary { (sum + f64::from(a)) / 4.0 } else { sum / 3.0 };
-        self.occupancy(mean / 255.0, a != 255)
+    fn colour_occupancy(&self, [r, g, b, a]: [u8; 4]) -> Option<u8> {
+        self.occupancy((f64::from(r) + f64::from(g) + f64::from(b)) / 3.0, a != 255)
     }
 }
 
@@ -405,7 +406,7 @@ impl RosMap {
         let mut shades = [None; 102];
         // From both ends to the middle, so that the plain values, black and white, win.
         for v in (0..128u8).flat_map(|v| [127 - v, 128 + v]) {
-            shades[slot(self.occupancy(f64::from(v) / 255.0, false))] = Some(v);
+            shades[slot(self.occupancy(f64::from(v), false))] = Some(v);
         }
         let (width, height) = (self.grid.width() as u32, self.grid.height() as u32);
         let mut gray = GrayImage::new(width, height);
@@ -440,3 +441,7 @@ pub fn save(map: &RosMap, path: impl AsRef<Path>) -> Result<(), FormatError> {
     write(&path.with_file_name("").join(&map.image), &image)?;
     write(path, print(map).as_bytes())
 }
+
+#[cfg(test)]
+#[path = "ros_map_tests.rs"]
+mod tests;

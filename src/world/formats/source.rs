@@ -138,3 +138,83 @@ pub(super) fn check_length(text: &str, file: &str) -> Result<(), FormatError> {
     let expected = format!("a file of at most {} MiB", MAX_TEXT_BYTES >> 20);
     Err(FormatError::new(file, Location::START, "a larger file", expected))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A folder that goes away with the test.
+    struct Folder(PathBuf);
+
+    impl Folder {
+        fn new(name: &str) -> Self {
+            let folder = std::env::temp_dir().join(format!("roverlab-{name}-{}", std::process::id()));
+            for inner in ["home/worlds", "project/scripts"] {
+                std::fs::create_dir_all(folder.join(inner)).unwrap();
+            }
+            Self(folder)
+        }
+
+        fn write(&self, name: &str, text: &str) {
+            std::fs::write(self.0.join(name), text).unwrap();
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = std::fs::remove_dir_all(&self.0);
+        }
+    }
+
+    #[test]
+    fn files_are_looked_up_in_order() {
+        let folder = Folder::new("look-up");
+        folder.write("home/worlds/a.wld", "home");
+        folder.write("home/worlds/b.wld", "home");
+        folder.write("project/b.wld", "project");
+        folder.write("project/scripts/b.wld", "scripts");
+        let mut files = DiskFiles::with_home(Some(folder.0.join("home")));
+        let script = folder.0.join("project/scripts/x.sim").display().to_string();
+        let mut read = |reference: &str| {
+            let found = files.read(reference, &script, 100);
+            found.map(|file| String::from_utf8(file.bytes).unwrap()).map_err(|error| error.kind())
+        };
+        let absolute = folder.0.join("project/b.wld").display().to_string();
+        for (reference, expected) in [
+            (absolute.as_str(), "project"),
+            ("b.wld", "scripts"),
+            (r"..\b.wld", "project"),
+            (r"./../scripts\b.wld", "scripts"),
+            ("worlds/a.wld", "home"),
+            ("$HOME/worlds/b.wld", "home"),
+            (r"${HOME}\worlds\b.wld", "home"),
+            ("~/worlds/b.wld", "home"),
+            (r"%sim%\worlds\a.wld", "home"),
+            ("%SIM%b.wld", "scripts"),
+        ] {
+            assert_eq!(read(reference).as_deref(), Ok(expected), "{reference}");
+        }
+        for nowhere in ["c.wld", "worlds", "", "%sim%", "%€"] {
+            assert_eq!(read(nowhere), Err(io::ErrorKind::NotFound), "{nowhere}");
+        }
+    }
+
+    #[test]
+    fn long_files_and_folders_are_refused() {
+        let folder = Folder::new("limits");
+        folder.write("home/long", "12345");
+        let kind =
+            |path: &str, limit| read_limited(&folder.0.join(path), limit).map_err(|error| error.kind());
+        assert_eq!(kind("home/long", 5), Ok(b"12345".to_vec()));
+        assert_eq!(kind("home/long", 4), Err(io::ErrorKind::FileTooLarge));
+        assert_eq!(kind("home", 4), Err(io::ErrorKind::IsADirectory));
+    }
+
+    #[test]
+    fn old_files_are_latin_1() {
+        let mut notes = Notes::new("x.sim");
+        assert_eq!(decode(b"# ok\n# K\xe4fig".to_vec(), &mut notes).unwrap(), "# ok\n# K\u{e4}fig");
+        let warnings = notes.finish(()).warnings;
+        assert_eq!(warnings[0].to_string(), "x.sim:2:1: not UTF-8; read as Latin-1");
+    }
+}

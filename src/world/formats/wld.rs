@@ -18,7 +18,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use super::args::Args;
-use super::error::{FormatError, Notes, Parsed};
+use super::error::{FormatError, Location, Notes, Parsed};
 use super::lexer::{self, Line, quote};
 use super::limits::{MAX_METRES, MAX_PUSHES, MAX_WALLS};
 use super::number::{self, degrees, millimetres};
@@ -162,6 +162,10 @@ impl<'f> Reader<'f> {
             let ends = self.world.walls.iter().flat_map(|w| [w.line.a, w.line.b]);
             ends.map(|p| axis(&p)).fold(0.0, f64::max)
         };
+        if self.width.is_none() || self.height.is_none() {
+            let message = "no `floor` line; the floor reaches as far as the walls";
+            self.notes.warn(Location::START, message);
+        }
         let width = self.width.unwrap_or_else(|| reach(|p| p.x));
         let height = self.height.unwrap_or_else(|| reach(|p| p.y));
         self.world.floor = Aabb::new(Point::origin(), Point::new(width, height));
@@ -206,9 +210,7 @@ fn pose(args: &mut Args<'_, '_>) -> Result<Pose, FormatError> {
 /// The format's floors begin at (0, 0): of one that begins elsewhere only the upper right corner is kept. Objects,
 /// marks and places are left out.
 pub fn print(world: &World) -> String {
-    let mut text = String::new();
-    write_world(&mut text, world).expect("writing to a string does not fail");
-    text
+    lexer::written(|text| write_world(text, world))
 }
 
 fn write_world(text: &mut String, world: &World) -> std::fmt::Result {

@@ -5,6 +5,9 @@ use saphyr_parser::{Event, Parser, ScalarStyle, Span};
 use super::error::{FormatError, Location};
 use super::lexer::shown;
 
+/// Keys of a file.
+const MAX_KEYS: usize = 1000;
+
 /// A scalar with its place.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Scalar {
@@ -46,6 +49,17 @@ pub(super) fn mapping(text: &str, file: &str) -> Result<Vec<(Scalar, Value)>, Fo
             (Event::MappingEnd, _) => return Ok(entries),
             (event, at) => reader.scalar(event, at, "a key")?,
         };
+        if entries.iter().any(|(other, _): &(Scalar, Value)| other.text == key.text) {
+            return Err(FormatError::new(
+                file,
+                key.at,
+                format!("a second {}", shown(&key.text)),
+                "each key once",
+            ));
+        }
+        if entries.len() == MAX_KEYS {
+            return Err(FormatError::new(file, key.at, "one more key", format!("at most {MAX_KEYS} keys")));
+        }
         let value = reader.value()?;
         entries.push((key, value));
     }
@@ -79,6 +93,10 @@ impl<'a> Reader<'a> {
         loop {
             match self.next()? {
                 (Event::SequenceEnd, _) => return Ok(Value::List(list, at)),
+                (_, at) if list.len() == MAX_KEYS => {
+                    let expected = format!("at most {MAX_KEYS} values");
+                    return Err(FormatError::new(self.file, at, "one more value", expected));
+                }
                 (event, at) => list.push(self.scalar(event, at, "a value")?),
             }
         }
@@ -99,6 +117,7 @@ impl<'a> Reader<'a> {
             Event::SequenceStart(..) => "a list".into(),
             Event::MappingStart(..) => "keys with values".into(),
             Event::Alias(_) => "an alias".into(),
+            Event::SequenceEnd => "the end of a list".into(),
             _ => "the end of the file".into(),
         };
         FormatError::new(self.file, at, found, expected)

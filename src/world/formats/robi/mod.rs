@@ -51,6 +51,8 @@
 mod mounts;
 mod parts;
 mod read;
+#[cfg(test)]
+mod tests;
 mod write;
 
 pub use read::parse;

@@ -64,7 +64,7 @@ impl Raw {
 }
 
 /// The columns of a file whose sensors have these names and numbers.
-pub(super) fn columns<'n>(sensors: impl Iterator<Item = (&'n str, Raw)> + Clone) -> Columns {
+pub(super) fn columns<'n>(sensors: &(impl Iterator<Item = (&'n str, Raw)> + Clone)) -> Columns {
     let turned = |index: usize| sensors.clone().any(|(_, raw)| raw.rotation[index] != 0.0);
     let ahead = |(name, raw): (&str, Raw)| {
         name.to_ascii_uppercase().contains("FRONT") && raw.place[0] == 0.0 && raw.place[1] != 0.0

@@ -98,7 +98,7 @@ impl<'f> Reader<'f> {
             "name" => self.spec.name = args.name("a name")?,
             "model" => self.model(&mut args)?,
             "collider" => {
-                self.check_parts(line, self.spec.body.colliders.len())?;
+                check_parts(line, self.spec.body.colliders.len())?;
                 let collider = parts::collider(line, &mut args)?;
                 self.spec.body.colliders.push(collider);
             }
@@ -215,7 +215,7 @@ impl<'f> Reader<'f> {
     }
 
     fn psd(&mut self, line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<(), FormatError> {
-        self.check_parts(line, self.psds.len())?;
+        check_parts(line, self.psds.len())?;
         let shared = mounts::number_first(line);
         let mut id = 0;
         if shared {
@@ -282,10 +282,6 @@ impl<'f> Reader<'f> {
         Ok(())
     }
 
-    fn check_parts(&self, line: &Line<'_>, count: usize) -> Result<(), FormatError> {
-        if count < MAX_PARTS { Ok(()) } else { Err(line.error(0, format!("at most {MAX_PARTS} of them"))) }
-    }
-
     fn finish(mut self) -> Result<Parsed<RobotSpec>, FormatError> {
         let Some(drive) = self.drive else {
             let (found, expected) = ("no `drive` line", "`drive` and the name of a drive");
@@ -305,9 +301,12 @@ impl<'f> Reader<'f> {
         let Wheel { diameter: wheel_diameter, max_speed: max_wheel_speed, ticks: ticks_per_turn, track } =
             wheel;
         if drive == Drive::Differential {
+            // Nothing steers.
+            self.spec.body.turn_axle_height = 0.0;
             return Ok(DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn });
         }
-        let wheelbase = self.turn_axle.map_or(track, |ahead| ahead - self.spec.body.axle[0]);
+        let ahead = self.spec.body.axle[0];
+        let wheelbase = self.turn_axle.unwrap_or(ahead + track) - ahead;
         if self.turn_axle.is_none() && drive == Drive::Ackermann {
             self.notes.warn(Location::START, "no `axel turn` line; the axles are as far apart as the wheels");
         }
@@ -338,7 +337,7 @@ impl<'f> Reader<'f> {
     fn place_sensors(&mut self) {
         let ahead = self.spec.body.axle[0];
         let shared = self.psds.iter().filter(|psd| psd.shared).map(|psd| (psd.name.as_str(), psd.raw));
-        let columns = mounts::columns(shared);
+        let columns = mounts::columns(&shared);
         let any_shared = self.psds.iter().any(|psd| psd.shared);
         for psd in std::mem::take(&mut self.psds) {
             let columns = if psd.shared { columns } else { Columns::ForwardLeftUp };
@@ -347,7 +346,7 @@ impl<'f> Reader<'f> {
         }
         if let Some(lidar) = &mut self.spec.lidar {
             if let Some(raw) = self.lidar_mount {
-                let columns = if any_shared { columns } else { mounts::columns(std::iter::once(("", raw))) };
+                let columns = if any_shared { columns } else { mounts::columns(&std::iter::once(("", raw))) };
                 lidar.mount = raw.mount(columns, "", ahead);
             }
             lidar.max_range = self.lidar_range.unwrap_or(lidar.max_range);
@@ -386,4 +385,8 @@ impl<'f> Reader<'f> {
 /// Whether footprint and height say all about the colliders.
 fn says_all(body: &Body, footprint: &Footprint, height: f64) -> bool {
     *body.colliders == [body.collider_of_footprint(footprint, height)]
+}
+
+fn check_parts(line: &Line<'_>, count: usize) -> Result<(), FormatError> {
+    if count < MAX_PARTS { Ok(()) } else { Err(line.error(0, format!("at most {MAX_PARTS} of them"))) }
 }

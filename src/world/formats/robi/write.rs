@@ -1,19 +1,17 @@
 use std::fmt::{Result, Write as _};
 
 use super::super::esobj::model_place;
-use super::super::lexer::quote;
+use super::super::lexer::{self, quote};
 use super::super::number::{self, degrees, millimetres, undo_shift};
 use super::read::DEFAULT_STEERING;
 use crate::world::{CameraSpec, Collider, DriveSpec, Footprint, MotorSpec, PsdSpec, RobotSpec};
 
 /// Writes a robot, so that [`parse`](super::parse) gives it back.
 ///
-/// Sensors are written as `psd ID NAME` with the columns forward, left, up. A sensor on the other side than its name
-/// says comes back on the side of its name.
+/// Sensors are written with the columns forward, left, up. A sensor on the other side than its name says comes back
+/// on the side of its name.
 pub fn print(spec: &RobotSpec) -> String {
-    let mut text = String::new();
-    write_spec(&mut text, spec).expect("writing to a string does not fail");
-    text
+    lexer::written(|text| write_spec(text, spec))
 }
 
 fn write_spec(text: &mut String, spec: &RobotSpec) -> Result {
@@ -133,8 +131,15 @@ fn write_motor(text: &mut String, spec: &RobotSpec) -> Result {
 }
 
 fn write_psd(text: &mut String, psd: &PsdSpec, ahead: f64) -> Result {
-    let place = [undo_shift(psd.mount.x, ahead), psd.mount.y, psd.mount.z].map(millimetres).join(" ");
-    writeln!(text, "psd {} {} {place} 0 {} 0", psd.id, quote(&psd.name), degrees(psd.mount.yaw))?;
+    let forward = undo_shift(psd.mount.x, ahead);
+    let place = [forward, psd.mount.y, psd.mount.z].map(millimetres).join(" ");
+    let (name, yaw) = (quote(&psd.name), degrees(psd.mount.yaw));
+    // A sensor beside the axle that looks ahead would pass for one of the other columns; the older form has one meaning.
+    if forward == 0.0 && psd.mount.y != 0.0 && psd.name.to_ascii_uppercase().contains("FRONT") {
+        writeln!(text, "psd {name} {} {place} {yaw}", psd.id)?;
+    } else {
+        writeln!(text, "psd {} {name} {place} 0 {yaw} 0", psd.id)?;
+    }
     if psd.max_range == PsdSpec::DEFAULT_MAX_RANGE {
         return Ok(());
     }
@@ -155,7 +160,10 @@ fn write_lidar(text: &mut String, spec: &RobotSpec) -> Result {
 
 fn write_camera(text: &mut String, camera: &CameraSpec, ahead: f64) -> Result {
     let mount = &camera.mount;
-    let place = [undo_shift(mount.x, ahead), mount.y, mount.z].map(millimetres).join(" ");
+    let forward = undo_shift(mount.x, ahead);
+    // At exactly 0 the second column would pass for the first.
+    let forward = if forward == 0.0 && mount.y != 0.0 { f64::MIN_POSITIVE } else { forward };
+    let place = [forward, mount.y, mount.z].map(millimetres).join(" ");
     let angles = [mount.yaw, camera.tilt, camera.max_pan, camera.max_tilt].map(degrees).join(" ");
     writeln!(text, "camera {place} {angles}")?;
     let view = degrees(camera.field_of_view);

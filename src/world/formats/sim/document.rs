@@ -42,8 +42,8 @@ pub enum Statement {
     },
     /// `marker`.
     Marker(Marker),
-    /// A line that begins with an unknown word and is no placement: its words.
-    Unknown(Vec<String>),
+    /// A line that begins with an unknown word and is no placement, as written, without its comment.
+    Unknown(String),
 }
 
 /// Where a simulation script places something.

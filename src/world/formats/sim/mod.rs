@@ -25,6 +25,8 @@
 mod document;
 mod read;
 mod resolve;
+#[cfg(test)]
+mod tests;
 mod write;
 
 pub use document::{Position, SimFile, Statement};

@@ -1,6 +1,7 @@
 use super::super::args::Args;
 use super::super::error::{FormatError, Notes, Parsed};
 use super::super::lexer::{self, Line, shown};
+use super::super::limits::MAX_STATEMENTS;
 use super::super::number;
 use super::super::source::check_length;
 use super::document::{Position, SimFile, Statement};
@@ -29,6 +30,11 @@ struct Reader<'f> {
 
 impl Reader<'_> {
     fn line(&mut self, line: &Line<'_>) -> Result<(), FormatError> {
+        if self.script.statements.len() == MAX_STATEMENTS {
+            let mut error = line.error(0, format!("at most {MAX_STATEMENTS} lines"));
+            error.found = "one more line".into();
+            return Err(error);
+        }
         let keyword = line.words[0].text.to_ascii_lowercase();
         if let Some(instead) = legacy(&keyword, line) {
             let message = format!("a line of EyeSim 6, skipped; expected {instead}");
@@ -49,8 +55,7 @@ impl Reader<'_> {
                 Err(error) if is_predefined(&keyword) => return Err(error),
                 Err(error) => {
                     self.script.broken.push((self.script.statements.len(), error));
-                    let words = line.words.iter().map(|word| word.text.to_string()).collect();
-                    self.script.push(Statement::Unknown(words), line.location(0));
+                    self.script.push(Statement::Unknown(line.rest(0).into()), line.location(0));
                     return Ok(());
                 }
             },

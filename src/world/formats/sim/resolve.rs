@@ -1,7 +1,8 @@
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::super::error::{FormatError, Location, Notes, Parsed};
-use super::super::lexer::shown;
+use super::super::lexer::{self, shown};
 use super::super::limits::{MAX_DEFINITIONS, MAX_PLACED, MAX_TEXT_BYTES};
 use super::super::load::{read_world, stem};
 use super::super::source::{FileSource, decode, unreadable};
@@ -10,7 +11,7 @@ use super::document::{Position, SimFile, Statement};
 use super::read::parse_document;
 use crate::geometry::{Pose, units};
 use crate::random::Stream;
-use crate::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
+use crate::world::{Object, ObjectKind, Place, RobotPlacement, RobotSpec, Scene, World};
 
 /// The seed of random headings unless another is given.
 pub const HEADING_SEED: u64 = 0;
@@ -40,8 +41,15 @@ impl SimFile {
         let mut resolver = Resolver {
             script: self,
             notes: Notes::new(file),
+            built_in_robots: ["S4", "LabBot"]
+                .into_iter()
+                .filter_map(RobotSpec::predefined)
+                .map(Arc::new)
+                .collect(),
+            built_in_objects: built_in_objects(),
             robots: Vec::new(),
             objects: Vec::new(),
+            letters: BTreeMap::new(),
             scene: Scene::new(World::walled(DEFAULT_WORLD, DEFAULT_WORLD)),
             headings: Stream::new(seed).child("heading", 0),
         };
@@ -59,8 +67,12 @@ type Definition<T> = (String, Arc<T>);
 struct Resolver<'a> {
     script: &'a SimFile,
     notes: Notes<'a>,
+    built_in_robots: Vec<Arc<RobotSpec>>,
+    built_in_objects: Vec<Arc<ObjectKind>>,
     robots: Vec<Definition<RobotSpec>>,
     objects: Vec<Definition<ObjectKind>>,
+    /// The places of each letter, in lower case, in the order of the maze.
+    letters: BTreeMap<char, Vec<Place>>,
     scene: Scene,
     headings: Stream,
 }
@@ -84,6 +96,9 @@ impl Resolver<'_> {
         let world = read_world(file, self.notes.file, self.script.location(last), files)?;
         self.notes.extend(world.warnings);
         self.scene.world = world.value;
+        for place in &self.scene.world.places {
+            self.letters.entry(place.letter.to_ascii_lowercase()).or_default().push(*place);
+        }
         Ok(())
     }
 
@@ -103,11 +118,12 @@ impl Resolver<'_> {
             Statement::Robot(file) => self.define_robot(file, at, files)?,
             Statement::Object(file) => self.define_object(file, at, files)?,
             Statement::Place { name, at: position, program } => {
-                self.place(name, *position, program.as_deref(), at)?
+                self.place(name, *position, program.as_deref(), at)?;
             }
             Statement::Marker(marker) => self.scene.world.markers.push(*marker),
-            Statement::Unknown(words) => {
-                let name = words.first().map_or("", String::as_str);
+            Statement::Unknown(text) => {
+                let line = lexer::line(self.notes.file, at.line, text)?;
+                let name = line.as_ref().map_or("", |line| line.words[0].text);
                 if self.robot(name).is_some() || self.object(name).is_some() {
                     let broken = self.script.broken.iter().find(|(i, _)| *i == index);
                     let error = broken.map(|(_, error)| error.clone());
@@ -228,14 +244,7 @@ impl Resolver<'_> {
             }
             Position::Letter { letter, heading } => (letter, heading),
         };
-        let places: Vec<_> = self
-            .scene
-            .world
-            .places
-            .iter()
-            .filter(|p| p.letter.eq_ignore_ascii_case(&letter))
-            .copied()
-            .collect();
+        let places = self.letters.get(&letter.to_ascii_lowercase()).cloned().unwrap_or_default();
         if places.is_empty() {
             return Err(self.error(at, format!("the letter `{letter}`"), "a letter that stands in the maze"));
         }
@@ -264,12 +273,14 @@ impl Resolver<'_> {
     }
 
     fn robot(&self, name: &str) -> Option<Arc<RobotSpec>> {
-        let reserved = RobotSpec::predefined(name).map(Arc::new);
-        reserved.or_else(|| find(&self.robots, name, |spec| &spec.name))
+        let reserved = self.built_in_robots.iter().find(|spec| spec.name.eq_ignore_ascii_case(name));
+        reserved.cloned().or_else(|| find(&self.robots, name, |spec| &spec.name))
     }
 
     fn object(&self, name: &str) -> Option<Arc<ObjectKind>> {
-        find(&self.objects, name, |kind| &kind.name).or_else(|| ObjectKind::predefined(name).map(Arc::new))
+        let built_in =
+            || self.built_in_objects.iter().find(|kind| kind.name.eq_ignore_ascii_case(name)).cloned();
+        find(&self.objects, name, |kind| &kind.name).or_else(built_in)
     }
 
     fn warn_unknown(&mut self, name: &str, at: Location) {
@@ -281,6 +292,10 @@ impl Resolver<'_> {
     fn error(&self, at: Location, found: String, expected: &str) -> FormatError {
         FormatError::new(self.notes.file, at, found, expected)
     }
+}
+
+fn built_in_objects() -> Vec<Arc<ObjectKind>> {
+    ["can", "soccer", "golf", "crate"].into_iter().filter_map(ObjectKind::predefined).map(Arc::new).collect()
 }
 
 /// The last definition that states a name, or else the last whose file is called so.

@@ -1,19 +1,13 @@
 use std::fmt::{Result, Write as _};
 
-use super::super::lexer::quote;
+use super::super::lexer::{self, quote};
 use super::super::number::{self, degrees, millimetres};
 use super::document::{Position, SimFile, Statement};
 use crate::world::Marker;
 
 /// Writes a script, so that [`parse_document`](super::parse_document) gives it back.
 pub fn print(script: &SimFile) -> String {
-    let mut text = String::new();
-    script
-        .statements
-        .iter()
-        .try_for_each(|s| write_statement(&mut text, s))
-        .expect("writing to a string does not fail");
-    text
+    lexer::written(|text| script.statements.iter().try_for_each(|statement| write_statement(text, statement)))
 }
 
 fn write_statement(text: &mut String, statement: &Statement) -> Result {
@@ -35,10 +29,7 @@ fn write_statement(text: &mut String, statement: &Statement) -> Result {
             }
             writeln!(text)
         }
-        Statement::Unknown(words) => {
-            let words: Vec<String> = words.iter().map(|word| quote(word)).collect();
-            writeln!(text, "{}", words.join(" "))
-        }
+        Statement::Unknown(line) => writeln!(text, "{}", line.replace(['\n', '\r'], " ")),
     }
 }
 

@@ -1,0 +1,198 @@
+use std::path::Path;
+use std::sync::Arc;
+
+use roverlab::geometry::{Aabb, Point, Pose, units};
+use roverlab::world::formats::{self, FormatError, Parsed};
+use roverlab::world::space::{Outline, Solid, Space, Span};
+use roverlab::world::{Object, RobotPlacement, RobotSpec, Scene, Shape};
+
+use super::{CommonArgs, Failure};
+
+/// A robot in a scene with a place to go: the first robot is the one that drives, the others stand.
+#[derive(Debug, Clone)]
+pub(crate) struct Trip {
+    pub(crate) scene: Scene,
+    /// Where the robot is to go, in the world.
+    pub(crate) goal: Point,
+}
+
+/// A robot nearer to something than this many metres touches it.
+const TOUCHING: f64 = 5e-4;
+/// Metres of any coordinate that make sense for a goal.
+const FARTHEST: f64 = 1e6;
+
+impl Trip {
+    /// What drives.
+    pub(crate) fn spec(&self) -> &RobotSpec {
+        &self.scene.robots[0].spec
+    }
+
+    /// Where it starts, in the world.
+    pub(crate) fn start(&self) -> Pose {
+        self.scene.robots[0].pose
+    }
+
+    /// Metres from start to goal, as the crow flies.
+    pub(crate) fn distance(&self) -> f64 {
+        self.start().distance_to(self.goal)
+    }
+
+    /// Simulated seconds that are generous for finding the goal, or that there is no way to it: the time for several
+    /// rounds along both sides of every wall and for the way itself, and ten minutes at least.
+    pub(crate) fn generous_time_limit(&self) -> f64 {
+        let walls: f64 = self.scene.world.walls.iter().map(|wall| wall.line.length()).sum();
+        let objects: f64 =
+            self.scene.world.objects.iter().map(|object| 4.0 * object.kind.shape.bounding_radius()).sum();
+        (40.0 * (walls + objects) + 20.0 * self.distance()).ceil().clamp(600.0, 1e6)
+    }
+}
+
+impl CommonArgs {
+    /// The trip that the options describe: `--world`, or `own` without it, with the robot, the start and the goal
+    /// that the options give, or else the world.
+    ///
+    /// A `.sim` gives its first robot and its first marker; a `.maz` the letters S and G; a `.wld` its `position`.
+    pub(crate) fn trip(&self, own: impl FnOnce() -> Scene) -> Result<Trip, Failure> {
+        let mut scene = match &self.world {
+            Some(file) => self.parsed(formats::load_scene(file))?,
+            None => own(),
+        };
+        let mut robot = self.driver(&scene)?;
+        if let Some(file) = &self.robot {
+            robot.spec = Arc::new(self.parsed(formats::load_robot(file))?);
+        }
+        match scene.robots.first_mut() {
+            Some(first) => *first = robot,
+            None => scene.robots.push(robot),
+        }
+        let goal = self.destination(&scene)?;
+        let trip = Trip { scene, goal };
+        self.check_places(&trip)?;
+        Ok(trip)
+    }
+
+    /// The world's name in messages.
+    fn world_name(&self) -> String {
+        self.world.as_deref().map_or("the example's own world".into(), |file| file.display().to_string())
+    }
+
+    /// What a file says. Tells its warnings.
+    fn parsed<T>(&self, parsed: Result<Parsed<T>, FormatError>) -> Result<T, Failure> {
+        let parsed = parsed.map_err(Failure::input)?;
+        for warning in &parsed.warnings {
+            self.warn(warning);
+        }
+        Ok(parsed.value)
+    }
+
+    /// The robot that drives, at its start.
+    fn driver(&self, scene: &Scene) -> Result<RobotPlacement, Failure> {
+        let mut robot = match (scene.robots.first(), scene.world.start, self.start) {
+            (Some(robot), ..) => robot.clone(),
+            (None, Some(pose), _) | (None, None, Some(pose)) => {
+                RobotPlacement::new(Arc::new(RobotSpec::s4()), pose)
+            }
+            (None, None, None) => {
+                return Err(Failure::input(format!(
+                    "{}: found no start; expected --start X,Y,DEG, a robot in a .sim, `position` in a .wld or the \
+                     letter S in a .maz",
+                    self.world_name()
+                )));
+            }
+        };
+        robot.pose = self.start.unwrap_or(robot.pose);
+        Ok(robot)
+    }
+
+    fn destination(&self, scene: &Scene) -> Result<Point, Failure> {
+        let marker = scene.world.markers.first().map(|marker| marker.position);
+        let letter = scene.world.places.iter().find(|place| place.letter.eq_ignore_ascii_case(&'g'));
+        self.goal.or(marker).or(letter.map(|place| place.position)).ok_or_else(|| {
+            Failure::input(format!(
+                "{}: found no goal; expected --goal X,Y, a `marker` in a .sim or the letter G in a .maz",
+                self.world_name()
+            ))
+        })
+    }
+
+    fn check_places(&self, trip: &Trip) -> Result<(), Failure> {
+        let start = trip.start();
+        let from = if self.start.is_some() { "--start".into() } else { self.world_name() };
+        let place = in_mm(start.position());
+        if !trip.scene.world.bounds().contains(start.position()) {
+            return Err(Failure::input(format!(
+                "{from}: found a start at {place} mm, outside of the world; expected one {}",
+                within(&trip.scene.world.bounds())
+            )));
+        }
+        if clearance(&trip.scene) <= TOUCHING {
+            let radius = units::to_mm(trip.spec().footprint.bounding_radius());
+            return Err(Failure::input(format!(
+                "{from}: found a start at {place} mm, in a wall, an object or another robot; expected free floor \
+                 around it for a robot of {radius:.0} mm radius"
+            )));
+        }
+        if trip.goal.coords.amax() > FARTHEST {
+            return Err(Failure::input(format!(
+                "--goal: found {} mm; expected coordinates of at most {:.0} mm",
+                in_mm(trip.goal),
+                units::to_mm(FARTHEST)
+            )));
+        }
+        Ok(())
+    }
+
+    /// Fails if pictures cannot be written where the options ask for one, before a long run is in vain.
+    pub(crate) fn check_picture(&self) -> Result<(), Failure> {
+        let Some(file) = &self.picture else { return Ok(()) };
+        match file.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+            Some(folder) if !folder.is_dir() => Err(Failure::input(format!(
+                "--picture {}: found no folder {}; expected one that exists",
+                file.display(),
+                Path::display(folder)
+            ))),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn in_mm(point: Point) -> String {
+    let [x, y] = [point.x, point.y].map(|metres| units::to_mm(metres).round() + 0.0);
+    format!("{x}, {y}")
+}
+
+fn within(bounds: &Aabb) -> String {
+    format!("from {} to {} mm", in_mm(bounds.min), in_mm(bounds.max))
+}
+
+/// Metres from the first robot's outline to the nearest wall, object or other robot; 0 in contact.
+fn clearance(scene: &Scene) -> f64 {
+    const NEAR: f64 = 0.1;
+    let mut space = Space::new(&scene.world.walls);
+    for object in &scene.world.objects {
+        space.add(object_solid(object));
+    }
+    for other in &scene.robots[1..] {
+        space.add(robot_solid(other));
+    }
+    let solid = robot_solid(&scene.robots[0]);
+    let span = Span { bottom: solid.bottom, top: solid.top };
+    space.clearance(&solid.outline, &solid.pose, span, NEAR, None)
+}
+
+fn robot_solid(robot: &RobotPlacement) -> Solid {
+    let outline = Outline::from(&robot.spec.footprint);
+    Solid { outline, pose: robot.pose, bottom: robot.elevation, top: robot.elevation + robot.spec.height }
+}
+
+fn object_solid(object: &Object) -> Solid {
+    let outline = match object.kind.shape {
+        Shape::Box { length, width, .. } => {
+            let corner = Point::new(0.5 * length, 0.5 * width);
+            Outline::Rectangle(Aabb::new(-corner, corner))
+        }
+        shape => Outline::Disc { radius: shape.bounding_radius() },
+    };
+    let bottom = object.elevation;
+    Solid { outline, pose: object.pose, bottom, top: bottom + object.kind.shape.height() }
+}

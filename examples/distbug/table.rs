@@ -1,0 +1,194 @@
+use std::fmt::Write as _;
+
+use roverlab::geometry::units;
+use roverlab::nav::DistBugOutcome;
+use serde_json::{Value, json};
+
+use super::Ending;
+use super::campaign::CampaignArgs;
+use super::trial::{Judgement, Run, Trial};
+use crate::common::rounded;
+
+/// What the runs at one level of noise have in common.
+struct Row<'a> {
+    noise: f64,
+    runs: Vec<&'a Run>,
+}
+
+impl<'a> Row<'a> {
+    fn of(trials: &'a [Trial], index: usize, noise: f64) -> Self {
+        Self { noise, runs: trials.iter().map(|trial| &trial.runs[index]).collect() }
+    }
+
+    fn count(&self, pick: impl Fn(&Run) -> bool) -> usize {
+        self.runs.iter().filter(|run| pick(run)).count()
+    }
+
+    fn judged(&self, judgement: Judgement) -> usize {
+        self.count(|run| run.judgement == judgement)
+    }
+
+    fn ended(&self, outcome: DistBugOutcome) -> usize {
+        self.count(|run| run.ending == Ending::Verdict(outcome))
+    }
+
+    fn contacts(&self) -> usize {
+        self.count(|run| run.contacts > 0)
+    }
+
+    /// The share of correct verdicts in percent, rounded down: only all are 100 %.
+    fn percent(&self) -> f64 {
+        (1000.0 * self.judged(Judgement::Correct) as f64 / self.runs.len() as f64).floor() / 10.0
+    }
+
+    /// The mean of path lengths in terms of the shortest ones; `None` without any.
+    fn path_ratio(&self) -> Option<f64> {
+        let ratios: Vec<f64> = self.runs.iter().filter_map(|run| run.path_ratio).collect();
+        (!ratios.is_empty()).then(|| ratios.iter().sum::<f64>() / ratios.len() as f64)
+    }
+
+    /// The worst distance to the goal, in metres, of the runs that took themselves to be there.
+    fn worst_distance(&self) -> Option<f64> {
+        let reached = Ending::Verdict(DistBugOutcome::Reached);
+        let arrived = self.runs.iter().filter(|run| run.ending == reached);
+        arrived.map(|run| run.goal_distance).reduce(f64::max)
+    }
+
+    fn sim_time(&self) -> f64 {
+        self.runs.iter().map(|run| run.sim_time).sum()
+    }
+}
+
+fn rows<'a>(noises: &'a [f64], trials: &'a [Trial]) -> impl Iterator<Item = Row<'a>> {
+    noises.iter().enumerate().map(|(index, &noise)| Row::of(trials, index, noise))
+}
+
+/// The table, and the seeds of the courses that went wrong. Holds nothing that differs between machines.
+pub(crate) fn text(noises: &[f64], trials: &[Trial]) -> String {
+    let mut text = String::from("noise  runs  correct  reached  unreachable  timed out");
+    for (_, name) in Judgement::WRONG {
+        write!(text, "  {name:>8}").expect("writing to a string does not fail");
+    }
+    text.push_str("  contact  path ratio  worst mm   sim s\n");
+    for row in rows(noises, trials) {
+        text.push_str(&line(&row));
+    }
+    for (index, noise) in noises.iter().enumerate() {
+        text.push_str(&wrong_seeds(*noise, index, trials));
+    }
+    text.trim_end().to_owned()
+}
+
+fn line(row: &Row<'_>) -> String {
+    let optional = |value: Option<f64>, digits: usize| value.map_or("-".into(), |v| format!("{v:.digits$}"));
+    let mut line = format!(
+        "{:>5}  {:>4}  {:>6.1}%  {:>7}  {:>11}  {:>9}",
+        row.noise,
+        row.runs.len(),
+        row.percent(),
+        row.ended(DistBugOutcome::Reached),
+        row.ended(DistBugOutcome::Unreachable),
+        row.ended(DistBugOutcome::TimedOut),
+    );
+    for (judgement, _) in Judgement::WRONG {
+        write!(line, "  {:>8}", row.judged(judgement)).expect("writing to a string does not fail");
+    }
+    let (ratio, worst) = (optional(row.path_ratio(), 2), optional(row.worst_distance().map(units::to_mm), 1));
+    format!("{line}  {:>7}  {ratio:>10}  {worst:>8}  {:>6.0}\n", row.contacts(), row.sim_time())
+}
+
+/// The seeds that went wrong at one level of noise, and how; empty if none did.
+fn wrong_seeds(noise: f64, index: usize, trials: &[Trial]) -> String {
+    let wrong: Vec<String> = trials
+        .iter()
+        .map(|trial| (trial.seed, &trial.runs[index]))
+        .filter(|(_, run)| !run.is_clean())
+        .map(|(seed, run)| format!("{seed} ({})", why(run)))
+        .collect();
+    if wrong.is_empty() { String::new() } else { format!("wrong at noise {noise}: {}\n", wrong.join(", ")) }
+}
+
+fn why(run: &Run) -> String {
+    let name =
+        Judgement::WRONG.iter().find(|(judgement, _)| *judgement == run.judgement).map(|(_, name)| *name);
+    match (name, run.contacts) {
+        (Some(name), 0) => name.into(),
+        (Some(name), _) => format!("{name}, contact"),
+        (None, _) => "contact".into(),
+    }
+}
+
+/// The table, what its short words mean, and how fast it all was.
+pub(super) fn with_times(args: &CampaignArgs, trials: &[Trial], wall_time: f64) -> String {
+    let sim_time: f64 = rows(&args.noise, trials).map(|row| row.sim_time()).sum();
+    let factor = sim_time / wall_time.max(1e-9);
+    let mut text = text(&args.noise, trials);
+    text.push_str(
+        "\n\noff: reached, too far from the goal; false r.: reached without a way; false u.: unreachable in spite of \
+         a way; late: no verdict in the time; failed: the robot failed\n",
+    );
+    write!(text, "simulated {sim_time:.0} s in {wall_time:.1} s: {factor:.0} times real time")
+        .expect("writing to a string does not fail");
+    if let Some(folder) = &args.save {
+        write!(
+            text,
+            "\nwrong courses are in {0}: cargo run --release --example distbug -- --world {0}/course-SEED.sim --seed \
+             SEED --noise F",
+            folder.display()
+        )
+        .expect("writing to a string does not fail");
+    }
+    text
+}
+
+/// The same as one JSON object in one line.
+pub(super) fn json(args: &CampaignArgs, trials: &[Trial], wall_time: f64) -> String {
+    let runs = || trials.iter().flat_map(|trial| &trial.runs);
+    let outcome = if runs().all(Run::is_clean) { "passed" } else { "wrong" };
+    let sim_time: f64 = runs().map(|run| run.sim_time).sum();
+    let levels: Vec<Value> =
+        rows(&args.noise, trials).enumerate().map(|(index, row)| level(&row, index, trials)).collect();
+    // Written piece by piece, because an object of `serde_json` is sorted by name, and the outcome comes early.
+    let fields = [
+        ("example", json!("distbug_campaign")),
+        ("outcome", json!(outcome)),
+        ("seed", json!(args.seed)),
+        ("worlds", json!(args.worlds)),
+        ("noise", json!(args.noise)),
+        ("sim_time_s", json!(rounded(sim_time))),
+        ("wall_time_s", json!(rounded(wall_time))),
+        ("real_time_factor", json!(rounded(sim_time / wall_time.max(1e-9)))),
+        ("collisions", json!(runs().map(|run| u64::from(run.contacts)).sum::<u64>())),
+        ("levels", Value::Array(levels)),
+    ];
+    let fields = fields.map(|(name, value)| format!("\"{name}\":{value}"));
+    format!("{{{}}}", fields.join(","))
+}
+
+fn level(row: &Row<'_>, index: usize, trials: &[Trial]) -> Value {
+    let seeds = |pick: &dyn Fn(&Run) -> bool| {
+        trials.iter().filter(|trial| pick(&trial.runs[index])).map(|trial| trial.seed).collect::<Vec<_>>()
+    };
+    let wrong = |judgement: Judgement| seeds(&|run: &Run| run.judgement == judgement);
+    json!({
+        "noise": row.noise,
+        "runs": row.runs.len(),
+        "correct": row.judged(Judgement::Correct),
+        "correct_percent": row.percent(),
+        "reached": row.ended(DistBugOutcome::Reached),
+        "unreachable": row.ended(DistBugOutcome::Unreachable),
+        "timed_out": row.ended(DistBugOutcome::TimedOut),
+        "runs_with_contact": row.contacts(),
+        "mean_path_ratio": row.path_ratio().map(rounded),
+        "worst_goal_distance_mm": row.worst_distance().map(|distance| rounded(units::to_mm(distance))),
+        "sim_time_s": rounded(row.sim_time()),
+        "wrong_seeds": {
+            "too_far_from_goal": wrong(Judgement::FarFromGoal),
+            "reached_without_a_way": wrong(Judgement::NotReached),
+            "unreachable_in_spite_of_a_way": wrong(Judgement::NotUnreachable),
+            "timed_out": wrong(Judgement::TimedOut),
+            "failed": wrong(Judgement::Failed),
+            "contact": seeds(&|run: &Run| run.contacts > 0),
+        },
+    })
+}

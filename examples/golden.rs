@@ -1,0 +1,34 @@
+//! Prints the digests of the runs that `tests/golden` keeps, one line each: `cargo run --example golden`. With a
+//! scenario's name, prints that run's log: `cargo run --example golden -- arcs`. For platforms without a test harness.
+
+#[path = "../tests/golden/scenarios.rs"]
+mod scenarios;
+
+use std::process::ExitCode;
+
+use scenarios::{SCENARIOS, Scenario, digest};
+
+fn main() -> ExitCode {
+    let name = std::env::args().nth(1);
+    let asked = |scenario: &&Scenario| name.as_ref().is_none_or(|name| name == scenario.name);
+    let mut status = if SCENARIOS.iter().any(|scenario| asked(&scenario)) { 0 } else { 2 };
+    for scenario in SCENARIOS.iter().filter(asked) {
+        if !scenario.runs_here() {
+            eprintln!("{}: left out, there are no threads on this platform", scenario.name);
+            continue;
+        }
+        match scenario.log() {
+            Ok(log) if name.is_some() => print!("{log}"),
+            Ok(log) => println!("{} {:016x}", scenario.name, digest(&log)),
+            Err(error) => {
+                eprintln!("{}: {error}", scenario.name);
+                status = 1;
+            }
+        }
+    }
+    if status == 2 {
+        let names: Vec<&str> = SCENARIOS.iter().map(|scenario| scenario.name).collect();
+        eprintln!("no such scenario; expected one of {}", names.join(", "));
+    }
+    ExitCode::from(status)
+}
