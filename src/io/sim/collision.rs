@@ -208,3 +208,31 @@ fn push_out(contacts: &[Contact]) -> Vector {
     }
     push
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::direction;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_push_frees_from_two_faces_of_a_corner(
+            angle in -3.0..3.0f64, between in 0.0..1.5f64, depths in (0.0..0.1f64, 0.0..0.1f64),
+        ) {
+            let contact = |angle, depth| Contact { normal: direction(angle), depth, with: None };
+            let contacts = [contact(angle, depths.0), contact(angle + between, depths.1)];
+            let push = push_out(&contacts);
+            for contact in contacts {
+                prop_assert!(push.dot(&contact.normal) >= contact.depth - 1e-12);
+            }
+            prop_assert!(push.norm() <= depths.0 + depths.1);
+        }
+    }
+
+    #[test]
+    fn a_face_that_is_met_twice_pushes_once() {
+        let contact = Contact { normal: Vector::y(), depth: 0.01, with: None };
+        assert_eq!(push_out(&[contact, contact]), Vector::new(0.0, 0.01));
+    }
+}

@@ -232,3 +232,57 @@ fn floor(x: f64) -> i64 {
     let whole = x as i64;
     whole - i64::from(x < whole as f64)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn drivetrain(noise: &NoiseModel, seed: u64) -> Drivetrain {
+        let spec = DifferentialSpec {
+            wheel_diameter: 0.05,
+            track: 0.1,
+            max_wheel_speed: 60.0,
+            ticks_per_turn: 500.0,
+        };
+        Drivetrain::new(&spec, MotorSpec::default(), noise, false, Stream::new(seed))
+    }
+
+    proptest! {
+        #[test]
+        fn floors_are_floors(x in -1e9..1e9f64) {
+            prop_assert_eq!(floor(x) as f64, x.floor());
+            prop_assert_eq!(floor(x.round()) as f64, x.round());
+        }
+
+        #[test]
+        fn counts_are_whole_ticks_below_the_roll(speeds in prop::collection::vec(-1.0..1.0f64, 1..200)) {
+            let mut drive = drivetrain(&NoiseModel::ideal(), 1);
+            for speed in speeds {
+                drive.step([speed, -speed]);
+                for wheel in [0, 1] {
+                    let ahead = drive.roll[wheel] - drive.measured()[wheel];
+                    prop_assert!(ahead > -1e-12 && ahead < drive.tick_length + 1e-12, "{ahead}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn standing_wheels_draw_no_random_numbers() {
+        let mut drive = drivetrain(&NoiseModel::real(), 1);
+        let mut before = drive.stream.clone();
+        assert_eq!(drive.step([0.0; 2]), Displacement::default());
+        assert_eq!(drive.stream.bits(), before.bits());
+    }
+
+    #[test]
+    fn the_strongest_noise_leaves_wheels_and_a_track() {
+        let strongest =
+            NoiseModel { wheel_scale: 1.0, wheel_mismatch: 1.0, track: 1.0, ..NoiseModel::ideal() };
+        for seed in 0..200 {
+            let errors = drivetrain(&strongest, seed).errors;
+            assert!(errors.wheel.iter().all(|&factor| factor >= 0.1) && errors.actual.track >= 0.01);
+        }
+    }
+}
