@@ -374,8 +374,7 @@ impl<'f> Reader<'f> {
             | DriveSpec::Omni { wheel_diameter, track, .. } => 0.5 * (track + wheel_diameter),
         };
         let fallback = (Footprint::Disc { radius: wheels }, DEFAULT_HEIGHT);
-        (self.spec.footprint, self.spec.height) =
-            self.outline.take().or(derived).unwrap_or(fallback);
+        (self.spec.footprint, self.spec.height) = self.outline.take().or(derived).unwrap_or(fallback);
         if says_all(body, &self.spec.footprint, self.spec.height) {
             body.colliders.clear();
         }
