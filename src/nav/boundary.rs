@@ -128,3 +128,68 @@ pub(super) fn nearer_side(
     };
     if turn(WallSide::Left) < turn(WallSide::Right) { WallSide::Left } else { WallSide::Right }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DISTANCES: FollowDistances = FollowDistances { least: 0.07, wished: 0.1, step: 0.1 };
+
+    fn seeing(points: &[Point]) -> Surroundings {
+        let mut surroundings = Surroundings::default();
+        surroundings.update(points.iter().copied(), 0.24);
+        surroundings
+    }
+
+    /// Points a centimetre apart from `a` to `b`.
+    fn wall(a: (f64, f64), b: (f64, f64)) -> Vec<Point> {
+        let (a, b) = (Point::new(a.0, a.1), Point::new(b.0, b.1));
+        let count = ((b - a).norm() / 0.01).ceil() as usize;
+        (0..=count).map(|i| a + (b - a) * (i as f64 / count as f64)).collect()
+    }
+
+    fn heading(side: WallSide, anchor: (f64, f64), points: &[Point]) -> Option<f64> {
+        let mut follower = BoundaryFollower::new(side, DISTANCES, Point::new(anchor.0, anchor.1));
+        follower.heading(&Pose::default(), &seeing(points))
+    }
+
+    #[test]
+    fn a_wall_at_the_wished_distance_is_followed_along() {
+        let right = wall((-0.5, -0.1), (0.5, -0.1));
+        assert!(heading(WallSide::Right, (0.0, -0.1), &right).unwrap().abs() < 0.2);
+        let left = wall((-0.5, 0.1), (0.5, 0.1));
+        assert!(heading(WallSide::Left, (0.0, 0.1), &left).unwrap().abs() < 0.2);
+    }
+
+    #[test]
+    fn both_sides_mirror_each_other() {
+        let corner = [wall((-0.5, -0.09), (0.15, -0.09)), wall((0.15, -0.09), (0.15, 0.3))].concat();
+        let mirrored: Vec<Point> = corner.iter().map(|p| Point::new(p.x, -p.y)).collect();
+        let right = heading(WallSide::Right, (0.0, -0.09), &corner).unwrap();
+        let left = heading(WallSide::Left, (0.0, 0.09), &mirrored).unwrap();
+        assert!((right + left).abs() < 1e-9, "{right} {left}");
+        assert!(right > 1.0, "an inner corner turns the robot away: {right}");
+    }
+
+    #[test]
+    fn a_passage_of_one_and_a_half_widths_is_entered_and_a_narrower_one_is_not() {
+        // The robot stands before the middle of a gap in the wall to its right.
+        let before_gap = |width: f64| {
+            let half = 0.5 * width;
+            let walls = [wall((-0.5, -0.1), (-half, -0.1)), wall((half, -0.1), (0.5, -0.1))].concat();
+            heading(WallSide::Right, (-half, -0.1), &walls).unwrap()
+        };
+        assert!((before_gap(0.18) + FRAC_PI_2).abs() < 0.3, "{}", before_gap(0.18));
+        assert!(before_gap(0.12).abs() < 0.5, "{}", before_gap(0.12));
+    }
+
+    #[test]
+    fn a_box_without_a_way_out_has_no_heading() {
+        let side = 0.06;
+        let walls: Vec<Point> = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (1.0, 1.0)]
+            .windows(2)
+            .flat_map(|w| wall((side * w[0].0, side * w[0].1), (side * w[1].0, side * w[1].1)))
+            .collect();
+        assert_eq!(heading(WallSide::Right, (side, 0.0), &walls), None);
+    }
+}

@@ -78,3 +78,53 @@ impl Surroundings {
             .copied()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::direction;
+    use proptest::prelude::*;
+
+    fn seeing(points: Vec<Point>) -> Surroundings {
+        let mut surroundings = Surroundings::default();
+        surroundings.update(points.into_iter(), 1.0);
+        surroundings
+    }
+
+    fn points() -> impl Strategy<Value = Vec<Point>> {
+        let around = (0.15..0.9f64, -3.1..3.1f64);
+        prop::collection::vec(around.prop_map(|(r, a)| Point::origin() + direction(a) * r), 1..30)
+    }
+
+    proptest! {
+        #[test]
+        fn a_disc_moved_by_its_free_distance_just_touches(points in points(), angle in -3.1..3.1f64) {
+            let (radius, unit) = (0.1, direction(angle));
+            let (free, touched) = seeing(points.clone()).free_distance(unit, radius);
+            let gap = |at: Vector| points.iter().map(|p| (p.coords - at).norm()).fold(f64::INFINITY, f64::min);
+            match touched {
+                Some(_) => prop_assert!((gap(unit * free) - radius).abs() < 1e-9),
+                None => prop_assert!(gap(unit * 0.5) >= radius - 1e-9),
+            }
+        }
+
+        #[test]
+        fn a_step_with_enough_clearance_is_free(points in points(), angle in -3.1..3.1f64) {
+            let surroundings = seeing(points);
+            let (radius, length, unit) = (0.1, 0.2, direction(angle));
+            let (clearance, _) = surroundings.step_clearance(unit, length);
+            let (free, _) = surroundings.free_distance(unit, radius);
+            if clearance >= radius {
+                prop_assert!(free >= length - 1e-9, "{clearance} {free}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_robot_too_near_to_a_wall_may_drive_off_but_not_along() {
+        let wall = (-40..40).map(|i| Point::new(0.01 * f64::from(i), -0.05)).collect();
+        let surroundings = seeing(wall);
+        assert!(surroundings.step_clearance(direction(0.0), 0.1).0 < 0.07);
+        assert_eq!(surroundings.step_clearance(direction(0.8), 0.1).0, f64::INFINITY);
+    }
+}

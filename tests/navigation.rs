@@ -1,0 +1,208 @@
+//! Navigation in the simulator: the scan filter, the scan matcher and DistBug as their users have them.
+
+use std::f64::consts::PI;
+
+use roverlab::geometry::{Point, Pose, Twist, angle_difference};
+use roverlab::io::sim::{NoiseModel, SimOptions, SimRobot, Simulation, Truth};
+use roverlab::io::{Clock, Drive, ErrorKind, Lidar, LidarScan};
+use roverlab::nav::{
+    DistBug, DistBugEvent, DistBugObservation, DistBugOutcome, DistBugParameters, ScanFilter, ScanMatcher,
+};
+use roverlab::world::{RobotSpec, Scene, World};
+
+/// A room with a block in it.
+fn room() -> World {
+    let mut world = World::walled(3.0, 3.0);
+    let block = [(1.8, 1.2), (2.3, 1.2), (2.3, 2.0), (1.8, 2.0)];
+    world.add_loop(&block.map(|(x, y)| Point::new(x, y)));
+    world
+}
+
+fn robot_in(world: World, start: Pose, options: SimOptions) -> (SimRobot, Truth) {
+    let scene = Scene::with_robot(world, RobotSpec::s4(), start);
+    let simulation = Simulation::new(&scene, options).expect("a valid scene");
+    let truth = simulation.truth();
+    (simulation.robot(0).expect("one robot"), truth)
+}
+
+const START: Pose = Pose::new(0.8, 0.8, 0.3);
+
+#[test]
+fn the_filter_takes_most_of_the_noise_out_of_scans_of_a_moving_robot() {
+    let (mut noisy, _) =
+        robot_in(room(), START, SimOptions { noise: ranges_only(0.02), ..SimOptions::default() });
+    let (mut exact, _) = robot_in(room(), START, SimOptions::ideal());
+    let mut filter = ScanFilter::new(0.01);
+    let (mut raw_error, mut filtered_error, mut count) = (0.0, 0.0, 0.0);
+    for step in 0..60 {
+        let scan = noisy.scan().unwrap();
+        let truth = exact.scan().unwrap();
+        filter.update(noisy.pose().unwrap(), &scan).unwrap();
+        if step >= 30 {
+            for ((filtered, raw), exact) in filter.ranges().zip(&scan.ranges).zip(&truth.ranges) {
+                raw_error += (raw - exact).abs();
+                // Beams at an edge belong to one surface or the other: such an error is not noise.
+                filtered_error += (filtered - exact).abs().min(0.1);
+                count += 1.0;
+            }
+        }
+        for robot in [&mut noisy, &mut exact] {
+            robot.set_speed(Twist::new(0.1, 0.4)).unwrap();
+            robot.wait(0.05).unwrap();
+        }
+    }
+    let (raw, filtered) = (raw_error / count, filtered_error / count);
+    assert!(filtered < 0.5 * raw, "{filtered} against {raw}");
+    assert!((filter.noise() - 0.02).abs() < 0.005, "{}", filter.noise());
+}
+
+fn ranges_only(sigma: f64) -> NoiseModel {
+    NoiseModel { range: sigma, ..NoiseModel::ideal() }
+}
+
+#[test]
+fn the_filter_wants_a_full_turn() {
+    let half = LidarScan {
+        angle_min: -0.5 * PI,
+        angle_increment: PI / 180.0,
+        ranges: vec![1.0; 180],
+        ..LidarScan::default()
+    };
+    let error = ScanFilter::new(0.01).update(Pose::default(), &half).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::InvalidInput);
+    assert_eq!(
+        error.to_string(),
+        "lidar scan is 180 beams over 3.14 rad; expected at least 36 beams over a full turn"
+    );
+}
+
+#[test]
+fn matching_scans_takes_back_the_drift_of_odometry() {
+    for seed in 1..=5 {
+        let (mut robot, truth) = robot_in(room(), START, SimOptions::with_noise(2.0, seed));
+        let mut matcher = ScanMatcher::new();
+        let mut filter = ScanFilter::new(0.01);
+        for step in 0..400 {
+            let scan = robot.scan().unwrap();
+            let points: Vec<Point> = scan.points().collect();
+            let corrected = matcher.update(robot.pose().unwrap(), &points);
+            filter.update(corrected, &scan).unwrap();
+            if step >= 12 {
+                matcher.learn(&filter.points().collect::<Vec<_>>());
+            }
+            let ahead = if step % 100 < 60 { 0.15 } else { 0.0 };
+            let twist = if step < 12 { Twist::STOP } else { Twist::new(ahead, 0.8) };
+            robot.set_speed(twist).unwrap();
+            robot.wait(0.05).unwrap();
+        }
+        let measured = robot.pose().unwrap();
+        let odometry = START.compose(&measured);
+        let estimate = START.compose(&matcher.corrected(measured));
+        let actual = truth.pose(0).unwrap();
+        let drift = odometry.distance_to(actual.position());
+        let rest = estimate.distance_to(actual.position());
+        let heading = angle_difference(estimate.heading, actual.heading).abs();
+        let turn_drift = angle_difference(odometry.heading, actual.heading).abs();
+        assert!(
+            rest < 0.02 && heading < 0.02,
+            "seed {seed}: {rest} m, {heading} rad; odometry {drift} m, {turn_drift} rad"
+        );
+        assert!(matcher.references() < 30);
+    }
+}
+
+/// Runs DistBug and returns its verdict, its events and what is true at the end.
+fn run(
+    world: World,
+    start: Pose,
+    goal: Point,
+    options: SimOptions,
+) -> (DistBugOutcome, Vec<DistBugEvent>, Pose, u32) {
+    let (mut robot, truth) = robot_in(world, start, options);
+    let mut bug = DistBug::new(start.to_local(goal), DistBugParameters::default()).unwrap();
+    let mut events = Vec::new();
+    let outcome = bug.run(&mut robot, 300.0, |bug, _| events.extend(bug.take_events())).unwrap();
+    let truth = truth.robot(0).unwrap();
+    (outcome, events, truth.pose, truth.contacts)
+}
+
+#[test]
+fn a_goal_in_sight_is_reached_without_a_hit() {
+    let goal = Point::new(1.2, 2.5);
+    let (outcome, events, pose, contacts) = run(room(), START, goal, SimOptions::ideal());
+    assert_eq!((outcome, contacts), (DistBugOutcome::Reached, 0));
+    assert_eq!(events, [DistBugEvent::End(DistBugOutcome::Reached)]);
+    assert!(pose.distance_to(goal) < 0.05);
+}
+
+#[test]
+fn hits_and_leaves_alternate_and_get_nearer() {
+    let goal = Point::new(2.6, 2.0);
+    for noise in [0.0, 1.0] {
+        let (outcome, events, pose, contacts) = run(room(), START, goal, SimOptions::with_noise(noise, 3));
+        assert_eq!((outcome, contacts), (DistBugOutcome::Reached, 0), "noise {noise}");
+        assert!(pose.distance_to(goal) < 0.05);
+        let kinds: Vec<_> = events.iter().map(std::mem::discriminant).collect();
+        assert!(kinds.windows(2).all(|pair| pair[0] != pair[1]), "{events:?}");
+        assert!(matches!(events[0], DistBugEvent::Hit { .. }));
+    }
+}
+
+#[test]
+fn a_walled_in_goal_is_unreachable() {
+    let mut world = World::walled(3.0, 3.0);
+    let ring: Vec<Point> = (0..24)
+        .map(|i| Point::new(2.0, 2.0) + roverlab::geometry::direction(PI * f64::from(i) / 12.0) * 0.4)
+        .collect();
+    world.add_loop(&ring);
+    for noise in [0.0, 1.0] {
+        let options = SimOptions::with_noise(noise, 2);
+        let (outcome, _, _, contacts) = run(world.clone(), START, Point::new(2.0, 2.0), options);
+        assert_eq!((outcome, contacts), (DistBugOutcome::Unreachable, 0), "noise {noise}");
+    }
+}
+
+#[test]
+fn a_robot_in_a_box_says_so() {
+    let mut world = World::walled(3.0, 3.0);
+    let side = 0.075;
+    let corners = [(-side, -side), (side, -side), (side, side), (-side, side)];
+    world.add_loop(&corners.map(|(x, y)| Point::new(START.x + x, START.y + y)));
+    let (outcome, ..) = run(world, START, Point::new(2.0, 2.0), SimOptions::ideal());
+    assert_eq!(outcome, DistBugOutcome::Unreachable);
+}
+
+#[test]
+fn time_runs_out() {
+    let (mut robot, _) = robot_in(room(), START, SimOptions::ideal());
+    let mut bug = DistBug::new(Point::new(5.0, 0.0), DistBugParameters::default()).unwrap();
+    assert_eq!(bug.run(&mut robot, 1.0, |_, _| {}).unwrap(), DistBugOutcome::TimedOut);
+}
+
+#[test]
+fn bad_parameters_and_readings_are_named() {
+    let parameters = DistBugParameters { step: -1.0, ..DistBugParameters::default() };
+    let error = DistBug::new(Point::origin(), parameters).unwrap_err();
+    assert_eq!(error.to_string(), "STEP is -1; expected a positive, finite number");
+    assert!(DistBug::new(Point::new(f64::NAN, 0.0), DistBugParameters::default()).is_err());
+    let mut bug = DistBug::new(Point::new(1.0, 0.0), DistBugParameters::default()).unwrap();
+    let observation = DistBugObservation {
+        odometry: Pose::new(f64::NAN, 0.0, 0.0),
+        speed: Twist::STOP,
+        scan: &LidarScan::default(),
+    };
+    assert_eq!(bug.step(&observation).unwrap_err().kind(), ErrorKind::InvalidInput);
+}
+
+#[test]
+fn nan_ranges_do_not_stop_the_run() {
+    let (mut robot, _) = robot_in(room(), START, SimOptions::ideal());
+    let mut scan = robot.scan().unwrap();
+    scan.ranges.iter_mut().step_by(3).for_each(|range| *range = f64::NAN);
+    let mut bug = DistBug::new(Point::new(1.0, 0.0), DistBugParameters::default()).unwrap();
+    for _ in 0..50 {
+        let observation = DistBugObservation { odometry: Pose::default(), speed: Twist::STOP, scan: &scan };
+        let twist = bug.step(&observation).unwrap();
+        assert!(twist.is_finite());
+    }
+}
