@@ -1,137 +1,11 @@
-use super::boundary::{BoundaryFollower, FollowDistances, WallSide, nearer_side};
-use super::surroundings::Surroundings;
-use super::{ScanFilter, ScanMatcher};
-use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math, normalize_angle};
+use super::parameters::DistBugParameters;
+use super::progress::LoopProgress;
+use super::report::{DistBugEvent, DistBugObservation, DistBugOutcome, DistBugPhase};
+use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math};
 use crate::io::{Clock, Drive, Error, Lidar, LidarScan, Result};
-
-/// What DistBug goes by. Lengths in metres, speeds in metres per second.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DistBugParameters {
-    /// The radius of the robot's outline.
-    pub robot_radius: f64,
-    /// The free space beside the outline that a passage must offer on either side.
-    pub least_clearance: f64,
-    /// The free space beside the outline that is kept to an obstacle where there is room.
-    pub clearance: f64,
-    /// STEP of the leave condition: how much nearer to the goal than ever before a leave must bring the robot.
-    pub step: f64,
-    /// The distance to the goal that counts as reached.
-    pub goal_tolerance: f64,
-    /// The speed in the open.
-    pub cruise_speed: f64,
-    /// The speed along an obstacle.
-    pub follow_speed: f64,
-    /// On which side obstacles are kept; `None`: on the side that needs the smaller turn.
-    pub side: Option<WallSide>,
-    /// Whether odometry is corrected by matching scans.
-    pub match_scans: bool,
-    /// Seconds from one control step to the next, for [`run`](DistBug::run).
-    pub period: f64,
-}
-
-impl DistBugParameters {
-    /// Parameters for a disc-shaped robot of a radius in metres; distances are scaled to it.
-    pub fn for_radius(radius: f64) -> Self {
-        Self {
-            robot_radius: radius,
-            least_clearance: 0.2 * radius,
-            clearance: 0.65 * radius,
-            step: 0.25 * radius,
-            goal_tolerance: 0.025,
-            cruise_speed: 0.3,
-            follow_speed: 0.2,
-            side: None,
-            match_scans: true,
-            period: 0.05,
-        }
-    }
-
-    /// Fails with the name of the parameter that is out of range.
-    pub fn validate(&self) -> Result<()> {
-        use crate::io::error::require_positive;
-        require_positive("robot radius", self.robot_radius)?;
-        require_positive("least clearance", self.least_clearance)?;
-        require_positive("STEP", self.step)?;
-        require_positive("goal tolerance", self.goal_tolerance)?;
-        require_positive("cruise speed", self.cruise_speed)?;
-        require_positive("follow speed", self.follow_speed)?;
-        require_positive("control period", self.period)?;
-        if !(self.clearance >= self.least_clearance && self.clearance.is_finite()) {
-            let expected = format!("at least the least clearance, {}", self.least_clearance);
-            return Err(Error::invalid_input("clearance", self.clearance, &expected));
-        }
-        Ok(())
-    }
-
-    fn follow_distances(&self) -> FollowDistances {
-        let wished = self.robot_radius + self.clearance;
-        FollowDistances { least: self.robot_radius + self.least_clearance, wished, step: wished }
-    }
-}
-
-impl Default for DistBugParameters {
-    /// For the S4's 60 mm.
-    fn default() -> Self {
-        Self::for_radius(0.060)
-    }
-}
-
-/// How a run of DistBug ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DistBugOutcome {
-    /// The robot is at the goal.
-    Reached,
-    /// The robot went all the way round an obstacle without getting nearer to the goal: there is no way.
-    Unreachable,
-    /// The time was over.
-    TimedOut,
-}
-
-/// What the robot is doing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DistBugPhase {
-    /// Looking round: standing, then turning once on the spot, which shows how true odometry's turns are.
-    LookingRound,
-    /// Driving straight to the goal.
-    ToGoal,
-    /// Following the boundary of an obstacle.
-    Following(WallSide),
-    /// Standing, with a verdict.
-    Ended(DistBugOutcome),
-}
-
-/// Something worth telling that happened in a step. Points are where the robot was, relative to its start.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum DistBugEvent {
-    /// An obstacle is in the way: the hit point.
-    Hit {
-        /// Where the robot was.
-        point: Point,
-        /// The side of the robot on which it follows the obstacle.
-        side: WallSide,
-    },
-    /// The way to the goal is free enough: the leave point.
-    Leave {
-        /// Where the robot was.
-        point: Point,
-        /// The free distance towards the goal.
-        free: f64,
-    },
-    /// The run is over.
-    End(DistBugOutcome),
-}
-
-/// What a step of DistBug is given.
-#[derive(Debug, Clone, Copy)]
-pub struct DistBugObservation<'a> {
-    /// The pose by odometry, relative to the start.
-    pub odometry: Pose,
-    /// The speed by odometry.
-    pub speed: Twist,
-    /// A scan all round, made at that pose.
-    pub scan: &'a LidarScan,
-}
+use crate::nav::boundary::{BoundaryFollower, nearer_side};
+use crate::nav::surroundings::Surroundings;
+use crate::nav::{ScanFilter, ScanMatcher};
 
 /// DistBug: to a goal through unknown obstacles, with a proof when there is no way (book, sections 10.1 and 10.2;
 /// I. Kamon and E. Rivlin, "Sensory-based motion planning with global proofs", IEEE Transactions on Robotics and
@@ -189,20 +63,6 @@ struct LookRound {
     last: Option<f64>,
 }
 
-/// Whether the robot has been all round.
-#[derive(Debug, Clone)]
-struct LoopProgress {
-    begin: Option<Pose>,
-    last: Pose,
-    /// Metres since the boundary was met, and since the loop began.
-    approach: f64,
-    travelled: f64,
-    /// Radians turned since the loop began.
-    turned: f64,
-    /// Steps without a free heading.
-    boxed_in: u32,
-}
-
 /// The standard deviation of a lidar's ranges that the filter starts from, in metres.
 const EXPECTED_NOISE: f64 = 0.010;
 /// How far round the robot points count for its next step, in steps.
@@ -211,8 +71,6 @@ const REACH: f64 = 2.4;
 /// the pose grow with the distance.
 const DOUBT: f64 = 0.02;
 const MAX_DOUBT: f64 = 0.3;
-/// Steps without a free heading after which the robot is boxed in.
-const BOXED_IN_STEPS: u32 = 40;
 /// The position may be wrong by so many times the noise of a range.
 const NOISE_SLACK: f64 = 5.0;
 /// A goal that recedes by this much, in metres, has been passed.
@@ -510,37 +368,4 @@ struct GoalView {
     distance: f64,
     free: f64,
     obstacle: Option<Point>,
-}
-
-impl LoopProgress {
-    fn new(pose: Pose) -> Self {
-        Self { begin: None, last: pose, approach: 0.0, travelled: 0.0, turned: 0.0, boxed_in: 0 }
-    }
-
-    /// Takes in where the robot is and the heading that it takes; whether it is back where the loop began.
-    fn update(&mut self, pose: Pose, heading: Option<f64>, radius: f64) -> bool {
-        let moved = pose.distance_to(self.last.position());
-        let turned = angle_difference(pose.heading, self.last.heading);
-        self.last = pose;
-        let Some(heading) = heading else {
-            self.boxed_in += 1;
-            return self.boxed_in > BOXED_IN_STEPS;
-        };
-        self.boxed_in = 0;
-        let Some(begin) = self.begin else {
-            self.approach += moved;
-            // The loop begins once the robot has come into line with the boundary.
-            let in_line = heading.abs() < 0.3 && self.approach > 0.5 * radius;
-            if in_line || self.approach > 6.0 * radius {
-                self.begin = Some(pose);
-            }
-            return false;
-        };
-        self.travelled += moved;
-        self.turned += turned;
-        let near = pose.distance_to(begin.position()) < 1.5 * radius;
-        let same_way = normalize_angle(pose.heading - begin.heading).abs() < 1.2;
-        let been_away = self.travelled > 6.0 * radius || self.turned.abs() > 1.1 * std::f64::consts::TAU;
-        near && same_way && been_away
-    }
 }

@@ -1,0 +1,53 @@
+use std::f64::consts::TAU;
+
+use crate::geometry::{Pose, angle_difference, normalize_angle};
+
+/// Whether the robot has been all round.
+#[derive(Debug, Clone)]
+pub(super) struct LoopProgress {
+    begin: Option<Pose>,
+    last: Pose,
+    /// Metres since the boundary was met, and since the loop began.
+    approach: f64,
+    travelled: f64,
+    /// Radians turned since the loop began.
+    turned: f64,
+    /// Steps without a free heading.
+    boxed_in: u32,
+}
+
+/// Steps without a free heading after which the robot is boxed in.
+const BOXED_IN_STEPS: u32 = 40;
+
+impl LoopProgress {
+    pub(super) fn new(pose: Pose) -> Self {
+        Self { begin: None, last: pose, approach: 0.0, travelled: 0.0, turned: 0.0, boxed_in: 0 }
+    }
+
+    /// Takes in where the robot is and the heading that it takes; whether it is back where the loop began.
+    pub(super) fn update(&mut self, pose: Pose, heading: Option<f64>, radius: f64) -> bool {
+        let moved = pose.distance_to(self.last.position());
+        let turned = angle_difference(pose.heading, self.last.heading);
+        self.last = pose;
+        let Some(heading) = heading else {
+            self.boxed_in += 1;
+            return self.boxed_in > BOXED_IN_STEPS;
+        };
+        self.boxed_in = 0;
+        let Some(begin) = self.begin else {
+            self.approach += moved;
+            // The loop begins once the robot has come into line with the boundary.
+            let in_line = heading.abs() < 0.3 && self.approach > 0.5 * radius;
+            if in_line || self.approach > 6.0 * radius {
+                self.begin = Some(pose);
+            }
+            return false;
+        };
+        self.travelled += moved;
+        self.turned += turned;
+        let near = pose.distance_to(begin.position()) < 1.5 * radius;
+        let same_way = normalize_angle(pose.heading - begin.heading).abs() < 1.2;
+        let been_away = self.travelled > 6.0 * radius || self.turned.abs() > 1.1 * TAU;
+        near && same_way && been_away
+    }
+}

@@ -1,0 +1,60 @@
+use crate::geometry::{Point, Pose, Twist};
+use crate::io::LidarScan;
+use crate::nav::boundary::WallSide;
+
+/// How a run of DistBug ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DistBugOutcome {
+    /// The robot is at the goal.
+    Reached,
+    /// The robot went all the way round an obstacle without getting nearer to the goal: there is no way.
+    Unreachable,
+    /// The time was over.
+    TimedOut,
+}
+
+/// What the robot is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DistBugPhase {
+    /// Looking round: standing, then turning once on the spot, which shows how true odometry's turns are.
+    LookingRound,
+    /// Driving straight to the goal.
+    ToGoal,
+    /// Following the boundary of an obstacle.
+    Following(WallSide),
+    /// Standing, with a verdict.
+    Ended(DistBugOutcome),
+}
+
+/// Something worth telling that happened in a step. Points are where the robot was, relative to its start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum DistBugEvent {
+    /// An obstacle is in the way: the hit point.
+    Hit {
+        /// Where the robot was.
+        point: Point,
+        /// The side of the robot on which it follows the obstacle.
+        side: WallSide,
+    },
+    /// The way to the goal is free enough: the leave point.
+    Leave {
+        /// Where the robot was.
+        point: Point,
+        /// The free distance towards the goal.
+        free: f64,
+    },
+    /// The run is over.
+    End(DistBugOutcome),
+}
+
+/// What a step of DistBug is given.
+#[derive(Debug, Clone, Copy)]
+pub struct DistBugObservation<'a> {
+    /// The pose by odometry, relative to the start.
+    pub odometry: Pose,
+    /// The speed by odometry.
+    pub speed: Twist,
+    /// A scan all round, made at that pose.
+    pub scan: &'a LidarScan,
+}
