@@ -18,12 +18,12 @@ pub(super) struct Shared {
 #[derive(Debug)]
 pub(super) struct State {
     pub(super) engine: Engine,
-    agents: Vec<Agent>,
+    programs: Vec<Program>,
 }
 
 /// A robot's program as the clockwork sees it.
 #[derive(Debug, Clone, Default)]
-struct Agent {
+struct Program {
     phase: Phase,
     /// The tick up to which the program lets the world advance.
     tick: u64,
@@ -42,8 +42,8 @@ enum Phase {
 impl State {
     /// Advances the world as far as every running program allows.
     fn advance(&mut self) {
-        let running = self.agents.iter().filter(|a| a.phase == Phase::Running).map(|a| a.tick).min();
-        let target = running.unwrap_or_else(|| self.agents.iter().map(|a| a.tick).max().unwrap_or(0));
+        let running = self.programs.iter().filter(|p| p.phase == Phase::Running).map(|p| p.tick).min();
+        let target = running.unwrap_or_else(|| self.programs.iter().map(|p| p.tick).max().unwrap_or(0));
         while self.engine.tick < target {
             self.engine.step();
         }
@@ -53,16 +53,19 @@ impl State {
     fn blocked_by_own_thread(&self, index: usize) -> Option<usize> {
         let me = thread::current().id();
         let tick = self.engine.tick;
-        self.agents.iter().enumerate().position(|(other, agent)| {
-            other != index && agent.phase == Phase::Running && agent.tick == tick && agent.thread == Some(me)
+        self.programs.iter().enumerate().position(|(other, program)| {
+            other != index
+                && program.phase == Phase::Running
+                && program.tick == tick
+                && program.thread == Some(me)
         })
     }
 }
 
 impl Shared {
     pub(super) fn new(engine: Engine) -> Self {
-        let agents = vec![Agent::default(); engine.bodies.len()];
-        Self { state: Mutex::new(State { engine, agents }), advanced: Condvar::new() }
+        let programs = vec![Program::default(); engine.bodies.len()];
+        Self { state: Mutex::new(State { engine, programs }), advanced: Condvar::new() }
     }
 
     /// The state as it stands.
@@ -74,30 +77,30 @@ impl Shared {
     /// Makes a robot's program one that the world waits for.
     pub(super) fn claim(&self, index: usize) -> Result<()> {
         let mut state = self.lock();
-        let robots = state.agents.len();
+        let robots = state.programs.len();
         let tick = state.engine.tick;
-        let agent = state.agents.get_mut(index).ok_or_else(|| no_robot(index, robots))?;
-        if agent.phase == Phase::Running {
+        let program = state.programs.get_mut(index).ok_or_else(|| no_robot(index, robots))?;
+        if program.phase == Phase::Running {
             return Err(Error::new(
                 ErrorKind::InvalidInput,
                 format!("robot {index} is already being driven"),
             ));
         }
-        *agent = Agent { phase: Phase::Running, tick, thread: None };
+        *program = Program { phase: Phase::Running, tick, thread: None };
         Ok(())
     }
 
     /// Waits until the world stands at `tick`, and returns it.
     pub(super) fn reach(&self, index: usize, tick: u64) -> Result<MutexGuard<'_, State>> {
         let mut state = self.lock();
-        let alone = state.agents.len() == 1;
+        let alone = state.programs.len() == 1;
         if !alone {
-            state.agents[index].thread = Some(thread::current().id());
+            state.programs[index].thread = Some(thread::current().id());
         }
         if state.engine.tick == tick {
             return Ok(state);
         }
-        state.agents[index].tick = tick;
+        state.programs[index].tick = tick;
         let before = state.engine.tick;
         state.advance();
         if !alone && state.engine.tick != before {
@@ -119,8 +122,8 @@ impl Shared {
     /// Notes that a robot's program has ended at `tick`; the world goes on without it.
     pub(super) fn release(&self, index: usize, tick: u64) {
         let mut state = self.lock();
-        state.agents[index].phase = Phase::Ended;
-        state.agents[index].tick = tick;
+        state.programs[index].phase = Phase::Ended;
+        state.programs[index].tick = tick;
         state.advance();
         self.advanced.notify_all();
     }
