@@ -44,6 +44,8 @@ pub(super) struct BoundaryFollower {
     distances: FollowDistances,
     /// The point, in the frame of the robot's pose, that bounded the way at the last step.
     anchor: Point,
+    /// Steps since it was last seen.
+    unseen: u32,
 }
 
 /// Headings that are tried in a turn.
@@ -51,15 +53,18 @@ const HEADINGS: usize = 180;
 const SPACING: f64 = TAU / HEADINGS as f64;
 /// The largest jump, in metres, of the anchor between two steps.
 const ANCHOR_JUMP: f64 = 0.08;
+/// Steps for which an anchor that is out of sight is taken to be there still.
+const ANCHOR_MEMORY: u32 = 20;
 
 impl BoundaryFollower {
     /// A follower of the obstacle at `anchor`.
     pub(super) fn new(side: WallSide, distances: FollowDistances, anchor: Point) -> Self {
-        Self { side, distances, anchor }
+        Self { side, distances, anchor, unseen: 0 }
     }
 
-    /// The heading to take, relative to the robot's; `None` when no step is free.
-    pub(super) fn heading(&mut self, pose: &Pose, surroundings: &Surroundings) -> Option<f64> {
+    /// The heading to take, relative to the robot's; `None` when no step is free. An anchor that is out of sight for
+    /// a moment is added to the surroundings.
+    pub(super) fn heading(&mut self, pose: &Pose, surroundings: &mut Surroundings) -> Option<f64> {
         let sense = self.side.sense();
         let anchor = self.local_anchor(pose, surroundings);
         let start = math::atan2(anchor.y, anchor.x);
@@ -74,12 +79,22 @@ impl BoundaryFollower {
         Some(normalize_angle(at(chosen)))
     }
 
-    /// The anchor as it is seen now, in the robot's frame.
-    fn local_anchor(&self, pose: &Pose, surroundings: &Surroundings) -> Point {
+    /// The anchor as it is seen now, in the robot's frame. A thin wall's end, seen along the wall, falls between the
+    /// beams for some steps; it is remembered meanwhile.
+    fn local_anchor(&mut self, pose: &Pose, surroundings: &mut Surroundings) -> Point {
         let expected = pose.to_local(self.anchor);
         match surroundings.nearest_to(expected) {
-            Some(seen) if (seen - expected).norm() < ANCHOR_JUMP => seen,
-            _ => expected,
+            Some(seen) if (seen - expected).norm() < ANCHOR_JUMP => {
+                self.unseen = 0;
+                seen
+            }
+            _ => {
+                self.unseen += 1;
+                if self.unseen <= ANCHOR_MEMORY {
+                    surroundings.remember(expected);
+                }
+                expected
+            }
         }
     }
 
@@ -118,10 +133,10 @@ impl BoundaryFollower {
 pub(super) fn nearer_side(
     blocked: f64,
     anchor: Point,
-    surroundings: &Surroundings,
+    surroundings: &mut Surroundings,
     distances: FollowDistances,
 ) -> WallSide {
-    let turn = |side| {
+    let mut turn = |side| {
         let mut trial = BoundaryFollower::new(side, distances, anchor);
         let heading = trial.heading(&Pose::default(), surroundings);
         heading.map_or(f64::INFINITY, |heading| normalize_angle(heading - blocked).abs())
@@ -150,7 +165,7 @@ mod tests {
 
     fn heading(side: WallSide, anchor: (f64, f64), points: &[Point]) -> Option<f64> {
         let mut follower = BoundaryFollower::new(side, DISTANCES, Point::new(anchor.0, anchor.1));
-        follower.heading(&Pose::default(), &seeing(points))
+        follower.heading(&Pose::default(), &mut seeing(points))
     }
 
     #[test]

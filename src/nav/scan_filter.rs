@@ -38,6 +38,8 @@ const MAX_WEIGHT: f64 = 20.0;
 const GATE: f64 = 4.0;
 /// The smallest such distance, in metres: a wall seen at a slant moves by this between beams.
 const MIN_GATE: f64 = 0.015;
+/// Beams next to each other whose ranges differ by less than this part of the range see one surface.
+const SURFACE_STEP: f64 = 0.1;
 /// Beams whose hits lie closer together than this, in metres, see the same piece of surface.
 const SMOOTHING_ARC: f64 = 0.015;
 /// Neighbours on either side that are averaged at most.
@@ -129,11 +131,23 @@ impl ScanFilter {
             let target = nearest as usize % self.beams.len();
             // The estimate is for the beam's own direction, which the moved point misses by up to half a beam.
             let range = seen + self.slope(i) * (nearest - bearing);
-            if range < self.predicted[target].range {
-                self.predicted[target] = Beam { range, weight };
-            }
+            self.predicted[target] = merge(self.predicted[target], Beam { range, weight });
         }
         std::mem::swap(&mut self.beams, &mut self.predicted);
+        self.fill_gaps();
+    }
+
+    /// A surface that comes nearer spreads over more beams: one between two that see it sees it too.
+    fn fill_gaps(&mut self) {
+        let n = self.beams.len();
+        for i in 0..n {
+            let (before, after) = (self.beams[(i + n - 1) % n], self.beams[(i + 1) % n]);
+            let apart = (after.range - before.range).abs();
+            if self.beams[i].weight == 0.0 && before.weight > 0.0 && apart < SURFACE_STEP * before.range {
+                let weight = before.weight.min(after.weight);
+                self.beams[i] = Beam { range: 0.5 * (before.range + after.range), weight };
+            }
+        }
     }
 
     /// A beam's direction in the sensor's frame.
@@ -218,6 +232,19 @@ impl ScanFilter {
         }
         sum / weights
     }
+}
+
+/// Two estimates that come to lie on one beam: their average if they are of one surface, or else the nearer one.
+fn merge(a: Beam, b: Beam) -> Beam {
+    if a.weight == 0.0 {
+        return b;
+    }
+    if (a.range - b.range).abs() < SURFACE_STEP * a.range {
+        let weight = a.weight + b.weight;
+        let range = (a.range * a.weight + b.range * b.weight) / weight;
+        return Beam { range, weight: weight.min(MAX_WEIGHT) };
+    }
+    if a.range < b.range { a } else { b }
 }
 
 /// Fails unless a scan covers a full turn.

@@ -35,8 +35,11 @@ pub struct ScanMatcher {
 const REFERENCE_REACH: f64 = 0.8;
 /// How many references a scan is matched against at most.
 const ACTIVE_REFERENCES: usize = 3;
-/// After so many metres they are chosen anew.
+/// After so many metres they are chosen anew: usually, and when the present ones share little with the scan.
 const CHOICE_SPACING: f64 = 0.1;
+const HASTY_CHOICE_SPACING: f64 = 0.03;
+/// References stand at least so many metres apart.
+const REFERENCE_SPACING: f64 = 0.08;
 /// A scan of which less than this share matches any reference becomes one itself.
 const MIN_OVERLAP: f64 = 0.6;
 /// References that are kept at most.
@@ -132,7 +135,10 @@ impl ScanMatcher {
     pub fn learn(&mut self, points: &[Point]) {
         if self.references.is_empty() {
             self.add_reference(points);
-        } else if self.pose.distance_to(self.chosen_at) > CHOICE_SPACING || self.overlap < MIN_OVERLAP {
+            return;
+        }
+        let spacing = if self.overlap < MIN_OVERLAP { HASTY_CHOICE_SPACING } else { CHOICE_SPACING };
+        if self.active.is_empty() || self.pose.distance_to(self.chosen_at) > spacing {
             self.choose_references(points);
         }
     }
@@ -226,7 +232,8 @@ impl ScanMatcher {
         candidates.truncate(ACTIVE_REFERENCES);
         self.active = candidates.iter().map(|&(index, _)| index).collect();
         let best = candidates.first().map_or(0.0, |&(_, overlap)| overlap);
-        if best < MIN_OVERLAP && self.references.len() < MAX_REFERENCES {
+        let crowded = self.references.iter().any(|r| r.pose.distance_to(pose.position()) < REFERENCE_SPACING);
+        if best < MIN_OVERLAP && !crowded && self.references.len() < MAX_REFERENCES {
             self.add_reference(points);
         }
     }

@@ -70,6 +70,12 @@ impl Surroundings {
         free
     }
 
+    /// Adds a point that is known to be there though it is not seen at the moment.
+    pub(super) fn remember(&mut self, point: Point) {
+        self.near.push(point);
+        self.clearance = self.clearance.min(point.coords.norm());
+    }
+
     /// The visible point nearest to a place.
     pub(super) fn nearest_to(&self, place: Point) -> Option<Point> {
         self.near

@@ -165,10 +165,11 @@ pub struct LidarSpec {
 }
 
 impl Default for LidarSpec {
-    /// 360 level beams all round, 0.1 m above the floor, as far as RoBIOS reports.
+    /// 360 level beams all round, 40 mm above the floor, so that they meet other robots and a golf ball; as far as
+    /// RoBIOS reports.
     fn default() -> Self {
         Self {
-            mount: Mount { z: 0.1, ..Mount::default() },
+            mount: Mount { z: 0.04, ..Mount::default() },
             field_of_view: std::f64::consts::TAU,
             tilt: 0.0,
             points: 360,

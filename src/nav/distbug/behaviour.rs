@@ -73,6 +73,8 @@ const DOUBT: f64 = 0.02;
 const MAX_DOUBT: f64 = 0.3;
 /// The position may be wrong by so many times the noise of a range.
 const NOISE_SLACK: f64 = 5.0;
+/// The part of the robot's radius that must be free round a goal that counts in spite of not being met exactly.
+const GOAL_ROOM: f64 = 0.7;
 /// A goal that recedes by this much, in metres, has been passed.
 const PASSING_MARGIN: f64 = 0.02;
 /// Radians per second at which the robot turns to look round.
@@ -221,7 +223,7 @@ impl DistBug {
         let side = self
             .parameters
             .side
-            .unwrap_or_else(|| nearer_side(view.bearing, obstacle, &self.surroundings, distances));
+            .unwrap_or_else(|| nearer_side(view.bearing, obstacle, &mut self.surroundings, distances));
         let point = self.pose.position();
         self.note_boundary(view.distance - view.free);
         self.follower = Some(Following {
@@ -245,21 +247,29 @@ impl DistBug {
             return Some(view.bearing);
         }
         let slack = self.position_slack();
+        let goal_has_room = self.goal_has_room();
         let following = self.follower.as_mut()?;
         following.nearest = following.nearest.min(view.distance);
         // As near as obstacles and the knowledge of the position allow, and going away again.
         let passed = view.distance > following.nearest + PASSING_MARGIN;
-        if passed && following.nearest <= self.parameters.goal_tolerance + slack {
+        if passed && following.nearest <= self.parameters.goal_tolerance + slack && goal_has_room {
             self.end(DistBugOutcome::Reached);
             return None;
         }
-        let heading = following.boundary.heading(&self.pose, &self.surroundings);
+        let heading = following.boundary.heading(&self.pose, &mut self.surroundings);
         let all_round = following.progress.update(self.pose, heading, self.parameters.robot_radius);
         if all_round {
             self.end(DistBugOutcome::Unreachable);
             return None;
         }
         heading
+    }
+
+    /// Whether nothing is seen where the robot would stand at the goal, errors of the position aside.
+    fn goal_has_room(&self) -> bool {
+        let goal = self.pose.to_local(self.goal);
+        let room = GOAL_ROOM * self.parameters.robot_radius;
+        self.points.iter().all(|point| (point - goal).norm() > room)
     }
 
     /// Takes in how near to the goal the boundary of a new obstacle begins. If the last leave has not brought the
