@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use roverlab::geometry::{Point, Pose, Twist, angle_difference};
 use roverlab::io::sim::{NoiseModel, SimOptions, SimRobot, Simulation, Truth};
+use roverlab::io::wrappers::{Fault, Faulty};
 use roverlab::io::{Clock, Drive, ErrorKind, Lidar, LidarScan};
 use roverlab::nav::{
     DistBug, DistBugEvent, DistBugObservation, DistBugOutcome, DistBugParameters, ScanFilter, ScanMatcher,
@@ -205,4 +206,22 @@ fn nan_ranges_do_not_stop_the_run() {
         let twist = bug.step(&observation).unwrap();
         assert!(twist.is_finite());
     }
+}
+
+#[test]
+fn a_blind_lidar_and_a_stopped_clock_end_the_run_with_an_error() {
+    let mut bug = DistBug::new(Point::new(1.0, 0.0), DistBugParameters::default()).unwrap();
+    let (mut robot, _) = robot_in(room(), START, SimOptions::ideal());
+    let mut scan = robot.scan().unwrap();
+    scan.ranges.fill(f64::NAN);
+    let observation = DistBugObservation { odometry: Pose::default(), speed: Twist::STOP, scan: &scan };
+    assert_eq!(
+        bug.step(&observation).unwrap_err().to_string(),
+        "every range of the lidar scan is NaN; expected metres or +infinity"
+    );
+
+    let fault: Fault = "clock@2".parse().unwrap();
+    let mut faulty = Faulty::new(robot, vec![fault]);
+    let error = bug.run(&mut faulty, 100.0, |_, _| {}).unwrap_err();
+    assert_eq!(error.to_string(), "the robot's clock stands still");
 }

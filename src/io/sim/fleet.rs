@@ -166,7 +166,7 @@ impl FleetRobot<'_> {
         self.call(|engine, _| Ok(engine.time()))
     }
 
-    #[allow(clippy::unused_self)] // The blocking robot's counterpart needs it.
+    #[allow(clippy::unused_self, reason = "The blocking robot's counterpart needs it")]
     pub(super) fn pause(&mut self, _seconds: f64) -> Result<()> {
         Err(cannot_wait())
     }

@@ -13,7 +13,7 @@ use crate::world::Colour;
 use image::RgbImage;
 
 /// Answers when the running manoeuvre has ended or stalled.
-#[allow(clippy::unnecessary_wraps)] // Other questions that a poll asks may fail.
+#[allow(clippy::unnecessary_wraps, reason = "Other questions that a poll asks may fail")]
 fn arrival(engine: &mut Engine, index: usize) -> Result<Option<()>> {
     let body = &engine.bodies[index];
     Ok((body.autopilot.is_done() || body.touch.is_stalled()).then_some(()))

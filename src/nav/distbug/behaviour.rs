@@ -2,7 +2,7 @@ use super::parameters::DistBugParameters;
 use super::progress::LoopProgress;
 use super::report::{DistBugEvent, DistBugObservation, DistBugOutcome, DistBugPhase};
 use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math};
-use crate::io::{Clock, Drive, Error, Lidar, LidarScan, Result};
+use crate::io::{Clock, Drive, Error, ErrorKind, Lidar, LidarScan, Result};
 use crate::nav::boundary::{BoundaryFollower, nearer_side};
 use crate::nav::surroundings::Surroundings;
 use crate::nav::{ScanFilter, ScanMatcher};
@@ -176,8 +176,17 @@ impl DistBug {
 
     fn perceive(&mut self, observation: &DistBugObservation<'_>) -> Result<()> {
         if !observation.odometry.is_finite() {
-            let found = format!("{:?}", observation.odometry);
+            let Pose { x, y, heading } = observation.odometry;
+            let found = format!("{x} m, {y} m, {heading} rad");
             return Err(Error::invalid_input("odometry", found, "finite numbers"));
+        }
+        let ranges = &observation.scan.ranges;
+        if !ranges.is_empty() && ranges.iter().all(|range| range.is_nan()) {
+            return Err(Error::invalid_input(
+                "every range of the lidar scan",
+                f64::NAN,
+                "metres or +infinity",
+            ));
         }
         self.pose = self.locate(observation);
         self.filter.update(self.pose, observation.scan)?;
@@ -350,8 +359,13 @@ impl DistBug {
         let mut scan = LidarScan::default();
         let begin = robot.now()?;
         let mut next = begin;
+        let mut last = f64::NEG_INFINITY;
         loop {
             let now = robot.now()?;
+            if now <= last {
+                return Err(Error::new(ErrorKind::Other, "the robot's clock stands still"));
+            }
+            last = now;
             if now - begin >= time_limit {
                 self.end(DistBugOutcome::TimedOut);
             }
