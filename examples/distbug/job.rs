@@ -22,12 +22,11 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let options = Options { seed: common.seed, noise: common.noise, time_limit, faults };
 
     let drive = watched(common, &trip, &options)?;
-    let picture = picture_file(common);
-    if let Some(file) = &picture {
-        picture::of(&trip, &drive, &options).save(file)?;
-        common.tell(format_args!("picture: {}", file.display()));
-    }
-    Ok(report(&trip, &drive, &options, picture.as_deref()))
+    let (picture, trouble) = match drawn(common, &trip, &drive, &options) {
+        Ok(picture) => (picture, None),
+        Err(failure) => (None, Some(failure.to_string())),
+    };
+    Ok(Report { trouble, ..report(&trip, &drive, &options, picture.as_deref()) })
 }
 
 /// DistBug needs a lidar that looks all round.
@@ -126,9 +125,19 @@ fn verdict(drive: &Drive) -> String {
     }
 }
 
-/// Where the run is drawn: never unasked where a program reads the report.
-fn picture_file(common: &CommonArgs) -> Option<PathBuf> {
-    common.picture.clone().or_else(|| (!common.json).then(|| PathBuf::from(PICTURE)))
+/// Draws the run, though never unasked where a program reads the report. Returns the file, if there is one.
+fn drawn(
+    common: &CommonArgs,
+    trip: &Trip,
+    drive: &Drive,
+    options: &Options,
+) -> Result<Option<PathBuf>, Failure> {
+    let file = common.picture.clone().or_else(|| (!common.json).then(|| PathBuf::from(PICTURE)));
+    if let Some(file) = &file {
+        picture::of(trip, drive, options).save(file)?;
+        common.tell(format_args!("picture: {}", file.display()));
+    }
+    Ok(file)
 }
 
 fn report(trip: &Trip, drive: &Drive, options: &Options, picture: Option<&Path>) -> Report {
