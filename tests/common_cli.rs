@@ -254,10 +254,16 @@ fn failures_have_one_message_and_their_status() {
 fn people_get_words() {
     let ended = run_with(&[], |_| {
         let hits: Vec<u32> = (0..200).collect();
-        Ok(a_report(Outcome::verdict("reached")).field("leave_points", 4).field("trace", hits))
+        Ok(a_report(Outcome::verdict("reached"))
+            .field("leave_points", 4)
+            .field("trace", hits)
+            .field("goal", [1, 2])
+            .field("hits", [[1, 2]]))
     });
     assert!(ended.out.starts_with("trial: reached\n"), "{}", ended.out);
-    for part in ["12.50 s", "1250 mm", "1200, 800 mm, 90.0 deg", "leave points", "200 entries"] {
+    for part in
+        ["12.50 s", "1250 mm", "1200, 800 mm, 90.0 deg", "leave points", "200 entries", "1 entry", " 1, 2\n"]
+    {
         assert!(ended.out.contains(part), "`{part}` is missing in: {}", ended.out);
     }
 }

@@ -260,7 +260,11 @@ fn robots_that_cannot_do_it_are_refused() {
         max_wheel_speed: 20.0,
         ticks_per_turn: 1000.0,
     };
-    refused("car.robi", RobotSpec { drive: car, ..s4.clone() }, &["differential"]);
+    refused(
+        "car.robi",
+        RobotSpec { drive: car, ..s4.clone() },
+        &["car.robi: found", "expected a differential"],
+    );
 
     // No file can say so, but a scene can: a lidar that looks ahead only.
     let lidar = LidarSpec { field_of_view: 3.0, ..LidarSpec::default() };

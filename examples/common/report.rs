@@ -222,16 +222,17 @@ fn in_words(pose: Pose) -> String {
     format!("{x}, {y} mm, {heading:.1} deg")
 }
 
-/// A value in at most a line; of a long list only its length.
+/// A value in at most a line: of a point its coordinates, of any other list its length, however short it is.
 fn short(value: &Value) -> String {
-    const LONGEST: usize = 72;
-    let text = match value {
-        Value::String(text) => text.clone(),
-        other => other.to_string(),
-    };
+    let entries = |count| format!("{count} {}", if count == 1 { "entry" } else { "entries" });
     match value {
-        Value::Array(items) if text.chars().count() > LONGEST => format!("{} entries", items.len()),
-        Value::Object(items) if text.chars().count() > LONGEST => format!("{} entries", items.len()),
-        _ => text,
+        Value::Null => "none".into(),
+        Value::String(text) => text.clone(),
+        Value::Array(items) => match items.as_slice() {
+            [Value::Number(x), Value::Number(y)] => format!("{x}, {y}"),
+            _ => entries(items.len()),
+        },
+        Value::Object(items) => entries(items.len()),
+        other => other.to_string(),
     }
 }
