@@ -115,21 +115,26 @@ proptest! {
 
 #[test]
 fn wrong_values_are_named_with_what_was_expected() {
-    let cases: [(&[&str], &[&str]); 12] = [
+    let cases: &[(&[&str], &[&str])] = &[
         (&["--start", "1,2"], &["--start", "'1,2'", "expected X,Y,DEG: three finite numbers"]),
         (&["--start", "1,2,3,4"], &["--start", "'1,2,3,4'"]),
         (&["--start", "1,,3"], &["--start", "'1,,3'"]),
         (&["--start", "nan,2,3"], &["--start", "finite"]),
+        (&["--start", "0,0,1e300"], &["--start", "at most 360000 degrees"]),
+        (&["--start", "0,-1e10,0"], &["--start", "at most 1000000000 mm"]),
+        (&["--goal", "1e300,0"], &["--goal", "at most 1000000000 mm"]),
         (&["--goal", "inf,0"], &["--goal", "two finite numbers"]),
         (&["--goal", "--json"], &["--goal", "'--json'"]),
         (&["--noise", "5.1"], &["--noise", "0 to 5"]),
         (&["--noise", "-1"], &["--noise", "0 to 5"]),
         (&["--time-limit", "0"], &["--time-limit", "above 0"]),
-        (&["--seed", "-1"], &["-1"]),
+        (&["--seed", "-1"], &["--seed", "'-1'"]),
         (&["--picture", "run.gif"], &["--picture", "run.gif", ".svg or .png"]),
+        (&["--record", "run.mcap"], &["--record run.mcap", "recordings are not part of this version"]),
+        (&["--replay", "run.mcap"], &["--replay run.mcap", "recordings are not part of this version"]),
         (&["--robios", "libeyebot.so"], &["libeyebot.so", "feature `robios`"]),
     ];
-    for (options, parts) in cases {
+    for &(options, parts) in cases {
         assert_refused(&run_with(options, never), parts);
     }
     assert_refused(&run_with(&["--wrold", "a"], never), &["--wrold", "--help"]);
@@ -203,6 +208,36 @@ fn the_status_says_how_the_run_ended() {
 }
 
 #[test]
+fn trouble_after_the_run_does_not_lose_the_report() {
+    let ended = run_with(&["--json"], |_| {
+        let trouble = Some("run.svg: the disk is full".into());
+        Ok(Report { trouble, ..a_report(Outcome::verdict("reached")) })
+    });
+    assert_eq!((ended.status, ended.err.as_str()), (1, "run.svg: the disk is full\n"));
+    let object: Value = serde_json::from_str(&ended.out).unwrap();
+    assert_eq!((object["outcome"].as_str(), object.get("trouble")), (Some("reached"), None));
+}
+
+#[test]
+fn pictures_that_cannot_be_written_are_refused_before_the_run() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("pictures");
+    std::fs::create_dir_all(folder.join("taken.svg")).unwrap();
+    let check = |name: &str| {
+        let options = ["--picture", folder.join(name).to_str().unwrap()].map(str::to_owned);
+        parse(&options.each_ref().map(String::as_str))
+            .common
+            .check_picture()
+            .map_err(|f| (f.status(), f.to_string()))
+    };
+    for (name, found) in [("none/run.svg", "found no folder"), ("taken.svg", "found a folder")] {
+        let (status, message) = check(name).unwrap_err();
+        assert!(status == 2 && message.contains(found) && message.contains("expected"), "{message}");
+    }
+    assert_eq!(check("free.svg"), Ok(()));
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1, "the check leaves nothing behind");
+}
+
+#[test]
 fn failures_have_one_message_and_their_status() {
     let file = run_with(&["--json"], |_| Err(Failure::input("a.sim:3:7: found `abc`; expected a number")));
     assert_eq!((file.status, file.out.as_str()), (2, ""));
@@ -219,10 +254,16 @@ fn failures_have_one_message_and_their_status() {
 fn people_get_words() {
     let ended = run_with(&[], |_| {
         let hits: Vec<u32> = (0..200).collect();
-        Ok(a_report(Outcome::verdict("reached")).field("leave_points", 4).field("trace", hits))
+        Ok(a_report(Outcome::verdict("reached"))
+            .field("leave_points", 4)
+            .field("trace", hits)
+            .field("goal", [1, 2])
+            .field("hits", [[1, 2]]))
     });
     assert!(ended.out.starts_with("trial: reached\n"), "{}", ended.out);
-    for part in ["12.50 s", "1250 mm", "1200, 800 mm, 90.0 deg", "leave points", "200 entries"] {
+    for part in
+        ["12.50 s", "1250 mm", "1200, 800 mm, 90.0 deg", "leave points", "200 entries", "1 entry", " 1, 2\n"]
+    {
         assert!(ended.out.contains(part), "`{part}` is missing in: {}", ended.out);
     }
 }

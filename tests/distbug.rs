@@ -209,6 +209,8 @@ fn places_that_make_no_sense_are_refused() {
         &["--start: found a start at 1720, 1150 mm", "in a wall", "60 mm radius"],
     );
     assert_refused(&at("30,2000,0"), &["in a wall"]);
+    // The robot is round, 60 mm around its middle: less than a millimetre from the wall, and it touches it.
+    assert_refused(&at("60.8,2000,0"), &["in a wall"]);
     assert_refused(&at("-500,2000,0"), &["outside of the world", "from 0, 0 to 4000, 4000 mm"]);
     assert_refused(&["--world", &data("field.sim"), "--start", "2300,2250,0"], &["another robot"]);
     assert_refused(&["--goal", "nan,0"], &["--goal", "two finite numbers"]);
@@ -227,7 +229,7 @@ fn what_is_missing_is_named() {
         &["empty.wld: found no start; expected --start X,Y,DEG"],
     );
     assert_refused(&["--world", "no/such.sim"], &["no/such.sim:1:1: found"]);
-    assert_refused(&["--world", "Cargo.toml"], &["Cargo.toml", ".wld, .maz"]);
+    assert_refused(&["--world", "Cargo.toml"], &["Cargo.toml", ".sim, .wld, .maz"]);
     assert_refused(&["--robot", "no/such.robi"], &["no/such.robi:1:1: found"]);
     assert_refused(&["--picture", "no/such/folder/run.svg"], &["found no folder no/such/folder"]);
 }
@@ -258,7 +260,11 @@ fn robots_that_cannot_do_it_are_refused() {
         max_wheel_speed: 20.0,
         ticks_per_turn: 1000.0,
     };
-    refused("car.robi", RobotSpec { drive: car, ..s4.clone() }, &["differential"]);
+    refused(
+        "car.robi",
+        RobotSpec { drive: car, ..s4.clone() },
+        &["car.robi: found", "expected a differential"],
+    );
 
     // No file can say so, but a scene can: a lidar that looks ahead only.
     let lidar = LidarSpec { field_of_view: 3.0, ..LidarSpec::default() };

@@ -1,6 +1,7 @@
 use std::fmt::Display;
+use std::fs::{self, File};
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::wrappers::Fault;
@@ -29,7 +30,7 @@ pub(crate) struct CommonArgs {
     pub(crate) goal: Option<Point>,
 
     /// Seed of every random stream.
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true)]
     pub(crate) seed: u64,
 
     /// Noise: 0 ideal, 1 as on the real robot, up to 5.
@@ -43,6 +44,14 @@ pub(crate) struct CommonArgs {
     /// Draw the run into a .svg or .png file.
     #[arg(long, value_name = "FILE", value_parser = parse_picture)]
     pub(crate) picture: Option<PathBuf>,
+
+    /// Write a recording of the run (not in this version).
+    #[arg(long, value_name = "FILE.mcap")]
+    pub(crate) record: Option<PathBuf>,
+
+    /// Run the behaviour against a recording (not in this version).
+    #[arg(long, value_name = "FILE.mcap")]
+    pub(crate) replay: Option<PathBuf>,
 
     /// Drive a real EyeBot through this C library.
     #[arg(long, value_name = "LIB")]
@@ -64,6 +73,15 @@ pub(crate) struct CommonArgs {
 impl CommonArgs {
     /// Fails if this build cannot do what the options ask for.
     pub(crate) fn check(&self) -> Result<(), Failure> {
+        let recordings = [("--record", &self.record), ("--replay", &self.replay)];
+        for (option, file) in
+            recordings.into_iter().filter_map(|(option, file)| Some((option, file.as_ref()?)))
+        {
+            return Err(Failure::input(format!(
+                "{option} {}: recordings are not part of this version; expected a command line without {option}",
+                file.display()
+            )));
+        }
         match &self.robios {
             Some(library) => Err(Failure::input(format!(
                 "--robios {}: this build lacks the feature `robios`; expected `cargo run --features robios ...`",
@@ -81,16 +99,39 @@ impl CommonArgs {
         }
     }
 
-    /// Tells a person of something odd. Silent with `--json`.
+    /// Tells of something odd on standard error, with `--json` as well: that reserves standard output alone.
     pub(crate) fn warn(&self, warning: impl Display) {
-        if !self.json {
-            let _ = writeln!(std::io::stderr(), "{warning}");
-        }
+        // Without standard error there is nobody left to tell.
+        let _ = writeln!(std::io::stderr(), "{warning}");
+    }
+
+    /// Fails if pictures cannot be written where the options ask for one, before a long run is in vain.
+    pub(crate) fn check_picture(&self) -> Result<(), Failure> {
+        self.picture.as_deref().map_or(Ok(()), check_writable)
     }
 
     /// The faults to inject.
     pub(crate) fn faults(&self) -> Result<Vec<Fault>, Failure> {
         let parse = |text: &String| text.parse().map_err(|error| Failure::input(format!("--fault: {error}")));
         self.fault.iter().map(parse).collect()
+    }
+}
+
+fn check_writable(picture: &Path) -> Result<(), Failure> {
+    let refused = |found: String, expected: &str| {
+        Err(Failure::input(format!("--picture {}: found {found}; expected {expected}", picture.display())))
+    };
+    let folder = picture.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        return refused(format!("no folder {}", folder.display()), "one that exists");
+    }
+    if picture.is_dir() {
+        return refused("a folder of this name".into(), "the name of a file");
+    }
+    // Pictures are written beside an older file and then take its place, so it is the folder that counts.
+    let trial = folder.join(format!(".picture-{}.tmp", std::process::id()));
+    match File::create(&trial).and_then(|_| fs::remove_file(&trial)) {
+        Ok(()) => Ok(()),
+        Err(error) => refused(format!("folder {} ({error})", folder.display()), "one that can be written to"),
     }
 }

@@ -40,6 +40,9 @@ pub(crate) struct Report {
     pub(crate) odometry: Option<Pose>,
     /// What the robot failed with, if that ended the run.
     pub(crate) error: Option<String>,
+    /// What went wrong after the run, such as a picture that could not be saved. The run did not fail by it, but the
+    /// program did.
+    pub(crate) trouble: Option<String>,
     /// The example's own fields; see [`Report::field`].
     pub(crate) fields: Vec<(String, Value)>,
 }
@@ -79,6 +82,7 @@ impl Report {
             pose: None,
             odometry: None,
             error: None,
+            trouble: None,
             fields: Vec::new(),
         }
     }
@@ -102,9 +106,15 @@ impl Report {
         if self.collided() { "collided" } else { &self.outcome.word }
     }
 
-    /// 0 if the behaviour came to a verdict without touching anything, else 1.
+    /// 0 if the behaviour came to a verdict without touching anything and nothing went wrong afterwards, else 1.
     pub(crate) fn status(&self) -> u8 {
-        u8::from(self.collided() || self.outcome.failed)
+        u8::from(self.collided() || self.outcome.failed || self.trouble.is_some())
+    }
+
+    /// What belongs on standard error: why the robot failed, and what went wrong afterwards.
+    pub(crate) fn message(&self) -> Option<String> {
+        let lines: Vec<&str> = self.error.iter().chain(&self.trouble).map(String::as_str).collect();
+        (!lines.is_empty()).then(|| lines.join("\n"))
     }
 
     fn collided(&self) -> bool {
@@ -212,16 +222,17 @@ fn in_words(pose: Pose) -> String {
     format!("{x}, {y} mm, {heading:.1} deg")
 }
 
-/// A value in at most a line; of a long list only its length.
+/// A value in at most a line: of a point its coordinates, of any other list its length, however short it is.
 fn short(value: &Value) -> String {
-    const LONGEST: usize = 72;
-    let text = match value {
-        Value::String(text) => text.clone(),
-        other => other.to_string(),
-    };
+    let entries = |count| format!("{count} {}", if count == 1 { "entry" } else { "entries" });
     match value {
-        Value::Array(items) if text.chars().count() > LONGEST => format!("{} entries", items.len()),
-        Value::Object(items) if text.chars().count() > LONGEST => format!("{} entries", items.len()),
-        _ => text,
+        Value::Null => "none".into(),
+        Value::String(text) => text.clone(),
+        Value::Array(items) => match items.as_slice() {
+            [Value::Number(x), Value::Number(y)] => format!("{x}, {y}"),
+            _ => entries(items.len()),
+        },
+        Value::Object(items) => entries(items.len()),
+        other => other.to_string(),
     }
 }

@@ -38,7 +38,7 @@ where
         let (seed, noise, wall_time) = (common.seed, common.noise, stopwatch.seconds());
         let header = Header { example, seed, noise, wall_time };
         let text = if common.json { report.json(header) } else { report.summary(header) };
-        Ok(Printed { text, message: report.error.clone(), status: report.status() })
+        Ok(Printed { text, message: report.message(), status: report.status() })
     })
 }
 

@@ -5,15 +5,23 @@ use std::path::PathBuf;
 use roverlab::geometry::{Point, Pose, units};
 use roverlab::picture::FileType;
 
+/// Millimetres of any coordinate, as in world files.
+const FARTHEST: f64 = 1e9;
+/// Degrees of any heading: turns beyond lose the place that they point to.
+const LARGEST_ANGLE: f64 = 360_000.0;
+
 /// `X,Y,DEG` in millimetres and degrees.
 pub(crate) fn parse_pose(text: &str) -> Result<Pose, String> {
     let [x, y, heading] = numbers(text, "X,Y,DEG: three finite numbers (mm, mm, degrees)")?;
+    within([x, y], FARTHEST, "mm")?;
+    within([heading], LARGEST_ANGLE, "degrees")?;
     Ok(Pose::from_mm_deg(x, y, heading))
 }
 
 /// `X,Y` in millimetres.
 pub(crate) fn parse_point(text: &str) -> Result<Point, String> {
     let [x, y] = numbers(text, "X,Y: two finite numbers (mm)")?;
+    within([x, y], FARTHEST, "mm")?;
     Ok(Point::new(units::from_mm(x), units::from_mm(y)))
 }
 
@@ -40,6 +48,13 @@ pub(crate) fn parse_picture(text: &str) -> Result<PathBuf, String> {
 fn numbers<const N: usize>(text: &str, expected: &str) -> Result<[f64; N], String> {
     let parsed: Option<Vec<f64>> = text.split(',').map(finite).collect();
     parsed.and_then(|all| all.try_into().ok()).ok_or_else(|| wrong(expected))
+}
+
+fn within<const N: usize>(values: [f64; N], limit: f64, unit: &str) -> Result<(), String> {
+    if values.iter().all(|value| value.abs() <= limit) {
+        return Ok(());
+    }
+    Err(wrong(&format!("values of at most {limit} {unit}")))
 }
 
 fn finite(text: &str) -> Option<f64> {

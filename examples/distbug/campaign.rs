@@ -21,19 +21,19 @@ The results do not depend on --threads. The course of one seed is that of `--see
 )]
 pub(crate) struct CampaignArgs {
     /// How many courses to draw.
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) worlds: u64,
 
     /// Seed of the first course and its runs; each course has the next.
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true)]
     pub(crate) seed: u64,
 
     /// Levels of noise: 0 ideal, 1 as on the real robot, up to 5.
-    #[arg(long, value_name = "F,...", default_value = "0,1,2", value_delimiter = ',', value_parser = parse_noise)]
+    #[arg(long, value_name = "F,...", default_value = "0,1,2", value_delimiter = ',', value_parser = parse_noise, allow_hyphen_values = true)]
     pub(crate) noise: Vec<f64>,
 
     /// How many threads drive [default: one for each core].
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 
     /// Write the courses that went wrong into this folder, as .sim and .wld.

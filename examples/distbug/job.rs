@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use roverlab::geometry::{Point, units};
 use roverlab::nav::{DistBugOutcome, WallSide};
+use roverlab::world::DriveSpec;
 
 use super::{Args, Drive, Ending, Event, Happening, Options, drive, picture, scene};
 use crate::common::{CommonArgs, Failure, Outcome, Pacer, Progress, Report, Trip, millimetres, point_in_mm};
@@ -17,17 +18,35 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let faults = common.faults()?;
     common.check_picture()?;
     let trip = common.trip(scene)?;
+    check_drives(common, &trip)?;
     check_robot(common, &trip)?;
     let time_limit = common.time_limit.unwrap_or_else(|| trip.generous_time_limit());
     let options = Options { seed: common.seed, noise: common.noise, time_limit, faults };
 
     let drive = watched(common, &trip, &options)?;
-    let picture = picture_file(common);
-    if let Some(file) = &picture {
-        picture::of(&trip, &drive, &options).save(file)?;
-        common.tell(format_args!("picture: {}", file.display()));
+    let (picture, trouble) = match drawn(common, &trip, &drive, &options) {
+        Ok(picture) => (picture, None),
+        Err(failure) => (None, Some(failure.to_string())),
+    };
+    Ok(Report { trouble, ..report(&trip, &drive, &options, picture.as_deref()) })
+}
+
+/// The simulator drives differential robots only, also those that stand.
+fn check_drives(common: &CommonArgs, trip: &Trip) -> Result<(), Failure> {
+    for (index, robot) in trip.scene.robots.iter().enumerate() {
+        if matches!(robot.spec.drive, DriveSpec::Differential { .. }) {
+            continue;
+        }
+        let own = common.robot.as_ref().filter(|_| index == 0);
+        let file = own.or(common.world.as_ref());
+        let place = file.map_or(String::new(), |file| format!("{}: ", file.display()));
+        return Err(Failure::input(format!(
+            "{place}found robot {} with another drive; expected a differential one, which is all that the simulator \
+             drives",
+            robot.spec.name
+        )));
     }
-    Ok(report(&trip, &drive, &options, picture.as_deref()))
+    Ok(())
 }
 
 /// DistBug needs a lidar that looks all round.
@@ -126,9 +145,19 @@ fn verdict(drive: &Drive) -> String {
     }
 }
 
-/// Where the run is drawn: never unasked where a program reads the report.
-fn picture_file(common: &CommonArgs) -> Option<PathBuf> {
-    common.picture.clone().or_else(|| (!common.json).then(|| PathBuf::from(PICTURE)))
+/// Draws the run, though never unasked where a program reads the report. Returns the file, if there is one.
+fn drawn(
+    common: &CommonArgs,
+    trip: &Trip,
+    drive: &Drive,
+    options: &Options,
+) -> Result<Option<PathBuf>, Failure> {
+    let file = common.picture.clone().or_else(|| (!common.json).then(|| PathBuf::from(PICTURE)));
+    if let Some(file) = &file {
+        picture::of(trip, drive, options).save(file)?;
+        common.tell(format_args!("picture: {}", file.display()));
+    }
+    Ok(file)
 }
 
 fn report(trip: &Trip, drive: &Drive, options: &Options, picture: Option<&Path>) -> Report {

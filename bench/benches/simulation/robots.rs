@@ -71,7 +71,7 @@ fn discs() -> World {
 
 /// Seconds that pass in the world for one of ours, by the fastest of many slices: what else the machine does counts as
 /// little as can be.
-#[allow(clippy::disallowed_methods)] // A benchmark is about real time.
+#[allow(clippy::disallowed_methods, reason = "a benchmark is about real time")]
 fn real_time_factor(slices: usize, seconds: f64, mut run: impl FnMut()) -> f64 {
     let times = (0..slices).map(|_| {
         let start = Instant::now();

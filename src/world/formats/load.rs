@@ -21,6 +21,10 @@ pub fn load_scene(path: impl AsRef<Path>) -> Result<Parsed<Scene>, FormatError> 
     let mut files = DiskFiles::new();
     read_file(path.as_ref(), |text, file| match kind(file) {
         Kind::Script => sim::parse(text, file, &mut files),
+        Kind::Other => {
+            let expected = "a file that ends in .sim, .wld, .maz, .yaml or .yml";
+            Err(FormatError::new(file, Location::START, shown(file), expected))
+        }
         _ => Ok(parse_world(text, file, &mut files, file, Location::START)?.map(Scene::new)),
     })
 }
