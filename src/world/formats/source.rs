@@ -25,7 +25,8 @@ pub trait FileSource {
 /// the home folder.
 ///
 /// `\` counts as `/`; a leading `~` and `$HOME` stand for the home folder; EyeSim 6's `%sim%` is dropped, so that
-/// what follows it is looked up in all places.
+/// what follows it is looked up in all places. Of a path with a drive letter that leads nowhere, the file's name alone
+/// is looked up in the folder of the file that names it.
 #[derive(Debug, Clone, Default)]
 pub struct DiskFiles {
     home: Option<PathBuf>,
@@ -55,6 +56,10 @@ impl DiskFiles {
         let mut list = vec![PathBuf::from(reference), PathBuf::from(plain)];
         list.extend(Path::new(referrer).parent().map(|folder| folder.join(plain)));
         list.extend(self.home.as_deref().map(|home| home.join(plain)));
+        // The path of another machine: the file may have come along with the one that names it.
+        let drive = plain.as_bytes().get(1) == Some(&b':');
+        let base = plain.rsplit('/').next().filter(|base| drive && !base.is_empty());
+        list.extend(base.and_then(|base| Some(Path::new(referrer).parent()?.join(base))));
         list
     }
 }
@@ -191,10 +196,11 @@ mod tests {
             ("~/worlds/b.wld", "home"),
             (r"%sim%\worlds\a.wld", "home"),
             ("%SIM%b.wld", "scripts"),
+            (r"C:\worlds\b.wld", "scripts"),
         ] {
             assert_eq!(read(reference).as_deref(), Ok(expected), "{reference}");
         }
-        for nowhere in ["c.wld", "worlds", "", "%sim%", "%€"] {
+        for nowhere in ["c.wld", r"C:\worlds\c.wld", r"C:\", "worlds", "", "%sim%", "%€"] {
             assert_eq!(read(nowhere), Err(io::ErrorKind::NotFound), "{nowhere}");
         }
     }

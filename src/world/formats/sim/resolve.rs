@@ -1,11 +1,12 @@
 use std::collections::BTreeMap;
+use std::io::{self, ErrorKind};
 use std::sync::Arc;
 
 use super::super::error::{FormatError, Location, Notes, Parsed};
 use super::super::lexer::{self, shown};
 use super::super::limits::{MAX_DEFINITIONS, MAX_PLACED, MAX_TEXT_BYTES};
 use super::super::load::{read_world, stem};
-use super::super::source::{FileSource, decode, unreadable};
+use super::super::source::{FileSource, SourceFile, decode, unreadable};
 use super::super::{esobj, robi};
 use super::document::{Position, SimFile, Statement};
 use super::read::parse_document;
@@ -144,7 +145,15 @@ impl Resolver<'_> {
         files: &mut dyn FileSource,
     ) -> Result<(), FormatError> {
         self.check_definitions(at)?;
-        let (name, text) = self.read(file, at, files)?;
+        let source = match files.read(file, self.notes.file, MAX_TEXT_BYTES) {
+            Err(error) if error.kind() == ErrorKind::NotFound && self.built_in(&stem(file)).is_some() => {
+                let message = format!("{} does not exist; the built-in robot is used", shown(file));
+                self.notes.warn(at, message);
+                return Ok(());
+            }
+            source => source,
+        };
+        let (name, text) = self.text(source, file, at)?;
         let parsed = robi::parse(&text, &name)?;
         self.notes.extend(parsed.warnings);
         if RobotSpec::predefined(&parsed.value.name).is_some() {
@@ -163,22 +172,22 @@ impl Resolver<'_> {
         files: &mut dyn FileSource,
     ) -> Result<(), FormatError> {
         self.check_definitions(at)?;
-        let (name, text) = self.read(file, at, files)?;
+        let source = files.read(file, self.notes.file, MAX_TEXT_BYTES);
+        let (name, text) = self.text(source, file, at)?;
         let parsed = esobj::parse(&text, &name)?;
         self.notes.extend(parsed.warnings);
         self.objects.push((stem(file), Arc::new(parsed.value)));
         Ok(())
     }
 
-    fn read(
+    /// The name and the text of a file that was looked up.
+    fn text(
         &mut self,
+        source: io::Result<SourceFile>,
         file: &str,
         at: Location,
-        files: &mut dyn FileSource,
     ) -> Result<(String, String), FormatError> {
-        let source = files
-            .read(file, self.notes.file, MAX_TEXT_BYTES)
-            .map_err(|error| unreadable(&error, file, self.notes.file, at, MAX_TEXT_BYTES))?;
+        let source = source.map_err(|error| unreadable(&error, file, self.notes.file, at, MAX_TEXT_BYTES))?;
         let mut notes = Notes::new(&source.name);
         let text = decode(source.bytes, &mut notes)?;
         self.notes.extend(notes.finish(()).warnings);
@@ -273,8 +282,11 @@ impl Resolver<'_> {
     }
 
     fn robot(&self, name: &str) -> Option<Arc<RobotSpec>> {
-        let reserved = self.built_in_robots.iter().find(|spec| spec.name.eq_ignore_ascii_case(name));
-        reserved.cloned().or_else(|| find(&self.robots, name, |spec| &spec.name))
+        self.built_in(name).or_else(|| find(&self.robots, name, |spec| &spec.name))
+    }
+
+    fn built_in(&self, name: &str) -> Option<Arc<RobotSpec>> {
+        self.built_in_robots.iter().find(|spec| spec.name.eq_ignore_ascii_case(name)).cloned()
     }
 
     fn object(&self, name: &str) -> Option<Arc<ObjectKind>> {

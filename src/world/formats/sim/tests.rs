@@ -102,6 +102,17 @@ fn reserved_names_stay_built_in() {
 }
 
 #[test]
+fn absent_files_of_built_in_robots_are_made_up_for() {
+    let text = "robot robots\\labbot.robi\nLabBot 1 2 3";
+    assert_eq!(*scene(text).robots[0].spec, RobotSpec::labbot());
+    assert_eq!(
+        warnings(text),
+        [r"test.sim:1:7: `robots\\labbot.robi` does not exist; the built-in robot is used"]
+    );
+    assert!(failure("robot cubot.robi").contains("does not exist"));
+}
+
+#[test]
 fn old_and_unknown_lines_are_skipped_with_their_place() {
     let text = "maze old.maz\nrobi S5.robi drive.dll 400 400 0\nobject 1 2 3 0.5 ball.ob\nworld w.wld\n\
                 Cubot 1 2 3\nfrobnicate\nsettings VIS FAST\ncan 1 2 3 extra\nS4 1 2 3 a.x b.x";
