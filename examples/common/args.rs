@@ -73,10 +73,8 @@ pub(crate) struct CommonArgs {
 impl CommonArgs {
     /// Fails if this build cannot do what the options ask for.
     pub(crate) fn check(&self) -> Result<(), Failure> {
-        let recordings = [("--record", &self.record), ("--replay", &self.replay)];
-        for (option, file) in
-            recordings.into_iter().filter_map(|(option, file)| Some((option, file.as_ref()?)))
-        {
+        let recording = self.record.as_ref().map(|file| ("--record", file));
+        if let Some((option, file)) = recording.or(self.replay.as_ref().map(|file| ("--replay", file))) {
             return Err(Failure::input(format!(
                 "{option} {}: recordings are not part of this version; expected a command line without {option}",
                 file.display()
@@ -100,7 +98,7 @@ impl CommonArgs {
     }
 
     /// Tells of something odd on standard error, with `--json` as well: that reserves standard output alone.
-    pub(crate) fn warn(&self, warning: impl Display) {
+    pub(crate) fn warn(warning: impl Display) {
         // Without standard error there is nobody left to tell.
         let _ = writeln!(std::io::stderr(), "{warning}");
     }

@@ -51,12 +51,12 @@ impl CommonArgs {
     /// A `.sim` gives its first robot and its first marker; a `.maz` the letters S and G; a `.wld` its `position`.
     pub(crate) fn trip(&self, own: impl FnOnce() -> Scene) -> Result<Trip, Failure> {
         let mut scene = match &self.world {
-            Some(file) => self.parsed(formats::load_scene(file))?,
+            Some(file) => Self::parsed(formats::load_scene(file))?,
             None => own(),
         };
         let mut robot = self.driver(&scene)?;
         if let Some(file) = &self.robot {
-            robot.spec = Arc::new(self.parsed(formats::load_robot(file))?);
+            robot.spec = Arc::new(Self::parsed(formats::load_robot(file))?);
         }
         match scene.robots.first_mut() {
             Some(first) => *first = robot,
@@ -74,10 +74,10 @@ impl CommonArgs {
     }
 
     /// What a file says. Tells its warnings.
-    fn parsed<T>(&self, parsed: Result<Parsed<T>, FormatError>) -> Result<T, Failure> {
+    fn parsed<T>(parsed: Result<Parsed<T>, FormatError>) -> Result<T, Failure> {
         let parsed = parsed.map_err(Failure::input)?;
         for warning in &parsed.warnings {
-            self.warn(warning);
+            Self::warn(warning);
         }
         Ok(parsed.value)
     }
