@@ -23,7 +23,7 @@ pub struct DistBugParameters {
     pub side: Option<WallSide>,
     /// Whether odometry is corrected by matching scans.
     pub match_scans: bool,
-    /// Seconds from one control step to the next, for [`run`](DistBug::run).
+    /// Seconds from one control step to the next, for [`run`](super::DistBug::run).
     pub period: f64,
 }
 
