@@ -62,8 +62,8 @@ impl ScanFilter {
         }
     }
 
-    /// Takes in a scan that was made at `pose` by odometry. The scan must cover a full turn; the first one fixes the
-    /// number of beams.
+    /// Takes in a scan that was made at `pose`, by odometry or better. The scan must cover a full turn; a change of
+    /// the number of beams starts the filter anew.
     pub fn update(&mut self, pose: Pose, scan: &LidarScan) -> Result<()> {
         check(scan)?;
         if self.beams.len() == scan.ranges.len() {

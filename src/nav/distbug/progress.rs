@@ -49,7 +49,7 @@ impl LoopProgress {
         let same_way = normalize_angle(pose.heading - begin.heading).abs() < 1.2;
         let been_away = self.travelled > 6.0 * radius || self.turned.abs() > 1.1 * TAU;
         // Once round a closed curve, the heading turns by one full turn, whatever the curve; back and forth, by none.
-        let all_round = (self.turned.abs() - TAU).abs() < 0.4 * TAU || self.turned.abs() > 1.5 * TAU;
+        let all_round = self.turned.abs() > 0.6 * TAU;
         near && same_way && been_away && all_round
     }
 }
