@@ -2,14 +2,14 @@
 
 use std::f64::consts::PI;
 
-use roverlab::geometry::{Point, Pose, Twist, angle_difference};
+use roverlab::geometry::{Point, Pose, Twist, Vector, angle_difference};
 use roverlab::io::sim::{NoiseModel, SimOptions, SimRobot, Simulation, Truth};
 use roverlab::io::wrappers::{Fault, Faulty};
 use roverlab::io::{Clock, Drive, ErrorKind, Lidar, LidarScan};
 use roverlab::nav::{
     DistBug, DistBugEvent, DistBugObservation, DistBugOutcome, DistBugParameters, ScanFilter, ScanMatcher,
 };
-use roverlab::world::{RobotSpec, Scene, World};
+use roverlab::world::{RobotSpec, Scene, Wall, World};
 
 /// A room with a block in it.
 fn room() -> World {
@@ -55,6 +55,28 @@ fn the_filter_takes_most_of_the_noise_out_of_scans_of_a_moving_robot() {
     let (raw, filtered) = (raw_error / count, filtered_error / count);
     assert!(filtered < 0.5 * raw, "{filtered} against {raw}");
     assert!((filter.noise() - 0.02).abs() < 0.005, "{}", filter.noise());
+}
+
+/// The mean over both sides of a corner would lie several millimetres behind it.
+#[test]
+fn the_filter_keeps_a_corner_that_points_at_the_robot() {
+    let corner = Point::new(1.0, 1.0);
+    let world = World {
+        walls: [Vector::x(), Vector::y()].map(|side| Wall::new(corner, corner + side)).into(),
+        ..World::walled(2.0, 2.0)
+    };
+    let start = Pose::new(0.75, 0.75, 0.25 * PI);
+    let (mut robot, _) = robot_in(world, start, SimOptions::ideal());
+    let mut filter = ScanFilter::new(0.01);
+    for _ in 0..60 {
+        filter.update(robot.pose().unwrap(), &robot.scan().unwrap()).unwrap();
+        robot.set_speed(Twist::new(0.1, 0.0)).unwrap();
+        robot.wait(0.05).unwrap();
+    }
+    let position = start.compose(&robot.pose().unwrap()).position();
+    let seen = filter.ranges().fold(f64::INFINITY, f64::min);
+    let distance = (corner - position).norm();
+    assert!(distance < 0.08 && (seen - distance).abs() < 0.003, "{seen} for {distance}");
 }
 
 fn ranges_only(sigma: f64) -> NoiseModel {

@@ -44,6 +44,10 @@ const SURFACE_STEP: f64 = 0.1;
 const SMOOTHING_ARC: f64 = 0.015;
 /// Neighbours on either side that are averaged at most.
 const MAX_SMOOTHING: usize = 10;
+/// Averages over the inner and the outer half of the neighbours that differ by more than this many standard
+/// deviations of their noise, and by more than so many metres, show that the surface bends.
+const BEND_GATE: f64 = 3.0;
+const MIN_BEND: f64 = 0.0005;
 
 impl ScanFilter {
     /// A filter without a scan. `noise` is the standard deviation in metres that one range of the sensor is expected
@@ -217,20 +221,57 @@ impl ScanFilter {
         let reach = ((SMOOTHING_ARC / arc) as usize).min(MAX_SMOOTHING);
         let gate = (2.0 * self.noise).max(0.005) + 2.0 * SMOOTHING_ARC;
         let n = self.beams.len();
-        let (mut sum, mut weights) = (here.range * here.weight, here.weight);
-        for step in 1..=reach {
+        let mut means = [Mean::default(); MAX_SMOOTHING + 1];
+        means[0] = Mean { sum: here.range * here.weight, weight: here.weight };
+        let mut pairs = 0;
+        while pairs < reach {
             // Neighbours come in pairs, so that the slope of the surface cancels.
-            let before = self.beams[(index + n - step) % n];
-            let after = self.beams[(index + step) % n];
+            let before = self.beams[(index + n - pairs - 1) % n];
+            let after = self.beams[(index + pairs + 1) % n];
             let farther = (before.range - here.range).abs().max((after.range - here.range).abs());
             if farther.is_nan() || farther >= gate {
                 break;
             }
             let weight = before.weight.min(after.weight);
-            sum += weight * (before.range + after.range);
-            weights += 2.0 * weight;
+            means[pairs + 1] = means[pairs].with(weight * (before.range + after.range), 2.0 * weight);
+            pairs += 1;
         }
-        sum / weights
+        self.straight_part(&means[..=pairs]).value()
+    }
+
+    /// The widest of the means over ever more neighbours whose outer half agrees with its inner one. A corner stays
+    /// sharp thereby: the mean over both its sides lies behind it when it points at the robot, and before it when it
+    /// points away.
+    fn straight_part(&self, means: &[Mean]) -> Mean {
+        let mut reach = means.len() - 1;
+        while reach > 0 {
+            let (inner, whole) = (means[reach / 2], means[reach]);
+            let outer = Mean { sum: whole.sum - inner.sum, weight: whole.weight - inner.weight };
+            let bend = (outer.value() - inner.value()).abs();
+            let error = self.noise * (1.0 / inner.weight + 1.0 / outer.weight).sqrt();
+            if bend <= BEND_GATE * error + MIN_BEND {
+                break;
+            }
+            reach /= 2;
+        }
+        means[reach]
+    }
+}
+
+/// A weighted mean in the making.
+#[derive(Debug, Clone, Copy, Default)]
+struct Mean {
+    sum: f64,
+    weight: f64,
+}
+
+impl Mean {
+    fn with(self, sum: f64, weight: f64) -> Self {
+        Self { sum: self.sum + sum, weight: self.weight + weight }
+    }
+
+    fn value(self) -> f64 {
+        self.sum / self.weight
     }
 }
 

@@ -18,6 +18,8 @@ pub(super) struct LoopProgress {
 
 /// Steps without a free heading after which the robot is boxed in.
 const BOXED_IN_STEPS: u32 = 40;
+/// Full turns after which the place where the loop began should have been found.
+const LOST_TURNS: f64 = 2.0;
 
 impl LoopProgress {
     pub(super) fn new(pose: Pose) -> Self {
@@ -50,6 +52,11 @@ impl LoopProgress {
         let been_away = self.travelled > 6.0 * radius || self.turned.abs() > 1.1 * TAU;
         // Once round a closed curve, the heading turns by one full turn, whatever the curve; back and forth, by none.
         let all_round = self.turned.abs() > 0.6 * TAU;
+        if self.turned.abs() > LOST_TURNS * TAU {
+            // It has been round without finding the place, so its pose there was wrong. The loop begins anew here.
+            *self = Self { begin: Some(pose), ..Self::new(pose) };
+            return false;
+        }
         near && same_way && been_away && all_round
     }
 }

@@ -42,20 +42,6 @@ impl Space {
         self.find_contacts(&query, out);
     }
 
-    /// As [`contacts`](Self::contacts), with solids alone: for one who knows from
-    /// [`walls_clearance`](Self::walls_clearance) that no wall is near.
-    pub fn contacts_with_solids(
-        &self,
-        outline: &Footprint,
-        pose: &Pose,
-        span: Span,
-        except: Option<SolidId>,
-        out: &mut Vec<Contact>,
-    ) {
-        let query = Query { shape: outline.at(pose), span, walls: false, solids: true, except };
-        self.find_contacts(&query, out);
-    }
-
     /// The distance in metres from an outline at a pose, between two heights, to the nearest wall or solid: at most
     /// `limit`, and 0 in contact. The solid `except` is overlooked.
     pub fn clearance(

@@ -281,8 +281,6 @@ mod tests {
         assert!(
             (contacts[1].depth - 0.005).abs() < 1e-12 && (contacts[1].normal - Vector::y()).norm() < 1e-12
         );
-        space.contacts_with_solids(&DISC, &pose, span, None, &mut contacts);
-        assert!(contacts.iter().map(|contact| contact.with).eq(ids.iter().copied().map(Some)));
         assert_eq!(space.walls_clearance(&DISC, &pose, span, 1.0), 0.0);
         let away = Pose::new(1.0, 1.0, 0.0);
         assert!((space.walls_clearance(&DISC, &away, span, 5.0) - 0.895).abs() < 1e-12);
