@@ -250,12 +250,14 @@ impl<'a> Picture<'a> {
         };
         let last = self.rows.iter().rposition(|row| !blank(row)).unwrap_or(first);
         let rows: Vec<_> = self.rows[first..=last].to_vec();
-        let cell = self.choose_size(first, last);
+        let (line, cell) = self.choose_size(first, last).unwrap_or((rows[0].0, Maze::DEFAULT_CELL));
         let maze = self.draw(&rows, cell)?;
+        self.check_extent(&maze, line)?;
         Ok(self.notes.finish(maze))
     }
 
-    fn choose_size(&mut self, first: usize, last: usize) -> f64 {
+    /// The line and the metres of the cell size that counts, if there is one.
+    fn choose_size(&mut self, first: usize, last: usize) -> Option<(usize, f64)> {
         let mut chosen = None;
         for &(line, before, size) in &self.sizes {
             let at = Location { line, column: 1 };
@@ -263,12 +265,24 @@ impl<'a> Picture<'a> {
                 self.notes.warn(at, "a number inside the picture; ignored");
                 continue;
             }
-            if chosen.is_some_and(|other| other != size) {
+            if chosen.is_some_and(|(_, other)| other != size) {
                 self.notes.warn(at, "a second cell size; this one counts");
             }
-            chosen = Some(size);
+            chosen = Some((line, size));
         }
-        chosen.unwrap_or(Maze::DEFAULT_CELL)
+        chosen
+    }
+
+    /// The world of the maze must have coordinates that other files can name. `line` tells the size of a cell.
+    fn check_extent(&self, maze: &Maze, line: usize) -> Result<(), FormatError> {
+        let extent = maze.columns.max(maze.rows) as f64 * maze.cell;
+        if extent <= MAX_METRES {
+            return Ok(());
+        }
+        let (columns, rows, cell) = (maze.columns, maze.rows, units::to_mm(maze.cell));
+        let found = format!("a maze of {columns} by {rows} cells of {cell} mm");
+        let expected = format!("at most {} mm from edge to edge", units::to_mm(MAX_METRES));
+        Err(FormatError::new(self.notes.file, Location { line, column: 1 }, found, expected))
     }
 
     fn draw(&mut self, rows: &[(usize, &str)], cell: f64) -> Result<Maze, FormatError> {
