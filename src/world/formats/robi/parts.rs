@@ -65,11 +65,14 @@ pub(super) fn outline(line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<(Footp
         "disc" => Footprint::Disc { radius: args.positive_size("the outline's radius")? },
         "rectangle" => {
             let mut side = |what: &str| args.length(&format!("the outline's {what} side"));
-            let (back, right) = (side("back")?, side("right")?);
-            Footprint::Rectangle(Aabb::new(
-                Point::new(back, right),
-                Point::new(side("front")?, side("left")?),
-            ))
+            let (back, right, front, left) = (side("back")?, side("right")?, side("front")?, side("left")?);
+            if front == back {
+                return Err(line.error(4, "the outline's front side, apart from its back side"));
+            }
+            if left == right {
+                return Err(line.error(5, "the outline's left side, apart from its right side"));
+            }
+            Footprint::Rectangle(Aabb::new(Point::new(back, right), Point::new(front, left)))
         }
         _ => return Err(line.error(1, expected)),
     };
