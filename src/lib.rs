@@ -61,6 +61,7 @@
 //!
 //! None is on by default. `picture` adds pictures as SVG, `png` the same as PNG.
 
+pub mod drive;
 pub mod geometry;
 pub mod io;
 pub mod kinematics;
