@@ -16,11 +16,13 @@ mod a_to_b;
 mod a_to_b_run;
 mod chase;
 mod follower;
+mod landmark;
 mod path;
 mod spline;
 
 pub use a_to_b::{AToB, AToBCommand, AToBObservation, AToBOutcome, AToBParameters, Goal, Method};
 pub use chase::{Chase, ChaseParameters};
 pub use follower::{FollowerParameters, PathFollower, Steering};
+pub use landmark::{Landmark, LandmarkFilter};
 pub use path::{Path, PathPoint, Waypoint};
 pub use spline::Hermite;

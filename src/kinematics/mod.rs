@@ -20,3 +20,4 @@ pub use integrate::{Displacement, advance};
 pub use omni::{Omni, RollerWheel};
 pub use planar::{PlanarMotion, PlanarTwist, advance_planar};
 pub use uncertainty::{OdometryErrors, OdometryUncertainty};
+pub(crate) use uncertainty::{OdometryStep, arc_between};

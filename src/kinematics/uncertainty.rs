@@ -60,44 +60,10 @@ impl OdometryUncertainty {
     /// Goes on by what odometry measured in a step. Slip is taken as coming evenly over a short step: one that turns by
     /// less than about half a radian.
     pub fn advance(&mut self, motion: Displacement) {
-        let (sin, cos) = math::sin_cos(self.pose.heading + 0.5 * motion.angle);
-        let next = advance(self.pose, motion);
-        let moved = next.position() - self.pose.position();
-        // How the next pose depends on this one, and on length and angle of the step.
-        let by_pose = Matrix3::new(1.0, 0.0, -moved.y, 0.0, 1.0, moved.x, 0.0, 0.0, 1.0);
-        let half_angle = 0.5 * motion.angle;
-        let scale = sinc(half_angle);
-        let (bend, shorter) =
-            (0.5 * motion.length * scale, 0.5 * motion.length * sinc_slope(half_angle, scale));
-        let by_motion = SMatrix::<f64, 3, 2>::new(
-            scale * cos,
-            shorter * cos - bend * sin,
-            scale * sin,
-            shorter * sin + bend * cos,
-            0.0,
-            1.0,
-        );
-        // How length and angle depend on how far the left and the right wheel go.
-        let track = self.drive.track;
-        let by_wheels = Matrix2::new(0.5, 0.5, -1.0 / track, 1.0 / track);
-        let half = 0.5 * track * motion.angle;
-        let [left, right] = [motion.length - half, motion.length + half];
-
-        let step = by_motion * by_wheels;
-        let slip = self.errors.slip * self.errors.slip;
-        let random = Matrix2::new(slip * left.abs(), 0.0, 0.0, slip * right.abs());
-        self.random = by_pose * self.random * by_pose.transpose() + step * random * step.transpose();
-
-        let by_errors = SMatrix::<f64, 2, 3>::new(
-            motion.length,
-            0.25 * track * motion.angle,
-            0.0,
-            motion.angle,
-            motion.length / track,
-            -motion.angle,
-        );
-        self.systematic = by_pose * self.systematic + by_motion * by_errors;
-        self.pose = next;
+        let step = OdometryStep::new(self.pose, motion, self.drive, &self.errors);
+        self.random = step.by_pose * self.random * step.by_pose.transpose() + step.slip;
+        self.systematic = step.by_pose * self.systematic + step.by_errors;
+        self.pose = step.end;
     }
 
     /// Goes on to where odometry is now, as one step along an arc.
@@ -127,6 +93,71 @@ impl OdometryUncertainty {
     }
 }
 
+/// A step of odometry, and how the pose after it depends on what may be wrong.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OdometryStep {
+    /// The pose after it, if odometry is right.
+    pub(crate) end: Pose,
+    /// Derivatives by the pose before it.
+    pub(crate) by_pose: Matrix3<f64>,
+    /// Derivatives by scale, mismatch and track.
+    pub(crate) by_errors: Matrix3<f64>,
+    /// The covariance that slip adds.
+    pub(crate) slip: Matrix3<f64>,
+}
+
+impl OdometryStep {
+    pub(crate) fn new(
+        pose: Pose,
+        motion: Displacement,
+        drive: Differential,
+        errors: &OdometryErrors,
+    ) -> Self {
+        let end = advance(pose, motion);
+        let moved = end.position() - pose.position();
+        let by_pose = Matrix3::new(1.0, 0.0, -moved.y, 0.0, 1.0, moved.x, 0.0, 0.0, 1.0);
+        let by_motion = by_motion(pose, motion);
+
+        // How length and angle depend on how far the left and the right wheel go, and on the systematic errors.
+        let track = drive.track;
+        let by_wheels = Matrix2::new(0.5, 0.5, -1.0 / track, 1.0 / track);
+        let half = 0.5 * track * motion.angle;
+        let [left, right] = [motion.length - half, motion.length + half].map(f64::abs);
+        let variance = errors.slip * errors.slip;
+        let slip = by_motion * by_wheels;
+        let by_systematic = SMatrix::<f64, 2, 3>::new(
+            motion.length,
+            0.25 * track * motion.angle,
+            0.0,
+            motion.angle,
+            motion.length / track,
+            -motion.angle,
+        );
+        Self {
+            end,
+            by_pose,
+            by_errors: by_motion * by_systematic,
+            slip: slip * Matrix2::new(variance * left, 0.0, 0.0, variance * right) * slip.transpose(),
+        }
+    }
+}
+
+/// Derivatives of the pose after an arc by the arc's length and angle.
+fn by_motion(pose: Pose, motion: Displacement) -> SMatrix<f64, 3, 2> {
+    let half = 0.5 * motion.angle;
+    let (sin, cos) = math::sin_cos(pose.heading + half);
+    let chord = sinc(half);
+    let (bend, shorter) = (0.5 * motion.length * chord, 0.5 * motion.length * sinc_slope(half, chord));
+    SMatrix::<f64, 3, 2>::new(
+        chord * cos,
+        shorter * cos - bend * sin,
+        chord * sin,
+        shorter * sin + bend * cos,
+        0.0,
+        1.0,
+    )
+}
+
 /// The derivative of `sin(x) / x`, whose value is at hand.
 fn sinc_slope(x: f64, sinc: f64) -> f64 {
     // What the series leaves out is below 4e-11 there, and the quotient would lose more.
@@ -134,7 +165,7 @@ fn sinc_slope(x: f64, sinc: f64) -> f64 {
 }
 
 /// The arc that leads from one pose to the next, for poses that lie on one.
-fn arc_between(from: Pose, to: Pose) -> Displacement {
+pub(crate) fn arc_between(from: Pose, to: Pose) -> Displacement {
     let angle = crate::geometry::angle_difference(to.heading, from.heading);
     let (sin, cos) = math::sin_cos(from.heading + 0.5 * angle);
     let chord = (to.x - from.x) * cos + (to.y - from.y) * sin;
