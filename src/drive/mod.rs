@@ -14,15 +14,24 @@
 
 mod a_to_b;
 mod a_to_b_run;
+mod car;
 mod chase;
+mod dubins;
 mod follower;
 mod landmark;
+mod omni;
 mod path;
+mod pid;
+mod relay;
 mod spline;
 
 pub use a_to_b::{AToB, AToBCommand, AToBObservation, AToBOutcome, AToBParameters, Goal, Method};
+pub use car::{CarCommand, CarDriver, CarOutcome, CarParameters, CarToB};
 pub use chase::{Chase, ChaseParameters};
 pub use follower::{FollowerParameters, PathFollower, Steering};
 pub use landmark::{Landmark, LandmarkFilter};
+pub use omni::{OmniDriver, OmniParameters, OmniReference, OmniTracker};
 pub use path::{Path, PathPoint, Waypoint};
+pub use pid::{Pid, PidParameters};
+pub use relay::{RelayTuner, UltimateGain};
 pub use spline::Hermite;
