@@ -23,7 +23,7 @@ JSON fields:
   position_error_mm           true distance to the goal at the end
   heading_error_deg           true error of the heading, or null
   ellipse_mm                  half axes of the 95 % ellipse of odometry's error, the longer one first
-  inside_ellipse              whether the robot really is inside of it; null with --landmark
+  inside_ellipse              whether the robot really is inside of it; null with --landmark or without noise
   landmark_scans              scans that showed a landmark
   time_limit_s, picture
   rows                        with --campaign only: the table

@@ -102,7 +102,9 @@ fn report(args: &Args, trip: &Trip, run: &Run<Arrival>, heading: Option<f64>, li
     });
     let heading_error = heading.map(|heading| heading_error(run, heading));
     let arrival = run.ending.as_ref().ok();
-    let inside = arrival.filter(|_| !args.landmark).map(|arrival| inside_ellipse(trip.start(), run, arrival));
+    let inside = arrival
+        .filter(|_| !args.landmark && args.common.noise > 0.0)
+        .map(|arrival| inside_ellipse(trip.start(), run, arrival));
     report
         .field("method", args.method.name())
         .field("goal", point_in_mm(trip.goal))

@@ -98,6 +98,8 @@ pub struct CarToB {
     driver: CarDriver,
     parameters: CarParameters,
     phase: Phase,
+    /// The pieces of the path that come next, the last one first.
+    next: Vec<Path>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -112,6 +114,12 @@ enum Phase {
 
 /// Metres from the goal at which the car stops.
 const ARRIVED: f64 = 0.001;
+/// Radians from point to point of a path that no car follows.
+const SHARP_TURN: f64 = 0.1;
+/// How far the curvature jumps, in terms of the largest one, where the car stops to turn its wheels.
+const LARGE_JUMP: f64 = 1.2;
+/// Metres before the goal of a dog curve in which the car only drives on.
+const LAST_BIT: f64 = 0.03;
 /// The largest k of splines that is tried, and its steps.
 const LARGEST_SCALE: f64 = 4.0;
 const SCALE_STEP: f64 = 0.25;
@@ -134,7 +142,7 @@ impl CarToB {
                 "at least 1",
             ));
         }
-        Ok(Self { method, goal, driver, parameters, phase: Phase::Begin })
+        Ok(Self { method, goal, driver, parameters, phase: Phase::Begin, next: Vec::new() })
     }
 
     fn radius(&self) -> f64 {
@@ -146,7 +154,9 @@ impl CarToB {
         if pose.distance_to(self.goal.position) <= ARRIVED || self.method == Method::Dog {
             return Ok(None);
         }
-        let fits = |path: &Path| path.max_curvature() * self.radius() <= 1.0 + 1e-9;
+        let fits = |path: &Path| {
+            path.max_curvature() * self.radius() <= 1.0 + 1e-9 && path.sharpest_turn() < SHARP_TURN
+        };
         let ahead = pose.bearing_to(self.goal.position).abs() <= std::f64::consts::FRAC_PI_2;
         if self.method == Method::Arc && self.goal.heading.is_none() && ahead {
             let arc = Path::arc(pose, self.goal.position)?;
@@ -185,7 +195,7 @@ impl CarToB {
         }
         if self.phase == Phase::Begin {
             self.phase = match self.plan(pose)? {
-                Some(path) => self.aim(path)?,
+                Some(path) => self.aim(&path)?,
                 None if self.method == Method::Dog => Phase::Homing,
                 None => Phase::Ended,
             };
@@ -194,23 +204,44 @@ impl CarToB {
             if let Some(state) = self.home(pose) {
                 return Ok(Some(state));
             }
-            let there = pose.distance_to(self.goal.position) <= 0.02;
-            self.phase = if there && self.goal.heading.is_none() {
-                Phase::Ended
+            self.phase = if self.goal.heading.is_some() {
+                let path = self.round_the_circle(pose)?;
+                self.aim(&path)?
             } else {
-                self.aim(self.round_the_circle(pose)?)?
+                Phase::Ended
             };
         }
-        Ok(self.follow(pose))
+        self.follow(pose)
     }
 
     /// The wheels are turned before the car drives off.
-    fn aim(&self, path: Path) -> Result<Phase> {
-        let follower = PathFollower::new(path, self.parameters.follower)?;
-        Ok(Phase::Aiming(Box::new(follower), self.parameters.steering_time))
+    fn aim(&mut self, path: &Path) -> Result<Phase> {
+        self.next = path.split_at_jumps(LARGE_JUMP * self.driver.kinematics.max_curvature());
+        self.next.reverse();
+        self.aim_at_next()
     }
 
-    fn follow(&mut self, pose: Pose) -> Option<CarState> {
+    fn aim_at_next(&mut self) -> Result<Phase> {
+        let Some(path) = self.next.pop() else { return Ok(Phase::Ended) };
+        let follower = PathFollower::new(path, self.parameters.follower)?;
+        // From one side to the other it takes twice as long as from the middle.
+        let seconds = self.parameters.steering_time * if self.phase == Phase::Begin { 1.0 } else { 2.0 };
+        Ok(Phase::Aiming(Box::new(follower), seconds))
+    }
+
+    fn follow(&mut self, pose: Pose) -> Result<Option<CarState>> {
+        if let Phase::Following(follower) = &mut self.phase {
+            let twist = follower.step(pose);
+            if follower.rest() > ARRIVED {
+                return Ok(Some(self.driver.kinematics.inverse_limited(twist, self.driver.full_speed)));
+            }
+            self.phase = self.aim_at_next()?;
+        }
+        Ok(self.aimed())
+    }
+
+    /// Standing, with the wheels where the next piece of the path needs them; `None` without one.
+    fn aimed(&mut self) -> Option<CarState> {
         match &mut self.phase {
             Phase::Aiming(follower, seconds) => {
                 *seconds -= self.parameters.period;
@@ -221,14 +252,6 @@ impl CarToB {
                 }
                 Some(CarState { speed: 0.0, steering })
             }
-            Phase::Following(follower) => {
-                let twist = follower.step(pose);
-                if follower.rest() <= ARRIVED {
-                    self.phase = Phase::Ended;
-                    return None;
-                }
-                Some(self.driver.kinematics.inverse_limited(twist, self.driver.full_speed))
-            }
             _ => None,
         }
     }
@@ -238,8 +261,13 @@ impl CarToB {
         let (goal, radius) = (pose.to_local(self.goal.position), self.radius());
         let distance = goal.coords.norm();
         let turns = self.goal.heading.is_some();
-        if distance <= if turns { DOG_HANDOVER * radius } else { 0.02 } {
+        if turns && distance <= DOG_HANDOVER * radius {
             return None;
+        }
+        let rate = self.parameters.follower.approach_rate;
+        if distance <= LAST_BIT {
+            let drives = goal.x > ARRIVED;
+            return drives.then(|| CarState { speed: rate * goal.x, steering: 0.0 });
         }
         let bearing = pose.bearing_to(self.goal.position);
         // Within a turning circle, the goal could only be circled: first the car drives away from it.
@@ -249,8 +277,7 @@ impl CarToB {
             return Some(CarState { speed: self.parameters.follower.speed, steering: 0.0 });
         }
         let told = dog_twist(&self.parameters.follower, bearing, distance);
-        let rate = self.parameters.follower.approach_rate;
-        let speed = self.parameters.follower.speed.min((rate * distance).max(0.02));
+        let speed = self.parameters.follower.speed.min(rate * distance);
         let twist = Twist::new(speed, told.angular);
         Some(self.driver.kinematics.inverse_limited(twist, self.driver.full_speed))
     }
@@ -296,5 +323,63 @@ impl CarToB {
     /// Radians by which a pose misses the goal's heading; `None` if any will do.
     pub fn heading_error(&self, pose: Pose) -> Option<f64> {
         self.goal.heading.map(|heading| angle_difference(pose.heading, heading))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::{Displacement, advance};
+    use proptest::prelude::*;
+
+    fn driver() -> CarDriver {
+        CarDriver { kinematics: Ackermann::new(0.26, 0.16, 0.5).unwrap(), full_speed: 0.5 }
+    }
+
+    /// A car that does exactly as it is told. Returns where it ends.
+    fn drive(method: Method, goal: Goal, start: Pose) -> Pose {
+        let mut behaviour = CarToB::new(method, goal, driver(), CarParameters::default()).unwrap();
+        let mut pose = start;
+        for _ in 0..20_000 {
+            let Some(state) = behaviour.step(pose).unwrap() else { return pose };
+            assert!(state.steering.abs() <= 0.5 && state.speed.abs() <= 0.5);
+            let twist = driver().kinematics.forward(state);
+            pose = advance(pose, Displacement { length: 0.02 * twist.linear, angle: 0.02 * twist.angular });
+        }
+        panic!("{method:?} to {goal:?} has no end; now at {pose:?}");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(40))]
+        #[test]
+        fn every_method_arrives(
+            x in -2.0..2.0f64, y in -2.0..2.0f64, heading in -3.0..3.0f64, at in -3.0..3.0f64, posed: bool,
+        ) {
+            let goal = Goal { position: Point::new(x, y), heading: posed.then_some(at) };
+            for method in [Method::Turn, Method::Arc, Method::Dog, Method::Spline] {
+                let end = drive(method, goal, Pose::new(0.1, 0.2, heading));
+                prop_assert!(end.distance_to(goal.position) < 0.03, "{method:?}: {end:?}");
+                if posed {
+                    prop_assert!(angle_difference(end.heading, at).abs() < 0.05, "{method:?}: {end:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn commands_are_those_of_motor_and_servo() {
+        let command = driver().command(CarState { speed: 0.25, steering: 0.5 });
+        assert_eq!(command, CarCommand { motor: 0.5, servo: -1.0 });
+        let command = driver().command(CarState { speed: -2.0, steering: -0.25 });
+        assert_eq!(command, CarCommand { motor: -1.0, servo: 0.5 });
+    }
+
+    #[test]
+    fn wrong_numbers_are_refused() {
+        let goal = Goal::point(Point::new(1.0, 0.0));
+        let parameters = CarParameters { margin: 0.5, ..CarParameters::default() };
+        assert!(CarToB::new(Method::Arc, goal, driver(), parameters).is_err());
+        let mut car = CarToB::new(Method::Arc, goal, driver(), CarParameters::default()).unwrap();
+        assert!(car.step(Pose::new(f64::INFINITY, 0.0, 0.0)).is_err());
     }
 }

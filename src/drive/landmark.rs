@@ -120,7 +120,7 @@ impl LandmarkFilter {
         let expected = normalize_angle(math::atan2(away.y, away.x) - lidar.heading);
         let innovation =
             Vector2::new(sighting.distance - distance, angle_difference(sighting.bearing, expected));
-        let measurement = self.sensitivity(away, lidar.position() - self.pose.position());
+        let measurement = sensitivity(away, lidar.position() - self.pose.position());
         let noise = Matrix2::from_diagonal(&sighting.variances);
         let spread = measurement * self.covariance * measurement.transpose() + noise;
         let Some(inverse) = spread.try_inverse() else { return false };
@@ -140,25 +140,20 @@ impl LandmarkFilter {
         self.covariance = rest * self.covariance * rest.transpose() + gain * noise * gain.transpose();
         true
     }
+}
 
-    /// Derivatives of distance and bearing by the state, for a lidar mounted at `arm` from the robot, both seen in the
-    /// world.
-    #[allow(clippy::unused_self, reason = "Belongs to the filter's state")]
-    fn sensitivity(&self, away: Vector, arm: Vector) -> Matrix2x6<f64> {
-        let distance = away.norm();
-        let along = away / distance;
-        let across = Vector::new(-along.y, along.x) / distance;
-        // Turning the robot swings the lidar about it.
-        let swing = Vector::new(-arm.y, arm.x);
-        let mut by_state = Matrix2x6::zeros();
-        by_state.fixed_view_mut::<1, 3>(0, 0).copy_from_slice(&[-along.x, -along.y, -along.dot(&swing)]);
-        by_state.fixed_view_mut::<1, 3>(1, 0).copy_from_slice(&[
-            -across.x,
-            -across.y,
-            -across.dot(&swing) - 1.0,
-        ]);
-        by_state
-    }
+/// Derivatives of distance and bearing of a landmark by the state, for a lidar at an arm's length from the robot, both seen
+/// in the world.
+fn sensitivity(away: Vector, arm: Vector) -> Matrix2x6<f64> {
+    let distance = away.norm();
+    let along = away / distance;
+    let across = Vector::new(-along.y, along.x) / distance;
+    // Turning the robot swings the lidar about it.
+    let swing = Vector::new(-arm.y, arm.x);
+    let mut by_state = Matrix2x6::zeros();
+    by_state.fixed_view_mut::<1, 3>(0, 0).copy_from_slice(&[-along.x, -along.y, -along.dot(&swing)]);
+    by_state.fixed_view_mut::<1, 3>(1, 0).copy_from_slice(&[-across.x, -across.y, -across.dot(&swing) - 1.0]);
+    by_state
 }
 
 /// What a scan says about a landmark.
@@ -205,4 +200,91 @@ fn sighting(landmark: &Landmark, lidar: &Pose, scan: &LidarScan, range_error: f6
         bearing,
         variances: Vector2::new(range_variance, bearing_error * bearing_error),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::direction;
+
+    const POLE: Landmark = Landmark { position: Point::new(1.0, 0.5), radius: 0.04 };
+    const ERRORS: OdometryErrors =
+        OdometryErrors { wheel_scale: 0.02, wheel_mismatch: 0.001, track: 0.005, slip: 0.001 };
+
+    /// What a lidar without noise sees of the pole from a pose, with its own place on the robot.
+    fn scan(robot: Pose, mount: Pose) -> LidarScan {
+        let lidar = robot.compose(&mount);
+        let increment = std::f64::consts::TAU / 360.0;
+        let range = |index: usize| {
+            let ray = direction(lidar.heading + increment * index as f64);
+            let away = POLE.position - lidar.position();
+            let (ahead, aside) = (ray.dot(&away), cross(ray, away));
+            if ahead > 0.0 && aside.abs() < POLE.radius {
+                ahead - (POLE.radius * POLE.radius - aside * aside).sqrt()
+            } else {
+                f64::INFINITY
+            }
+        };
+        LidarScan {
+            angle_min: 0.0,
+            angle_increment: increment,
+            range_max: 10.0,
+            mount,
+            ranges: (0..360).map(range).collect(),
+        }
+    }
+
+    fn filter(errors: OdometryErrors) -> LandmarkFilter {
+        let drive = Differential { track: 0.09 };
+        LandmarkFilter::new(Pose::default(), Pose::default(), vec![POLE], drive, errors, 0.002).unwrap()
+    }
+
+    #[test]
+    fn a_pole_corrects_wheels_that_are_too_large() {
+        for mount in [Pose::default(), Pose::new(0.1, 0.02, 0.5)] {
+            let (mut with, mut without) = (filter(ERRORS), filter(ERRORS));
+            let mut truth = Pose::default();
+            for step in 1..=100 {
+                let odometry = Pose::new(0.008 * f64::from(step), 0.0, 0.0);
+                truth = Pose::new(1.03 * odometry.x, 0.0, 0.0);
+                with.predict(odometry);
+                without.predict(odometry);
+                assert_eq!(with.correct(&scan(truth, mount)), 1);
+            }
+            let error = |filter: &LandmarkFilter| filter.pose().distance_to(truth.position());
+            assert!(error(&with) < 0.004 && error(&without) > 0.02, "{} {}", error(&with), error(&without));
+            assert!(with.covariance()[(0, 0)] < 0.05 * without.covariance()[(0, 0)]);
+        }
+    }
+
+    #[test]
+    fn what_is_elsewhere_is_no_landmark() {
+        let mut filter = filter(ERRORS);
+        let before = filter.clone();
+        // Seen from a metre farther back, the pole seems to be where none is.
+        assert_eq!(filter.correct(&scan(Pose::new(-1.0, 0.0, 0.0), Pose::default())), 0);
+        let nothing =
+            LidarScan { ranges: vec![f64::INFINITY; 360], ..scan(Pose::default(), Pose::default()) };
+        assert_eq!(filter.correct(&nothing), 0);
+        assert_eq!(filter, before);
+    }
+
+    #[test]
+    fn without_errors_odometry_is_believed() {
+        let mut filter = filter(OdometryErrors::default());
+        filter.predict(Pose::new(0.1, 0.0, 0.0));
+        filter.correct(&scan(Pose::new(0.12, 0.0, 0.0), Pose::default()));
+        assert_eq!(filter.pose(), Pose::new(0.1, 0.0, 0.0));
+        assert!(
+            LandmarkFilter::new(
+                Pose::default(),
+                Pose::default(),
+                vec![Landmark { radius: -1.0, ..POLE }],
+                Differential { track: 0.09 },
+                ERRORS,
+                0.0
+            )
+            .is_err()
+        );
+    }
 }

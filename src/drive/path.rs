@@ -189,6 +189,39 @@ impl Path {
         self.points.iter().map(|point| point.curvature.abs()).fold(0.0, f64::max)
     }
 
+    /// The largest change of direction, in radians, from one of its points to the next: large where a spline turns back
+    /// in a cusp.
+    pub fn sharpest_turn(&self) -> f64 {
+        let turns =
+            self.points.windows(2).map(|pair| angle_difference(pair[1].pose.heading, pair[0].pose.heading));
+        turns.map(f64::abs).fold(0.0, f64::max)
+    }
+
+    /// The pieces between places at which the curvature jumps by more than `jump`, in 1/m: where a car has to stop and
+    /// turn its wheels.
+    pub fn split_at_jumps(&self, jump: f64) -> Vec<Path> {
+        let jumps = |pair: &[PathPoint]| (pair[1].curvature - pair[0].curvature).abs() > jump;
+        let mut pieces = Vec::new();
+        let mut begin = 0;
+        for (index, pair) in self.points.windows(2).enumerate() {
+            let same_place = pair[0].distance == pair[1].distance;
+            if same_place && jumps(pair) {
+                pieces.push(self.piece(begin, index));
+                begin = index + 1;
+            }
+        }
+        pieces.push(self.piece(begin, self.points.len() - 1));
+        pieces
+    }
+
+    fn piece(&self, first: usize, last: usize) -> Path {
+        let behind = self.points[first].distance;
+        let points = self.points[first..=last].iter();
+        Path {
+            points: points.map(|point| PathPoint { distance: point.distance - behind, ..*point }).collect(),
+        }
+    }
+
     /// The place at a distance from the start; the path goes on straight beyond both ends.
     pub fn at(&self, distance: f64) -> PathPoint {
         let (first, last) = (self.points[0], self.points[self.points.len() - 1]);
@@ -296,6 +329,23 @@ mod tests {
         assert!(path.start().heading == 0.0 && (path.end().heading + 1.0).abs() < 1e-12, "{:?}", path.end());
         let passed = path.at(path.nearest(chain[1].position, 0.0, path.length())).pose;
         assert!(passed.distance_to(chain[1].position) < 1e-6);
+    }
+
+    #[test]
+    fn pieces_are_parts_of_the_whole() {
+        let whole = Path::of_arcs(Pose::default(), &[(0.5, 2.0), (0.4, -2.0), (0.3, -1.5)]).unwrap();
+        let pieces = whole.split_at_jumps(1.0);
+        assert_eq!(pieces.len(), 2);
+        assert!((pieces[0].length() - 0.5).abs() < 1e-12 && (pieces[1].length() - 0.7).abs() < 1e-12);
+        assert_eq!((pieces[0].end(), pieces[1].end()), (pieces[1].start(), whole.end()));
+        assert_eq!(whole.split_at_jumps(10.0), [whole]);
+    }
+
+    #[test]
+    fn a_cusp_is_a_sharp_turn() {
+        let back = Path::hermite(Pose::default(), Pose::new(-1.0, 0.0, std::f64::consts::PI), 1.0).unwrap();
+        assert!(back.sharpest_turn() > 3.0);
+        assert!(Path::arc(Pose::default(), Point::new(1.0, 1.0)).unwrap().sharpest_turn() < 0.01);
     }
 
     #[test]
