@@ -20,7 +20,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     let common = &args.common;
     common.check_picture()?;
-    let mut trip = common.trip_to_pose(scene::scene)?;
+    let mut trip = common.trip_to_pose(|| scene::scene(common.goal))?;
     let turns = !matches!(trip.spec().drive, DriveSpec::Ackermann { .. });
     check_drive(
         common,

@@ -7,7 +7,9 @@ use roverlab::kinematics::Ackermann;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, Marker, RobotSpec, Scene, World};
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, Trip, millimetres, point_in_mm, rounded};
+use crate::common::{
+    CommonArgs, Failure, GoalOption, Outcome, Report, Trip, millimetres, point_in_mm, rounded,
+};
 use crate::driving::{Conditions, Run, check_drive, drawn, paced};
 
 /// The command line of the example `ackermann`.
@@ -133,7 +135,7 @@ const HEADING: f64 = std::f64::consts::FRAC_PI_2;
 
 /// The trip that the options describe. A car takes the place of the robot that a world without one gets.
 fn trip(common: &CommonArgs) -> Result<Trip, Failure> {
-    let mut trip = common.trip_to_pose(scene)?;
+    let mut trip = common.trip_to_pose(|| scene(common.goal))?;
     let no_robot_of_its_own = common.robot.is_none() && *trip.spec() == RobotSpec::s4();
     if no_robot_of_its_own {
         trip.scene.robots[0].spec = RobotSpec::car().into();
@@ -141,11 +143,12 @@ fn trip(common: &CommonArgs) -> Result<Trip, Failure> {
     Ok(trip)
 }
 
-/// An empty floor of 5 m x 5 m with a goal ahead to the left.
-fn scene() -> Scene {
+/// An empty floor of 5 m x 5 m with a marker at the goal, ahead to the left without one.
+fn scene(goal: Option<GoalOption>) -> Scene {
     let mut world = World::empty(5.0, 5.0);
     let start = Pose::from_mm_deg(1500.0, 1500.0, 0.0);
-    let position = Pose::from_mm_deg(3200.0, 2700.0, 0.0).position();
+    let own = Pose::from_mm_deg(3200.0, 2700.0, 0.0).position();
+    let position = goal.map_or(own, |goal| goal.position);
     world.markers.push(Marker { position, colour: Colour::GREEN, alpha: 255 });
     Scene::with_robot(world, RobotSpec::car(), start)
 }

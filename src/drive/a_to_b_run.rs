@@ -11,7 +11,7 @@ impl AToB {
         time_limit: f64,
         observe: impl FnMut(&Self, Pose),
     ) -> Result<AToBOutcome> {
-        self.run_with(robot, time_limit, |robot| robot.pose(), observe)
+        self.run_with(robot, time_limit, R::pose, observe)
     }
 
     /// The same by any other estimate of the pose, such as one that landmarks correct.

@@ -97,7 +97,7 @@ impl Path {
             return Self::of_arcs(start, &[(chord, 0.0)]);
         }
         let length = 2.0 * half / curvature;
-        if !(length <= LONGEST) {
+        if length.is_nan() || length > LONGEST {
             return Err(Error::invalid_input("goal", "straight behind", "a point that one arc can reach"));
         }
         Self::of_arcs(start, &[(length, curvature)])
@@ -137,7 +137,7 @@ impl Path {
             let [a, b] = spline.ends;
             let [m, n] = spline.tangents.map(|tangent| tangent / 3.0);
             let bound = m.norm() + ((b - n) - (a + m)).norm() + n.norm();
-            if !(bound <= LONGEST) {
+            if bound.is_nan() || bound > LONGEST {
                 return Err(Error::invalid_input("path", format!("{bound} m long"), "at most 10 km"));
             }
             let steps = (2.0 * bound / SPACING).ceil().max(8.0) as usize;
@@ -278,7 +278,7 @@ fn check_pose(name: &str, pose: Pose) -> Result<()> {
 
 fn check_apart(a: Point, b: Point) -> Result<()> {
     let distance = (b - a).norm();
-    if distance >= SHORTEST && distance <= LONGEST {
+    if (SHORTEST..=LONGEST).contains(&distance) {
         return Ok(());
     }
     Err(Error::invalid_input("distance between two points of a path", distance, "0.001 mm to 10 km"))

@@ -57,6 +57,7 @@ pub(super) trait Mechanics {
 
 /// A robot's drive of any kind. Most robots have two wheels; the larger ones lie elsewhere.
 #[derive(Debug, Clone)]
+#[allow(clippy::large_enum_variant, reason = "nearly all robots have this one, and it is stepped most")]
 pub(super) enum Powertrain {
     Differential(Drivetrain),
     Car(Box<Car>),
