@@ -43,9 +43,10 @@
 //! | 1 Robots and simulation | simulated worlds and robots | [`io::sim`] |
 //! | 1 Robots and simulation | EyeSim's files: `.sim`, `.wld`, `.maz`, `.robi`, `.esObj` | [`world::formats`] |
 //! | 2 Sensors and programs | what a robot can be asked: distance sensors, keys, display, radio | [`io`] |
-//! | 3 Driving | the v-omega drive, encoders; kinematics of the differential drive | [`io`], [`kinematics`] |
+//! | 3 Driving | the v-omega drive, encoders; from A to B, path followers, PID | [`io`], [`drive`] |
 //! | 4 Lidar | scans, and taking their noise out | [`io`], [`nav`] |
 //! | 5 Swarms | any number of robots in one world | [`io::sim`] |
+//! | 7 Alternative drives | cars and wheels with rollers: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
 //! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`world::formats`] |
 //!
 //! Beside the chapters: [`geometry`] has poses, angles and units; [`random`] seeded random streams; [`world`] what a
@@ -61,6 +62,7 @@
 //!
 //! None is on by default. `picture` adds pictures as SVG, `png` the same as PNG.
 
+pub mod drive;
 pub mod geometry;
 pub mod io;
 pub mod kinematics;

@@ -83,7 +83,10 @@ fn all_options_are_understood() {
     assert_eq!(common.world, Some(PathBuf::from("a.sim")));
     assert_eq!(common.robot, Some(PathBuf::from("b.robi")));
     assert_eq!(common.start, Some(Pose::from_mm_deg(-100.0, 200.0, 90.0)));
-    assert_eq!(common.goal.map(|goal| (goal.x, goal.y)), Some((-0.0015, -2.0)));
+    assert_eq!(
+        common.goal.map(|goal| (goal.position.x, goal.position.y, goal.heading)),
+        Some((-0.0015, -2.0, None))
+    );
     assert_eq!((common.seed, common.noise, common.time_limit), (7, 0.0, Some(60.0)));
     assert_eq!(common.picture, Some(PathBuf::from("run.png")));
     assert_eq!(common.fault, ["stuck@3", "lost@4.5"]);

@@ -263,7 +263,7 @@ fn robots_that_cannot_do_it_are_refused() {
     refused(
         "car.robi",
         RobotSpec { drive: car, ..s4.clone() },
-        &["car.robi: found", "expected a differential"],
+        &["car.robi: found", "a car", "expected one that turns on the spot"],
     );
 
     // No file can say so, but a scene can: a lidar that looks ahead only.

@@ -5,6 +5,8 @@ mod common;
 
 #[path = "simulator/collisions.rs"]
 mod collisions;
+#[path = "simulator/drives.rs"]
+mod drives;
 #[path = "simulator/limits.rs"]
 mod limits;
 #[path = "simulator/lockstep.rs"]

@@ -3,11 +3,11 @@ use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use roverlab::geometry::{Point, Pose};
+use roverlab::geometry::Pose;
 use roverlab::io::wrappers::Fault;
 
 use super::Failure;
-use super::values::{parse_noise, parse_picture, parse_point, parse_pose, parse_seconds};
+use super::values::{GoalOption, parse_goal, parse_noise, parse_picture, parse_pose, parse_seconds};
 
 /// The options that all examples have. Flatten it into an example's own.
 #[derive(Debug, Clone, clap::Args)]
@@ -25,9 +25,9 @@ pub(crate) struct CommonArgs {
     #[arg(long, value_name = "X,Y,DEG", value_parser = parse_pose, allow_hyphen_values = true)]
     pub(crate) start: Option<Pose>,
 
-    /// Where the robot is to go.
-    #[arg(long, value_name = "X,Y", value_parser = parse_point, allow_hyphen_values = true)]
-    pub(crate) goal: Option<Point>,
+    /// Where the robot is to go; some examples take a heading to arrive with.
+    #[arg(long, value_name = "X,Y[,DEG]", value_parser = parse_goal, allow_hyphen_values = true)]
+    pub(crate) goal: Option<GoalOption>,
 
     /// Seed of every random stream.
     #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true)]

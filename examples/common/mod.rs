@@ -40,5 +40,7 @@ pub(crate) use failure::Failure;
 pub(crate) use report::{Outcome, Report, millimetres, point_in_mm, rounded};
 pub(crate) use run::{Printed, main, run, run_printing};
 pub(crate) use trip::Trip;
-pub(crate) use values::{parse_noise, parse_picture, parse_point, parse_pose, parse_seconds};
+pub(crate) use values::{
+    GoalOption, parse_goal, parse_noise, parse_picture, parse_point, parse_pose, parse_seconds,
+};
 pub(crate) use wall_clock::{Pacer, Progress, Stopwatch};

@@ -50,6 +50,16 @@ impl CommonArgs {
     ///
     /// A `.sim` gives its first robot and its first marker; a `.maz` the letters S and G; a `.wld` its `position`.
     pub(crate) fn trip(&self, own: impl FnOnce() -> Scene) -> Result<Trip, Failure> {
+        if self.goal.is_some_and(|goal| goal.heading.is_some()) {
+            return Err(Failure::input(
+                "--goal: found a heading; expected X,Y: here any heading at the goal is right",
+            ));
+        }
+        self.trip_to_pose(own)
+    }
+
+    /// The same for an example that takes a heading at the goal, which is in `self.goal`.
+    pub(crate) fn trip_to_pose(&self, own: impl FnOnce() -> Scene) -> Result<Trip, Failure> {
         let mut scene = match &self.world {
             Some(file) => Self::parsed(formats::load_scene(file))?,
             None => own(),
@@ -104,12 +114,14 @@ impl CommonArgs {
     fn destination(&self, scene: &Scene) -> Result<Point, Failure> {
         let marker = scene.world.markers.first().map(|marker| marker.position);
         let letter = scene.world.places.iter().find(|place| place.letter.eq_ignore_ascii_case(&'g'));
-        self.goal.or(marker).or(letter.map(|place| place.position)).ok_or_else(|| {
-            Failure::input(format!(
-                "{}: found no goal; expected --goal X,Y, a `marker` in a .sim or the letter G in a .maz",
-                self.world_name()
-            ))
-        })
+        self.goal.map(|goal| goal.position).or(marker).or(letter.map(|place| place.position)).ok_or_else(
+            || {
+                Failure::input(format!(
+                    "{}: found no goal; expected --goal X,Y, a `marker` in a .sim or the letter G in a .maz",
+                    self.world_name()
+                ))
+            },
+        )
     }
 
     fn check_places(&self, trip: &Trip) -> Result<(), Failure> {

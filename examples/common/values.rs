@@ -25,6 +25,22 @@ pub(crate) fn parse_point(text: &str) -> Result<Point, String> {
     Ok(Point::new(units::from_mm(x), units::from_mm(y)))
 }
 
+/// Where the robot is to go: a place, and the heading to arrive with if it matters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct GoalOption {
+    pub(crate) position: Point,
+    pub(crate) heading: Option<f64>,
+}
+
+/// `X,Y` or `X,Y,DEG` in millimetres and degrees.
+pub(crate) fn parse_goal(text: &str) -> Result<GoalOption, String> {
+    if text.split(',').count() != 3 {
+        return parse_point(text).map(|position| GoalOption { position, heading: None });
+    }
+    let pose = parse_pose(text)?;
+    Ok(GoalOption { position: pose.position(), heading: Some(pose.heading) })
+}
+
 /// A noise level, 0 to 5.
 pub(crate) fn parse_noise(text: &str) -> Result<f64, String> {
     let expected = "a number from 0 to 5";

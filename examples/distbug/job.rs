@@ -18,7 +18,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let faults = common.faults()?;
     common.check_picture()?;
     let trip = common.trip(scene)?;
-    check_drives(common, &trip)?;
+    check_drive(common, &trip)?;
     check_robot(common, &trip)?;
     let time_limit = common.time_limit.unwrap_or_else(|| trip.generous_time_limit());
     let options = Options { seed: common.seed, noise: common.noise, time_limit, faults };
@@ -31,22 +31,18 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(Report { trouble, ..report(&trip, &drive, &options, picture.as_deref()) })
 }
 
-/// The simulator drives differential robots only, also those that stand.
-fn check_drives(common: &CommonArgs, trip: &Trip) -> Result<(), Failure> {
-    for (index, robot) in trip.scene.robots.iter().enumerate() {
-        if matches!(robot.spec.drive, DriveSpec::Differential { .. }) {
-            continue;
-        }
-        let own = common.robot.as_ref().filter(|_| index == 0);
-        let file = own.or(common.world.as_ref());
-        let place = file.map_or(String::new(), |file| format!("{}: ", file.display()));
-        return Err(Failure::input(format!(
-            "{place}found robot {} with another drive; expected a differential one, which is all that the simulator \
-             drives",
-            robot.spec.name
-        )));
+/// DistBug turns on the spot, which no car does.
+fn check_drive(common: &CommonArgs, trip: &Trip) -> Result<(), Failure> {
+    let spec = trip.spec();
+    if !matches!(spec.drive, DriveSpec::Ackermann { .. }) {
+        return Ok(());
     }
-    Ok(())
+    let file = common.robot.as_ref().or(common.world.as_ref());
+    let place = file.map_or(String::new(), |file| format!("{}: ", file.display()));
+    Err(Failure::input(format!(
+        "{place}found robot {}, a car; expected one that turns on the spot, as DistBug does",
+        spec.name
+    )))
 }
 
 /// DistBug needs a lidar that looks all round.

@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 
 use super::Body;
-use crate::geometry::{Aabb, units};
+use crate::geometry::{Aabb, Point, units};
 
 /// A description of a robot: its drive, outline and sensors. EyeSim's `.robi`.
 #[derive(Debug, Clone, PartialEq)]
@@ -260,11 +260,73 @@ impl RobotSpec {
         }
     }
 
-    /// A robot that every scene knows by name, without regard to case: `S4` or `LabBot`.
+    /// A robot on four Mecanum wheels, after the book's Omni-1 (section 7.2), with an S4's sensors.
+    pub fn omni() -> Self {
+        let (half_length, half_width) = (0.130, 0.120);
+        Self {
+            name: "Omni".into(),
+            drive: DriveSpec::Omni {
+                wheel_diameter: 0.060,
+                track: 0.180,
+                wheelbase: 0.160,
+                max_wheel_speed: units::from_deg(900.0),
+                ticks_per_turn: 1200.0,
+            },
+            footprint: Footprint::Rectangle(Aabb::new(
+                Point::new(-half_length, -half_width),
+                Point::new(half_length, half_width),
+            )),
+            height: 0.120,
+            mass: 2.5,
+            psds: four_psds(half_length, half_width, 0.040),
+            ..Self::s4()
+        }
+    }
+
+    /// A model car that is steered as its big sisters are (book, section 7.1), with an S4's sensors. Its turning circle
+    /// measures 0.45 m in radius.
+    pub fn car() -> Self {
+        let (wheelbase, half_width) = (0.260, 0.090);
+        let (back, front) = (-0.060, 0.320);
+        Self {
+            name: "Car".into(),
+            drive: DriveSpec::Ackermann {
+                wheel_diameter: 0.064,
+                track: 0.160,
+                wheelbase,
+                max_steering: units::from_deg(30.0),
+                max_wheel_speed: units::from_deg(900.0),
+                ticks_per_turn: 1300.0,
+            },
+            footprint: Footprint::Rectangle(Aabb::new(
+                Point::new(back, -half_width),
+                Point::new(front, half_width),
+            )),
+            height: 0.120,
+            mass: 2.0,
+            psds: [(1, "PSD_FRONT", front, 0.0), (4, "PSD_BACK", back, 180.0)]
+                .into_iter()
+                .map(|(id, name, x, yaw)| PsdSpec {
+                    id,
+                    name: name.into(),
+                    mount: Mount { x, y: 0.0, z: 0.050, yaw: units::from_deg(yaw) },
+                    max_range: PsdSpec::DEFAULT_MAX_RANGE,
+                })
+                .collect(),
+            lidar: Some(LidarSpec {
+                mount: Mount { x: 0.5 * wheelbase, z: 0.100, ..Mount::default() },
+                ..LidarSpec::default()
+            }),
+            ..Self::s4()
+        }
+    }
+
+    /// A robot that every scene knows by name, without regard to case: `S4`, `LabBot` or `Omni`.
     pub fn predefined(name: &str) -> Option<Self> {
         match name.to_ascii_lowercase().as_str() {
             "s4" => Some(Self::s4()),
             "labbot" => Some(Self::labbot()),
+            "omni" => Some(Self::omni()),
             _ => None,
         }
     }

@@ -142,12 +142,12 @@ fn scenes_that_make_no_sense_are_refused() {
             wheel_diameter: 0.1,
             track: 0.2,
             wheelbase: 0.3,
-            max_steering: 0.5,
+            max_steering: 1.6,
             max_wheel_speed: 10.0,
             ticks_per_turn: 100.0,
         };
     };
-    assert_error(with(car), ErrorKind::Unsupported, "S4");
+    assert_error(with(car), ErrorKind::InvalidInput, "S4: maximal steering is 1.6");
 }
 
 #[test]

@@ -1,15 +1,14 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::autopilot::Autopilot;
 use super::course::Course;
-use super::drivetrain::{DifferentialSpec, Drivetrain};
+use super::mechanics::Powertrain;
 use super::{Lcd, SimOptions};
 use crate::geometry::{Point, Pose, Vector, direction};
 use crate::io::{Error, Key, LidarSettings, Psd, RadioMessage, Result};
 use crate::random::Stream;
 use crate::world::space::{Scanner, SolidId, Span};
-use crate::world::{DriveSpec, Footprint, RobotPlacement, RobotSpec};
+use crate::world::{Footprint, RobotPlacement, RobotSpec};
 
 /// One robot in the engine: its mechanics, its devices and what is true about it.
 #[derive(Debug)]
@@ -24,8 +23,7 @@ pub(super) struct Body {
     pub(super) radius: f64,
     /// How far its outline may move at once without jumping over anything.
     pub(super) stride: f64,
-    pub(super) drivetrain: Drivetrain,
-    pub(super) autopilot: Autopilot,
+    pub(super) drive: Powertrain,
     psds: Box<[PsdDevice]>,
     pub(super) psd_noise: Stream,
     pub(super) lidar: Option<Box<LidarDevice>>,
@@ -33,7 +31,7 @@ pub(super) struct Body {
     pub(super) keys: VecDeque<KeyPress>,
     /// Made when the program first draws: most robots of a fleet never do.
     lcd: Option<Box<Lcd>>,
-    pub(super) encoder_offsets: [i64; 2],
+    pub(super) encoder_offsets: [i64; 4],
     pub(super) touch: Touch,
     pub(super) path_length: f64,
     pub(super) trail: Vec<TrailPoint>,
@@ -78,9 +76,6 @@ pub(super) struct Touch {
 const MAX_CONTACT_PLACES: usize = 1000;
 /// Ticks for which a robot must be held to count as stalled: half a second.
 const STALL_TICKS: u32 = 50;
-
-/// The fastest robot, in metres per second.
-const MAX_TOP_SPEED: f64 = 100.0;
 
 impl Touch {
     pub(super) fn begin(&mut self, place: Point) {
@@ -150,15 +145,7 @@ impl Body {
         streams: &Stream,
     ) -> Result<Self> {
         let spec = &placement.spec;
-        let drive = differential(spec)?;
-        check_top_speed(spec, &drive)?;
-        let drivetrain = Drivetrain::new(
-            &drive,
-            spec.motor,
-            &options.noise,
-            options.ideal_encoders,
-            streams.child("drive", 0),
-        );
+        let drive = Powertrain::new(spec, &options.noise, options.ideal_encoders, streams.child("drive", 0))?;
         let lidar = spec.lidar.map(|lidar| {
             let settings =
                 LidarSettings { field_of_view: lidar.field_of_view, tilt: lidar.tilt, points: lidar.points };
@@ -186,15 +173,14 @@ impl Body {
             outline: spec.footprint,
             radius: spec.footprint.bounding_radius(),
             stride: stride(&spec.footprint),
-            drivetrain,
-            autopilot: Autopilot::new(),
+            drive,
             psds: psds.collect(),
             psd_noise: streams.child("psd", 0),
             lidar,
             mailbox: VecDeque::new(),
             keys: VecDeque::new(),
             lcd: None,
-            encoder_offsets: [0; 2],
+            encoder_offsets: [0; 4],
             touch: Touch::default(),
             path_length: 0.0,
             trail: Vec::new(),
@@ -219,19 +205,26 @@ impl Body {
 
     /// Notes how far the outline moved instead of as far as the wheels wished.
     pub(super) fn note_motion(&mut self, wished: f64, moved: f64) {
-        let held = self.touch.touching && moved < 0.2 * wished && self.autopilot.is_driving();
+        let held = self.touch.touching && moved < 0.2 * wished && self.drive.get().is_driving();
         self.touch.held_ticks = if held { self.touch.held_ticks.saturating_add(1) } else { 0 };
+    }
+
+    /// The motor that a motor's or an encoder's number means.
+    pub(super) fn motor_index(&self, number: u8, device: &str) -> Result<usize> {
+        let motors = self.drive.get().motors();
+        let index = usize::from(number).checked_sub(1).filter(|&index| index < motors);
+        index.ok_or_else(|| Error::unsupported(format!("{device} {number}")))
     }
 
     /// An encoder's count since the last reset.
     pub(super) fn encoder(&self, motor: u8) -> Result<i64> {
-        let wheel = wheel_index(motor, "encoder")?;
-        Ok(self.drivetrain.count(wheel) - self.encoder_offsets[wheel])
+        let wheel = self.motor_index(motor, "encoder")?;
+        Ok(self.drive.get().count(wheel) - self.encoder_offsets[wheel])
     }
 
     pub(super) fn reset_encoder(&mut self, motor: u8) -> Result<()> {
-        let wheel = wheel_index(motor, "encoder")?;
-        self.encoder_offsets[wheel] = self.drivetrain.count(wheel);
+        let wheel = self.motor_index(motor, "encoder")?;
+        self.encoder_offsets[wheel] = self.drive.get().count(wheel);
         Ok(())
     }
 
@@ -246,38 +239,6 @@ impl Body {
         let due = self.keys.front().is_some_and(|press| press.time <= now);
         if due { self.keys.pop_front().map(|press| press.key) } else { None }
     }
-}
-
-/// The wheel that a motor or encoder number means.
-pub(super) fn wheel_index(motor: u8, device: &str) -> Result<usize> {
-    match motor {
-        1 => Ok(0),
-        2 => Ok(1),
-        _ => Err(Error::unsupported(format!("{device} {motor}"))),
-    }
-}
-
-/// The drive's description, if the simulator can drive it.
-fn differential(spec: &RobotSpec) -> Result<DifferentialSpec> {
-    match spec.drive {
-        DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn } => {
-            Ok(DifferentialSpec { wheel_diameter, track, max_wheel_speed, ticks_per_turn })
-        }
-        _ => Err(Error::new(
-            crate::io::ErrorKind::Unsupported,
-            format!("robot {}: the simulator drives differential robots only", spec.name),
-        )),
-    }
-}
-
-/// Faster robots would cross walls and worlds within a tick.
-fn check_top_speed(spec: &RobotSpec, drive: &DifferentialSpec) -> Result<()> {
-    let speed = 0.5 * drive.wheel_diameter * drive.max_wheel_speed;
-    if speed <= MAX_TOP_SPEED {
-        return Ok(());
-    }
-    let name = format!("robot {}: top speed", spec.name);
-    Err(Error::invalid_input(&name, format!("{speed} m/s"), &format!("at most {MAX_TOP_SPEED} m/s")))
 }
 
 fn span(placement: &RobotPlacement) -> Span {

@@ -7,7 +7,7 @@ use super::body::Body;
 use super::course::Course;
 use super::engine::Engine;
 use crate::geometry::{Pose, Vector};
-use crate::kinematics::Displacement;
+use crate::kinematics::PlanarMotion;
 use crate::world::Footprint;
 use crate::world::space::Contact;
 
@@ -24,14 +24,14 @@ const SLACK: f64 = 2.0 * PUSH_TOLERANCE;
 
 impl Engine {
     /// Moves all robots by their motions of this tick.
-    pub(super) fn move_bodies(&mut self, motions: &[Displacement]) {
+    pub(super) fn move_bodies(&mut self, motions: &[PlanarMotion]) {
         // No robot moves farther than this in this tick.
         let reaches = self.bodies.iter().zip(motions).map(|(body, &motion)| reach(body, motion));
         let farthest = reaches.fold(0.0, f64::max) + SLACK;
         for (index, &motion) in motions.iter().enumerate() {
             let body = &mut self.bodies[index];
             body.solid_budget -= farthest;
-            if motion == Displacement::default() {
+            if motion == PlanarMotion::default() {
                 self.stand(index);
                 continue;
             }
@@ -40,7 +40,7 @@ impl Engine {
             body.solid_budget -= reach;
             if body.wall_budget > 0.0 && body.solid_budget > 0.0 {
                 body.course.advance(motion);
-                body.path_length += motion.length.abs();
+                body.path_length += motion.length();
                 body.touch.held_ticks = 0;
             } else {
                 self.move_among_things(index, motion, reach);
@@ -63,11 +63,15 @@ impl Engine {
     }
 
     /// Moves a robot that has something near it, in strides that cannot jump over anything.
-    fn move_among_things(&mut self, index: usize, motion: Displacement, reach: f64) {
+    fn move_among_things(&mut self, index: usize, motion: PlanarMotion, reach: f64) {
         let body = &self.bodies[index];
         let start = body.pose();
         let strides = (reach / body.stride).ceil().max(1.0);
-        let part = Displacement { length: motion.length / strides, angle: motion.angle / strides };
+        let part = PlanarMotion {
+            forward: motion.forward / strides,
+            left: motion.left / strides,
+            angle: motion.angle / strides,
+        };
         for _ in 0..strides as u32 {
             self.stride(index, part, reach / strides);
         }
@@ -79,7 +83,7 @@ impl Engine {
         body.note_motion(reach, moved + spin_radius(body) * turned);
     }
 
-    fn stride(&mut self, index: usize, motion: Displacement, reach: f64) {
+    fn stride(&mut self, index: usize, motion: PlanarMotion, reach: f64) {
         let body = &mut self.bodies[index];
         let before = body.course;
         body.course.advance(motion);
@@ -172,8 +176,8 @@ impl Engine {
 }
 
 /// No point of the robot's outline moves farther than this.
-fn reach(body: &Body, motion: Displacement) -> f64 {
-    motion.length.abs() + spin_radius(body) * motion.angle.abs()
+fn reach(body: &Body, motion: PlanarMotion) -> f64 {
+    motion.length() + spin_radius(body) * motion.angle.abs()
 }
 
 /// The radius within which turning on the spot moves the robot's outline.

@@ -1,5 +1,5 @@
 use crate::geometry::{Point, Pose, Vector, direction, normalize_angle};
-use crate::kinematics::{Displacement, advance};
+use crate::kinematics::{PlanarMotion, advance_planar};
 
 /// A pose that moves tick by tick, with the unit vector along its heading at hand.
 ///
@@ -33,18 +33,19 @@ impl Course {
         Vector::new(f.x * own.x - f.y * own.y, f.y * own.x + f.x * own.y)
     }
 
-    /// Moves on along one arc: [`advance`] without its sine and cosine where the turn is small.
-    pub(super) fn advance(&mut self, motion: Displacement) {
+    /// Moves on along one arc: [`advance_planar`] without its sine and cosine where the turn is small.
+    pub(super) fn advance(&mut self, motion: PlanarMotion) {
         let half = 0.5 * motion.angle;
         if half.abs() > SMALL || self.turns >= RENEWAL {
-            *self = Self::new(advance(self.pose, motion));
+            *self = Self::new(advance_planar(self.pose, motion));
             return;
         }
         let (sinc, cos) = small_sinc_cos(half);
         let turn = Vector::new(cos, half * sinc);
         let middle = self.turned(turn);
-        self.pose.x += motion.length * sinc * middle.x;
-        self.pose.y += motion.length * sinc * middle.y;
+        let (forward, left) = (motion.forward * sinc, motion.left * sinc);
+        self.pose.x += forward * middle.x - left * middle.y;
+        self.pose.y += forward * middle.y + left * middle.x;
         if half != 0.0 {
             self.pose.heading = normalize_angle(self.pose.heading + motion.angle);
             self.forward = Self { forward: middle, ..*self }.turned(turn);
@@ -100,9 +101,10 @@ mod tests {
         for step in 0..20_000 {
             let widest = if step % 100 == 0 { 0.5 } else { 0.02 };
             let angle = if step % 7 == 0 { 0.0 } else { stream.between(-widest, widest) };
-            let motion = Displacement { length: stream.between(-0.01, 0.02), angle };
+            let left = if step % 3 == 0 { stream.between(-0.01, 0.01) } else { 0.0 };
+            let motion = PlanarMotion { forward: stream.between(-0.01, 0.02), left, angle };
             course.advance(motion);
-            expected = advance(expected, motion);
+            expected = advance_planar(expected, motion);
             let heading = course.turned(Vector::x());
             assert!((heading - direction(course.pose().heading)).norm() < 1e-14, "step {step}");
         }

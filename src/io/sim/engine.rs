@@ -1,10 +1,10 @@
 use super::body::Body;
 use super::options::ticks_in;
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
-use crate::geometry::Twist;
+use crate::geometry::{Pose, Twist};
 use crate::io::error::{require_finite, require_positive};
 use crate::io::{Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Result};
-use crate::kinematics::Displacement;
+use crate::kinematics::{Displacement, PlanarMotion};
 use crate::random::Stream;
 use crate::world::space::{Contact, Solid, Space};
 use crate::world::{RobotPlacement, Scene, World};
@@ -17,7 +17,7 @@ pub(super) struct Engine {
     pub(super) options: SimOptions,
     /// Ticks since the start.
     pub(super) tick: u64,
-    motions: Vec<Displacement>,
+    motions: Vec<PlanarMotion>,
     pub(super) contacts: Vec<Contact>,
     outbox: Vec<Letter>,
     trail_ticks: Option<u64>,
@@ -53,7 +53,7 @@ impl Engine {
             let solid = space.add(Solid::from(placement));
             bodies.push(Body::new(placement, solid, &options, &root.child("robot", index as u64))?);
         }
-        let motions = vec![Displacement::default(); bodies.len()];
+        let motions = vec![PlanarMotion::default(); bodies.len()];
         let trail_ticks = options.trail_interval.map(ticks_in);
         Ok(Self {
             space,
@@ -94,9 +94,8 @@ impl Engine {
         let mut motions = std::mem::take(&mut self.motions);
         let mut moving = false;
         for (body, motion) in self.bodies.iter_mut().zip(&mut motions) {
-            let command = body.autopilot.command(&body.drivetrain);
-            *motion = body.drivetrain.step(command);
-            moving |= *motion != Displacement::default();
+            *motion = body.drive.step();
+            moving |= *motion != PlanarMotion::default();
         }
         if moving {
             self.move_bodies(&motions);
@@ -111,7 +110,7 @@ impl Engine {
         if self.trail_ticks.is_some_and(|ticks| self.tick.is_multiple_of(ticks)) {
             let time = self.time();
             for body in &mut self.bodies {
-                let odometry = body.drivetrain.odometry();
+                let odometry = body.drive.get().odometry();
                 body.trail.push(TrailPoint { time, pose: body.pose(), odometry });
             }
         }
@@ -138,9 +137,9 @@ impl Engine {
                 return Err(Error::invalid_input(name, speed, "a finite number of at most 1e9 either way"));
             }
         }
-        let body = &mut self.bodies[index];
-        body.drivetrain.begin_command();
-        body.autopilot.set_twist(&body.drivetrain, twist);
+        let drive = self.bodies[index].drive.get_mut();
+        drive.begin_command();
+        drive.set_twist(twist);
         Ok(())
     }
 
@@ -149,26 +148,38 @@ impl Engine {
         require_finite("angle", motion.angle)?;
         require_positive("speed", speed.abs())?;
         let body = &mut self.bodies[index];
-        let seconds = body.drivetrain.least_seconds(motion, speed);
+        let seconds = body.drive.get().least_seconds(motion, speed)?;
         if seconds.is_nan() || seconds > LONGEST {
             let found = format!("{seconds} s long");
             return Err(Error::invalid_input("manoeuvre", found, &format!("at most {LONGEST} s")));
         }
-        body.drivetrain.begin_command();
+        body.drive.get_mut().begin_command();
         // Whoever waits for it shall not hear that the one before stalled.
         body.touch.held_ticks = 0;
-        body.autopilot.start(&body.drivetrain, motion, speed);
+        body.drive.get_mut().start(motion, speed);
         Ok(())
     }
 
     pub(super) fn set_motor(&mut self, index: usize, motor: u8, fraction: f64) -> Result<()> {
-        let wheel = super::body::wheel_index(motor, "motor")?;
+        let body = &mut self.bodies[index];
+        let motor = body.motor_index(motor, "motor")?;
         if !(-1.0..=1.0).contains(&fraction) {
             return Err(Error::invalid_input("motor speed", fraction, "-1 to 1"));
         }
-        let body = &mut self.bodies[index];
-        body.drivetrain.begin_command();
-        body.autopilot.set_motor(&body.drivetrain, wheel, fraction);
+        body.drive.get_mut().begin_command();
+        body.drive.get_mut().set_motor(motor, fraction);
+        Ok(())
+    }
+
+    pub(super) fn set_servo(&mut self, index: usize, servo: u8, position: f64) -> Result<()> {
+        self.bodies[index].drive.get_mut().set_servo(servo, position)
+    }
+
+    pub(super) fn set_odometry(&mut self, index: usize, pose: Pose) -> Result<()> {
+        if !pose.is_finite() {
+            return Err(Error::invalid_input("pose", format!("{pose:?}"), "finite numbers"));
+        }
+        self.bodies[index].drive.get_mut().set_odometry(pose);
         Ok(())
     }
 

@@ -24,19 +24,24 @@
 
 mod autopilot;
 mod body;
+mod car;
 mod collision;
 mod course;
+mod drive_errors;
 mod drivetrain;
 mod engine;
 mod fleet;
 mod lcd;
+mod mechanics;
 mod noise;
+mod omni;
 mod options;
 mod robot;
 mod robot_traits;
 mod shared;
 mod simulation;
 mod truth;
+mod wheels;
 
 pub use body::TrailPoint;
 pub use fleet::{Fleet, FleetRobot};

@@ -16,7 +16,7 @@ use image::RgbImage;
 #[allow(clippy::unnecessary_wraps, reason = "Other questions that a poll asks may fail")]
 fn arrival(engine: &mut Engine, index: usize) -> Result<Option<()>> {
     let body = &engine.bodies[index];
-    Ok((body.autopilot.is_done() || body.touch.is_stalled()).then_some(()))
+    Ok((body.drive.get().is_done() || body.touch.is_stalled()).then_some(()))
 }
 
 /// Answers with the next key press, and fails when none can come.
@@ -48,15 +48,15 @@ macro_rules! robot_through_engine {
             }
 
             fn speed(&mut self) -> Result<Twist> {
-                self.call(|engine, i| Ok(engine.bodies[i].drivetrain.twist()))
+                self.call(|engine, i| Ok(engine.bodies[i].drive.get().twist()))
             }
 
             fn pose(&mut self) -> Result<Pose> {
-                self.call(|engine, i| Ok(engine.bodies[i].drivetrain.odometry()))
+                self.call(|engine, i| Ok(engine.bodies[i].drive.get().odometry()))
             }
 
             fn set_pose(&mut self, pose: Pose) -> Result<()> {
-                self.call(|engine, i| engine.bodies[i].drivetrain.set_odometry(pose))
+                self.call(|engine, i| engine.set_odometry(i, pose))
             }
 
             fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
@@ -72,14 +72,11 @@ macro_rules! robot_through_engine {
             }
 
             fn remaining(&mut self) -> Result<f64> {
-                self.call(|engine, i| {
-                    let body = &engine.bodies[i];
-                    Ok(body.autopilot.remaining(&body.drivetrain))
-                })
+                self.call(|engine, i| Ok(engine.bodies[i].drive.get().remaining()))
             }
 
             fn is_done(&mut self) -> Result<bool> {
-                self.call(|engine, i| Ok(engine.bodies[i].autopilot.is_done()))
+                self.call(|engine, i| Ok(engine.bodies[i].drive.get().is_done()))
             }
 
             fn wait_done(&mut self) -> Result<()> {
@@ -243,8 +240,8 @@ macro_rules! robot_through_engine {
         }
 
         impl Servos for $robot {
-            fn set_servo(&mut self, servo: u8, _position: f64) -> Result<()> {
-                self.call(|_, _| Err(Error::unsupported(format!("servo {servo}"))))
+            fn set_servo(&mut self, servo: u8, position: f64) -> Result<()> {
+                self.call(|engine, i| engine.set_servo(i, servo, position))
             }
         }
 

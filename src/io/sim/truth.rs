@@ -65,7 +65,7 @@ pub(super) fn robot_truth(engine: &Engine, robot: usize) -> Result<RobotTruth> {
     let body = engine.body(robot)?;
     Ok(RobotTruth {
         pose: body.pose(),
-        odometry: body.drivetrain.odometry(),
+        odometry: body.drive.get().odometry(),
         contacts: body.touch.contacts,
         contact_places: body.touch.places.clone(),
         path_length: body.path_length,

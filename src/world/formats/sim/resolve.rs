@@ -42,7 +42,7 @@ impl SimFile {
         let mut resolver = Resolver {
             script: self,
             notes: Notes::new(file),
-            built_in_robots: ["S4", "LabBot"]
+            built_in_robots: ["S4", "LabBot", "Omni"]
                 .into_iter()
                 .filter_map(RobotSpec::predefined)
                 .map(Arc::new)

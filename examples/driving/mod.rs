@@ -1,0 +1,193 @@
+//! What the driving examples share: a simulated robot that is watched, and what is said about its run.
+
+#![allow(dead_code, reason = "each example uses its own part of this")]
+
+use std::path::{Path, PathBuf};
+
+use roverlab::geometry::{Point, Pose};
+use roverlab::io;
+use roverlab::io::sim::{NoiseModel, RobotTruth, SimOptions, SimRobot, Simulation, Truth};
+use roverlab::io::wrappers::{Fault, Faulty};
+use roverlab::kinematics::OdometryErrors;
+use roverlab::picture::{Picture, SaveError};
+use roverlab::world::{DriveSpec, RobotSpec, Scene};
+
+use crate::common::{CommonArgs, Failure, Outcome, Pacer, Report};
+
+/// How the simulator runs.
+#[derive(Debug, Clone)]
+pub(crate) struct Conditions {
+    pub(crate) seed: u64,
+    pub(crate) noise: f64,
+    pub(crate) ideal_encoders: bool,
+    /// Simulated seconds.
+    pub(crate) time_limit: f64,
+    pub(crate) faults: Vec<Fault>,
+}
+
+/// How a robot's program ended: what it says, or why the robot failed.
+pub(crate) type Ending<T> = Result<T, String>;
+
+/// A run and what is true about it.
+#[derive(Debug, Clone)]
+pub(crate) struct Run<T> {
+    pub(crate) ending: Ending<T>,
+    pub(crate) truth: RobotTruth,
+    /// Where odometry takes the robot to be in the world.
+    pub(crate) odometry: Pose,
+    /// Simulated seconds.
+    pub(crate) sim_time: f64,
+    pub(crate) true_path: Vec<Pose>,
+    pub(crate) odometry_path: Vec<Point>,
+}
+
+impl Conditions {
+    pub(crate) fn new(common: &CommonArgs, time_limit: f64) -> Result<Self, Failure> {
+        Ok(Self {
+            seed: common.seed,
+            noise: common.noise,
+            ideal_encoders: false,
+            time_limit: common.time_limit.unwrap_or(time_limit),
+            faults: common.faults()?,
+        })
+    }
+
+    /// The errors that the robot's odometry is known to have.
+    pub(crate) fn odometry_errors(&self) -> OdometryErrors {
+        let NoiseModel { wheel_scale, wheel_mismatch, track, slip, .. } =
+            NoiseModel::real().scaled(self.noise);
+        OdometryErrors { wheel_scale, wheel_mismatch, track, slip }
+    }
+
+    /// Lets a program drive the first robot of a scene. `watch` is called with the time at each of its steps.
+    pub(crate) fn run<T>(
+        &self,
+        scene: &Scene,
+        mut watch: impl FnMut(f64),
+        program: impl FnOnce(&mut Faulty<SimRobot>, &mut dyn FnMut()) -> io::Result<T>,
+    ) -> Result<Run<T>, Failure> {
+        // The program's own limit comes first, unless its clock has stopped.
+        const RESERVE: f64 = 1.0;
+        let options = SimOptions {
+            time_limit: Some(self.time_limit + RESERVE),
+            ideal_encoders: self.ideal_encoders,
+            ..SimOptions::with_noise(self.noise, self.seed)
+        };
+        let simulation = Simulation::new(scene, options).map_err(Failure::input)?;
+        let start = scene.robots[0].pose;
+        let mut robot = Faulty::new(simulation.robot(0).map_err(Failure::input)?, self.faults.clone());
+        let truth = simulation.truth();
+        let (mut true_path, mut odometry_path) = (vec![start], vec![start.position()]);
+        let result = program(&mut robot, &mut || {
+            if let Ok(robot) = truth.robot(0) {
+                true_path.push(robot.pose);
+                odometry_path.push(start.compose(&robot.odometry).position());
+            }
+            watch(truth.time());
+        });
+        // The robot lets go of the world, so that what is true stays as it is.
+        drop(robot);
+        finish(result, &truth, start, true_path, odometry_path)
+    }
+}
+
+fn finish<T>(
+    result: io::Result<T>,
+    truth: &Truth,
+    start: Pose,
+    true_path: Vec<Pose>,
+    odometry_path: Vec<Point>,
+) -> Result<Run<T>, Failure> {
+    let end = truth.robot(0).map_err(Failure::run)?;
+    Ok(Run {
+        ending: result.map_err(|error| Failure::from(error).to_string()),
+        odometry: start.compose(&end.odometry),
+        sim_time: truth.time(),
+        truth: end,
+        true_path,
+        odometry_path,
+    })
+}
+
+impl<T> Run<T> {
+    /// A report with what is true about the run and with the outcome that `outcome` finds.
+    pub(crate) fn report(&self, outcome: impl FnOnce(&T) -> Outcome) -> Report {
+        let (outcome, error) = match &self.ending {
+            Ok(ended) => (outcome(ended), None),
+            Err(error) if error.contains("time limit") => (Outcome::failure("timed_out"), None),
+            Err(error) => (Outcome::failure("failed"), Some(error.clone())),
+        };
+        Report {
+            sim_time: Some(self.sim_time),
+            collisions: Some(self.truth.contacts.into()),
+            path_length: Some(self.truth.path_length),
+            pose: Some(self.truth.pose),
+            odometry: Some(self.odometry),
+            error,
+            ..Report::new(outcome)
+        }
+    }
+
+    /// Where the robot really was.
+    pub(crate) fn positions(&self) -> impl Iterator<Item = Point> {
+        self.true_path.iter().map(Pose::position)
+    }
+}
+
+/// Keeps simulated time from running ahead of the wall clock, if the options ask for it.
+pub(crate) fn paced(common: &CommonArgs) -> impl FnMut(f64) {
+    let (pacer, realtime) = (Pacer::start(), common.realtime);
+    move |time| {
+        if realtime {
+            pacer.keep(time);
+        }
+    }
+}
+
+/// Draws a run, though never unasked where a program reads the report. Returns the file, if there is one, and what went
+/// wrong.
+pub(crate) fn drawn(
+    common: &CommonArgs,
+    name: &str,
+    picture: impl FnOnce() -> Picture,
+) -> (Option<PathBuf>, Option<String>) {
+    let Some(file) = common.picture.clone().or_else(|| (!common.json).then(|| PathBuf::from(name))) else {
+        return (None, None);
+    };
+    match save(&picture(), &file) {
+        Ok(()) => {
+            common.tell(format_args!("picture: {}", file.display()));
+            (Some(file), None)
+        }
+        Err(error) => (None, Some(Failure::from(error).to_string())),
+    }
+}
+
+fn save(picture: &Picture, file: &Path) -> Result<(), SaveError> {
+    picture.save(file)
+}
+
+/// Metres between a robot's left and right wheels.
+pub(crate) fn track(spec: &RobotSpec) -> f64 {
+    match spec.drive {
+        DriveSpec::Differential { track, .. }
+        | DriveSpec::Ackermann { track, .. }
+        | DriveSpec::Omni { track, .. } => track,
+        _ => f64::NAN,
+    }
+}
+
+/// Refuses a robot with a drive that the example has no use for.
+pub(crate) fn check_drive(
+    common: &CommonArgs,
+    spec: &RobotSpec,
+    good: bool,
+    expected: &str,
+) -> Result<(), Failure> {
+    if good {
+        return Ok(());
+    }
+    let file = common.robot.as_ref().or(common.world.as_ref());
+    let place = file.map_or(String::new(), |file| format!("{}: ", file.display()));
+    Err(Failure::input(format!("{place}found robot {} with another drive; expected {expected}", spec.name)))
+}

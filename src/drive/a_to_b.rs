@@ -1,0 +1,419 @@
+use std::f64::consts::FRAC_PI_2;
+
+use super::{FollowerParameters, Path, PathFollower};
+use crate::geometry::{Point, Pose, Twist, angle_difference};
+use crate::io::error::require_positive;
+use crate::io::{Error, Result};
+
+/// A way from A to B (book, sections 3.3 to 3.6).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Method {
+    /// Turn on the spot towards the goal, then drive straight.
+    Turn,
+    /// Drive the one arc to the goal; backwards to a goal behind.
+    Arc,
+    /// Keep turning towards the goal while driving.
+    Dog,
+    /// Drive a Hermite spline, which arrives with the goal's heading.
+    Spline,
+}
+
+/// Where to go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Goal {
+    /// The place.
+    pub position: Point,
+    /// The heading to arrive with, in radians, if it matters.
+    pub heading: Option<f64>,
+}
+
+impl Goal {
+    /// A goal with a heading.
+    pub fn pose(pose: Pose) -> Self {
+        Self { position: pose.position(), heading: Some(pose.heading) }
+    }
+
+    /// A goal at which any heading is right.
+    pub fn point(position: Point) -> Self {
+        Self { position, heading: None }
+    }
+
+    /// The goal's pose; without a heading of its own it is the direction from a place to the goal.
+    pub(super) fn pose_from(&self, place: Point) -> Pose {
+        let away = self.position - place;
+        let heading = self.heading.unwrap_or_else(|| crate::geometry::math::atan2(away.y, away.x));
+        Pose::new(self.position.x, self.position.y, heading)
+    }
+
+    pub(super) fn check(&self) -> Result<()> {
+        if self.pose_from(Point::origin()).is_finite() {
+            return Ok(());
+        }
+        Err(Error::invalid_input("goal", format!("{self:?}"), "finite numbers"))
+    }
+}
+
+/// What [`AToB`] goes by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AToBParameters {
+    /// Speeds and steering along the path.
+    pub follower: FollowerParameters,
+    /// The speed of turns on the spot in rad/s.
+    pub turn_speed: f64,
+    /// The speed of the last centimetres in m/s.
+    pub creep_speed: f64,
+    /// The book's k: the length of a spline's tangents in terms of the distance.
+    pub spline_scale: f64,
+    /// How near to the goal, in metres, the robot stops correcting.
+    pub tolerance: f64,
+    /// How near to the goal's heading, in radians, it stops correcting.
+    pub heading_tolerance: f64,
+    /// How many times it may correct.
+    pub corrections: u32,
+    /// Seconds from one control step to the next.
+    pub period: f64,
+}
+
+impl Default for AToBParameters {
+    fn default() -> Self {
+        Self {
+            follower: FollowerParameters::default(),
+            turn_speed: 1.0,
+            creep_speed: 0.1,
+            spline_scale: 1.0,
+            tolerance: 0.0005,
+            heading_tolerance: 0.001,
+            corrections: 4,
+            period: 0.02,
+        }
+    }
+}
+
+impl AToBParameters {
+    fn validate(&self) -> Result<()> {
+        self.follower.validate()?;
+        require_positive("turn speed", self.turn_speed)?;
+        require_positive("creep speed", self.creep_speed)?;
+        require_positive("spline scale", self.spline_scale)?;
+        require_positive("tolerance", self.tolerance)?;
+        require_positive("heading tolerance", self.heading_tolerance)?;
+        require_positive("control period", self.period)
+    }
+}
+
+/// What the behaviour sees at a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AToBObservation {
+    /// Where the robot is, in the frame of the goal.
+    pub pose: Pose,
+    /// Whether its last manoeuvre has ended, or there was none.
+    pub done: bool,
+}
+
+/// What the robot is to do next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum AToBCommand {
+    /// Drive at this speed.
+    Speed(Twist),
+    /// Drive so many metres straight on.
+    Straight(f64),
+    /// Turn on the spot by so many radians.
+    Turn(f64),
+    /// Go on with the manoeuvre.
+    Continue,
+    /// The run has ended.
+    Stop,
+}
+
+/// How a drive to a goal ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum AToBOutcome {
+    /// The robot takes itself to be there.
+    Reached,
+    /// Something holds the robot.
+    Blocked,
+    /// The time was over first.
+    TimedOut,
+}
+
+/// Drives to a goal by one of the book's methods, with feedback all the way: a planned path is followed, and what is
+/// missing at its end is corrected by short manoeuvres.
+///
+/// ```
+/// use roverlab::drive::{AToB, AToBOutcome, AToBParameters, Goal, Method};
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// # fn main() -> roverlab::io::Result<()> {
+/// let scene = Scene::with_robot(World::empty(3.0, 3.0), RobotSpec::s4(), Pose::default());
+/// let simulation = Simulation::new(&scene, SimOptions::ideal())?;
+/// let goal = Pose::new(1.45, 0.65, 0.0);
+/// let mut drive = AToB::new(Method::Spline, Goal::pose(goal), AToBParameters::default())?;
+/// let outcome = drive.run(&mut simulation.robot(0)?, 60.0, |_, _| {})?;
+/// assert_eq!(outcome, AToBOutcome::Reached);
+/// let end = simulation.truth().pose(0)?;
+/// assert!(end.distance_to(goal.position()) < 0.006 && end.heading.abs() < 0.005);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct AToB {
+    method: Method,
+    goal: Goal,
+    pub(super) parameters: AToBParameters,
+    phase: Phase,
+    corrections: u32,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Phase {
+    Begin,
+    /// Turning on the spot, before the line to the goal.
+    Turning,
+    Following(Box<PathFollower>),
+    Homing,
+    /// Correcting what is missing at the end.
+    Correcting,
+    Ended,
+}
+
+/// Metres before the end of a path at which manoeuvres take over.
+const HANDOVER: f64 = 0.02;
+/// Seconds in which a dog curve turns towards its goal.
+const HOMING_TIME: f64 = 0.5;
+/// Radians up to which the last millimetres are driven without turning first.
+const SMALL_BEARING: f64 = 0.02;
+
+impl AToB {
+    /// A drive to a goal in the frame of the poses that will be observed.
+    pub fn new(method: Method, goal: Goal, parameters: AToBParameters) -> Result<Self> {
+        parameters.validate()?;
+        goal.check()?;
+        Ok(Self { method, goal, parameters, phase: Phase::Begin, corrections: 0 })
+    }
+
+    /// The next command.
+    pub fn step(&mut self, observation: &AToBObservation) -> Result<AToBCommand> {
+        let pose = observation.pose;
+        if !pose.is_finite() {
+            return Err(Error::invalid_input("observed pose", format!("{pose:?}"), "finite numbers"));
+        }
+        match &mut self.phase {
+            Phase::Begin => self.begin(pose),
+            Phase::Turning if observation.done => {
+                let path = Path::straight(pose.position(), self.goal.position)?;
+                self.follow(path, false, pose)
+            }
+            Phase::Following(follower) => {
+                let twist = follower.step(pose);
+                if follower.rest() > HANDOVER {
+                    return Ok(AToBCommand::Speed(twist));
+                }
+                self.phase = Phase::Correcting;
+                Ok(self.correct(pose))
+            }
+            Phase::Homing => Ok(self.home(pose)),
+            Phase::Correcting if observation.done => Ok(self.correct(pose)),
+            Phase::Turning | Phase::Correcting => Ok(AToBCommand::Continue),
+            Phase::Ended => Ok(AToBCommand::Stop),
+        }
+    }
+
+    fn begin(&mut self, pose: Pose) -> Result<AToBCommand> {
+        if pose.distance_to(self.goal.position) <= HANDOVER {
+            self.phase = Phase::Correcting;
+            return Ok(self.correct(pose));
+        }
+        match self.method {
+            Method::Turn => {
+                self.phase = Phase::Turning;
+                Ok(AToBCommand::Turn(pose.bearing_to(self.goal.position)))
+            }
+            Method::Dog => {
+                self.phase = Phase::Homing;
+                Ok(self.home(pose))
+            }
+            Method::Arc => {
+                let behind = pose.bearing_to(self.goal.position).abs() > FRAC_PI_2;
+                let path = Self::arc(pose, self.goal.position, behind)?;
+                self.follow(path, behind, pose)
+            }
+            Method::Spline => {
+                let goal = self.goal.pose_from(pose.position());
+                let path = Path::hermite(pose, goal, self.parameters.spline_scale)?;
+                self.follow(path, false, pose)
+            }
+        }
+    }
+
+    fn arc(pose: Pose, goal: Point, behind: bool) -> Result<Path> {
+        let heading = if behind { pose.heading + std::f64::consts::PI } else { pose.heading };
+        Path::arc(Pose { heading, ..pose }, goal)
+    }
+
+    fn follow(&mut self, path: Path, reverse: bool, pose: Pose) -> Result<AToBCommand> {
+        let mut follower = PathFollower::new(path, self.parameters.follower)?;
+        if reverse {
+            follower = follower.reversed();
+        }
+        let twist = follower.step(pose);
+        self.phase = Phase::Following(Box::new(follower));
+        Ok(AToBCommand::Speed(twist))
+    }
+
+    /// A step of the dog curve: always turning towards the goal, and never so fast that it would be circled.
+    fn home(&mut self, pose: Pose) -> AToBCommand {
+        let distance = pose.distance_to(self.goal.position);
+        if distance <= HANDOVER {
+            self.phase = Phase::Correcting;
+            return self.correct(pose);
+        }
+        AToBCommand::Speed(dog_twist(
+            &self.parameters.follower,
+            pose.bearing_to(self.goal.position),
+            distance,
+        ))
+    }
+
+    /// Short manoeuvres that bring the standing robot to the goal.
+    fn correct(&mut self, pose: Pose) -> AToBCommand {
+        let goal = pose.to_local(self.goal.position);
+        let distance = goal.coords.norm();
+        let may = self.corrections < self.parameters.corrections;
+        if may && distance > self.parameters.tolerance {
+            self.corrections += 1;
+            return self.approach(pose, goal);
+        }
+        let missing = self.goal.heading.map_or(0.0, |heading| angle_difference(heading, pose.heading));
+        if self.corrections < 2 * self.parameters.corrections
+            && missing.abs() > self.parameters.heading_tolerance
+        {
+            // From here on only the heading is corrected: turning moves the robot by a tick at most.
+            self.corrections = self.corrections.max(self.parameters.corrections) + 1;
+            return AToBCommand::Turn(missing);
+        }
+        self.phase = Phase::Ended;
+        AToBCommand::Stop
+    }
+
+    fn approach(&self, pose: Pose, goal: Point) -> AToBCommand {
+        // The way back is as good as the way ahead.
+        let behind = goal.x < 0.0;
+        let bearing = if behind {
+            angle_difference(pose.bearing_to(self.goal.position), std::f64::consts::PI)
+        } else {
+            pose.bearing_to(self.goal.position)
+        };
+        if goal.y.abs() > self.parameters.tolerance && bearing.abs() > SMALL_BEARING {
+            return AToBCommand::Turn(bearing);
+        }
+        AToBCommand::Straight(goal.x)
+    }
+
+    /// The path that is followed, if one is.
+    pub fn path(&self) -> Option<&Path> {
+        if let Phase::Following(follower) = &self.phase { Some(follower.path()) } else { None }
+    }
+
+    /// The path that would be followed from a pose; none for a dog curve, which has no plan.
+    pub fn plan(&self, pose: Pose) -> Result<Option<Path>> {
+        let goal = self.goal.position;
+        if pose.distance_to(goal) <= HANDOVER {
+            return Ok(None);
+        }
+        match self.method {
+            Method::Dog => Ok(None),
+            Method::Turn => Path::straight(pose.position(), goal).map(Some),
+            Method::Arc => Self::arc(pose, goal, pose.bearing_to(goal).abs() > FRAC_PI_2).map(Some),
+            Method::Spline => {
+                Path::hermite(pose, self.goal.pose_from(pose.position()), self.parameters.spline_scale)
+                    .map(Some)
+            }
+        }
+    }
+}
+
+/// The speed of a dog curve for a bearing and a distance of the goal.
+pub(super) fn dog_twist(parameters: &FollowerParameters, bearing: f64, distance: f64) -> Twist {
+    let angular = (bearing / HOMING_TIME).clamp(-parameters.turn_rate, parameters.turn_rate);
+    // The circle of this speed and turn passes no farther out than the one through the goal.
+    let through_goal = 0.5 * distance / crate::geometry::math::sin(bearing.abs().min(FRAC_PI_2)).max(1e-9);
+    let linear = parameters
+        .speed
+        .min(0.5 * angular.abs() * through_goal + parameters.speed * (1.0 - (bearing.abs() / 0.3).min(1.0)))
+        .min((2.0 * parameters.deceleration * distance).sqrt());
+    Twist::new(linear, angular)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::{Displacement, advance};
+    use proptest::prelude::*;
+
+    /// A robot that does exactly as it is told. Returns where it ends, and its steps.
+    fn drive(method: Method, goal: Goal, start: Pose) -> (Pose, u32) {
+        let mut behaviour = AToB::new(method, goal, AToBParameters::default()).unwrap();
+        let mut pose = start;
+        for step in 0..20_000 {
+            let motion = match behaviour.step(&AToBObservation { pose, done: true }).unwrap() {
+                AToBCommand::Speed(twist) => {
+                    Displacement { length: 0.02 * twist.linear, angle: 0.02 * twist.angular }
+                }
+                AToBCommand::Straight(length) => Displacement { length, angle: 0.0 },
+                AToBCommand::Turn(angle) => Displacement { length: 0.0, angle },
+                AToBCommand::Continue => unreachable!("the manoeuvre is done"),
+                AToBCommand::Stop => return (pose, step),
+            };
+            pose = advance(pose, motion);
+        }
+        panic!("{method:?} from {start:?} to {goal:?} has no end; now at {pose:?}");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(100))]
+        #[test]
+        fn every_method_arrives(
+            x in -2.0..2.0f64, y in -2.0..2.0f64, heading in -3.0..3.0f64, at in -3.0..3.0f64, posed: bool,
+        ) {
+            let (start, place) = (Pose::new(0.2, -0.1, heading), Point::new(x, y));
+            let goal = Goal { position: place, heading: posed.then_some(at) };
+            for method in [Method::Turn, Method::Arc, Method::Dog, Method::Spline] {
+                let (end, _) = drive(method, goal, start);
+                prop_assert!(end.distance_to(place) < 1e-3, "{method:?}: {end:?}");
+                if posed {
+                    prop_assert!(angle_difference(end.heading, at).abs() < 2e-3, "{method:?}: {end:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn who_is_there_stays() {
+        let there = Pose::new(1.0, 2.0, 0.5);
+        assert_eq!(drive(Method::Spline, Goal::pose(there), there), (there, 0));
+    }
+
+    #[test]
+    fn a_dog_curve_bends_less_and_less() {
+        let parameters = FollowerParameters::default();
+        let turns = [1.0, 0.5, 0.1, 0.0].map(|bearing| dog_twist(&parameters, bearing, 1.0).angular);
+        assert!(turns.windows(2).all(|pair| pair[0] > pair[1]) && turns[3] == 0.0, "{turns:?}");
+        assert_eq!(dog_twist(&parameters, 0.0, 1.0).linear, parameters.speed);
+    }
+
+    #[test]
+    fn wrong_numbers_are_refused() {
+        let goal = Goal::point(Point::new(f64::NAN, 0.0));
+        assert!(AToB::new(Method::Turn, goal, AToBParameters::default()).is_err());
+        let goal = Goal::point(Point::new(1.0, 0.0));
+        let parameters = AToBParameters { tolerance: 0.0, ..AToBParameters::default() };
+        assert!(AToB::new(Method::Turn, goal, parameters).is_err());
+        let mut drive = AToB::new(Method::Turn, goal, AToBParameters::default()).unwrap();
+        let lost = AToBObservation { pose: Pose::new(f64::NAN, 0.0, 0.0), done: true };
+        assert!(drive.step(&lost).is_err());
+    }
+}

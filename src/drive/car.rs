@@ -1,0 +1,385 @@
+use super::a_to_b::dog_twist;
+use super::{FollowerParameters, Goal, Method, Path, PathFollower, Steering};
+use crate::geometry::{Point, Pose, Twist, angle_difference};
+use crate::io::error::require_positive;
+use crate::io::{Clock, Drive, Error, ErrorKind, Motors, Result, Servos};
+use crate::kinematics::{Ackermann, CarState};
+
+/// Speed and steering of a car as commands of its motor and its servo (book, program 7.1).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CarDriver {
+    /// The car's geometry.
+    pub kinematics: Ackermann,
+    /// The rim speed of its wheels at full motor speed, in m/s.
+    pub full_speed: f64,
+}
+
+/// What motor 1 and servo 1 are told.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CarCommand {
+    /// A fraction of the motor's full speed, -1 to 1.
+    pub motor: f64,
+    /// The steering servo's position, -1 (full left) to 1 (full right).
+    pub servo: f64,
+}
+
+impl CarDriver {
+    /// The commands for a speed and a steering angle, as far as both go.
+    pub fn command(&self, state: CarState) -> CarCommand {
+        CarCommand {
+            motor: (state.speed / self.full_speed).clamp(-1.0, 1.0),
+            servo: (-state.steering / self.kinematics.max_steering()).clamp(-1.0, 1.0),
+        }
+    }
+
+    /// Tells a robot to drive so.
+    pub fn drive<R: Motors + Servos + ?Sized>(&self, robot: &mut R, state: CarState) -> Result<()> {
+        let command = self.command(state);
+        robot.set_servo(1, command.servo)?;
+        robot.set_motor(1, command.motor)
+    }
+}
+
+/// What [`CarToB`] goes by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CarParameters {
+    /// Speeds and steering along the path.
+    pub follower: FollowerParameters,
+    /// The least radius of planned paths in terms of the turning radius: more than 1, to leave room for corrections.
+    pub margin: f64,
+    /// The book's k of splines; more is taken where the spline would bend too tightly.
+    pub spline_scale: f64,
+    /// Seconds that the servo takes to turn the wheels from the middle to one side.
+    pub steering_time: f64,
+    /// Seconds from one control step to the next.
+    pub period: f64,
+}
+
+impl Default for CarParameters {
+    fn default() -> Self {
+        Self {
+            follower: FollowerParameters {
+                speed: 0.2,
+                turn_rate: 1.0,
+                deceleration: 0.1,
+                approach_rate: 1.2,
+                lag: 0.45,
+                steering: Steering::CrossTrack { reach: 0.2 },
+            },
+            margin: 1.15,
+            spline_scale: 1.0,
+            steering_time: 1.1,
+            period: 0.02,
+        }
+    }
+}
+
+/// How a car's drive to a goal ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum CarOutcome {
+    /// The car takes itself to be there.
+    Reached,
+    /// Something holds the car.
+    Blocked,
+    /// The time was over first.
+    TimedOut,
+}
+
+/// Drives a car to a goal by the methods of chapter 3, within its turning circle (book, section 7.4).
+///
+/// What a robot that turns on the spot does in a turn, a car does on a circle, and so every plan keeps to the circle:
+/// [`Method::Turn`] is a Dubins path; an arc or a spline that would be too tight becomes one. A dog curve drives straight on
+/// past a goal beside it until it can turn towards it. A goal's heading is met by all; after a dog curve, by a last path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CarToB {
+    method: Method,
+    goal: Goal,
+    driver: CarDriver,
+    parameters: CarParameters,
+    phase: Phase,
+    /// The pieces of the path that come next, the last one first.
+    next: Vec<Path>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Phase {
+    Begin,
+    /// Turning the wheels, standing, for so many seconds more.
+    Aiming(Box<PathFollower>, f64),
+    Following(Box<PathFollower>),
+    Homing,
+    Ended,
+}
+
+/// Metres from the goal at which the car stops.
+const ARRIVED: f64 = 0.001;
+/// Radians from point to point of a path that no car follows.
+const SHARP_TURN: f64 = 0.1;
+/// How far the curvature jumps, in terms of the largest one, where the car stops to turn its wheels.
+const LARGE_JUMP: f64 = 1.2;
+/// Metres before the goal of a dog curve in which the car only drives on.
+const LAST_BIT: f64 = 0.03;
+/// The largest k of splines that is tried, and its steps.
+const LARGEST_SCALE: f64 = 4.0;
+const SCALE_STEP: f64 = 0.25;
+/// Turning radii before a goal with a heading at which a dog curve hands over.
+const DOG_HANDOVER: f64 = 4.0;
+
+impl CarToB {
+    /// A drive of a car to a goal in the frame of the poses that will be observed.
+    pub fn new(method: Method, goal: Goal, driver: CarDriver, parameters: CarParameters) -> Result<Self> {
+        goal.check()?;
+        parameters.follower.validate()?;
+        require_positive("full speed", driver.full_speed)?;
+        require_positive("spline scale", parameters.spline_scale)?;
+        require_positive("steering time", parameters.steering_time)?;
+        require_positive("control period", parameters.period)?;
+        if !(parameters.margin >= 1.0 && parameters.margin.is_finite()) {
+            return Err(Error::invalid_input(
+                "margin of the turning radius",
+                parameters.margin,
+                "at least 1",
+            ));
+        }
+        Ok(Self { method, goal, driver, parameters, phase: Phase::Begin, next: Vec::new() })
+    }
+
+    fn radius(&self) -> f64 {
+        self.parameters.margin * self.driver.kinematics.turning_radius()
+    }
+
+    /// The path from a pose; none for a dog curve, which has no plan, and for a car that is there.
+    pub fn plan(&self, pose: Pose) -> Result<Option<Path>> {
+        if pose.distance_to(self.goal.position) <= ARRIVED || self.method == Method::Dog {
+            return Ok(None);
+        }
+        let fits = |path: &Path| {
+            path.max_curvature() * self.radius() <= 1.0 + 1e-9 && path.sharpest_turn() < SHARP_TURN
+        };
+        let ahead = pose.bearing_to(self.goal.position).abs() <= std::f64::consts::FRAC_PI_2;
+        if self.method == Method::Arc && self.goal.heading.is_none() && ahead {
+            let arc = Path::arc(pose, self.goal.position)?;
+            if fits(&arc) {
+                return Ok(Some(arc));
+            }
+        }
+        if self.method == Method::Spline {
+            let goal = self.goal.pose_from(pose.position());
+            let mut scale = self.parameters.spline_scale;
+            while scale <= LARGEST_SCALE {
+                let spline = Path::hermite(pose, goal, scale)?;
+                if fits(&spline) {
+                    return Ok(Some(spline));
+                }
+                scale += SCALE_STEP;
+            }
+        }
+        self.round_the_circle(pose).map(Some)
+    }
+
+    fn round_the_circle(&self, pose: Pose) -> Result<Path> {
+        match self.goal.heading {
+            Some(heading) => {
+                let Point { coords, .. } = self.goal.position;
+                Path::dubins(pose, Pose::new(coords.x, coords.y, heading), self.radius())
+            }
+            None => Path::dubins_to_point(pose, self.goal.position, self.radius()),
+        }
+    }
+
+    /// Speed and steering for the car at a pose; `None` at the end.
+    pub fn step(&mut self, pose: Pose) -> Result<Option<CarState>> {
+        if !pose.is_finite() {
+            return Err(Error::invalid_input("observed pose", format!("{pose:?}"), "finite numbers"));
+        }
+        if self.phase == Phase::Begin {
+            self.phase = match self.plan(pose)? {
+                Some(path) => self.aim(&path)?,
+                None if self.method == Method::Dog => Phase::Homing,
+                None => Phase::Ended,
+            };
+        }
+        if self.phase == Phase::Homing {
+            if let Some(state) = self.home(pose) {
+                return Ok(Some(state));
+            }
+            self.phase = if self.goal.heading.is_some() {
+                let path = self.round_the_circle(pose)?;
+                self.aim(&path)?
+            } else {
+                Phase::Ended
+            };
+        }
+        self.follow(pose)
+    }
+
+    /// The wheels are turned before the car drives off.
+    fn aim(&mut self, path: &Path) -> Result<Phase> {
+        self.next = path.split_at_jumps(LARGE_JUMP * self.driver.kinematics.max_curvature());
+        self.next.reverse();
+        self.aim_at_next()
+    }
+
+    fn aim_at_next(&mut self) -> Result<Phase> {
+        let Some(path) = self.next.pop() else { return Ok(Phase::Ended) };
+        let follower = PathFollower::new(path, self.parameters.follower)?;
+        // From one side to the other it takes twice as long as from the middle.
+        let seconds = self.parameters.steering_time * if self.phase == Phase::Begin { 1.0 } else { 2.0 };
+        Ok(Phase::Aiming(Box::new(follower), seconds))
+    }
+
+    fn follow(&mut self, pose: Pose) -> Result<Option<CarState>> {
+        if let Phase::Following(follower) = &mut self.phase {
+            let twist = follower.step(pose);
+            if follower.rest() > ARRIVED {
+                return Ok(Some(self.driver.kinematics.inverse_limited(twist, self.driver.full_speed)));
+            }
+            self.phase = self.aim_at_next()?;
+        }
+        Ok(self.aimed())
+    }
+
+    /// Standing, with the wheels where the next piece of the path needs them; `None` without one.
+    fn aimed(&mut self) -> Option<CarState> {
+        match &mut self.phase {
+            Phase::Aiming(follower, seconds) => {
+                *seconds -= self.parameters.period;
+                let curvature = follower.path().at(0.0).curvature;
+                let steering = self.driver.kinematics.steering_for(curvature);
+                if *seconds <= 0.0 {
+                    self.phase = Phase::Following(follower.clone());
+                }
+                Some(CarState { speed: 0.0, steering })
+            }
+            _ => None,
+        }
+    }
+
+    /// A step of the dog curve; `None` when it has done its part.
+    fn home(&self, pose: Pose) -> Option<CarState> {
+        let (goal, radius) = (pose.to_local(self.goal.position), self.radius());
+        let distance = goal.coords.norm();
+        let turns = self.goal.heading.is_some();
+        if turns && distance <= DOG_HANDOVER * radius {
+            return None;
+        }
+        let rate = self.parameters.follower.approach_rate;
+        if distance <= LAST_BIT {
+            let drives = goal.x > ARRIVED;
+            return drives.then(|| CarState { speed: rate * goal.x, steering: 0.0 });
+        }
+        let bearing = pose.bearing_to(self.goal.position);
+        // Within a turning circle, the goal could only be circled: first the car drives away from it.
+        let beside = Point::new(0.0, radius.copysign(goal.y));
+        let within = (goal - beside).norm() < radius - 1e-3;
+        if within {
+            return Some(CarState { speed: self.parameters.follower.speed, steering: 0.0 });
+        }
+        let told = dog_twist(&self.parameters.follower, bearing, distance);
+        let speed = self.parameters.follower.speed.min(rate * distance);
+        let twist = Twist::new(speed, told.angular);
+        Some(self.driver.kinematics.inverse_limited(twist, self.driver.full_speed))
+    }
+
+    /// Drives a car to the goal by its odometry, within `time_limit` seconds, by motor 1 and servo 1. `observe` is called
+    /// after every step.
+    pub fn run<R: Clock + Drive + Motors + Servos + ?Sized>(
+        &mut self,
+        robot: &mut R,
+        time_limit: f64,
+        mut observe: impl FnMut(&Self, Pose),
+    ) -> Result<CarOutcome> {
+        let begin = robot.now()?;
+        let mut next = begin;
+        let mut last = f64::NEG_INFINITY;
+        loop {
+            let now = robot.now()?;
+            if now <= last {
+                return Err(Error::new(ErrorKind::Other, "the robot's clock stands still"));
+            }
+            last = now;
+            let pose = robot.pose()?;
+            let state = self.step(pose)?;
+            observe(self, pose);
+            let outcome = if now - begin >= time_limit {
+                Some(CarOutcome::TimedOut)
+            } else if robot.is_stalled()? {
+                Some(CarOutcome::Blocked)
+            } else {
+                state.is_none().then_some(CarOutcome::Reached)
+            };
+            if let Some(outcome) = outcome {
+                robot.set_motor(1, 0.0)?;
+                return Ok(outcome);
+            }
+            self.driver.drive(robot, state.unwrap_or_default())?;
+            next += self.parameters.period;
+            let pause = next - robot.now()?;
+            robot.wait(pause)?;
+        }
+    }
+
+    /// Radians by which a pose misses the goal's heading; `None` if any will do.
+    pub fn heading_error(&self, pose: Pose) -> Option<f64> {
+        self.goal.heading.map(|heading| angle_difference(pose.heading, heading))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::{Displacement, advance};
+    use proptest::prelude::*;
+
+    fn driver() -> CarDriver {
+        CarDriver { kinematics: Ackermann::new(0.26, 0.16, 0.5).unwrap(), full_speed: 0.5 }
+    }
+
+    /// A car that does exactly as it is told. Returns where it ends.
+    fn drive(method: Method, goal: Goal, start: Pose) -> Pose {
+        let mut behaviour = CarToB::new(method, goal, driver(), CarParameters::default()).unwrap();
+        let mut pose = start;
+        for _ in 0..20_000 {
+            let Some(state) = behaviour.step(pose).unwrap() else { return pose };
+            assert!(state.steering.abs() <= 0.5 && state.speed.abs() <= 0.5);
+            let twist = driver().kinematics.forward(state);
+            pose = advance(pose, Displacement { length: 0.02 * twist.linear, angle: 0.02 * twist.angular });
+        }
+        panic!("{method:?} to {goal:?} has no end; now at {pose:?}");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(40))]
+        #[test]
+        fn every_method_arrives(
+            x in -2.0..2.0f64, y in -2.0..2.0f64, heading in -3.0..3.0f64, at in -3.0..3.0f64, posed: bool,
+        ) {
+            let goal = Goal { position: Point::new(x, y), heading: posed.then_some(at) };
+            for method in [Method::Turn, Method::Arc, Method::Dog, Method::Spline] {
+                let end = drive(method, goal, Pose::new(0.1, 0.2, heading));
+                prop_assert!(end.distance_to(goal.position) < 0.03, "{method:?}: {end:?}");
+                if posed {
+                    prop_assert!(angle_difference(end.heading, at).abs() < 0.05, "{method:?}: {end:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn commands_are_those_of_motor_and_servo() {
+        let command = driver().command(CarState { speed: 0.25, steering: 0.5 });
+        assert_eq!(command, CarCommand { motor: 0.5, servo: -1.0 });
+        let command = driver().command(CarState { speed: -2.0, steering: -0.25 });
+        assert_eq!(command, CarCommand { motor: -1.0, servo: 0.5 });
+    }
+
+    #[test]
+    fn wrong_numbers_are_refused() {
+        let goal = Goal::point(Point::new(1.0, 0.0));
+        let parameters = CarParameters { margin: 0.5, ..CarParameters::default() };
+        assert!(CarToB::new(Method::Arc, goal, driver(), parameters).is_err());
+        let mut car = CarToB::new(Method::Arc, goal, driver(), CarParameters::default()).unwrap();
+        assert!(car.step(Pose::new(f64::INFINITY, 0.0, 0.0)).is_err());
+    }
+}

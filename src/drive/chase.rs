@@ -1,0 +1,153 @@
+use std::f64::consts::FRAC_PI_2;
+
+use super::a_to_b::dog_twist;
+use super::{FollowerParameters, Hermite, Method};
+use crate::geometry::{Pose, Twist};
+use crate::io::error::require_positive;
+use crate::io::{Error, Result};
+
+/// What [`Chase`] goes by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChaseParameters {
+    /// Speed, turn rate and deceleration.
+    pub follower: FollowerParameters,
+    /// The distance to the goal, in metres, at which it is caught.
+    pub distance: f64,
+    /// The book's k of splines.
+    pub spline_scale: f64,
+    /// The bearing in radians beyond which [`Method::Turn`] stops and turns on the spot.
+    pub turn_threshold: f64,
+}
+
+impl Default for ChaseParameters {
+    fn default() -> Self {
+        Self {
+            follower: FollowerParameters::default(),
+            distance: 0.05,
+            spline_scale: 1.0,
+            turn_threshold: 0.2,
+        }
+    }
+}
+
+/// Drives towards a goal that moves: each method of chapter 3 begins anew from where robot and goal are at each step, and
+/// drives the first bit of it.
+///
+/// ```
+/// use roverlab::drive::{Chase, ChaseParameters, Method};
+/// use roverlab::geometry::Pose;
+/// let mut chase = Chase::new(Method::Arc, ChaseParameters::default())?;
+/// // A goal ahead to the left.
+/// let twist = chase.step(Pose::new(1.0, 0.5, 0.0))?.unwrap();
+/// assert!(twist.linear > 0.0 && twist.angular > 0.0);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Chase {
+    method: Method,
+    parameters: ChaseParameters,
+    turning: bool,
+}
+
+impl Chase {
+    /// A chase by a method.
+    pub fn new(method: Method, parameters: ChaseParameters) -> Result<Self> {
+        parameters.follower.validate()?;
+        require_positive("distance", parameters.distance)?;
+        require_positive("spline scale", parameters.spline_scale)?;
+        require_positive("turn threshold", parameters.turn_threshold)?;
+        Ok(Self { method, parameters, turning: true })
+    }
+
+    /// The speed for a goal at a pose in the robot's own frame; `None` when it is caught. The goal's heading matters to
+    /// splines alone.
+    pub fn step(&mut self, goal: Pose) -> Result<Option<Twist>> {
+        if !goal.is_finite() {
+            return Err(Error::invalid_input("goal", format!("{goal:?}"), "finite numbers"));
+        }
+        let robot = Pose::default();
+        let distance = robot.distance_to(goal.position());
+        if distance <= self.parameters.distance {
+            return Ok(None);
+        }
+        let bearing = robot.bearing_to(goal.position());
+        let follower = &self.parameters.follower;
+        Ok(Some(match self.method {
+            Method::Turn => self.turn_or_drive(bearing, distance),
+            Method::Dog => dog_twist(follower, bearing, distance),
+            // Forward arcs to goals behind are long; the robot turns towards them first.
+            Method::Arc | Method::Spline if bearing.abs() > FRAC_PI_2 => {
+                Twist::new(0.0, follower.turn_rate.copysign(bearing))
+            }
+            Method::Arc => self.along(2.0 * goal.y / (distance * distance)),
+            Method::Spline => {
+                let spline = Hermite::between(robot, goal, self.parameters.spline_scale);
+                self.along(spline.curvature(0.0))
+            }
+        }))
+    }
+
+    fn turn_or_drive(&mut self, bearing: f64, distance: f64) -> Twist {
+        let follower = &self.parameters.follower;
+        // Once it drives, it does so until the goal is well off its line.
+        let limit =
+            if self.turning { 0.2 * self.parameters.turn_threshold } else { self.parameters.turn_threshold };
+        self.turning = bearing.abs() > limit;
+        if self.turning {
+            let rate = (2.0 * bearing.abs()).min(follower.turn_rate);
+            Twist::new(0.0, rate.copysign(bearing))
+        } else {
+            self.along(2.0 * bearing / distance)
+        }
+    }
+
+    /// A speed along a curvature, slower in bends.
+    fn along(&self, curvature: f64) -> Twist {
+        let follower = &self.parameters.follower;
+        let speed = follower.speed.min(follower.turn_rate / curvature.abs().max(1e-9));
+        Twist::new(speed, speed * curvature)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point, normalize_angle};
+    use crate::kinematics::{Displacement, advance};
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        /// The goal drives along a circle at less than half the robot's speed.
+        #[test]
+        fn a_slower_goal_is_caught(
+            x in -1.5..1.5f64, y in -1.5..1.5f64, heading in -3.0..3.0f64, curvature in -1.0..1.0f64,
+        ) {
+            for method in [Method::Turn, Method::Arc, Method::Dog, Method::Spline] {
+                let mut chase = Chase::new(method, ChaseParameters::default()).unwrap();
+                let (mut robot, mut goal) = (Pose::default(), Pose::new(x, y, heading));
+                let mut caught = false;
+                for _ in 0..6000 {
+                    let local = robot.to_local(goal.position());
+                    let seen = Pose::new(local.x, local.y, normalize_angle(goal.heading - robot.heading));
+                    let Some(twist) = chase.step(seen).unwrap() else {
+                        caught = true;
+                        break;
+                    };
+                    robot = advance(robot, Displacement { length: 0.02 * twist.linear, angle: 0.02 * twist.angular });
+                    goal = advance(goal, Displacement { length: 0.002, angle: 0.002 * curvature });
+                }
+                prop_assert!(caught, "{method:?}: {robot:?} {goal:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_goal_at_hand_is_caught_and_a_wrong_one_refused() {
+        let mut chase = Chase::new(Method::Dog, ChaseParameters::default()).unwrap();
+        assert_eq!(chase.step(Pose::new(0.03, 0.0, 1.0)).unwrap(), None);
+        assert!(chase.step(Pose::new(f64::NAN, 0.0, 1.0)).is_err());
+        let place = Point::new(1.0, 0.0);
+        assert_eq!(chase.step(Pose::new(place.x, place.y, 0.0)).unwrap().unwrap().angular, 0.0);
+    }
+}

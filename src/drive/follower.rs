@@ -1,0 +1,320 @@
+use super::Path;
+use crate::geometry::{Pose, Twist, angle_difference, math, normalize_angle};
+use crate::io::Result;
+use crate::io::error::require_positive;
+
+/// How a [`PathFollower`] steers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Steering {
+    /// Along the arc to a point of the path so many metres ahead (R. C. Coulter, "Implementation of the pure pursuit path
+    /// tracking algorithm", 1992). Exact on lines and circles; cuts what bends within its lookahead.
+    PurePursuit {
+        /// Metres.
+        lookahead: f64,
+    },
+    /// By the path's own curvature, corrected by heading error and distance to the path, so that both die away within
+    /// about three times `reach` metres of path without swinging (C. Samson, "Path following and time-varying feedback
+    /// stabilization of a wheeled mobile robot", 1992).
+    CrossTrack {
+        /// Metres.
+        reach: f64,
+    },
+}
+
+/// What a [`PathFollower`] goes by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FollowerParameters {
+    /// The fastest speed in m/s.
+    pub speed: f64,
+    /// The fastest turn in rad/s: bends are taken more slowly.
+    pub turn_rate: f64,
+    /// How hard it brakes before bends and the end, in m/s².
+    pub deceleration: f64,
+    /// How fast the last centimetres are closed, in 1/s.
+    pub approach_rate: f64,
+    /// The seconds by which the robot turns later than it is told, which are looked ahead.
+    pub lag: f64,
+    /// How it steers.
+    pub steering: Steering,
+}
+
+impl Default for FollowerParameters {
+    /// 0.25 m/s, by heading and cross-track error, for a robot as fast in its turns as an S4.
+    fn default() -> Self {
+        Self {
+            speed: 0.25,
+            turn_rate: 1.5,
+            deceleration: 0.3,
+            approach_rate: 2.0,
+            lag: 0.2,
+            steering: Steering::CrossTrack { reach: 0.1 },
+        }
+    }
+}
+
+impl FollowerParameters {
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<()> {
+        require_positive("speed", self.speed)?;
+        require_positive("turn rate", self.turn_rate)?;
+        require_positive("deceleration", self.deceleration)?;
+        require_positive("approach rate", self.approach_rate)?;
+        require_positive("lag", self.lag)?;
+        match self.steering {
+            Steering::PurePursuit { lookahead } => require_positive("lookahead", lookahead),
+            Steering::CrossTrack { reach } => require_positive("reach", reach),
+        }
+    }
+}
+
+/// Drives along a path with feedback: from the pose at each step to a speed.
+///
+/// ```
+/// use roverlab::drive::{FollowerParameters, Path, PathFollower};
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::kinematics::{Displacement, advance};
+/// let path = Path::arc(Pose::default(), Point::new(1.0, 0.5))?;
+/// let mut follower = PathFollower::new(path, FollowerParameters::default())?;
+/// // A robot that does as it is told, starting beside the path.
+/// let mut pose = Pose::new(0.0, 0.03, 0.0);
+/// while follower.rest() > 0.01 {
+///     let twist = follower.step(pose);
+///     pose = advance(pose, Displacement { length: 0.05 * twist.linear, angle: 0.05 * twist.angular });
+/// }
+/// assert!(follower.cross_track_error().abs() < 0.002);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct PathFollower {
+    path: Path,
+    parameters: FollowerParameters,
+    /// The fastest speed at each point of the path.
+    speeds: Vec<f64>,
+    reverse: bool,
+    travelled: f64,
+    cross_track: f64,
+    heading_error: f64,
+    rest: f64,
+}
+
+/// Metres of path in which the next place is looked for. Never behind the last one: where a spline turns back in a cusp,
+/// the way back lies beside the way there.
+const AHEAD: f64 = 0.25;
+/// The tightest bend that is driven, in 1/m: a spline can have a cusp, where no speed would be slow enough.
+const TIGHTEST: f64 = 30.0;
+/// The part of its speed that a robot keeps that points across the path.
+const LEAST_SHARE: f64 = 0.1;
+
+impl PathFollower {
+    /// A follower at the start of a path.
+    pub fn new(path: Path, parameters: FollowerParameters) -> Result<Self> {
+        parameters.validate()?;
+        let speeds = speed_profile(&path, &parameters);
+        let rest = path.length();
+        Ok(Self {
+            path,
+            parameters,
+            speeds,
+            reverse: false,
+            travelled: 0.0,
+            cross_track: 0.0,
+            heading_error: 0.0,
+            rest,
+        })
+    }
+
+    /// The same, driving backwards: the path's directions are those of the robot's back.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        Self { reverse: true, ..self }
+    }
+
+    /// The speed for a robot at a pose.
+    pub fn step(&mut self, pose: Pose) -> Twist {
+        let pose = if self.reverse {
+            Pose { heading: normalize_angle(pose.heading + std::f64::consts::PI), ..pose }
+        } else {
+            pose
+        };
+        self.locate(pose);
+        let speed = self.speed();
+        let curvature = match self.parameters.steering {
+            Steering::PurePursuit { lookahead } => self.pursue(pose, lookahead),
+            Steering::CrossTrack { reach } => self.correct(speed, reach),
+        };
+        let angular = speed * curvature;
+        // What turns too fast is driven more slowly: the curvature stays.
+        let scale = if angular.abs() > self.parameters.turn_rate {
+            self.parameters.turn_rate / angular.abs()
+        } else {
+            1.0
+        };
+        // One that points elsewhere turns first.
+        let along = speed * math::cos(self.heading_error).max(LEAST_SHARE);
+        Twist::new(scale * if self.reverse { -along } else { along }, scale * angular)
+    }
+
+    /// Finds where on the path the robot is.
+    fn locate(&mut self, pose: Pose) {
+        let nearest = self.path.nearest(pose.position(), self.travelled, self.travelled + AHEAD);
+        self.travelled = self.travelled.max(nearest);
+        let place = self.path.at(self.travelled).pose;
+        self.cross_track = place.to_local(pose.position()).y;
+        self.heading_error = angle_difference(pose.heading, place.heading);
+        self.rest = self.path.length() - self.travelled;
+        if self.rest <= 0.0 {
+            // Beyond the end the rest is negative.
+            self.rest = -self.path.end().to_local(pose.position()).x;
+        }
+    }
+
+    fn speed(&self) -> f64 {
+        let points = self.path.points();
+        let index = points.partition_point(|point| point.distance < self.travelled).min(points.len() - 1);
+        let (next, gap) = (self.speeds[index], points[index].distance - self.travelled);
+        let braking = (next * next + 2.0 * self.parameters.deceleration * gap.max(0.0)).sqrt();
+        braking.min(self.parameters.speed).min(self.parameters.approach_rate * self.rest)
+    }
+
+    fn pursue(&self, pose: Pose, lookahead: f64) -> f64 {
+        let target = pose.to_local(self.path.at(self.travelled + lookahead).pose.position());
+        let squared = target.coords.norm_squared();
+        if squared > 0.0 { 2.0 * target.y / squared } else { 0.0 }
+    }
+
+    fn correct(&self, speed: f64, reach: f64) -> f64 {
+        let ahead = self.path.at((self.travelled + speed * self.parameters.lag).min(self.path.length()));
+        // A robot far off the path approaches it under about 45 degrees.
+        let aside = (self.cross_track / reach).clamp(-1.5, 1.5);
+        let bend = ahead.curvature.clamp(-TIGHTEST, TIGHTEST);
+        bend - (2.0 * self.heading_error + aside) / reach
+    }
+
+    /// Metres of path that are left; negative beyond the end.
+    pub fn rest(&self) -> f64 {
+        self.rest
+    }
+
+    /// Metres of path behind the robot.
+    pub fn travelled(&self) -> f64 {
+        self.travelled
+    }
+
+    /// Metres by which the robot is to the left of the path.
+    pub fn cross_track_error(&self) -> f64 {
+        self.cross_track
+    }
+
+    /// Radians by which the robot points to the left of the path.
+    pub fn heading_error(&self) -> f64 {
+        self.heading_error
+    }
+
+    /// The path.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+/// The fastest speed at each point, so that bends and the end are met slowly enough.
+fn speed_profile(path: &Path, parameters: &FollowerParameters) -> Vec<f64> {
+    let points = path.points();
+    let mut speeds = vec![0.0; points.len()];
+    let (mut next, mut at) = (0.0_f64, path.length());
+    for (speed, point) in speeds.iter_mut().zip(points).rev() {
+        let bend = parameters.turn_rate / point.curvature.abs().clamp(1e-9, TIGHTEST);
+        let braking = (next * next + 2.0 * parameters.deceleration * (at - point.distance)).sqrt();
+        *speed = parameters.speed.min(bend).min(braking);
+        (next, at) = (*speed, point.distance);
+    }
+    speeds
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+    use crate::kinematics::{Displacement, advance};
+    use proptest::prelude::*;
+
+    /// A robot that turns 0.2 s after it is told to. Returns the worst distance to the path after its first 0.5 m.
+    fn drive(path: Path, start: Pose, steering: Steering, reverse: bool) -> (Pose, f64) {
+        let parameters = FollowerParameters { steering, ..FollowerParameters::default() };
+        let mut follower = PathFollower::new(path, parameters).unwrap();
+        if reverse {
+            follower = follower.reversed();
+        }
+        let (mut pose, mut actual, mut worst) = (start, Twist::STOP, 0.0_f64);
+        for _ in 0..4000 {
+            let told = follower.step(pose);
+            if follower.rest() < 0.005 {
+                break;
+            }
+            if follower.travelled() > 0.5 {
+                worst = worst.max(follower.cross_track_error().abs());
+            }
+            let share = 0.02 / 0.2;
+            actual = Twist::new(
+                actual.linear + share * (told.linear - actual.linear),
+                actual.angular + share * (told.angular - actual.angular),
+            );
+            pose = advance(pose, Displacement { length: 0.02 * actual.linear, angle: 0.02 * actual.angular });
+        }
+        (pose, worst)
+    }
+
+    const BOTH: [Steering; 2] =
+        [Steering::CrossTrack { reach: 0.1 }, Steering::PurePursuit { lookahead: 0.12 }];
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(32))]
+        #[test]
+        fn splines_are_followed_to_their_ends(
+            y in -1.0..1.0f64, heading in -1.0..1.0f64, aside in -0.05..0.05f64,
+        ) {
+            let goal = Pose::new(1.8, y, heading);
+            for steering in BOTH {
+                let path = Path::hermite(Pose::default(), goal, 1.0).unwrap();
+                let (end, worst) = drive(path, Pose::new(0.0, aside, 0.0), steering, false);
+                let limit = if matches!(steering, Steering::PurePursuit { .. }) { 0.02 } else { 0.005 };
+                prop_assert!(worst < limit, "{steering:?}: {worst}");
+                prop_assert!(end.distance_to(goal.position()) < 0.02, "{end:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn backwards_it_follows_as_well() {
+        let goal = Point::new(-1.5, 0.4);
+        let path = Path::arc(Pose::new(0.0, 0.0, std::f64::consts::PI), goal).unwrap();
+        let (end, worst) = drive(path, Pose::default(), BOTH[0], true);
+        assert!(worst < 0.003 && end.distance_to(goal) < 0.01, "{end:?} {worst}");
+    }
+
+    #[test]
+    fn bends_and_ends_are_met_slowly() {
+        let path = Path::of_arcs(Pose::default(), &[(1.0, 0.0), (0.2, 10.0), (1.0, 0.0)]).unwrap();
+        let parameters = FollowerParameters::default();
+        let speeds = speed_profile(&path, &parameters);
+        for (point, speed) in path.points().iter().zip(&speeds) {
+            assert!(speed * point.curvature.abs().min(TIGHTEST) <= parameters.turn_rate + 1e-9);
+            assert!(speed * speed <= 2.0 * parameters.deceleration * (path.length() - point.distance) + 1e-9);
+        }
+        assert_eq!(speeds[0], parameters.speed);
+    }
+
+    #[test]
+    fn parameters_that_make_no_sense_are_refused() {
+        let path = Path::straight(Point::origin(), Point::new(1.0, 0.0)).unwrap();
+        for parameters in [
+            FollowerParameters { speed: 0.0, ..FollowerParameters::default() },
+            FollowerParameters {
+                steering: Steering::PurePursuit { lookahead: -1.0 },
+                ..FollowerParameters::default()
+            },
+        ] {
+            assert!(PathFollower::new(path.clone(), parameters).is_err());
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! Driving (book, chapters 3 and 7): controllers, paths and how to follow them, and the ways from A to B.
+//!
+//! A behaviour takes what was observed and returns a command; a short `run` loops it on any robot that has what it
+//! needs.
+//!
+//! - [`Path`]: lines, arcs, Hermite splines, Catmull-Rom chains and Dubins paths, by their length;
+//! - [`PathFollower`]: drives along any of them with feedback, by pure pursuit or by heading and cross-track error;
+//! - [`AToB`]: to a goal by turning and driving straight, along an arc, a dog curve or a spline (chapter 3);
+//! - [`Chase`]: the same four towards a goal that moves;
+//! - [`CarToB`]: the same for a car, within its turning circle (chapter 7);
+//! - [`OmniTracker`]: along any path with any heading on wheels with rollers (chapter 7);
+//! - [`LandmarkFilter`]: odometry corrected by what a lidar sees of known landmarks;
+//! - [`Pid`] and [`RelayTuner`]: a PID controller and how to find its gains.
+
+mod a_to_b;
+mod a_to_b_run;
+mod car;
+mod chase;
+mod dubins;
+mod follower;
+mod landmark;
+mod omni;
+mod path;
+mod pid;
+mod relay;
+mod spline;
+
+pub use a_to_b::{AToB, AToBCommand, AToBObservation, AToBOutcome, AToBParameters, Goal, Method};
+pub use car::{CarCommand, CarDriver, CarOutcome, CarParameters, CarToB};
+pub use chase::{Chase, ChaseParameters};
+pub use follower::{FollowerParameters, PathFollower, Steering};
+pub use landmark::{Landmark, LandmarkFilter};
+pub use omni::{OmniDriver, OmniParameters, OmniReference, OmniTracker};
+pub use path::{Path, PathPoint, Waypoint};
+pub use pid::{Pid, PidParameters};
+pub use relay::{RelayTuner, UltimateGain};
+pub use spline::Hermite;

@@ -1,0 +1,290 @@
+use crate::geometry::{Point, Pose, Vector, angle_difference, direction, normalize_angle};
+use crate::io::error::require_positive;
+use crate::io::{Clock, Drive, Error, ErrorKind, Motors, Result};
+use crate::kinematics::{Omni, PlanarTwist};
+
+/// Velocities of a robot on four wheels with rollers as commands of its motors (book, section 7.4: an interface from a
+/// driving angle to wheel speeds).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OmniDriver {
+    /// The drive's geometry.
+    pub kinematics: Omni<4>,
+    /// The rim speed of the wheels at full motor speed, in m/s.
+    pub full_speed: f64,
+}
+
+impl OmniDriver {
+    /// The motors' fractions of their full speed; slower in the same direction where one would have to exceed it.
+    pub fn command(&self, twist: PlanarTwist) -> [f64; 4] {
+        let wheels = self.kinematics.inverse_limited(twist, self.full_speed);
+        wheels.map(|speed| (speed / self.full_speed).clamp(-1.0, 1.0))
+    }
+
+    /// Tells a robot to drive so.
+    pub fn drive<R: Motors + ?Sized>(&self, robot: &mut R, twist: PlanarTwist) -> Result<()> {
+        (1..).zip(self.command(twist)).try_for_each(|(motor, fraction)| robot.set_motor(motor, fraction))
+    }
+}
+
+/// What [`OmniTracker`] goes by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OmniParameters {
+    /// The speed along the route in m/s.
+    pub speed: f64,
+    /// How hard it speeds up and brakes, in m/s².
+    pub acceleration: f64,
+    /// The rate in rad/s at which the robot turns about itself meanwhile; 0 keeps its heading.
+    pub spin: f64,
+    /// How fast an error of the position is corrected, in 1/s.
+    pub position_gain: f64,
+    /// How fast an error of the heading is corrected, in 1/s.
+    pub heading_gain: f64,
+    /// The seconds by which the motors follow late, which are looked ahead.
+    pub lag: f64,
+    /// How near the robot comes to the end of the route, in metres.
+    pub tolerance: f64,
+    /// How near it comes to its heading there, in radians.
+    pub heading_tolerance: f64,
+    /// Seconds from one control step to the next.
+    pub period: f64,
+}
+
+impl Default for OmniParameters {
+    fn default() -> Self {
+        Self {
+            speed: 0.2,
+            acceleration: 0.3,
+            spin: 0.0,
+            position_gain: 1.5,
+            heading_gain: 1.5,
+            lag: 0.2,
+            tolerance: 0.001,
+            heading_tolerance: 0.003,
+            period: 0.02,
+        }
+    }
+}
+
+/// Where the robot shall be at a time, and how it shall move then.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OmniReference {
+    /// The pose.
+    pub pose: Pose,
+    /// Metres per second, in the frame of the pose's own coordinates.
+    pub velocity: Vector,
+    /// Radians per second.
+    pub angular: f64,
+}
+
+/// Drives along a route of straight legs while the heading does as it likes: kept in a square without turning, or spinning
+/// on a straight line (book, section 7.4).
+///
+/// ```
+/// use roverlab::drive::{OmniParameters, OmniTracker};
+/// use roverlab::geometry::{Point, Pose};
+/// let route = [Point::new(1.0, 0.0), Point::new(1.0, 1.0)];
+/// let tracker = OmniTracker::new(Pose::default(), &route, OmniParameters::default())?;
+/// let middle = tracker.reference(0.5 * tracker.duration());
+/// assert!((middle.pose.position() - Point::new(1.0, 0.0)).norm() < 1e-9 && middle.pose.heading == 0.0);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct OmniTracker {
+    start: Pose,
+    legs: Vec<Leg>,
+    parameters: OmniParameters,
+}
+
+/// A straight line from rest to rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Leg {
+    from: Point,
+    along: Vector,
+    length: f64,
+    begin: f64,
+    /// Seconds of speeding up, and of the whole.
+    ramp: f64,
+    duration: f64,
+}
+
+/// Seconds after the route's end that the last millimetres may take.
+const PATIENCE: f64 = 3.0;
+
+impl OmniTracker {
+    /// A robot at a pose that is to drive from there through points, each reached at rest.
+    pub fn new(start: Pose, route: &[Point], parameters: OmniParameters) -> Result<Self> {
+        for (name, value) in [
+            ("speed", parameters.speed),
+            ("acceleration", parameters.acceleration),
+            ("position gain", parameters.position_gain),
+            ("heading gain", parameters.heading_gain),
+            ("lag", parameters.lag),
+            ("tolerance", parameters.tolerance),
+            ("heading tolerance", parameters.heading_tolerance),
+            ("control period", parameters.period),
+        ] {
+            require_positive(name, value)?;
+        }
+        let finite = start.is_finite() && parameters.spin.is_finite();
+        if !finite || !route.iter().all(|point| point.coords.iter().all(|metres| metres.is_finite())) {
+            return Err(Error::invalid_input("route", "not finite", "finite numbers"));
+        }
+        let mut legs: Vec<Leg> = Vec::with_capacity(route.len());
+        let (mut from, mut begin) = (start.position(), 0.0);
+        for &to in route {
+            let leg = Leg::new(from, to, begin, &parameters);
+            (from, begin) = (to, begin + leg.duration);
+            legs.push(leg);
+        }
+        Ok(Self { start, legs, parameters })
+    }
+
+    /// Seconds that the route takes.
+    pub fn duration(&self) -> f64 {
+        self.legs.last().map_or(0.0, |leg| leg.begin + leg.duration)
+    }
+
+    /// Where the robot shall be, and how it shall move, at a time in seconds since the start.
+    pub fn reference(&self, time: f64) -> OmniReference {
+        let end = self.duration();
+        let time_on_way = time.clamp(0.0, end);
+        let heading = normalize_angle(self.start.heading + self.parameters.spin * time_on_way);
+        let angular = if time < 0.0 || time >= end { 0.0 } else { self.parameters.spin };
+        let index = self.legs.partition_point(|leg| leg.begin + leg.duration < time_on_way);
+        let Some(leg) = self.legs.get(index) else {
+            return OmniReference { pose: self.start, velocity: Vector::zeros(), angular: 0.0 };
+        };
+        let (distance, speed) = leg.at(time_on_way - leg.begin, self.parameters.acceleration);
+        let place = leg.from + leg.along * distance;
+        OmniReference { pose: Pose::new(place.x, place.y, heading), velocity: leg.along * speed, angular }
+    }
+
+    /// The velocity for a robot at a pose at a time; `None` at the end of the route.
+    pub fn step(&self, time: f64, pose: Pose) -> Result<Option<PlanarTwist>> {
+        if !(pose.is_finite() && time.is_finite()) {
+            return Err(Error::invalid_input("observed pose", format!("{pose:?}"), "finite numbers"));
+        }
+        let now = self.reference(time);
+        let away = now.pose.position() - pose.position();
+        let turned = angle_difference(now.pose.heading, pose.heading);
+        let there =
+            away.norm() <= self.parameters.tolerance && turned.abs() <= self.parameters.heading_tolerance;
+        if time >= self.duration() && (there || time >= self.duration() + PATIENCE) {
+            return Ok(None);
+        }
+        // The motors will do what they are told by the time that the lag has passed; by then the robot has turned on.
+        let ahead = self.reference(time + self.parameters.lag);
+        let heading = pose.heading + angle_difference(ahead.pose.heading, now.pose.heading);
+        let velocity = ahead.velocity + away * self.parameters.position_gain;
+        let (forward, left) = (direction(heading), direction(heading + std::f64::consts::FRAC_PI_2));
+        let angular = ahead.angular + self.parameters.heading_gain * turned;
+        Ok(Some(PlanarTwist::new(velocity.dot(&forward), velocity.dot(&left), angular)))
+    }
+
+    /// Drives a robot along the route by its motors and its odometry. `observe` is called after every step with the time
+    /// since the start and the pose.
+    pub fn run<R: Clock + Drive + Motors + ?Sized>(
+        &self,
+        robot: &mut R,
+        driver: &OmniDriver,
+        mut observe: impl FnMut(f64, Pose),
+    ) -> Result<()> {
+        let begin = robot.now()?;
+        let mut next = begin;
+        let mut last = f64::NEG_INFINITY;
+        loop {
+            let now = robot.now()?;
+            if now <= last {
+                return Err(Error::new(ErrorKind::Other, "the robot's clock stands still"));
+            }
+            last = now;
+            let pose = robot.pose()?;
+            let twist = self.step(now - begin, pose)?;
+            observe(now - begin, pose);
+            driver.drive(robot, twist.unwrap_or(PlanarTwist::STOP))?;
+            if twist.is_none() {
+                return Ok(());
+            }
+            next += self.parameters.period;
+            let pause = next - robot.now()?;
+            robot.wait(pause)?;
+        }
+    }
+}
+
+impl Leg {
+    fn new(from: Point, to: Point, begin: f64, parameters: &OmniParameters) -> Self {
+        let way = to - from;
+        let length = way.norm();
+        let along = if length > 0.0 { way / length } else { Vector::zeros() };
+        // A short leg is braked before it comes to full speed.
+        let speed = parameters.speed.min((length * parameters.acceleration).sqrt());
+        let ramp = speed / parameters.acceleration;
+        let cruise = if speed > 0.0 { (length - speed * ramp) / speed } else { 0.0 };
+        Self { from, along, length, begin, ramp, duration: 2.0 * ramp + cruise }
+    }
+
+    /// Metres behind, and the speed, so many seconds after the leg's start.
+    fn at(&self, time: f64, acceleration: f64) -> (f64, f64) {
+        let speed = acceleration * self.ramp;
+        let rest = self.duration - time;
+        if time < self.ramp {
+            (0.5 * acceleration * time * time, acceleration * time)
+        } else if rest < self.ramp {
+            (self.length - 0.5 * acceleration * rest * rest, acceleration * rest)
+        } else {
+            (0.5 * speed * self.ramp + speed * (time - self.ramp), speed)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::advance_planar;
+    use proptest::prelude::*;
+
+    fn route() -> impl Strategy<Value = Vec<Point>> {
+        prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64).prop_map(|(x, y)| Point::new(x, y)), 1..5)
+    }
+
+    proptest! {
+        #[test]
+        fn references_move_as_they_say(route in route(), spin in -1.0..1.0f64, share in 0.01..0.99f64) {
+            let parameters = OmniParameters { spin, ..OmniParameters::default() };
+            let tracker = OmniTracker::new(Pose::new(0.1, 0.2, 0.3), &route, parameters).unwrap();
+            let (time, h) = (share * tracker.duration(), 1e-5);
+            let [before, now, after] = [time - h, time, time + h].map(|time| tracker.reference(time));
+            let rate = (after.pose.position() - before.pose.position()) / (2.0 * h);
+            prop_assert!((rate - now.velocity).norm() < 1e-4);
+            prop_assert!(now.velocity.norm() <= parameters.speed + 1e-9);
+            let end = tracker.reference(tracker.duration());
+            prop_assert!((end.pose.position() - route[route.len() - 1]).norm() < 1e-9);
+        }
+
+        #[test]
+        fn a_robot_that_does_as_told_gets_to_the_end(route in route(), spin in -1.0..1.0f64) {
+            let parameters = OmniParameters { spin, lag: 0.001, ..OmniParameters::default() };
+            let start = Pose::new(0.1, 0.2, 0.3);
+            let tracker = OmniTracker::new(start, &route, parameters).unwrap();
+            let (mut pose, mut time) = (start, 0.0);
+            while let Some(twist) = tracker.step(time, pose).unwrap() {
+                pose = advance_planar(pose, twist.during(0.01));
+                time += 0.01;
+                prop_assert!((pose.position() - tracker.reference(time).pose.position()).norm() < 0.01);
+            }
+            prop_assert!((pose.position() - route[route.len() - 1]).norm() <= parameters.tolerance);
+        }
+    }
+
+    #[test]
+    fn routes_that_make_no_sense_are_refused() {
+        let start = Pose::default();
+        assert!(OmniTracker::new(start, &[Point::new(f64::NAN, 0.0)], OmniParameters::default()).is_err());
+        let parameters = OmniParameters { speed: -1.0, ..OmniParameters::default() };
+        assert!(OmniTracker::new(start, &[], parameters).is_err());
+        let tracker = OmniTracker::new(start, &[], OmniParameters::default()).unwrap();
+        assert_eq!(tracker.step(0.0, start).unwrap(), None);
+        assert!(tracker.step(0.0, Pose::new(f64::NAN, 0.0, 0.0)).is_err());
+    }
+}

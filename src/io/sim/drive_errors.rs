@@ -1,0 +1,117 @@
+use super::NoiseModel;
+use crate::kinematics::{Differential, Displacement};
+use crate::random::Stream;
+
+/// One robot's deviations from its description, and the stream that its slip comes from.
+#[derive(Debug, Clone)]
+pub(super) struct DriveErrors<const N: usize> {
+    wheel: [f64; N],
+    /// The true distances between wheels in terms of the described ones.
+    size: f64,
+    slip: f64,
+    command: f64,
+    /// Factors of length and angle for the running command.
+    command_factors: [f64; 2],
+    stream: Stream,
+}
+
+impl DriveErrors<2> {
+    /// The deviations of a left and a right wheel.
+    pub(super) fn of_two_wheels(noise: &NoiseModel, mut stream: Stream) -> Self {
+        let scale = noise.wheel_scale * stream.normal();
+        let mismatch = 0.5 * noise.wheel_mismatch * stream.normal();
+        let wheel = [1.0 + scale - mismatch, 1.0 + scale + mismatch];
+        Self::new(wheel, noise, stream)
+    }
+
+    /// What a robot truly does while its two wheels roll so far, as its description sees it.
+    pub(super) fn motion(&mut self, track: f64, rolled: [f64; 2]) -> Displacement {
+        let [left, right] = self.ground_travel(rolled);
+        let motion = Differential { track }.displacement(left, right);
+        let [length, angle] = self.command_factors;
+        Displacement { length: motion.length * length, angle: motion.angle * angle }
+    }
+}
+
+impl DriveErrors<4> {
+    /// The deviations of four wheels that differ each in its own way.
+    pub(super) fn of_four_wheels(noise: &NoiseModel, mut stream: Stream) -> Self {
+        let scale = noise.wheel_scale * stream.normal();
+        let wheel = [(); 4].map(|()| 1.0 + scale + 0.5 * noise.wheel_mismatch * stream.normal());
+        Self::new(wheel, noise, stream)
+    }
+}
+
+impl<const N: usize> DriveErrors<N> {
+    fn new(wheel: [f64; N], noise: &NoiseModel, mut stream: Stream) -> Self {
+        let size = positive(1.0 + noise.track * stream.normal());
+        Self {
+            wheel: wheel.map(positive),
+            size,
+            slip: noise.slip,
+            command: noise.command,
+            command_factors: [1.0; 2],
+            stream,
+        }
+    }
+
+    /// The true distances between wheels in terms of the described ones.
+    pub(super) fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// Factors of length and angle for the running command.
+    pub(super) fn command_factors(&self) -> [f64; 2] {
+        self.command_factors
+    }
+
+    /// Draws the errors of a new drive command.
+    pub(super) fn begin_command(&mut self) {
+        if self.command > 0.0 {
+            for factor in &mut self.command_factors {
+                *factor = 1.0 + self.command * self.stream.normal();
+            }
+        }
+    }
+
+    /// What wheels that rolled so far move over the ground.
+    pub(super) fn ground_travel(&mut self, rolled: [f64; N]) -> [f64; N] {
+        std::array::from_fn(|wheel| {
+            let travel = rolled[wheel] * self.wheel[wheel];
+            if self.slip == 0.0 || rolled[wheel] == 0.0 {
+                return travel;
+            }
+            travel + self.slip * travel.abs().sqrt() * self.stream.normal()
+        })
+    }
+}
+
+/// A factor that the strongest noise could make negative; a wheel or an axle stays one.
+fn positive(factor: f64) -> f64 {
+    factor.max(0.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_strongest_noise_leaves_wheels_and_a_track() {
+        let strongest =
+            NoiseModel { wheel_scale: 1.0, wheel_mismatch: 1.0, track: 1.0, ..NoiseModel::ideal() };
+        for seed in 0..200 {
+            let two = DriveErrors::of_two_wheels(&strongest, Stream::new(seed));
+            assert!(two.wheel.iter().all(|&factor| factor >= 0.1) && two.size >= 0.1);
+            let four = DriveErrors::of_four_wheels(&strongest, Stream::new(seed));
+            assert!(four.wheel.iter().all(|&factor| factor >= 0.1) && four.size >= 0.1);
+        }
+    }
+
+    #[test]
+    fn standing_wheels_draw_no_random_numbers() {
+        let mut errors = DriveErrors::of_two_wheels(&NoiseModel::real(), Stream::new(1));
+        let mut before = errors.stream.clone();
+        assert_eq!(errors.ground_travel([0.0; 2]), [0.0; 2]);
+        assert_eq!(errors.stream.bits(), before.bits());
+    }
+}

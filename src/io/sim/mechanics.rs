@@ -1,0 +1,144 @@
+use super::NoiseModel;
+use super::car::Car;
+use super::drivetrain::Drivetrain;
+use super::omni::OmniDrive;
+use super::wheels::WheelSpec;
+use crate::geometry::{Pose, Twist};
+use crate::io::{Error, ErrorKind, Result};
+use crate::kinematics::{Ackermann, Differential, Displacement, Omni, PlanarMotion};
+use crate::random::Stream;
+use crate::world::{DriveSpec, RobotSpec};
+
+/// What every kind of drive does for its robot: commands in, odometry and encoder counts out.
+pub(super) trait Mechanics {
+    /// Draws the errors of a new drive command.
+    fn begin_command(&mut self);
+
+    /// Drives at a speed, as near to it as the drive can, until the next command.
+    fn set_twist(&mut self, twist: Twist);
+
+    /// The shortest time that a motion along one arc takes at a speed, which the wheels may not reach. Fails if the
+    /// robot cannot drive the arc.
+    fn least_seconds(&self, motion: Displacement, speed: f64) -> Result<f64>;
+
+    /// Starts a motion along one arc. `speed` is along the arc in m/s, or in rad/s for a turn on the spot.
+    fn start(&mut self, motion: Displacement, speed: f64);
+
+    /// Drives one motor with a fraction of its full speed and leaves the others as they are.
+    fn set_motor(&mut self, motor: usize, fraction: f64);
+
+    /// Moves a servo of the drive, numbered from 1.
+    fn set_servo(&mut self, servo: u8, _position: f64) -> Result<()> {
+        Err(Error::unsupported(format!("servo {servo}")))
+    }
+
+    /// How many motors with encoders there are.
+    fn motors(&self) -> usize;
+
+    /// Whether no manoeuvre is running.
+    fn is_done(&self) -> bool;
+
+    /// Whether the wheels are asked to turn.
+    fn is_driving(&self) -> bool;
+
+    /// Metres, or radians of a turn, that are left of the manoeuvre.
+    fn remaining(&self) -> f64;
+
+    /// The speed that odometry measures.
+    fn twist(&self) -> Twist;
+
+    fn odometry(&self) -> Pose;
+
+    fn set_odometry(&mut self, pose: Pose);
+
+    /// An encoder's count since the start.
+    fn count(&self, motor: usize) -> i64;
+}
+
+/// A robot's drive of any kind. Most robots have two wheels; the larger ones lie elsewhere.
+#[derive(Debug, Clone)]
+#[allow(clippy::large_enum_variant, reason = "nearly all robots have this one, and it is stepped most")]
+pub(super) enum Powertrain {
+    Differential(Drivetrain),
+    Car(Box<Car>),
+    Omni(Box<OmniDrive>),
+}
+
+/// The fastest robot, in metres per second.
+const MAX_TOP_SPEED: f64 = 100.0;
+
+impl Powertrain {
+    /// The drive of a description, with errors drawn for one robot.
+    pub(super) fn new(
+        spec: &RobotSpec,
+        noise: &NoiseModel,
+        ideal_encoders: bool,
+        stream: Stream,
+    ) -> Result<Self> {
+        let invalid = |error: crate::kinematics::GeometryError| {
+            Error::new(ErrorKind::InvalidInput, format!("robot {}: {error}", spec.name)).with_source(error)
+        };
+        let wheels = wheel_spec(&spec.drive);
+        check_top_speed(spec, &wheels)?;
+        let motor = spec.motor;
+        Ok(match spec.drive {
+            DriveSpec::Differential { track, .. } => {
+                let drive = Differential { track };
+                Self::Differential(Drivetrain::new(drive, &wheels, motor, noise, ideal_encoders, stream))
+            }
+            DriveSpec::Ackermann { track, wheelbase, max_steering, .. } => {
+                let drive = Ackermann::new(wheelbase, track, max_steering).map_err(invalid)?;
+                Self::Car(Box::new(Car::new(drive, track, &wheels, motor, noise, ideal_encoders, stream)))
+            }
+            DriveSpec::Omni { track, wheelbase, .. } => {
+                let drive = Omni::mecanum(track, wheelbase).map_err(invalid)?;
+                Self::Omni(Box::new(OmniDrive::new(drive, &wheels, motor, noise, ideal_encoders, stream)))
+            }
+        })
+    }
+
+    /// Lets the motors follow their commands for one tick and returns the robot's true motion.
+    pub(super) fn step(&mut self) -> PlanarMotion {
+        match self {
+            Self::Differential(drive) => drive.step().into(),
+            Self::Car(drive) => drive.step().into(),
+            Self::Omni(drive) => drive.step(),
+        }
+    }
+
+    pub(super) fn get(&self) -> &dyn Mechanics {
+        match self {
+            Self::Differential(drive) => drive,
+            Self::Car(drive) => drive.as_ref(),
+            Self::Omni(drive) => drive.as_ref(),
+        }
+    }
+
+    pub(super) fn get_mut(&mut self) -> &mut dyn Mechanics {
+        match self {
+            Self::Differential(drive) => drive,
+            Self::Car(drive) => drive.as_mut(),
+            Self::Omni(drive) => drive.as_mut(),
+        }
+    }
+}
+
+fn wheel_spec(drive: &DriveSpec) -> WheelSpec {
+    match *drive {
+        DriveSpec::Differential { wheel_diameter, max_wheel_speed, ticks_per_turn, .. }
+        | DriveSpec::Ackermann { wheel_diameter, max_wheel_speed, ticks_per_turn, .. }
+        | DriveSpec::Omni { wheel_diameter, max_wheel_speed, ticks_per_turn, .. } => {
+            WheelSpec { diameter: wheel_diameter, max_speed: max_wheel_speed, ticks_per_turn }
+        }
+    }
+}
+
+/// Faster robots would cross walls and worlds within a tick.
+fn check_top_speed(spec: &RobotSpec, wheels: &WheelSpec) -> Result<()> {
+    let speed = wheels.limit();
+    if speed <= MAX_TOP_SPEED {
+        return Ok(());
+    }
+    let name = format!("robot {}: top speed", spec.name);
+    Err(Error::invalid_input(&name, format!("{speed} m/s"), &format!("at most {MAX_TOP_SPEED} m/s")))
+}

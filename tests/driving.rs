@@ -1,0 +1,157 @@
+//! The examples `a_to_b`, `ackermann` and `omni` as wholes.
+
+#[path = "../examples/a_to_b/mod.rs"]
+mod a_to_b;
+#[path = "../examples/ackermann/mod.rs"]
+mod ackermann;
+#[path = "../examples/common/mod.rs"]
+mod common;
+#[path = "../examples/driving/mod.rs"]
+mod driving;
+#[path = "../examples/omni/mod.rs"]
+mod omni;
+
+use std::ffi::OsString;
+use std::fs;
+use std::path::Path;
+
+use clap::Parser;
+use common::{CommonArgs, Failure, Report};
+use serde_json::Value;
+
+/// Runs an example with `--json`. Returns its status and its report, and what it said on standard error.
+fn run<A: Parser + AsRef<CommonArgs>>(
+    name: &'static str,
+    work: fn(&A) -> Result<Report, Failure>,
+    options: &[&str],
+) -> (u8, Value, String) {
+    let first = [name, "--json"];
+    let words = first.iter().chain(options).map(OsString::from);
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    let status = common::run(name, words, &mut out, &mut err, work);
+    let err = String::from_utf8(err).unwrap();
+    (status, serde_json::from_slice(&out).unwrap_or(Value::Null), err)
+}
+
+fn a_to_b(options: &[&str]) -> (u8, Value, String) {
+    run("a_to_b", a_to_b::work, options)
+}
+
+fn number(report: &Value, name: &str) -> f64 {
+    report[name].as_f64().unwrap_or_else(|| panic!("{name} in {report}"))
+}
+
+fn assert_reached((status, report, err): &(u8, Value, String), most_mm: f64) {
+    assert_eq!((*status, report["outcome"].as_str(), err.as_str()), (0, Some("reached"), ""), "{report}");
+    assert!(number(report, "position_error_mm") <= most_mm, "{report}");
+}
+
+#[test]
+fn every_method_arrives_without_noise() {
+    for method in ["turn", "arc", "dog", "spline"] {
+        for goal in ["2450,1650,0", "500,1300", "1800,2400,90", "1000,990,-90"] {
+            let ended = a_to_b(&["--method", method, "--goal", goal, "--noise", "0"]);
+            assert_reached(&ended, 6.0);
+            if goal.matches(',').count() == 2 {
+                assert!(number(&ended.1, "heading_error_deg") <= 0.3, "{method}: {}", ended.1);
+            }
+        }
+    }
+    let pursuit = a_to_b(&["--follower", "pure-pursuit", "--noise", "0", "--ideal-encoders"]);
+    assert_reached(&pursuit, 1.0);
+    assert!(number(&pursuit.1, "heading_error_deg") <= 0.1);
+}
+
+#[test]
+fn the_table_of_a_campaign() {
+    let args = a_to_b::Args::try_parse_from(["a_to_b", "--campaign", "--runs", "40"]).unwrap();
+    let rows = a_to_b::rows(&args).unwrap();
+    insta::assert_snapshot!("a_to_b_forty_runs", a_to_b::text(&rows));
+    assert!(rows.iter().all(a_to_b::Row::is_good));
+}
+
+#[test]
+fn a_pole_in_the_world_corrects_odometry() {
+    let ended = a_to_b(&["--landmark", "--noise", "1", "--seed", "5"]);
+    assert_reached(&ended, 20.0);
+    assert!(number(&ended.1, "landmark_scans") > 100.0, "{}", ended.1);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let world = folder.join("no_pole.wld");
+    fs::write(&world, "floor 3000 3000\nposition 500 500 0\n").unwrap();
+    let (status, _, err) = a_to_b(&["--landmark", "--world", world.to_str().unwrap(), "--goal", "1000,1000"]);
+    assert!(status == 2 && err.contains("found no pole"), "{err}");
+}
+
+#[test]
+fn a_wall_in_the_way_is_a_collision() {
+    let world = Path::new(env!("CARGO_TARGET_TMPDIR")).join("wall.wld");
+    fs::write(&world, "floor 3000 3000\nposition 500 1500 0\n1500 0 1500 3000\n").unwrap();
+    let (status, report, _) = a_to_b(&["--world", world.to_str().unwrap(), "--goal", "2500,1500"]);
+    assert_eq!((status, report["outcome"].as_str()), (1, Some("collided")), "{report}");
+    assert!(number(&report, "sim_time_s") < 30.0, "{report}");
+}
+
+#[test]
+fn a_robot_that_fails_ends_the_run() {
+    let (status, report, err) = a_to_b(&["--fault", "link@2"]);
+    assert_eq!((status, report["outcome"].as_str()), (1, Some("failed")), "{report}");
+    assert!(err.contains("link"), "{err}");
+    let (status, report, _) = a_to_b(&["--time-limit", "2"]);
+    assert_eq!((status, report["outcome"].as_str()), (1, Some("timed_out")), "{report}");
+}
+
+#[test]
+fn cars_keep_to_their_turning_circle() {
+    for method in ["turn", "arc", "dog", "spline"] {
+        for goal in ["3200,2700,90", "3000,2000", "1500,2000", "1500,1700,180", "500,1500"] {
+            let options = ["--method", method, "--goal", goal, "--noise", "0"];
+            let ended = run("ackermann", ackermann::work, &options);
+            assert_reached(&ended, 10.0);
+            if goal.matches(',').count() == 2 {
+                assert!(number(&ended.1, "heading_error_deg") <= 1.5, "{options:?}: {}", ended.1);
+            }
+        }
+    }
+}
+
+#[test]
+fn omni_drives_in_a_square_and_straight_while_it_spins() {
+    let square = run("omni", omni::work, &["--noise", "0"]);
+    assert_reached(&square, 2.0);
+    assert!(number(&square.1, "max_heading_error_deg") < 0.1 && number(&square.1, "max_deviation_mm") < 6.0);
+    let spin = run("omni", omni::work, &["--task", "spin", "--noise", "0", "--goal", "2000,900"]);
+    assert_reached(&spin, 2.0);
+    assert!(number(&spin.1, "turned_deg") > 300.0 && number(&spin.1, "max_deviation_mm") < 8.0, "{}", spin.1);
+    assert_reached(&run("omni", omni::work, &["--seed", "2"]), 100.0);
+}
+
+#[test]
+fn robots_with_another_drive_are_refused() {
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("car.robi");
+    fs::write(&file, roverlab::world::formats::robi::print(&roverlab::world::RobotSpec::car())).unwrap();
+    let car = file.to_str().unwrap();
+    for ended in [
+        a_to_b(&["--robot", car]),
+        run("omni", omni::work, &["--robot", car]),
+        run("omni", omni::work, &["--goal", "1,1"]),
+        run("ackermann", ackermann::work, &["--goal", "1,2,3,4"]),
+    ] {
+        assert!(ended.0 == 2 && ended.2.contains("expected") && ended.2.lines().count() == 1, "{}", ended.2);
+    }
+    assert_reached(&run("ackermann", ackermann::work, &["--robot", car, "--noise", "0"]), 10.0);
+}
+
+#[test]
+fn pictures_show_plan_and_path() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let file = folder.join("a_to_b.svg");
+    let name = file.to_str().unwrap();
+    assert_eq!(a_to_b(&["--picture", name]).0, 0);
+    let svg = fs::read_to_string(&file).unwrap();
+    for part in ["From A to B by spline: goal reached", "true path", "odometry", "95 % ellipse"] {
+        assert!(svg.contains(part), "{part} is missing");
+    }
+    let file = folder.join("omni.svg");
+    assert_eq!(run("omni", omni::work, &["--picture", file.to_str().unwrap()]).0, 0);
+    assert!(fs::read_to_string(&file).unwrap().contains("a square without turning"));
+}
