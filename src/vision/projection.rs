@@ -32,12 +32,13 @@ pub(super) fn project_portable(input: GrayView<'_>, columns: &mut [u32], rows: &
         for top in (0..height).step_by(ROWS) {
             let mut sums = [0_u16; STRIP];
             let sums = &mut sums[..end - start];
-            for y in top..(top + ROWS).min(height) {
+            let bottom = (top + ROWS).min(height);
+            for (y, total) in (top..bottom).zip(&mut rows[top..bottom]) {
                 let row = &input.row(y)[start..end];
                 for (sum, &shade) in sums.iter_mut().zip(row) {
                     *sum += u16::from(shade);
                 }
-                rows[y] += row.iter().map(|&shade| u32::from(shade)).sum::<u32>();
+                *total += row.iter().map(|&shade| u32::from(shade)).sum::<u32>();
             }
             for (column, &sum) in columns[start..end].iter_mut().zip(&*sums) {
                 *column += u32::from(sum);
