@@ -48,6 +48,7 @@
 //! | 5 Swarms | any number of robots in one world | [`io::sim`] |
 //! | 7 Alternative drives | cars and wheels with rollers: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
 //! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`world::formats`] |
+//! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
 //!
 //! Beside the chapters: [`geometry`] has poses, angles and units; [`random`] seeded random streams; [`world`] what a
 //! world and a robot are, with random courses in [`world::generate`]; `picture` (with the feature of that name) draws
@@ -70,6 +71,7 @@ pub mod nav;
 #[cfg(feature = "picture")]
 pub mod picture;
 pub mod random;
+pub mod vision;
 pub mod world;
 
 /// The programs in the README run as tests.

@@ -37,14 +37,15 @@
 
 // A macro names the types of its capability's methods as the trait does, so they have to be in scope where it is used.
 pub use super::{
-    DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Picture, Pixel, Psd, RadioMessage, Result,
-    Viewport,
+    DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Picture, Pixel, Psd, RadioMessage, Resolution,
+    Result, Viewport,
 };
 pub use crate::geometry::{Pose, Twist};
 pub use crate::world::Colour;
-pub use image::RgbImage;
+pub use image::{GrayImage, RgbImage};
 
 pub use super::actuators::{ambassador_impl_Encoders, ambassador_impl_Motors, ambassador_impl_Servos};
+pub use super::camera::ambassador_impl_Camera;
 pub use super::clock::ambassador_impl_Clock;
 pub use super::display::ambassador_impl_Display;
 pub use super::drive::ambassador_impl_Drive;

@@ -5,6 +5,7 @@
 //! Every trait works behind `&mut R`, `Box<R>` and `dyn`.
 
 mod actuators;
+mod camera;
 mod clock;
 pub mod delegate;
 mod display;
@@ -19,6 +20,7 @@ pub mod sim;
 pub mod wrappers;
 
 pub use actuators::{Encoders, Motors, Servos};
+pub use camera::{Camera, Resolution};
 pub use clock::Clock;
 pub use display::{Display, DisplayOption, Fill, Font, FontFamily, FontStyle, Picture, Pixel, Viewport};
 pub use drive::Drive;
@@ -29,7 +31,7 @@ pub use mock::{Call, MockRobot, Script};
 pub use psd::{DistanceSensors, Psd};
 pub use radio::{Radio, RadioMessage};
 
-/// A full robot: every capability at once.
+/// A full robot: every capability at once. A [`Camera`] comes on top where there is one.
 pub trait RobotIo:
     Clock + Drive + DistanceSensors + Lidar + Display + Keys + Radio + Motors + Servos + Encoders
 {

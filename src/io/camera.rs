@@ -1,0 +1,79 @@
+use image::{GrayImage, RgbImage};
+
+use super::Result;
+
+/// The size of a camera's images.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub enum Resolution {
+    /// 160 x 120 pixels.
+    #[default]
+    Qqvga,
+    /// 320 x 240 pixels.
+    Qvga,
+    /// 640 x 480 pixels.
+    Vga,
+    /// 1296 x 730 pixels.
+    Cam1Mp,
+    /// 1920 x 1080 pixels.
+    CamHd,
+    /// 2592 x 1944 pixels.
+    Cam5Mp,
+}
+
+impl Resolution {
+    /// All of them, in the order of RoBIOS's numbers.
+    pub const ALL: [Self; 6] = [Self::Qqvga, Self::Qvga, Self::Vga, Self::Cam1Mp, Self::CamHd, Self::Cam5Mp];
+
+    /// Columns and rows.
+    ///
+    /// ```
+    /// use roverlab::io::Resolution;
+    /// assert_eq!(Resolution::Qvga.dimensions(), (320, 240));
+    /// ```
+    pub const fn dimensions(self) -> (u32, u32) {
+        match self {
+            Self::Qqvga => (160, 120),
+            Self::Qvga => (320, 240),
+            Self::Vga => (640, 480),
+            Self::Cam1Mp => (1296, 730),
+            Self::CamHd => (1920, 1080),
+            Self::Cam5Mp => (2592, 1944),
+        }
+    }
+}
+
+/// A camera (book, section 11.1).
+///
+/// Images are in colour, 8 bits a channel, the first row on top. A camera on a pan-tilt head is turned through
+/// [`Servos`](super::Servos).
+#[auto_impl::auto_impl(&mut, Box)]
+#[ambassador::delegatable_trait]
+pub trait Camera {
+    /// Changes the size of the images taken from now on. [`Resolution::Qqvga`] at first.
+    fn set_resolution(&mut self, resolution: Resolution) -> Result<()>;
+
+    /// The size of the images taken now.
+    fn resolution(&mut self) -> Result<Resolution>;
+
+    /// Takes an image into an existing one, whose memory is used again if it has the right size.
+    fn image_into(&mut self, image: &mut RgbImage) -> Result<()>;
+
+    /// Takes an image.
+    fn image(&mut self) -> Result<RgbImage> {
+        let mut image = RgbImage::default();
+        self.image_into(&mut image)?;
+        Ok(image)
+    }
+
+    /// Takes an image in shades of gray: `(red + blue) / 4 + green / 2`, as RoBIOS reckons it.
+    fn gray_image(&mut self) -> Result<GrayImage> {
+        let image = self.image()?;
+        let gray = image.pixels().map(|pixel| {
+            let [red, green, blue] = pixel.0.map(u16::from);
+            ((red + blue) / 4 + green / 2) as u8
+        });
+        let (width, height) = image.dimensions();
+        // There is one shade for each pixel, so the buffer fits.
+        Ok(GrayImage::from_raw(width, height, gray.collect()).unwrap_or_default())
+    }
+}

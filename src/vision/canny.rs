@@ -1,0 +1,244 @@
+use super::dispatch::vectorised;
+use super::{Error, GrayView, GrayViewMut};
+
+/// The gradients that make edges of Canny's detector.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct CannyThresholds {
+    /// Edges consist of pixels whose gradient `|dx| + |dy|` is above this.
+    pub low: u16,
+    /// They have at least one pixel whose gradient is above this.
+    pub high: u16,
+}
+
+impl Default for CannyThresholds {
+    /// The book's (Program 11.8).
+    fn default() -> Self {
+        Self { low: 50, high: 100 }
+    }
+}
+
+/// Canny's edge detector (J. Canny, "A computational approach to edge detection", IEEE PAMI 8(6), 1986; book, Program
+/// 11.8), in the form that OpenCV gave it. It keeps its memory from one image to the next.
+///
+/// Smooth noisy images first, with [`gaussian_into`](super::gaussian_into). Then:
+///
+/// 1. The Sobel gradient of each pixel, the image continued by its outermost pixels; its magnitude is `|dx| + |dy|`.
+/// 2. A pixel above `low` stays if its magnitude is larger than that of one neighbour along the gradient, and at least
+///    that of the other: of west and east where `|dy| < tan(22.5°) |dx|`, of north and south where
+///    `|dy| > tan(67.5°) |dx|`. On diagonals it must be larger than both. `tan(22.5°)` is `13573 / 32768` and
+///    `tan(67.5°)` is 2 more. Outside the image magnitudes are 0.
+/// 3. What is left is an edge, 255, if a chain of neighbours, diagonal ones included, leads to a pixel above `high`.
+#[derive(Debug, Clone, Default)]
+pub struct Canny {
+    /// Gradients of three rows in turn.
+    rows: [Gradients; 3],
+    /// What each pixel is, with a margin of one pixel all round.
+    marks: Vec<u8>,
+    /// Places in `marks` of edge pixels whose neighbours have yet to be looked at.
+    open: Vec<usize>,
+}
+
+/// The gradients of a row.
+#[derive(Debug, Clone, Default)]
+struct Gradients {
+    dx: Vec<i16>,
+    dy: Vec<i16>,
+    /// With one 0 on either side.
+    magnitude: Vec<u16>,
+}
+
+/// Pixels that are searched for strong ones together.
+const PIECE: usize = 64;
+/// No edge.
+const NONE: u8 = 0;
+/// An edge if it leads to a strong one.
+const WEAK: u8 = 1;
+/// An edge.
+const STRONG: u8 = 2;
+
+impl Canny {
+    /// A detector that has yet to allocate its memory.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Finds the edges: 255, and 0 elsewhere. Fails if the thresholds are in the wrong order.
+    pub fn find_into(
+        &mut self,
+        input: GrayView<'_>,
+        mut output: GrayViewMut<'_>,
+        thresholds: CannyThresholds,
+    ) -> Result<(), Error> {
+        output.require_size(input.size())?;
+        let CannyThresholds { low, high } = thresholds;
+        if low > high {
+            let expected = "at most the high threshold";
+            return Err(Error::Parameter { parameter: "low threshold", found: f64::from(low), expected });
+        }
+        self.make_room(input.width(), input.height());
+        mark(input, &mut self.rows, &mut self.marks, thresholds);
+        self.follow(input.width());
+        write(&self.marks, &mut output);
+        Ok(())
+    }
+
+    fn make_room(&mut self, width: usize, height: usize) {
+        for row in &mut self.rows {
+            row.dx.resize(width, 0);
+            row.dy.resize(width, 0);
+            row.magnitude.clear();
+            row.magnitude.resize(width + 2, 0);
+        }
+        self.marks.clear();
+        self.marks.resize((width + 2) * (height + 2), NONE);
+    }
+
+    /// Makes all weak pixels strong that strong ones lead to.
+    fn follow(&mut self, width: usize) {
+        let stride = width + 2;
+        let neighbours = [
+            !stride,
+            stride.wrapping_neg(),
+            stride.wrapping_neg() + 1,
+            !0,
+            1,
+            stride - 1,
+            stride,
+            stride + 1,
+        ];
+        for start in (0..self.marks.len()).step_by(PIECE) {
+            let end = (start + PIECE).min(self.marks.len());
+            if !self.marks[start..end].contains(&STRONG) {
+                continue;
+            }
+            self.open.extend((start..end).filter(|&place| self.marks[place] == STRONG));
+            while let Some(place) = self.open.pop() {
+                for offset in neighbours {
+                    let next = place.wrapping_add(offset);
+                    if self.marks[next] == WEAK {
+                        self.marks[next] = STRONG;
+                        self.open.push(next);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn mark_portable(
+    input: GrayView<'_>,
+    rows: &mut [Gradients; 3],
+    marks: &mut [u8],
+    thresholds: CannyThresholds,
+) {
+    let (width, height) = input.size();
+    let stride = width + 2;
+    // Of the three, the first is the row above the one that is marked, whose gradients come last.
+    for y in 0..=height {
+        rows.rotate_left(1);
+        if y < height {
+            let row = |dy: isize| input.row((y as isize + dy).clamp(0, height as isize - 1) as usize);
+            differentiate(row(-1), row(0), row(1), &mut rows[2]);
+        } else {
+            rows[2].magnitude.fill(0);
+        }
+        if y > 0 {
+            let marks = &mut marks[y * stride + 1..][..width];
+            suppress(rows, marks, thresholds);
+        }
+    }
+}
+
+/// The gradients of a row.
+#[inline(always)]
+fn differentiate(above: &[u8], row: &[u8], below: &[u8], out: &mut Gradients) {
+    let width = row.len();
+    if let Some(inner) = width.checked_sub(2) {
+        let dx = &mut out.dx[1..][..inner];
+        let dy = &mut out.dy[1..][..inner];
+        let magnitude = &mut out.magnitude[2..][..inner];
+        let (a0, a1, a2) = (&above[..inner], &above[1..][..inner], &above[2..][..inner]);
+        let (b0, b2) = (&row[..inner], &row[2..][..inner]);
+        let (c0, c1, c2) = (&below[..inner], &below[1..][..inner], &below[2..][..inner]);
+        for x in 0..inner {
+            (dx[x], dy[x], magnitude[x]) =
+                gradient([a0[x], a1[x], a2[x]], [b0[x], b2[x]], [c0[x], c1[x], c2[x]]);
+        }
+    }
+    for x in [0, width - 1] {
+        let (west, east) = (x.saturating_sub(1), (x + 1).min(width - 1));
+        let three = |row: &[u8]| [row[west], row[x], row[east]];
+        (out.dx[x], out.dy[x], out.magnitude[x + 1]) =
+            gradient(three(above), [row[west], row[east]], three(below));
+    }
+}
+
+#[inline(always)]
+fn gradient(above: [u8; 3], [w, e]: [u8; 2], below: [u8; 3]) -> (i16, i16, u16) {
+    let (nw, n, ne) = (i16::from(above[0]), i16::from(above[1]), i16::from(above[2]));
+    let (sw, s, se) = (i16::from(below[0]), i16::from(below[1]), i16::from(below[2]));
+    let (w, e) = (i16::from(w), i16::from(e));
+    let dx = (ne - nw) + 2 * (e - w) + (se - sw);
+    let dy = (sw - nw) + 2 * (s - n) + (se - ne);
+    (dx, dy, dx.unsigned_abs() + dy.unsigned_abs())
+}
+
+/// Marks the pixels of the middle row.
+#[inline(always)]
+fn suppress(rows: &[Gradients; 3], marks: &mut [u8], CannyThresholds { low, high }: CannyThresholds) {
+    let n = marks.len();
+    let [above, row, below] = rows;
+    let (dx, dy) = (&row.dx[..n], &row.dy[..n]);
+    let (a0, a1, a2) = (&above.magnitude[..n], &above.magnitude[1..][..n], &above.magnitude[2..][..n]);
+    let (b0, b1, b2) = (&row.magnitude[..n], &row.magnitude[1..][..n], &row.magnitude[2..][..n]);
+    let (c0, c1, c2) = (&below.magnitude[..n], &below.magnitude[1..][..n], &below.magnitude[2..][..n]);
+    for x in 0..n {
+        let (along, up, magnitude) = (dx[x].unsigned_abs(), dy[x].unsigned_abs(), b1[x]);
+        // `tan(22.5°) |dx|` is whole only where `dx` is 0, so rounding down keeps the order.
+        let flat = ((u32::from(2 * along) * 13_573) >> 16) as u16;
+        let (horizontal, vertical) = (up <= flat, up > flat + 2 * along);
+        let rising = (dx[x] ^ dy[x]) < 0;
+        let (first, second) = (if rising { a2[x] } else { a0[x] }, if rising { c0[x] } else { c2[x] } + 1);
+        let first = if vertical { a1[x] } else { first };
+        let second = if vertical { c1[x] } else { second };
+        let first = if horizontal { b0[x] } else { first };
+        let second = if horizontal { b2[x] } else { second };
+        let kept = (magnitude > low) & (magnitude > first) & (magnitude >= second);
+        let mark = if magnitude > high { STRONG } else { WEAK };
+        marks[x] = if kept { mark } else { NONE };
+    }
+}
+
+#[inline(always)]
+fn write_portable(marks: &[u8], output: &mut GrayViewMut<'_>) {
+    let (width, height) = output.size();
+    for y in 0..height {
+        let marks = &marks[(y + 1) * (width + 2) + 1..][..width];
+        for (out, &mark) in output.row_mut(y).iter_mut().zip(marks) {
+            *out = if mark == STRONG { 255 } else { 0 };
+        }
+    }
+}
+
+/// The whole detector without choice of a processor.
+#[cfg(test)]
+pub(super) fn find_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>, thresholds: CannyThresholds) {
+    let mut canny = Canny::new();
+    canny.make_room(input.width(), input.height());
+    mark_portable(input, &mut canny.rows, &mut canny.marks, thresholds);
+    canny.follow(input.width());
+    write_portable(&canny.marks, output);
+}
+
+vectorised! {
+    fn mark(input: GrayView<'_>, rows: &mut [Gradients; 3], marks: &mut [u8], thresholds: CannyThresholds) {
+        mark_portable(input, rows, marks, thresholds);
+    }
+}
+
+vectorised! {
+    fn write(marks: &[u8], output: &mut GrayViewMut<'_>) {
+        write_portable(marks, output);
+    }
+}

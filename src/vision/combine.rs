@@ -1,0 +1,87 @@
+use super::dispatch::vectorised;
+use super::view::{flatten, require_size};
+use super::{Error, GrayView, GrayViewMut, RgbView, RgbViewMut};
+use crate::world::Colour;
+
+/// 255 where a pixel is above the threshold, 0 elsewhere (book, Program 11.7).
+pub fn threshold_into(input: GrayView<'_>, output: GrayViewMut<'_>, threshold: u8) -> Result<(), Error> {
+    output.require_size(input.size())?;
+    let (input, mut output) = flatten(input, output);
+    above(input, &mut output, threshold);
+    Ok(())
+}
+
+/// The first image in gray, and a colour wherever the second one is not 0 (book, section 11.2; RoBIOS's
+/// `IPOverlayGray`).
+pub fn overlay_gray_into(
+    base: GrayView<'_>,
+    marks: GrayView<'_>,
+    colour: Colour,
+    mut output: RgbViewMut<'_>,
+) -> Result<(), Error> {
+    require_size("second image", marks.size(), base.size())?;
+    output.require_size(base.size())?;
+    mark(base, marks, [colour.red, colour.green, colour.blue], &mut output);
+    Ok(())
+}
+
+/// The second image, and the first wherever the second is black (RoBIOS's `IPOverlay`).
+pub fn overlay_into(base: RgbView<'_>, top: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), Error> {
+    require_size("second image", top.size(), base.size())?;
+    output.require_size(base.size())?;
+    cover(base, top, &mut output);
+    Ok(())
+}
+
+#[inline(always)]
+pub(super) fn above_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>, threshold: u8) {
+    for y in 0..input.height() {
+        for (out, &shade) in output.row_mut(y).iter_mut().zip(input.row(y)) {
+            *out = if shade > threshold { 255 } else { 0 };
+        }
+    }
+}
+
+#[inline(always)]
+pub(super) fn mark_portable(
+    base: GrayView<'_>,
+    marks: GrayView<'_>,
+    colour: [u8; 3],
+    output: &mut RgbViewMut<'_>,
+) {
+    for y in 0..base.height() {
+        let pixels = output.row_mut(y).as_chunks_mut::<3>().0;
+        for ((out, &shade), &mark) in pixels.iter_mut().zip(base.row(y)).zip(marks.row(y)) {
+            *out = if mark == 0 { [shade; 3] } else { colour };
+        }
+    }
+}
+
+#[inline(always)]
+pub(super) fn cover_portable(base: RgbView<'_>, top: RgbView<'_>, output: &mut RgbViewMut<'_>) {
+    for y in 0..base.height() {
+        let pixels = output.row_mut(y).as_chunks_mut::<3>().0;
+        let (below, above) = (base.row(y).as_chunks::<3>().0, top.row(y).as_chunks::<3>().0);
+        for ((out, below), above) in pixels.iter_mut().zip(below).zip(above) {
+            *out = if *above == [0; 3] { *below } else { *above };
+        }
+    }
+}
+
+vectorised! {
+    fn above(input: GrayView<'_>, output: &mut GrayViewMut<'_>, threshold: u8) {
+        above_portable(input, output, threshold);
+    }
+}
+
+vectorised! {
+    fn mark(base: GrayView<'_>, marks: GrayView<'_>, colour: [u8; 3], output: &mut RgbViewMut<'_>) {
+        mark_portable(base, marks, colour, output);
+    }
+}
+
+vectorised! {
+    fn cover(base: RgbView<'_>, top: RgbView<'_>, output: &mut RgbViewMut<'_>) {
+        cover_portable(base, top, output);
+    }
+}

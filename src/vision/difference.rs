@@ -1,0 +1,78 @@
+use super::dispatch::vectorised;
+use super::view::{flatten, require_size};
+use super::{Error, GrayView, GrayViewMut};
+
+/// `|first - second|`, pixel by pixel (book, Program 11.13).
+pub fn absolute_difference_into(
+    first: GrayView<'_>,
+    second: GrayView<'_>,
+    output: GrayViewMut<'_>,
+) -> Result<(), Error> {
+    require_size("second image", second.size(), first.size())?;
+    output.require_size(first.size())?;
+    let (second, mut output) = if first.is_flat() { flatten(second, output) } else { (second, output) };
+    // As one long row all three, or none of them.
+    let first = if second.height() == first.height() { first } else { first.flat() };
+    subtract(first, second, &mut output);
+    Ok(())
+}
+
+/// The mean of `|first - second|` over all pixels, in one pass (book, Program 11.13, without rounding).
+pub fn mean_difference(first: GrayView<'_>, second: GrayView<'_>) -> Result<f64, Error> {
+    require_size("second image", second.size(), first.size())?;
+    let (width, height) = first.size();
+    let total = sum(first, second, 0, width);
+    Ok(total as f64 / (width * height) as f64)
+}
+
+/// The mean of `|first - second|` in each of `N` sectors from left to right (book, section 11.5), in one pass. Sector
+/// `i` has the columns from `i * width / N` on; where that leaves it none, its mean is 0.
+pub fn sector_differences<const N: usize>(
+    first: GrayView<'_>,
+    second: GrayView<'_>,
+) -> Result<[f64; N], Error> {
+    require_size("second image", second.size(), first.size())?;
+    let (width, height) = first.size();
+    let mut means = [0.0; N];
+    for (i, mean) in means.iter_mut().enumerate() {
+        let (from, to) = (i * width / N, (i + 1) * width / N);
+        if from < to {
+            *mean = sum(first, second, from, to) as f64 / ((to - from) * height) as f64;
+        }
+    }
+    Ok(means)
+}
+
+#[inline(always)]
+pub(super) fn subtract_portable(first: GrayView<'_>, second: GrayView<'_>, output: &mut GrayViewMut<'_>) {
+    for y in 0..first.height() {
+        for ((out, a), b) in output.row_mut(y).iter_mut().zip(first.row(y)).zip(second.row(y)) {
+            *out = a.abs_diff(*b);
+        }
+    }
+}
+
+#[inline(always)]
+pub(super) fn sum_portable(first: GrayView<'_>, second: GrayView<'_>, from: usize, to: usize) -> u64 {
+    let mut total = 0;
+    for y in 0..first.height() {
+        // Pieces whose sums fit 32 bits.
+        let pieces = first.row(y)[from..to].chunks(1 << 16).zip(second.row(y)[from..to].chunks(1 << 16));
+        for (a, b) in pieces {
+            total += u64::from(a.iter().zip(b).map(|(a, b)| u32::from(a.abs_diff(*b))).sum::<u32>());
+        }
+    }
+    total
+}
+
+vectorised! {
+    fn subtract(first: GrayView<'_>, second: GrayView<'_>, output: &mut GrayViewMut<'_>) {
+        subtract_portable(first, second, output);
+    }
+}
+
+vectorised! {
+    fn sum(first: GrayView<'_>, second: GrayView<'_>, from: usize, to: usize) -> u64 {
+        sum_portable(first, second, from, to)
+    }
+}

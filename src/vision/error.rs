@@ -1,0 +1,57 @@
+/// What is wrong with an image or a parameter.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// An image without pixels.
+    #[error("the image is {width} x {height} pixels; expected at least one pixel")]
+    Empty {
+        /// Columns.
+        width: usize,
+        /// Rows.
+        height: usize,
+    },
+    /// Rows that overlap.
+    #[error("the stride is {stride} bytes; expected at least the {row} bytes of a row")]
+    Stride {
+        /// Bytes from one row to the next.
+        stride: usize,
+        /// Bytes in a row.
+        row: usize,
+    },
+    /// Too few bytes for the image.
+    #[error("the image has {found} bytes; expected at least {expected}")]
+    Truncated {
+        /// Bytes there.
+        found: usize,
+        /// Bytes that size and stride ask for.
+        expected: usize,
+    },
+    /// Two images, or an image and a table, that do not fit together.
+    #[error("the {what} is {} x {}; expected {} x {}", found.0, found.1, expected.0, expected.1)]
+    Size {
+        /// Which.
+        what: &'static str,
+        /// Its columns and rows.
+        found: (usize, usize),
+        /// Those that it should have.
+        expected: (usize, usize),
+    },
+    /// A region that leaves its image.
+    #[error("the region ends at ({}, {}); expected within {} x {} pixels", end.0, end.1, size.0, size.1)]
+    Region {
+        /// Column and row behind its last pixel.
+        end: (usize, usize),
+        /// Columns and rows of the image.
+        size: (usize, usize),
+    },
+    /// A parameter out of its range.
+    #[error("{parameter} is {found}; expected {expected}")]
+    Parameter {
+        /// Its name.
+        parameter: &'static str,
+        /// Its value.
+        found: f64,
+        /// The range.
+        expected: &'static str,
+    },
+}

@@ -1,0 +1,216 @@
+use super::border::mirrored;
+use super::dispatch::vectorised;
+use super::{Error, GrayView, GrayViewMut};
+use crate::geometry::math;
+
+/// A bell-shaped, symmetric filter of 3, 5 or 7 pixels a side.
+///
+/// The weights are 256ths that add up to 1. Without a width of one's own, 3 and 5 pixels have the binomial weights
+/// `1 2 1` and `1 4 6 4 1`, and 7 pixels `2 7 14 18 14 7 2` of 64, as OpenCV has them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct GaussianKernel {
+    /// The middle weight, then those to either side.
+    weights: [u16; 4],
+    size: usize,
+}
+
+impl GaussianKernel {
+    /// 3 pixels.
+    pub const THREE: Self = Self { weights: [128, 64, 0, 0], size: 3 };
+    /// 5 pixels.
+    pub const FIVE: Self = Self { weights: [96, 64, 16, 0], size: 5 };
+    /// 7 pixels.
+    pub const SEVEN: Self = Self { weights: [72, 56, 28, 8], size: 7 };
+
+    /// The kernel of a size and a standard deviation in pixels. Weights are rounded to the nearest from the outermost
+    /// inwards, each with the rounding error of the one before; the middle one makes up for the rest.
+    pub fn new(size: usize, sigma: f64) -> Result<Self, Error> {
+        if ![3, 5, 7].contains(&size) {
+            let found = size as f64;
+            return Err(Error::Parameter { parameter: "Gaussian size", found, expected: "3, 5 or 7" });
+        }
+        if !(sigma.is_finite() && sigma > 0.0) {
+            let expected = "a positive, finite number";
+            return Err(Error::Parameter { parameter: "Gaussian sigma", found: sigma, expected });
+        }
+        let radius = size / 2;
+        let bell = |i: usize| math::exp(-((i * i) as f64) / (2.0 * sigma * sigma));
+        let sum = bell(0) + 2.0 * (1..=radius).map(bell).sum::<f64>();
+        let mut weights = [0; 4];
+        let mut error = 0.0;
+        for i in (1..=radius).rev() {
+            let exact = 256.0 * bell(i) / sum + error;
+            weights[i] = exact.round_ties_even() as u16;
+            error = exact - f64::from(weights[i]);
+        }
+        weights[0] = 256 - 2 * weights.iter().sum::<u16>();
+        Ok(Self { weights, size })
+    }
+
+    /// Pixels a side.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// The weights from the middle outwards, in 256ths; 0 beyond the kernel.
+    pub fn weights(&self) -> [u16; 4] {
+        self.weights
+    }
+}
+
+/// Smooths an image: the weighted sum of the pixels around each, rounded to the nearest (halves up), with the image
+/// continued by its mirror image about the outermost pixels.
+pub fn gaussian_into(
+    input: GrayView<'_>,
+    mut output: GrayViewMut<'_>,
+    kernel: GaussianKernel,
+) -> Result<(), Error> {
+    output.require_size(input.size())?;
+    smooth(input, &mut output, kernel);
+    Ok(())
+}
+
+/// Columns that are smoothed together; the sums of so many fit the fastest cache.
+const STRIP: usize = 1024;
+
+/// The columns of a strip with three more on either side.
+type Sums = [u16; STRIP + 6];
+
+#[inline(always)]
+pub(super) fn smooth_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>, kernel: GaussianKernel) {
+    match kernel {
+        // Small whole weights keep the sums within 16 bits.
+        GaussianKernel::THREE => filter::<1>(input, output, [2, 1, 0, 0], |sums, out| {
+            across_16::<1>(sums, out, [2, 1, 0, 0], 4);
+        }),
+        GaussianKernel::FIVE => filter::<2>(input, output, [6, 4, 1, 0], |sums, out| {
+            across_16::<2>(sums, out, [6, 4, 1, 0], 8);
+        }),
+        GaussianKernel::SEVEN => filter::<3>(input, output, [18, 14, 7, 2], across_seven),
+        GaussianKernel { weights, size } => {
+            let wide = weights.map(u32::from);
+            match size {
+                3 => filter::<1>(input, output, weights, |sums, out| across_32::<1>(sums, out, wide)),
+                5 => filter::<2>(input, output, weights, |sums, out| across_32::<2>(sums, out, wide)),
+                _ => filter::<3>(input, output, weights, |sums, out| across_32::<3>(sums, out, wide)),
+            }
+        }
+    }
+}
+
+/// Sums up columns, then hands them to `across`, strip by strip.
+#[inline(always)]
+fn filter<const R: usize>(
+    input: GrayView<'_>,
+    output: &mut GrayViewMut<'_>,
+    weights: [u16; 4],
+    across: impl Fn(&[u16], &mut [u8]),
+) {
+    let (width, height) = input.size();
+    let mut sums: Sums = [0; STRIP + 6];
+    for start in (0..width).step_by(STRIP) {
+        let end = (start + STRIP).min(width);
+        // The columns that the strip needs and the image has.
+        let (from, to) = (start.saturating_sub(R), (end + R).min(width));
+        let offset = from + R - start;
+        for y in 0..height {
+            let row = |dy: isize| &input.row(mirrored(y as isize + dy, height))[from..to];
+            down::<R>(row, weights, &mut sums[offset..][..to - from]);
+            if start == 0 || end == width {
+                mirror_columns::<R>(&mut sums, start, end, width);
+            }
+            across(&sums[..end - start + 2 * R], &mut output.row_mut(y)[start..end]);
+        }
+    }
+}
+
+/// Weighted sums of columns.
+#[inline(always)]
+fn down<'a, const R: usize>(row: impl Fn(isize) -> &'a [u8], weights: [u16; 4], sums: &mut [u16]) {
+    let n = sums.len();
+    let middle = &row(0)[..n];
+    let pair = |i: isize| (&row(-i)[..n], &row(i)[..n]);
+    let ((a1, b1), (a2, b2), (a3, b3)) = (pair(1), pair(2.min(R as isize)), pair(3.min(R as isize)));
+    let both = |a: u8, b: u8| u16::from(a) + u16::from(b);
+    for x in 0..n {
+        let mut sum = weights[0] * u16::from(middle[x]) + weights[1] * both(a1[x], b1[x]);
+        if R > 1 {
+            sum += weights[2] * both(a2[x], b2[x]);
+        }
+        if R > 2 {
+            sum += weights[3] * both(a3[x], b3[x]);
+        }
+        sums[x] = sum;
+    }
+}
+
+/// Sums of the columns that the image lacks: those of their mirror images.
+fn mirror_columns<const R: usize>(sums: &mut Sums, start: usize, end: usize, width: usize) {
+    let column = |x: isize| mirrored(x, width) + R - start;
+    for i in 1..=R {
+        if start == 0 {
+            sums[R - i] = sums[column(-(i as isize))];
+        }
+        if end == width {
+            let x = (width - 1 + i) as isize;
+            sums[width - 1 + i + R - start] = sums[column(x)];
+        }
+    }
+}
+
+#[inline(always)]
+fn across_16<const R: usize>(sums: &[u16], out: &mut [u8], weights: [u16; 4], shift: u32) {
+    let n = out.len();
+    let column = |i: usize| &sums[i.min(2 * R)..][..n];
+    let (c, w1, e1, w2, e2) =
+        (column(R), column(R - 1), column(R + 1), column(R.saturating_sub(2)), column(R + 2));
+    for x in 0..n {
+        let mut sum = weights[0] * c[x] + weights[1] * (w1[x] + e1[x]) + (1 << (shift - 1));
+        if R > 1 {
+            sum += weights[2] * (w2[x] + e2[x]);
+        }
+        out[x] = (sum >> shift) as u8;
+    }
+}
+
+/// Sums of 64ths of 64ths need 20 bits: the upper and lower parts of the columns' sums go separate ways.
+#[inline(always)]
+fn across_seven(sums: &[u16], out: &mut [u8]) {
+    let n = out.len();
+    let column = |i: usize| &sums[i..][..n];
+    let (w3, w2, w1, c) = (column(0), column(1), column(2), column(3));
+    let (e1, e2, e3) = (column(4), column(5), column(6));
+    let weigh = |sums: [u16; 4]| 18 * sums[0] + 14 * sums[1] + 7 * sums[2] + 2 * sums[3];
+    for x in 0..n {
+        let (one, two, three) = (w1[x] + e1[x], w2[x] + e2[x], w3[x] + e3[x]);
+        let high = weigh([c[x] >> 4, one >> 4, two >> 4, three >> 4]);
+        let low = weigh([c[x] & 15, one & 15, two & 15, three & 15]);
+        out[x] = ((high + (low >> 4) + 128) >> 8) as u8;
+    }
+}
+
+#[inline(always)]
+fn across_32<const R: usize>(sums: &[u16], out: &mut [u8], weights: [u32; 4]) {
+    let n = out.len();
+    let column = |i: usize| &sums[i.min(2 * R)..][..n];
+    let (c, w1, e1) = (column(R), column(R - 1), column(R + 1));
+    let (w2, e2) = (column(R.saturating_sub(2)), column(R + 2));
+    let (w3, e3) = (column(R.saturating_sub(3)), column(R + 3));
+    let both = |a: u16, b: u16| u32::from(a) + u32::from(b);
+    for x in 0..n {
+        let mut sum = weights[0] * u32::from(c[x]) + weights[1] * both(w1[x], e1[x]) + (1 << 15);
+        if R > 1 {
+            sum += weights[2] * both(w2[x], e2[x]);
+        }
+        if R > 2 {
+            sum += weights[3] * both(w3[x], e3[x]);
+        }
+        out[x] = (sum >> 16) as u8;
+    }
+}
+
+vectorised! {
+    fn smooth(input: GrayView<'_>, output: &mut GrayViewMut<'_>, kernel: GaussianKernel) {
+        smooth_portable(input, output, kernel);
+    }
+}

@@ -1,0 +1,66 @@
+use super::dispatch::vectorised;
+use super::view::flatten;
+use super::{Error, GrayView, GrayViewMut, RgbView, RgbViewMut, planes};
+
+/// How much each colour adds to the brightness.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum GrayWeights {
+    /// RoBIOS: `(red + blue) / 4 + green / 2`, both rounded down.
+    #[default]
+    Robios,
+    /// Rec. 601, as OpenCV has it: `0.299 red + 0.587 green + 0.114 blue`, in fixed point:
+    /// `(9798 red + 19235 green + 3735 blue + 16384) / 32768` rounded down.
+    Rec601,
+}
+
+/// Colour to shades of gray.
+pub fn gray_into(input: RgbView<'_>, output: GrayViewMut<'_>, weights: GrayWeights) -> Result<(), Error> {
+    output.require_size(input.size())?;
+    let (input, mut output) = flatten(input, output);
+    gray(input, &mut output, weights);
+    Ok(())
+}
+
+/// Shades of gray to colour: each byte three times.
+pub fn gray_to_rgb_into(input: GrayView<'_>, output: RgbViewMut<'_>) -> Result<(), Error> {
+    output.require_size(input.size())?;
+    let (input, mut output) = flatten(input, output);
+    triple(input, &mut output);
+    Ok(())
+}
+
+#[inline(always)]
+pub(super) fn gray_portable(input: RgbView<'_>, output: &mut GrayViewMut<'_>, weights: GrayWeights) {
+    for y in 0..input.height() {
+        let (row, out) = (input.row(y), output.row_mut(y));
+        match weights {
+            GrayWeights::Robios => planes::map(row, out, |red, green, blue| {
+                ((u16::from(red) + u16::from(blue)) / 4) as u8 + green / 2
+            }),
+            GrayWeights::Rec601 => planes::map(row, out, |red, green, blue| {
+                let (red, green, blue) = (u32::from(red), u32::from(green), u32::from(blue));
+                ((9798 * red + 19_235 * green + 3735 * blue + 16_384) >> 15) as u8
+            }),
+        }
+    }
+}
+
+#[inline(always)]
+pub(super) fn triple_portable(input: GrayView<'_>, output: &mut RgbViewMut<'_>) {
+    for y in 0..input.height() {
+        let row = input.row(y);
+        planes::merge(output.row_mut(y).as_chunks_mut::<3>().0, row, row, row);
+    }
+}
+
+vectorised! {
+    fn gray(input: RgbView<'_>, output: &mut GrayViewMut<'_>, weights: GrayWeights) {
+        gray_portable(input, output, weights);
+    }
+}
+
+vectorised! {
+    fn triple(input: GrayView<'_>, output: &mut RgbViewMut<'_>) {
+        triple_portable(input, output);
+    }
+}

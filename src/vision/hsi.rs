@@ -1,0 +1,72 @@
+use std::f64::consts::{FRAC_PI_3, TAU};
+
+use super::{Error, NO_HUE, RgbView, RgbViewMut};
+use crate::geometry::math;
+
+/// Hue, saturation and intensity by the book's formulas (section 11.4).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Hsi {
+    /// The angle `acos(((R - G) + (R - B)) / 2 / sqrt((R - G)² + (R - B)(G - B)))`, taken from a full turn if blue
+    /// exceeds green, in 255ths of a turn, rounded to the nearest: red 0, green 85, blue 170. [`NO_HUE`] for grays.
+    pub hue: u8,
+    /// `255 - 255 min(R, G, B) / I` with the intensity `I` before rounding, rounded to the nearest; 0 for black.
+    pub saturation: u8,
+    /// `(R + G + B) / 3`, rounded to the nearest.
+    pub intensity: u8,
+}
+
+/// Red, green and blue to hue, saturation and intensity.
+pub fn rgb_to_hsi(pixel: [u8; 3]) -> Hsi {
+    let [red, green, blue] = pixel.map(u32::from);
+    let sum = red + green + blue;
+    let least = red.min(green).min(blue);
+    let saturation = if sum == 0 { 0 } else { 255 - (2 * 765 * least + sum - 1) / (2 * sum) };
+    Hsi { hue: exact_hue(pixel), saturation: saturation as u8, intensity: ((2 * sum + 3) / 6) as u8 }
+}
+
+fn exact_hue(pixel: [u8; 3]) -> u8 {
+    let [red, green, blue] = pixel.map(f64::from);
+    if red == green && green == blue {
+        return NO_HUE;
+    }
+    let along = 0.5 * ((red - green) + (red - blue));
+    let length = ((red - green) * (red - green) + (red - blue) * (green - blue)).sqrt();
+    let angle = math::acos((along / length).clamp(-1.0, 1.0));
+    let turn = if blue > green { TAU - angle } else { angle };
+    // A full turn is red again.
+    ((turn * (255.0 / TAU)).round() as u32 % 255) as u8
+}
+
+/// Hue, saturation and intensity back to red, green and blue, each rounded to the nearest and at most 255; a pixel
+/// without hue becomes gray.
+///
+/// In the sector that begins with the channel `a`, `h` radians after it, `a = I (1 + S cos h / cos(pi/3 - h))`, the
+/// channel before it is `I (1 - S)`, and the one behind it makes the mean `I`.
+pub fn hsi_to_rgb(Hsi { hue, saturation, intensity }: Hsi) -> [u8; 3] {
+    if hue == NO_HUE || saturation == 0 {
+        return [intensity; 3];
+    }
+    let (saturation, intensity) = (f64::from(saturation) / 255.0, f64::from(intensity));
+    let (sector, within) = (hue / 85, hue % 85);
+    let angle = f64::from(within) * (TAU / 255.0);
+    let lead = intensity * (1.0 + saturation * math::cos(angle) / math::cos(FRAC_PI_3 - angle));
+    let least = intensity * (1.0 - saturation);
+    let rest = 3.0 * intensity - lead - least;
+    let byte = |value: f64| value.round().clamp(0.0, 255.0) as u8;
+    let mut pixel = [lead, rest, least].map(byte);
+    pixel.rotate_right(usize::from(sector));
+    pixel
+}
+
+/// Hue, saturation and intensity of an image; the output has them in the place of red, green and blue.
+pub fn hsi_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), Error> {
+    output.require_size(input.size())?;
+    for y in 0..input.height() {
+        let out = output.row_mut(y).as_chunks_mut::<3>().0;
+        for (out, &pixel) in out.iter_mut().zip(input.row(y).as_chunks::<3>().0) {
+            let Hsi { hue, saturation, intensity } = rgb_to_hsi(pixel);
+            *out = [hue, saturation, intensity];
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,57 @@
+use super::dispatch::vectorised;
+use super::hue::{fixed_quotient, opencv};
+use super::planes::{PIECE, merge, split};
+use super::view::flatten;
+use super::{Error, RgbView, RgbViewMut};
+
+/// Hue, saturation and value as OpenCV has them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Hsv {
+    /// 0 to 179; see [`HueScale::OpenCv`](super::HueScale::OpenCv).
+    pub hue: u8,
+    /// `255 d / largest channel`, rounded: `(d t + 2048) / 4096` rounded down, where `d` is the difference between the
+    /// largest and the smallest channel and `t` is `1044480 / largest` rounded to the nearest; 0 for black.
+    pub saturation: u8,
+    /// The largest channel.
+    pub value: u8,
+}
+
+/// Red, green and blue to hue, saturation and value.
+#[inline(always)]
+pub fn rgb_to_hsv([red, green, blue]: [u8; 3]) -> Hsv {
+    let (r, g, b) = (i32::from(red), i32::from(green), i32::from(blue));
+    let largest = r.max(g).max(b);
+    let d = largest - r.min(g).min(b);
+    let saturation = (d * fixed_quotient(1_044_480.0, largest) + 2048) >> 12;
+    Hsv { hue: opencv(r, g, b, largest, d) as u8, saturation: saturation as u8, value: largest as u8 }
+}
+
+/// The same for an image; the output has hue, saturation and value in the place of red, green and blue.
+pub fn hsv_into(input: RgbView<'_>, output: RgbViewMut<'_>) -> Result<(), Error> {
+    output.require_size(input.size())?;
+    let (input, mut output) = flatten(input, output);
+    convert(input, &mut output);
+    Ok(())
+}
+
+#[inline(always)]
+pub(super) fn convert_portable(input: RgbView<'_>, output: &mut RgbViewMut<'_>) {
+    let (mut red, mut green, mut blue) = ([0; PIECE], [0; PIECE], [0; PIECE]);
+    for y in 0..input.height() {
+        let pixels = input.row(y).as_chunks::<3>().0.chunks(PIECE);
+        for (pixels, out) in pixels.zip(output.row_mut(y).as_chunks_mut::<3>().0.chunks_mut(PIECE)) {
+            split(pixels, &mut red, &mut green, &mut blue);
+            for ((red, green), blue) in red.iter_mut().zip(&mut green).zip(&mut blue) {
+                let Hsv { hue, saturation, value } = rgb_to_hsv([*red, *green, *blue]);
+                (*red, *green, *blue) = (hue, saturation, value);
+            }
+            merge(out, &red, &green, &blue);
+        }
+    }
+}
+
+vectorised! {
+    fn convert(input: RgbView<'_>, output: &mut RgbViewMut<'_>) {
+        convert_portable(input, output);
+    }
+}

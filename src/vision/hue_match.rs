@@ -1,0 +1,181 @@
+use super::dispatch::vectorised;
+use super::hue::hue;
+use super::view::flatten;
+use super::{Error, GrayView, GrayViewMut, HueLimits, HueScale, NO_HUE, RgbView, planes};
+
+/// Hues from one to another, both included, wrapping round the end of the circle if the first is larger.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct HueRange {
+    /// The first hue.
+    pub low: u8,
+    /// The last one.
+    pub high: u8,
+}
+
+impl HueRange {
+    /// The hues less than `threshold` away from one, on a circle of 255 as the book's Program 11.9 reckons, or of 180
+    /// on OpenCV's scale.
+    pub fn around(hue: u8, threshold: u8, scale: HueScale) -> Result<Self, Error> {
+        let circle = match scale {
+            HueScale::Robios => 255,
+            HueScale::OpenCv => 180,
+        };
+        let (middle, reach) = (i32::from(hue), i32::from(threshold) - 1);
+        if middle >= circle {
+            let expected = "below 255, or 180 on OpenCV's scale";
+            return Err(Error::Parameter { parameter: "hue", found: f64::from(hue), expected });
+        }
+        if reach < 0 {
+            return Err(Error::Parameter { parameter: "hue threshold", found: 0.0, expected: "at least 1" });
+        }
+        if 2 * reach + 1 >= circle {
+            return Ok(Self { low: 0, high: (circle - 1) as u8 });
+        }
+        let wrap = |hue: i32| hue.rem_euclid(circle) as u8;
+        Ok(Self { low: wrap(middle - reach), high: wrap(middle + reach) })
+    }
+
+    /// Whether a hue belongs to the range. [`NO_HUE`] never does.
+    #[inline(always)]
+    pub fn contains(&self, hue: u8) -> bool {
+        let (from, to) = (hue >= self.low, hue <= self.high);
+        (hue != NO_HUE) & if self.low <= self.high { from & to } else { from | to }
+    }
+}
+
+/// 255 where a pixel's hue belongs to the range, 0 elsewhere (book, section 11.4), straight from the colours.
+pub fn hue_match_into(
+    input: RgbView<'_>,
+    output: GrayViewMut<'_>,
+    range: HueRange,
+    scale: HueScale,
+    limits: HueLimits,
+) -> Result<(), Error> {
+    output.require_size(input.size())?;
+    let (input, mut output) = flatten(input, output);
+    match scale {
+        HueScale::Robios => matches(input, &mut output, &Sectors::new(range, limits)),
+        HueScale::OpenCv => matches_opencv(input, &mut output, range, limits),
+    }
+    Ok(())
+}
+
+/// 255 where an image of hues has one of the range, 0 elsewhere.
+pub fn match_hue_image_into(
+    input: GrayView<'_>,
+    output: GrayViewMut<'_>,
+    range: HueRange,
+) -> Result<(), Error> {
+    output.require_size(input.size())?;
+    let (input, mut output) = flatten(input, output);
+    matches_hues(input, &mut output, range);
+    Ok(())
+}
+
+/// A range of hues on RoBIOS's scale as conditions that need no division.
+///
+/// Within the sector of a largest channel, `base + 42 n / d >= hue` means `42 n - m d > t` for some `m` and `t`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sectors {
+    /// `m` and `t` from which on hues belong to the range, for the sectors of red, green and blue.
+    first: [(i16, i16); 3],
+    /// `m` and `t` from which on they do no longer.
+    behind: [(i16, i16); 3],
+    /// Whether the range is what these conditions leave out.
+    invert: bool,
+    limits: HueLimits,
+}
+
+impl Sectors {
+    pub(super) fn new(range: HueRange, limits: HueLimits) -> Self {
+        let HueRange { low, high } = range;
+        let (low, high) = (i16::from(low), i16::from(high));
+        let invert = low > high;
+        let (first, behind) = if invert { (high + 1, low) } else { (low, high + 1) };
+        let conditions = |hue: i16| [42, 126, 210].map(|base| condition(hue - base));
+        Self { first: conditions(first), behind: conditions(behind), invert, limits }
+    }
+
+    /// Whether a pixel's hue belongs to the range.
+    #[inline(always)]
+    pub(super) fn contain(&self, [red, green, blue]: [u8; 3]) -> bool {
+        let (r, g, b) = (i16::from(red), i16::from(green), i16::from(blue));
+        let largest = r.max(g).max(b);
+        let d = largest - r.min(g).min(b);
+        let (is_red, is_green) = (largest == r, largest == g);
+        let n = pick(is_red, is_green, [g - b, b - r, r - g]);
+        let reaches = |conditions: &[(i16, i16); 3]| {
+            let [red, green, blue] = *conditions;
+            let m = pick(is_red, is_green, [red.0, green.0, blue.0]);
+            let t = pick(is_red, is_green, [red.1, green.1, blue.1]);
+            42 * n - m * d > t
+        };
+        let within = (reaches(&self.first) & !reaches(&self.behind)) ^ self.invert;
+        let colourful = 255 * d as u16 >= u16::from(self.limits.min_saturation) * largest as u16;
+        let bright = (r + b) / 4 + g / 2 >= i16::from(self.limits.min_intensity);
+        within & (d > 0) & colourful & bright
+    }
+}
+
+/// `m` and `t` for which `42 n - m d > t` says that `42 n / d`, rounded towards zero, is at least `least`.
+fn condition(least: i16) -> (i16, i16) {
+    // Quotients reach from -42 to 42; further limits say no more.
+    let least = least.clamp(-42, 43);
+    if least > 0 { (least, -1) } else { (least - 1, 0) }
+}
+
+#[inline(always)]
+fn pick(is_red: bool, is_green: bool, [red, green, blue]: [i16; 3]) -> i16 {
+    let other = if is_green { green } else { blue };
+    if is_red { red } else { other }
+}
+
+#[inline(always)]
+pub(super) fn matches_portable(input: RgbView<'_>, output: &mut GrayViewMut<'_>, sectors: &Sectors) {
+    for y in 0..input.height() {
+        planes::map(input.row(y), output.row_mut(y), |red, green, blue| {
+            if sectors.contain([red, green, blue]) { 255 } else { 0 }
+        });
+    }
+}
+
+#[inline(always)]
+pub(super) fn matches_opencv_portable(
+    input: RgbView<'_>,
+    output: &mut GrayViewMut<'_>,
+    range: HueRange,
+    limits: HueLimits,
+) {
+    for y in 0..input.height() {
+        planes::map(input.row(y), output.row_mut(y), |red, green, blue| {
+            if range.contains(hue([red, green, blue], HueScale::OpenCv, limits)) { 255 } else { 0 }
+        });
+    }
+}
+
+#[inline(always)]
+pub(super) fn matches_hues_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>, range: HueRange) {
+    for y in 0..input.height() {
+        for (out, &hue) in output.row_mut(y).iter_mut().zip(input.row(y)) {
+            *out = if range.contains(hue) { 255 } else { 0 };
+        }
+    }
+}
+
+vectorised! {
+    fn matches(input: RgbView<'_>, output: &mut GrayViewMut<'_>, sectors: &Sectors) {
+        matches_portable(input, output, sectors);
+    }
+}
+
+vectorised! {
+    fn matches_opencv(input: RgbView<'_>, output: &mut GrayViewMut<'_>, range: HueRange, limits: HueLimits) {
+        matches_opencv_portable(input, output, range, limits);
+    }
+}
+
+vectorised! {
+    fn matches_hues(input: GrayView<'_>, output: &mut GrayViewMut<'_>, range: HueRange) {
+        matches_hues_portable(input, output, range);
+    }
+}

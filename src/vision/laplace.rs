@@ -1,0 +1,57 @@
+use super::border::stencil;
+use super::dispatch::vectorised;
+use super::{Border, Error, GrayView, GrayViewMut};
+
+/// The Laplace operator's absolute value (book, Program 11.3): `min(255, |4 c - n - s - e - w|)` of a pixel and its
+/// four neighbours.
+pub fn laplace_into(input: GrayView<'_>, mut output: GrayViewMut<'_>, border: Border) -> Result<(), Error> {
+    output.require_size(input.size())?;
+    absolute(input, &mut output, border);
+    Ok(())
+}
+
+/// The Laplace operator where it is positive: `n + s + e + w - 4 c`, held within `0..=255`. It finds the dark sides of
+/// edges.
+pub fn laplace_saturated_into(
+    input: GrayView<'_>,
+    mut output: GrayViewMut<'_>,
+    border: Border,
+) -> Result<(), Error> {
+    output.require_size(input.size())?;
+    saturated(input, &mut output, border);
+    Ok(())
+}
+
+/// Four times the centre, and the sum of the neighbours.
+#[inline(always)]
+fn terms([[_, n, _], [w, c, e], [_, s, _]]: [[u8; 3]; 3]) -> (u16, u16) {
+    (4 * u16::from(c), u16::from(n) + u16::from(s) + u16::from(w) + u16::from(e))
+}
+
+#[inline(always)]
+pub(super) fn absolute_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>, border: Border) {
+    stencil(input, output, border, |pixels| {
+        let (centre, neighbours) = terms(pixels);
+        centre.abs_diff(neighbours).min(255) as u8
+    });
+}
+
+#[inline(always)]
+pub(super) fn saturated_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>, border: Border) {
+    stencil(input, output, border, |pixels| {
+        let (centre, neighbours) = terms(pixels);
+        neighbours.saturating_sub(centre).min(255) as u8
+    });
+}
+
+vectorised! {
+    fn absolute(input: GrayView<'_>, output: &mut GrayViewMut<'_>, border: Border) {
+        absolute_portable(input, output, border);
+    }
+}
+
+vectorised! {
+    fn saturated(input: GrayView<'_>, output: &mut GrayViewMut<'_>, border: Border) {
+        saturated_portable(input, output, border);
+    }
+}

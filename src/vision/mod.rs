@@ -1,0 +1,70 @@
+//! Image processing (book, chapter 11): edges, colour, motion, lines and blobs.
+//!
+//! Every kernel has a written definition in its docs, to the bit, and is tested against a naive version of it. Kernels
+//! work on [`View`]s, borrowed 8-bit images of one ([`GrayView`]) or three ([`RgbView`]) bytes a pixel with any
+//! distance between rows, so that a part of an image is as good as a whole one:
+//!
+//! ```
+//! use roverlab::vision::{Border, GrayView, GrayViewMut, laplace_into};
+//!
+//! # fn main() -> Result<(), roverlab::vision::Error> {
+//! let image = [0, 0, 0, 0, 90, 0, 0, 0, 0];
+//! let mut edges = [0; 9];
+//! laplace_into(GrayView::new(&image, 3, 3)?, GrayViewMut::new(&mut edges, 3, 3)?, Border::Zero)?;
+//! assert_eq!(edges, [0, 0, 0, 0, 255, 0, 0, 0, 0]);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! The functions in `_into` write into memory of the caller's and allocate nothing. The loops are plain Rust that the
+//! compiler vectorises for several generations of processors; the best one that the processor has is chosen at run
+//! time, and all give the same bits.
+
+#![forbid(unsafe_code)]
+#![allow(clippy::needless_bitwise_bool, reason = "conditions without branches are what vectorises")]
+#![allow(
+    clippy::inline_always,
+    reason = "loops are to be compiled for the processor that their caller has chosen"
+)]
+
+mod border;
+mod canny;
+mod combine;
+mod components;
+mod difference;
+mod dispatch;
+mod error;
+mod fused;
+mod gaussian;
+mod gray;
+mod hough;
+mod hsi;
+mod hsv;
+mod hue;
+mod hue_match;
+mod laplace;
+mod planes;
+mod projection;
+mod sobel;
+#[cfg(test)]
+mod tests;
+mod view;
+
+pub use border::Border;
+pub use canny::{Canny, CannyThresholds};
+pub use combine::{overlay_gray_into, overlay_into, threshold_into};
+pub use components::{Blob, Components};
+pub use difference::{absolute_difference_into, mean_difference, sector_differences};
+pub use error::Error;
+pub use fused::hue_histogram_into;
+pub use gaussian::{GaussianKernel, gaussian_into};
+pub use gray::{GrayWeights, gray_into, gray_to_rgb_into};
+pub use hough::{HoughLine, HoughLines};
+pub use hsi::{Hsi, hsi_into, hsi_to_rgb, rgb_to_hsi};
+pub use hsv::{Hsv, hsv_into, rgb_to_hsv};
+pub use hue::{HueLimits, HueScale, NO_HUE, hue, hue_into};
+pub use hue_match::{HueRange, hue_match_into, match_hue_image_into};
+pub use laplace::{laplace_into, laplace_saturated_into};
+pub use projection::{maximum, projections_into};
+pub use sobel::{SobelScale, sobel_l1_into, sobel_l2_into};
+pub use view::{GrayView, GrayViewMut, RgbView, RgbViewMut, View, ViewMut};

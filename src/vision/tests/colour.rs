@@ -1,0 +1,232 @@
+//! Kernels on colours.
+
+use proptest::prelude::*;
+
+use super::images;
+use crate::vision::{
+    GrayWeights, HueLimits, HueRange, HueScale, NO_HUE, combine, fused, gray, gray_into, gray_to_rgb_into,
+    hsi_into, hsi_to_rgb, hsv, hsv_into, hue, hue_histogram_into, hue_into, hue_match, hue_match_into,
+    match_hue_image_into, overlay_gray_into, overlay_into, rgb_to_hsi,
+};
+use crate::world::Colour;
+
+/// The hue of a pixel in whole numbers, step by step.
+fn naive_hue([red, green, blue]: [u8; 3], scale: HueScale, limits: HueLimits) -> u8 {
+    let (r, g, b) = (i64::from(red), i64::from(green), i64::from(blue));
+    let largest = r.max(g).max(b);
+    let d = largest - r.min(g).min(b);
+    if 255 * d < i64::from(limits.min_saturation) * largest {
+        return NO_HUE;
+    }
+    if (r + b) / 4 + g / 2 < i64::from(limits.min_intensity) {
+        return NO_HUE;
+    }
+    match scale {
+        HueScale::Robios if d == 0 => NO_HUE,
+        HueScale::Robios if r == largest => (42 + 42 * (g - b) / d) as u8,
+        HueScale::Robios if g == largest => (126 + 42 * (b - r) / d) as u8,
+        HueScale::Robios => (210 + 42 * (r - g) / d) as u8,
+        HueScale::OpenCv if d == 0 => 0,
+        HueScale::OpenCv => {
+            let n = if r == largest {
+                g - b
+            } else if g == largest {
+                b - r + 2 * d
+            } else {
+                r - g + 4 * d
+            };
+            let t = (122_880.0 / d as f64).round() as i64;
+            (n * t + 2048).div_euclid(4096).rem_euclid(180) as u8
+        }
+    }
+}
+
+fn scales() -> impl Strategy<Value = HueScale> {
+    prop_oneof![Just(HueScale::Robios), Just(HueScale::OpenCv)]
+}
+
+fn limits() -> impl Strategy<Value = HueLimits> {
+    let own = (any::<u8>(), any::<u8>())
+        .prop_map(|(min_saturation, min_intensity)| HueLimits { min_saturation, min_intensity });
+    prop_oneof![Just(HueLimits::NONE), Just(HueLimits::default()), own]
+}
+
+fn contains(range: HueRange, hue: u8) -> bool {
+    let wrapped = (range.low..=255).chain(0..=range.high);
+    let found = if range.low <= range.high {
+        (range.low..=range.high).any(|member| member == hue)
+    } else {
+        wrapped.into_iter().any(|member| member == hue)
+    };
+    found && hue != NO_HUE
+}
+
+proptest! {
+    #[test]
+    fn gray_is_its_definition(image in images::<3>()) {
+        let robios = image.map(|x, y| {
+            let [r, g, b] = image.at(x, y).map(u32::from);
+            [((r + b) / 4 + g / 2) as u8]
+        });
+        let rec601 = image.map(|x, y| {
+            let [r, g, b] = image.at(x, y).map(u64::from);
+            [((9798 * r + 19_235 * g + 3735 * b + 16_384) / 32_768) as u8]
+        });
+        for (weights, expected) in [(GrayWeights::Robios, robios), (GrayWeights::Rec601, rec601)] {
+            prop_assert_eq!(image.output(|out| gray_into(image.view(), out, weights).unwrap()), &expected[..]);
+            let portable = image.output(|mut out| gray::gray_portable(image.view(), &mut out, weights));
+            prop_assert_eq!(portable, expected);
+        }
+    }
+
+    #[test]
+    fn gray_in_colour_is_gray(image in images::<1>()) {
+        let expected = image.map(|x, y| [image.at(x, y)[0]; 3]);
+        prop_assert_eq!(image.output(|out| gray_to_rgb_into(image.view(), out).unwrap()), &expected[..]);
+        let portable = image.output(|mut out| gray::triple_portable(image.view(), &mut out));
+        prop_assert_eq!(portable, expected);
+    }
+
+    #[test]
+    fn hues_are_their_definitions(image in images::<3>(), scale in scales(), limits in limits()) {
+        let expected = image.map(|x, y| [naive_hue(image.at(x, y), scale, limits)]);
+        let found = image.output(|out| hue_into(image.view(), out, scale, limits).unwrap());
+        prop_assert_eq!(found, &expected[..]);
+        let portable = image.output(|mut out| hue::hues_portable(image.view(), &mut out, scale, limits));
+        prop_assert_eq!(portable, expected);
+    }
+
+    #[test]
+    fn matches_are_their_definitions(
+        image in images::<3>(), scale in scales(), limits in limits(), low in any::<u8>(), high in any::<u8>(),
+    ) {
+        let range = HueRange { low, high };
+        let is_match = |x, y| contains(range, naive_hue(image.at(x, y), scale, limits));
+        let expected = image.map(|x, y| [if is_match(x, y) { 255 } else { 0 }]);
+        let found = image.output(|out| hue_match_into(image.view(), out, range, scale, limits).unwrap());
+        prop_assert_eq!(found, &expected[..]);
+        let portable = image.output(|mut out| match scale {
+            HueScale::Robios => {
+                hue_match::matches_portable(image.view(), &mut out, &hue_match::Sectors::new(range, limits));
+            }
+            HueScale::OpenCv => {
+                hue_match::matches_opencv_portable(image.view(), &mut out, range, limits);
+            }
+        });
+        prop_assert_eq!(portable, &expected[..]);
+
+        if scale == HueScale::Robios {
+            let mut columns = vec![5; image.width];
+            hue_histogram_into(image.view(), &mut columns, range, limits).unwrap();
+            for (x, &count) in columns.iter().enumerate() {
+                prop_assert_eq!(count as usize, (0..image.height).filter(|&y| is_match(x, y)).count());
+            }
+            let mut portable = vec![6; image.width];
+            let sectors = hue_match::Sectors::new(range, limits);
+            fused::histogram_portable(image.view(), &mut portable, &sectors);
+            prop_assert_eq!(columns, portable);
+        }
+    }
+
+    #[test]
+    fn a_hue_image_matches_as_its_colours_do(image in images::<1>(), low in any::<u8>(), high in any::<u8>()) {
+        let range = HueRange { low, high };
+        let expected = image.map(|x, y| [if contains(range, image.at(x, y)[0]) { 255 } else { 0 }]);
+        let found = image.output(|out| match_hue_image_into(image.view(), out, range).unwrap());
+        prop_assert_eq!(found, &expected[..]);
+        let portable = image.output(|mut out| hue_match::matches_hues_portable(image.view(), &mut out, range));
+        prop_assert_eq!(portable, expected);
+    }
+
+    #[test]
+    fn hues_around_one_are_the_books(hue in 0_u8..255, threshold in 1_u8..=255, other in any::<u8>()) {
+        let range = HueRange::around(hue, threshold, HueScale::Robios).unwrap();
+        let (difference, threshold) = ((i32::from(other) - i32::from(hue)).abs(), i32::from(threshold));
+        let book = (difference < threshold || 255 - difference < threshold) && other != NO_HUE;
+        prop_assert_eq!(range.contains(other), book);
+    }
+
+    #[test]
+    fn hsv_is_its_definition(image in images::<3>()) {
+        let expected = image.map(|x, y| {
+            let pixel = image.at(x, y);
+            let (largest, least) = (*pixel.iter().max().unwrap(), *pixel.iter().min().unwrap());
+            let t = if largest == 0 { 0 } else { (1_044_480.0 / f64::from(largest)).round() as u64 };
+            let saturation = (u64::from(largest - least) * t + 2048) / 4096;
+            [naive_hue(pixel, HueScale::OpenCv, HueLimits::NONE), saturation as u8, largest]
+        });
+        prop_assert_eq!(image.output(|out| hsv_into(image.view(), out).unwrap()), &expected[..]);
+        let portable = image.output(|mut out| hsv::convert_portable(image.view(), &mut out));
+        prop_assert_eq!(portable, expected);
+    }
+
+    #[test]
+    fn hsi_comes_back_to_its_colour(pixel in any::<[u8; 3]>()) {
+        let hsi = rgb_to_hsi(pixel);
+        let [red, green, blue] = pixel.map(f64::from);
+        let intensity = (red + green + blue) / 3.0;
+        prop_assert!((f64::from(hsi.intensity) - intensity).abs() <= 0.5);
+        if intensity > 0.0 {
+            let saturation = 255.0 - 255.0 * red.min(green).min(blue) / intensity;
+            prop_assert!((f64::from(hsi.saturation) - saturation).abs() <= 0.5 + 1e-9);
+        }
+        // Each of the three is rounded to one part in 255 and moves a channel by up to three times that.
+        for (back, channel) in hsi_to_rgb(hsi).iter().zip(pixel) {
+            prop_assert!(back.abs_diff(channel) <= 9, "{:?} came back as {:?}", pixel, hsi_to_rgb(hsi));
+        }
+    }
+
+    #[test]
+    fn hue_survives_a_cloud(pixel in any::<[u8; 3]>()) {
+        // Half the light leaves the hue alone, rounding aside.
+        let half = pixel.map(|channel| channel / 2);
+        let spread = half.iter().max().unwrap() - half.iter().min().unwrap();
+        prop_assume!(spread >= 32);
+        let (bright, dark) = (rgb_to_hsi(pixel).hue, rgb_to_hsi(half).hue);
+        let difference = bright.abs_diff(dark);
+        prop_assert!(difference.min(255 - difference) <= 3, "{} and {}", bright, dark);
+    }
+
+    #[test]
+    fn images_convert_as_their_pixels_do(image in images::<3>()) {
+        let expected = image.map(|x, y| {
+            let hsi = rgb_to_hsi(image.at(x, y));
+            [hsi.hue, hsi.saturation, hsi.intensity]
+        });
+        prop_assert_eq!(image.output(|out| hsi_into(image.view(), out).unwrap()), expected);
+    }
+
+    #[test]
+    fn overlays_are_their_definitions(image in images::<3>(), marks in images::<1>(), seed in any::<u64>()) {
+        let mut top = image.clone();
+        crate::random::Stream::new(seed).shuffle(&mut top.data);
+        let expected = image.map(|x, y| if top.at(x, y) == [0; 3] { image.at(x, y) } else { top.at(x, y) });
+        let found = image.output(|out| overlay_into(image.view(), top.view(), out).unwrap());
+        prop_assert_eq!(found, &expected[..]);
+        let portable = image.output(|mut out| combine::cover_portable(image.view(), top.view(), &mut out));
+        prop_assert_eq!(portable, expected);
+
+        let mut base = marks.clone();
+        crate::random::Stream::new(seed).shuffle(&mut base.data);
+        let colour = Colour::new(200, 100, 50);
+        let expected = base.map(|x, y| if marks.at(x, y)[0] > 0 { [200, 100, 50] } else { [base.at(x, y)[0]; 3] });
+        let found = base.output(|out| overlay_gray_into(base.view(), marks.view(), colour, out).unwrap());
+        prop_assert_eq!(found, &expected[..]);
+        let portable = base.output(|mut out| {
+            combine::mark_portable(base.view(), marks.view(), [200, 100, 50], &mut out);
+        });
+        prop_assert_eq!(portable, expected);
+    }
+}
+
+#[test]
+fn hues_of_pure_colours() {
+    let pure = |pixel| rgb_to_hsi(pixel).hue;
+    assert_eq!([pure([200, 0, 0]), pure([0, 200, 0]), pure([0, 0, 200])], [0, 85, 170]);
+    assert_eq!(pure([90, 90, 90]), NO_HUE);
+    let robios = |pixel| hue::hue(pixel, HueScale::Robios, HueLimits::default());
+    assert_eq!([robios([200, 0, 0]), robios([0, 200, 0]), robios([0, 0, 200])], [42, 126, 210]);
+    // The book's example: red in the sun, and the same under a cloud.
+    assert_eq!([robios([210, 20, 10]), robios([105, 10, 5])], [44, 44]);
+    assert_eq!([robios([20, 0, 0]), robios([200, 150, 150])], [NO_HUE; 2]);
+}

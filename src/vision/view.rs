@@ -1,0 +1,257 @@
+use image::{GrayImage, RgbImage};
+
+use super::Error;
+
+/// A borrowed image of `C` bytes a pixel. It has at least one pixel.
+#[derive(Debug, Clone, Copy)]
+pub struct View<'a, const C: usize> {
+    data: &'a [u8],
+    shape: Shape,
+}
+
+/// A borrowed image of `C` bytes a pixel to write into. It has at least one pixel.
+#[derive(Debug)]
+pub struct ViewMut<'a, const C: usize> {
+    data: &'a mut [u8],
+    shape: Shape,
+}
+
+/// An image in shades of gray.
+pub type GrayView<'a> = View<'a, 1>;
+/// An image of red, green and blue.
+pub type RgbView<'a> = View<'a, 3>;
+/// An image in shades of gray to write into.
+pub type GrayViewMut<'a> = ViewMut<'a, 1>;
+/// An image of red, green and blue to write into.
+pub type RgbViewMut<'a> = ViewMut<'a, 3>;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Shape {
+    width: usize,
+    height: usize,
+    /// Bytes from one row to the next.
+    stride: usize,
+}
+
+impl Shape {
+    /// The shape and its bytes, if they are no more than `found`.
+    fn new(width: usize, height: usize, stride: usize, channels: usize, found: usize) -> Result<Self, Error> {
+        if width == 0 || height == 0 {
+            return Err(Error::Empty { width, height });
+        }
+        let row = width.saturating_mul(channels);
+        if stride < row {
+            return Err(Error::Stride { stride, row });
+        }
+        let expected = stride.saturating_mul(height - 1).saturating_add(row);
+        if found < expected {
+            return Err(Error::Truncated { found, expected });
+        }
+        Ok(Self { width, height, stride })
+    }
+
+    /// The offset of the first byte and the shape of a part.
+    fn region(
+        &self,
+        (x, y): (usize, usize),
+        width: usize,
+        height: usize,
+        channels: usize,
+    ) -> Result<(usize, Self), Error> {
+        if width == 0 || height == 0 {
+            return Err(Error::Empty { width, height });
+        }
+        let end = (x.saturating_add(width), y.saturating_add(height));
+        if end.0 > self.width || end.1 > self.height {
+            return Err(Error::Region { end, size: (self.width, self.height) });
+        }
+        Ok((y * self.stride + x * channels, Self { width, height, stride: self.stride }))
+    }
+
+    /// The shape as one long row, if there is nothing between rows.
+    fn flat(self, channels: usize) -> Self {
+        if self.stride == self.width * channels {
+            let width = self.width * self.height;
+            Self { width, height: 1, stride: width * channels }
+        } else {
+            self
+        }
+    }
+}
+
+impl<'a, const C: usize> View<'a, C> {
+    /// An image whose rows follow each other without a gap.
+    pub fn new(data: &'a [u8], width: usize, height: usize) -> Result<Self, Error> {
+        Self::with_stride(data, width, height, width.saturating_mul(C))
+    }
+
+    /// An image with `stride` bytes from the start of one row to that of the next. What follows the last row in
+    /// `data` is left alone.
+    pub fn with_stride(data: &'a [u8], width: usize, height: usize, stride: usize) -> Result<Self, Error> {
+        Ok(Self { data, shape: Shape::new(width, height, stride, C, data.len())? })
+    }
+
+    /// A part of the image, from its upper left pixel (column, row).
+    pub fn region(&self, corner: (usize, usize), width: usize, height: usize) -> Result<Self, Error> {
+        let (start, shape) = self.shape.region(corner, width, height, C)?;
+        Ok(Self { data: &self.data[start..], shape })
+    }
+
+    /// Columns and rows.
+    pub fn size(&self) -> (usize, usize) {
+        (self.shape.width, self.shape.height)
+    }
+
+    /// Columns.
+    #[inline]
+    pub fn width(&self) -> usize {
+        self.shape.width
+    }
+
+    /// Rows.
+    #[inline]
+    pub fn height(&self) -> usize {
+        self.shape.height
+    }
+
+    /// The bytes of a row.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such row.
+    #[inline]
+    pub fn row(&self, y: usize) -> &'a [u8] {
+        assert!(y < self.shape.height, "row {y} of {}", self.shape.height);
+        &self.data[y * self.shape.stride..][..self.shape.width * C]
+    }
+
+    /// The same as one long row where possible, for kernels that look at single pixels.
+    #[inline]
+    pub(super) fn flat(self) -> Self {
+        Self { shape: self.shape.flat(C), ..self }
+    }
+
+    /// Whether rows follow each other without a gap.
+    pub(super) fn is_flat(&self) -> bool {
+        self.shape.stride == self.shape.width * C
+    }
+}
+
+impl<'a, const C: usize> ViewMut<'a, C> {
+    /// An image whose rows follow each other without a gap.
+    pub fn new(data: &'a mut [u8], width: usize, height: usize) -> Result<Self, Error> {
+        Self::with_stride(data, width, height, width.saturating_mul(C))
+    }
+
+    /// An image with `stride` bytes from the start of one row to that of the next. What lies between rows and follows
+    /// the last one is left alone.
+    pub fn with_stride(
+        data: &'a mut [u8],
+        width: usize,
+        height: usize,
+        stride: usize,
+    ) -> Result<Self, Error> {
+        let shape = Shape::new(width, height, stride, C, data.len())?;
+        Ok(Self { data, shape })
+    }
+
+    /// A part of the image, from its upper left pixel (column, row).
+    pub fn region(self, corner: (usize, usize), width: usize, height: usize) -> Result<Self, Error> {
+        let (start, shape) = self.shape.region(corner, width, height, C)?;
+        Ok(Self { data: &mut self.data[start..], shape })
+    }
+
+    /// Columns and rows.
+    pub fn size(&self) -> (usize, usize) {
+        (self.shape.width, self.shape.height)
+    }
+
+    /// Columns.
+    #[inline]
+    pub fn width(&self) -> usize {
+        self.shape.width
+    }
+
+    /// Rows.
+    #[inline]
+    pub fn height(&self) -> usize {
+        self.shape.height
+    }
+
+    /// The bytes of a row.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such row.
+    #[inline]
+    pub fn row_mut(&mut self, y: usize) -> &mut [u8] {
+        assert!(y < self.shape.height, "row {y} of {}", self.shape.height);
+        &mut self.data[y * self.shape.stride..][..self.shape.width * C]
+    }
+
+    #[inline]
+    pub(super) fn flat(self) -> Self {
+        Self { shape: self.shape.flat(C), ..self }
+    }
+
+    pub(super) fn is_flat(&self) -> bool {
+        self.shape.stride == self.shape.width * C
+    }
+
+    /// Fails unless the output has the size of the input.
+    pub(super) fn require_size(&self, expected: (usize, usize)) -> Result<(), Error> {
+        require_size("output", self.size(), expected)
+    }
+}
+
+/// Fails unless an image has the size of another.
+pub(super) fn require_size(
+    what: &'static str,
+    found: (usize, usize),
+    expected: (usize, usize),
+) -> Result<(), Error> {
+    if found == expected { Ok(()) } else { Err(Error::Size { what, found, expected }) }
+}
+
+/// Input and output as one long row each if both can be: for kernels that look at single pixels.
+#[inline]
+pub(super) fn flatten<'a, 'b, const C: usize, const D: usize>(
+    input: View<'a, C>,
+    output: ViewMut<'b, D>,
+) -> (View<'a, C>, ViewMut<'b, D>) {
+    if input.is_flat() && output.is_flat() { (input.flat(), output.flat()) } else { (input, output) }
+}
+
+impl<'a> TryFrom<&'a GrayImage> for GrayView<'a> {
+    type Error = Error;
+
+    fn try_from(image: &'a GrayImage) -> Result<Self, Error> {
+        Self::new(image.as_raw(), image.width() as usize, image.height() as usize)
+    }
+}
+
+impl<'a> TryFrom<&'a RgbImage> for RgbView<'a> {
+    type Error = Error;
+
+    fn try_from(image: &'a RgbImage) -> Result<Self, Error> {
+        Self::new(image.as_raw(), image.width() as usize, image.height() as usize)
+    }
+}
+
+impl<'a> TryFrom<&'a mut GrayImage> for GrayViewMut<'a> {
+    type Error = Error;
+
+    fn try_from(image: &'a mut GrayImage) -> Result<Self, Error> {
+        let (width, height) = (image.width() as usize, image.height() as usize);
+        Self::new(image, width, height)
+    }
+}
+
+impl<'a> TryFrom<&'a mut RgbImage> for RgbViewMut<'a> {
+    type Error = Error;
+
+    fn try_from(image: &'a mut RgbImage) -> Result<Self, Error> {
+        let (width, height) = (image.width() as usize, image.height() as usize);
+        Self::new(image, width, height)
+    }
+}
