@@ -213,7 +213,9 @@ mod tests {
             .flat_map(|(length, angle, count)| vec![Displacement { length, angle }; count])
             .collect();
         let mut predicted = odometry(ERRORS);
-        steps.iter().for_each(|&step| predicted.advance(step));
+        for &step in &steps {
+            predicted.advance(step);
+        }
         let mut stream = Stream::new(1);
         let (robots, mut inside, mut sum) = (4000, 0, Matrix3::zeros());
         for _ in 0..robots {
@@ -221,9 +223,9 @@ mod tests {
             inside += usize::from(predicted.distance_squared(end.position()) <= 5.991);
             let odometry = predicted.pose();
             let error = Vector3::new(end.x - odometry.x, end.y - odometry.y, end.heading - odometry.heading);
-            sum += error * error.transpose() / robots as f64;
+            sum += error * error.transpose() / f64::from(robots);
         }
-        let (share, covariance) = (inside as f64 / robots as f64, predicted.covariance());
+        let (share, covariance) = (inside as f64 / f64::from(robots), predicted.covariance());
         assert!((0.94..0.96).contains(&share), "{share}");
         for i in 0..3 {
             let ratio = sum[(i, i)] / covariance[(i, i)];
