@@ -34,7 +34,7 @@ const VERSION: u32 = 1;
 
 #[derive(Serialize, Deserialize)]
 struct Checkpoint<S> {
-    roverlab_checkpoint: u32,
+    version: u32,
     settings: String,
     state: S,
 }
@@ -46,7 +46,7 @@ pub fn save<S: Serialize>(file: &Path, settings: &str, state: &S) -> Result<()> 
         let message = format!("{}: the checkpoint cannot be {what}", file.display());
         Error::new(ErrorKind::Other, message).with_source(error)
     };
-    let checkpoint = Checkpoint { roverlab_checkpoint: VERSION, settings: settings.into(), state };
+    let checkpoint = Checkpoint { version: VERSION, settings: settings.into(), state };
     let text = serde_json::to_vec(&checkpoint).map_err(|error| failed("written", error.into()))?;
     let aside = aside(file);
     let write = || -> std::io::Result<()> {
@@ -81,8 +81,8 @@ pub fn load<S: DeserializeOwned>(file: &Path, settings: &str) -> Result<Option<S
         let place = format!("{}:{}:{}", file.display(), error.line(), error.column());
         Error::new(ErrorKind::InvalidInput, format!("{place}: {error}; expected a whole checkpoint"))
     })?;
-    if checkpoint.roverlab_checkpoint != VERSION {
-        let found = format!("version {} of checkpoints", checkpoint.roverlab_checkpoint);
+    if checkpoint.version != VERSION {
+        let found = format!("version {} of checkpoints", checkpoint.version);
         return Err(refused(&found, &format!("version {VERSION}")));
     }
     if checkpoint.settings != settings {
@@ -151,7 +151,7 @@ mod tests {
         let whole = fs::read_to_string(&file).unwrap();
         fs::write(&file, &whole[..100]).unwrap();
         assert!(message("a").starts_with("FILE:1:100: EOF while parsing"), "{}", message("a"));
-        fs::write(&file, whole.replace("checkpoint\":1", "checkpoint\":2")).unwrap();
+        fs::write(&file, whole.replace("version\":1", "version\":2")).unwrap();
         assert_eq!(message("a"), "FILE: version 2 of checkpoints; expected version 1");
         fs::write(&file, whole.replace("genomes", "gnomes")).unwrap();
         assert!(message("a").contains("missing field `genomes`"), "{}", message("a"));

@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn every_cut_occurs() {
         let cuts: std::collections::BTreeSet<usize> = (0..200)
-            .map(|seed| children(&OnePoint, 5, seed).0.iter().filter(|&&gene| gene == 0).count())
+            .map(|seed| children(&OnePoint, 5, seed).0.iter().take_while(|gene| **gene == 0).count())
             .collect();
         assert_eq!(cuts.into_iter().collect::<Vec<_>>(), [1, 2, 3, 4]);
     }

@@ -63,7 +63,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// The number of bits set.
-    #[allow(clippy::unnecessary_wraps, reason = "A fitness may fail")]
+    #[allow(clippy::unnecessary_wraps, clippy::ptr_arg, reason = "The form of a fitness")]
     fn ones(genome: &Vec<u8>, _: Trial) -> Result<f64> {
         Ok(genome.iter().map(|gene| gene.count_ones()).sum::<u32>().into())
     }

@@ -129,12 +129,8 @@ pub fn serve<G: Genome>(
 
 fn question<G: Genome>(genome: &G, trial: Trial) -> String {
     let Trial { round: Round { seed, generation }, index } = trial;
-    let mut line = format!("{seed} {generation} {index} ");
-    for byte in genome.to_bytes() {
-        line.push_str(&format!("{byte:02x}"));
-    }
-    line.push('\n');
-    line
+    let digits: Vec<String> = genome.to_bytes().iter().map(|byte| format!("{byte:02x}")).collect();
+    format!("{seed} {generation} {index} {}\n", digits.concat())
 }
 
 fn parse_question<G: Genome>(line: &str) -> Result<(G, Trial)> {
