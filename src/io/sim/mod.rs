@@ -40,6 +40,8 @@ mod robot;
 mod robot_traits;
 mod shared;
 mod simulation;
+#[cfg(feature = "physics")]
+pub mod starman;
 mod truth;
 mod wheels;
 

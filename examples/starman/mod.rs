@@ -1,0 +1,68 @@
+//! What the example `starman` is made of.
+
+mod compare;
+mod evolution;
+mod moving;
+mod options;
+mod steps;
+mod strip;
+
+use std::process::ExitCode;
+
+use roverlab::evolve::serve;
+
+use crate::common::{Failure, Outcome, Report, rounded};
+pub(crate) use options::Args;
+
+/// The word that makes this program evaluate what another one sends it.
+const WORKER: &str = "--evaluate-for-another";
+
+/// Evaluates gaits that come on standard input, if the command line says so.
+pub(crate) fn work_for_another() -> Option<ExitCode> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let [word, seconds, leading] = words.as_slice() else { return None };
+    if word != WORKER {
+        return None;
+    }
+    let (seconds, leading) = seconds.parse().ok().zip(leading.parse().ok())?;
+    let trials = evolution::Trials { seconds, leading, ..evolution::Trials::default() };
+    let ended =
+        serve(std::io::stdin().lock(), std::io::stdout().lock(), |bytes: &Vec<u8>, _| trials.fitness(bytes));
+    Some(ExitCode::from(u8::from(ended.is_err())))
+}
+
+/// The work of the example.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    args.check()?;
+    if args.steps {
+        return steps::work(args);
+    }
+    match args.compare {
+        Some(seeds) => compare::work(args, seeds),
+        None => walk(args),
+    }
+}
+
+/// Evolves a gait and shows it.
+fn walk(args: &Args) -> Result<Report, Failure> {
+    let evolved = evolution::evolve(args)?;
+    let walk = strip::Walk::of(&args.trials(), &evolved.best)?;
+    let file = args.common.picture.clone().unwrap_or_else(|| "starman.svg".into());
+    let trouble = strip::picture(args, &walk).save(&file).err().map(|error| error.to_string());
+    let animation = args.animation.as_ref().map(|file| moving::save(file, &walk)).transpose();
+    let trouble = trouble.or(animation.err().map(|error| error.to_string()));
+    args.common.tell(format_args!("the best gait goes {:.0} mm: {}", evolved.best_last, file.display()));
+    let report = Report::new(Outcome::verdict("evolved"))
+        .field("generations", evolved.generations)
+        .field("evaluations", evolved.evaluations)
+        .field("evaluations_per_s", rounded(evolved.rate))
+        .field("real_time_factor", rounded(evolved.rate * args.seconds))
+        .field("best_first", rounded(evolved.best_first))
+        .field("best_last", rounded(evolved.best_last))
+        .field("ratio", rounded(evolved.best_last / evolved.best_first))
+        .field("population_hash", format!("{:016x}", evolved.hash))
+        .field("best_gait", &evolved.best)
+        .field("threads", evolved.threads)
+        .field("picture", file.display().to_string());
+    Ok(Report { sim_time: Some(args.seconds * evolved.evaluations as f64), trouble, ..report })
+}

@@ -1,0 +1,132 @@
+use std::path::PathBuf;
+
+use crate::common::{CommonArgs, Failure, parse_seconds};
+
+use super::evolution::Trials;
+
+/// The command line of the example `starman`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    name = "starman",
+    about = "A round robot with five limbs learns to walk by a genetic algorithm",
+    after_help = "\
+Fitness is 1 plus the millimetres that a gait brings the robot along the floor.
+
+JSON fields:
+  generations, evaluations       made by this run, a checkpoint's included
+  evaluations_per_s              by this process
+  real_time_factor               simulated seconds in one second
+  best_first, best_last, ratio   greatest fitness of the first and of all generations
+  population_hash                tells final populations apart
+  best_gait                      its bytes, five for each control point
+  threads, picture
+With --compare, `rows`: seed, best_first, best_last, random (the best of as many random gaits), and how often
+evolution was better. With --steps, `rows`: time step, median change of the way when it is halved.
+Outcomes: evolved, compared, failed."
+)]
+pub(crate) struct Args {
+    /// Individuals in a generation.
+    #[arg(long, value_name = "P", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) population: u32,
+
+    /// Generations.
+    #[arg(long, value_name = "G", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) generations: u32,
+
+    /// Simulated seconds of a trial, of which the first two are for coming to rest.
+    #[arg(long, value_name = "S", default_value = "10", value_parser = parse_seconds, allow_hyphen_values = true)]
+    pub(crate) seconds: f64,
+
+    /// Threads to evaluate in; 0: one for each processor.
+    #[arg(long, value_name = "T", default_value_t = 0)]
+    pub(crate) threads: usize,
+
+    /// Evaluate in so many processes instead.
+    #[arg(long, value_name = "N", conflicts_with = "threads")]
+    pub(crate) processes: Option<usize>,
+
+    /// The first generation: near the servos' middle as in the book, or all bytes alike.
+    #[arg(long, value_enum, default_value = "neutral")]
+    pub(crate) init: Init,
+
+    /// Bits flipped in a generation [default: as many as individuals].
+    #[arg(long, value_name = "N")]
+    pub(crate) mutations: Option<usize>,
+
+    /// Control points of the sequence that leads into the cycle of ten.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=100))]
+    pub(crate) leading: u8,
+
+    /// Keep the run in a file after every generation, and go on from there if there is one.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) checkpoint: Option<PathBuf>,
+
+    /// Write the walk as an SVG that moves.
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) animation: Option<PathBuf>,
+
+    /// Compare with random search, for so many seeds and both ways to begin.
+    #[arg(long, value_name = "SEEDS", conflicts_with_all = ["steps", "checkpoint"])]
+    pub(crate) compare: Option<u32>,
+
+    /// Print how much the way of gaits changes when the time step is halved.
+    #[arg(long)]
+    pub(crate) steps: bool,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// How the first generation is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Init {
+    /// Small random steps from the servos' middle.
+    Neutral,
+    /// Any byte with the same chance.
+    Uniform,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+impl Args {
+    pub(crate) fn trials(&self) -> Trials {
+        Trials { seconds: self.seconds, leading: self.leading.into(), ..Trials::default() }
+    }
+
+    /// What affects the run, for checkpoints.
+    pub(crate) fn settings(&self) -> String {
+        let Self { population, seconds, leading, init, .. } = self;
+        let (mutations, seed) = (self.mutation_count(), self.common.seed);
+        format!(
+            "population {population}, {seconds} s, {leading} leading points, {init:?} start, {mutations} mutations, seed {seed}"
+        )
+    }
+
+    pub(crate) fn mutation_count(&self) -> usize {
+        self.mutations.unwrap_or(self.population as usize)
+    }
+
+    /// Fails when an option has no meaning here.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        self.common.check_picture()?;
+        let given = [
+            ("--world", self.common.world.is_some()),
+            ("--robot", self.common.robot.is_some()),
+            ("--start", self.common.start.is_some()),
+            ("--goal", self.common.goal.is_some()),
+            ("--fault", !self.common.fault.is_empty()),
+            ("--record", self.common.record.is_some()),
+            ("--replay", self.common.replay.is_some()),
+        ];
+        match given.iter().find(|(_, given)| *given) {
+            Some((option, _)) => Err(Failure::input(format!(
+                "{option}: has no meaning for evolution; expected a command line without it"
+            ))),
+            None => Ok(()),
+        }
+    }
+}

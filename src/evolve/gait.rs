@@ -1,0 +1,133 @@
+use crate::io::error::require_positive;
+use crate::io::{Clock, Error, Result, Servos};
+use crate::random::Stream;
+
+/// A way of moving servos that repeats (book, section 12.2): control points one after the other, each held for the
+/// same time, with a sequence that leads into the cycle if wished (section 12.5).
+///
+/// Bytes code it, one for each servo and control point: 128 is the middle, 0 and 255 the ends.
+///
+/// ```
+/// use roverlab::evolve::Gait;
+/// let gait = Gait::from_bytes(&[128, 128, 0, 255], 2, 0)?;
+/// assert_eq!(gait.point(0), [0.0, 0.0]);
+/// assert_eq!(gait.point(3), [-1.0, 127.0 / 128.0]);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gait {
+    positions: Vec<f64>,
+    servos: usize,
+    leading: usize,
+}
+
+impl Gait {
+    /// Seconds for which a control point is held.
+    pub const PERIOD: f64 = 0.25;
+    /// Seconds in which a robot comes to rest at the first control point.
+    pub const SETTLING: f64 = 2.0;
+    /// The middle of a servo's way, as a byte.
+    const MIDDLE: i32 = 128;
+
+    /// The gait that these bytes code, of so many servos; the first `leading` control points are not repeated. Fails
+    /// unless the bytes make whole control points with at least one that is repeated.
+    pub fn from_bytes(bytes: &[u8], servos: usize, leading: usize) -> Result<Self> {
+        let whole = servos > 0 && bytes.len().is_multiple_of(servos) && bytes.len() > leading * servos;
+        if !whole {
+            let expected = format!("a multiple of {servos} servos, more than {leading} control points");
+            return Err(Error::invalid_input(
+                "length of a gait",
+                format!("{} bytes", bytes.len()),
+                &expected,
+            ));
+        }
+        let position = |byte: &u8| f64::from(i32::from(*byte) - Self::MIDDLE) / f64::from(Self::MIDDLE);
+        Ok(Self { positions: bytes.iter().map(position).collect(), servos, leading })
+    }
+
+    /// Random bytes near the middle: each control point differs from the one before by up to `step` (the book: 5).
+    pub fn near_middle(servos: usize, points: usize, step: u8, random: &mut Stream) -> Vec<u8> {
+        let mut bytes = vec![Self::MIDDLE as u8; servos];
+        let changes = 2 * usize::from(step) + 1;
+        for i in servos..servos * points {
+            let change = random.below(changes) as i32 - i32::from(step);
+            bytes.push((i32::from(bytes[i - servos]) + change).clamp(0, 255) as u8);
+        }
+        bytes.truncate(servos * points);
+        bytes
+    }
+
+    /// The servos' positions, -1 to 1, at a control point of the endless sequence.
+    pub fn point(&self, index: usize) -> &[f64] {
+        let points = self.positions.len() / self.servos;
+        let at =
+            if index < points { index } else { self.leading + (index - points) % (points - self.leading) };
+        &self.positions[at * self.servos..][..self.servos]
+    }
+
+    /// Moves a robot for so many seconds, of which it first stands at the first control point for
+    /// [`SETTLING`](Self::SETTLING).
+    pub fn run<R: Clock + Servos + ?Sized>(&self, robot: &mut R, seconds: f64) -> Result<()> {
+        require_positive("time to walk", seconds)?;
+        let end = robot.now()? + seconds;
+        let mut hold = Self::SETTLING;
+        for index in 0.. {
+            let left = end - robot.now()?;
+            if left <= 1e-9 {
+                break;
+            }
+            for (servo, position) in (1..).zip(self.point(index)) {
+                robot.set_servo(servo, *position)?;
+            }
+            let next = end - left + hold;
+            let pause = next.min(end) - robot.now()?;
+            robot.wait(pause)?;
+            hold = Self::PERIOD;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::{Call, MockRobot};
+    use proptest::prelude::*;
+
+    #[test]
+    fn what_leads_is_done_once_and_the_rest_again_and_again() {
+        let gait = Gait::from_bytes(&[10, 20, 30, 40], 1, 1).unwrap();
+        let order: Vec<f64> = (0..9).map(|i| gait.point(i)[0] * 128.0 + 128.0).collect();
+        assert_eq!(order, [10.0, 20.0, 30.0, 40.0, 20.0, 30.0, 40.0, 20.0, 30.0]);
+    }
+
+    #[test]
+    fn lengths_that_make_no_gait_are_named() {
+        let text =
+            |bytes: &[u8], servos, leading| Gait::from_bytes(bytes, servos, leading).unwrap_err().to_string();
+        assert!(
+            text(&[1; 7], 5, 0).starts_with("length of a gait is 7 bytes; expected a multiple of 5 servos")
+        );
+        assert!(text(&[1; 10], 5, 2).ends_with("more than 2 control points"));
+        assert!(text(&[], 5, 0).starts_with("length of a gait is 0 bytes"));
+    }
+
+    #[test]
+    fn a_robot_settles_and_then_walks_for_as_long_as_it_shall() {
+        let mut robot = MockRobot::new();
+        Gait::from_bytes(&[128, 0, 255], 1, 0).unwrap().run(&mut robot, 3.0).unwrap();
+        assert!((robot.now().unwrap() - 3.0).abs() < 1e-6);
+        let sent = robot.calls().iter().filter(|call| matches!(call, Call::SetServo(..))).count();
+        assert_eq!(sent, 5, "one to settle, four of a quarter of a second");
+    }
+
+    proptest! {
+        #[test]
+        fn near_the_middle_steps_are_small(step in 0..20_u8, points in 1..12_usize, seed: u64) {
+            let bytes = Gait::near_middle(5, points, step, &mut Stream::new(seed));
+            prop_assert_eq!(bytes.len(), 5 * points);
+            prop_assert!(bytes[..5].iter().all(|&byte| byte == 128));
+            prop_assert!(bytes.windows(6).all(|w| w[0].abs_diff(w[5]) <= step));
+        }
+    }
+}

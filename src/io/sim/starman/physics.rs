@@ -1,0 +1,306 @@
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::fmt;
+
+use nalgebra::Unit;
+
+use rapier2d_f64::prelude::{
+    ColliderBuilder, Group, ImpulseJointHandle, InteractionGroups, InteractionTestMode, JointAxis,
+    MotorModel, PhysicsWorld, Pose as Placement, RevoluteJointBuilder, RigidBodyBuilder, RigidBodyHandle,
+    Vector,
+};
+
+use super::LIMBS;
+use super::servo::Servo;
+use super::spec::StarmanSpec;
+use crate::geometry::math;
+
+/// Where a Starman's parts are, in the upright plane: x along the floor, y up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StarmanPosture {
+    /// The middle of the body: along the floor and above it, in metres.
+    pub body: (f64, f64),
+    /// How far the body has rolled, in radians, counter-clockwise.
+    pub roll: f64,
+    /// The angle of each limb from its middle position, in radians.
+    pub limbs: [f64; LIMBS],
+    /// Each limb's hinge and tip.
+    pub segments: [[(f64, f64); 2]; LIMBS],
+}
+
+/// What only the simulator knows of a Starman.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StarmanTruth {
+    /// Where its parts are.
+    pub posture: StarmanPosture,
+    /// The widest gap of a hinge, in metres: 0 with a perfect solver.
+    pub hinge_gap: f64,
+    /// Kinetic and potential energy, in joules, the latter above a body whose middle lies on the floor.
+    pub energy: f64,
+    /// Steps of the physics so far.
+    pub steps: u64,
+}
+
+/// The body and its limbs on the floor, moved by the engine.
+pub(super) struct Figure {
+    world: PhysicsWorld,
+    body: RigidBodyHandle,
+    limbs: [Limb; LIMBS],
+    spec: StarmanSpec,
+    powered: bool,
+    steps: u64,
+}
+
+struct Limb {
+    part: RigidBodyHandle,
+    joint: ImpulseJointHandle,
+    servo: Servo,
+}
+
+const GRAVITY: f64 = 9.81;
+/// The swing of a servo that is pushed off its angle, per second, and its damping ratio. Much stiffer, and two limbs
+/// that stand on the floor press against each other so hard that which of them slips depends on the time step.
+const SERVO_FREQUENCY: f64 = 15.0;
+const SERVO_DAMPING: f64 = 1.0;
+
+impl Figure {
+    /// A figure that stands on two limbs, the first one up.
+    pub(super) fn new(spec: &StarmanSpec) -> Self {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::new(0.0, -GRAVITY);
+        let settings = &mut world.integration_parameters;
+        settings.dt = spec.time_step;
+        // Tolerances of the solver are fractions of this length.
+        settings.length_unit = spec.body_radius;
+        // Two passes of four sweeps with friction in each: the cheapest with which limbs that should stick do not
+        // creep, so that a gait goes as far with half the time step.
+        settings.num_solver_iterations = 2;
+        settings.num_internal_pgs_iterations = 4;
+        settings.friction_in_bias_pass = true;
+        let floor = ColliderBuilder::halfspace(Unit::new_unchecked(Vector::Y)).friction(spec.friction);
+        world.colliders.insert(floor.collision_groups(groups(FLOOR, PART)));
+        let centre = Vector::new(0.0, standing_height(spec));
+        let body = RigidBodyBuilder::dynamic().translation(centre).can_sleep(false);
+        let shape = ColliderBuilder::ball(spec.body_radius).mass(spec.body_mass).friction(spec.friction);
+        let (body, _) = world.insert(body, shape.collision_groups(groups(PART, FLOOR)));
+        let limbs = std::array::from_fn(|i| attach(&mut world, body, centre, spec, i));
+        Self { world, body, limbs, spec: *spec, powered: true, steps: 0 }
+    }
+
+    /// Tells a servo where to go, from -1 to 1.
+    pub(super) fn send(&mut self, limb: usize, position: f64) {
+        self.limbs[limb].servo.send(position * self.spec.servo_range);
+    }
+
+    /// Switches the servos on or off; off, the limbs swing freely within their limits.
+    #[cfg(test)]
+    pub(super) fn power(&mut self, on: bool) {
+        self.powered = on;
+    }
+
+    /// Advances by one time step.
+    pub(super) fn step(&mut self) {
+        let spec = &self.spec;
+        let stiffness = (TAU * SERVO_FREQUENCY) * (TAU * SERVO_FREQUENCY);
+        let damping = 2.0 * SERVO_DAMPING * TAU * SERVO_FREQUENCY;
+        for limb in &mut self.limbs {
+            let (angle, rate) = limb.servo.advance(spec.servo_speed, spec.time_step);
+            let Some(joint) = self.world.impulse_joints.get_mut(limb.joint, false) else { continue };
+            let torque = if self.powered { spec.servo_torque } else { 0.0 };
+            joint.data.set_motor(JointAxis::AngX, angle, rate, stiffness, damping);
+            joint.data.set_motor_max_force(JointAxis::AngX, torque);
+        }
+        self.world.step();
+        self.steps += 1;
+    }
+
+    /// How far the middle of the body is along the floor.
+    pub(super) fn travelled(&self) -> f64 {
+        self.world.bodies[self.body].translation().x
+    }
+
+    pub(super) fn truth(&self) -> StarmanTruth {
+        StarmanTruth {
+            posture: self.posture(),
+            hinge_gap: self.limbs.iter().enumerate().map(|(i, limb)| self.gap(i, limb)).fold(0.0, f64::max),
+            energy: self.energy(),
+            steps: self.steps,
+        }
+    }
+
+    fn posture(&self) -> StarmanPosture {
+        let body = self.world.bodies[self.body].position();
+        let pair = |v: Vector| (v.x, v.y);
+        let roll = body.rotation.angle();
+        StarmanPosture {
+            body: pair(body.translation),
+            roll,
+            limbs: std::array::from_fn(|i| {
+                let limb = self.world.bodies[self.limbs[i].part].position();
+                crate::geometry::normalize_angle(limb.rotation.angle() - roll - spread(i))
+            }),
+            segments: std::array::from_fn(|i| {
+                let limb = self.world.bodies[self.limbs[i].part].position();
+                let half = Vector::new(0.5 * self.spec.limb_length, 0.0);
+                [pair(*limb * -half), pair(*limb * half)]
+            }),
+        }
+    }
+
+    fn gap(&self, i: usize, limb: &Limb) -> f64 {
+        let body = self.world.bodies[self.body].position();
+        let part = self.world.bodies[limb.part].position();
+        let on_body = *body * rim(&self.spec, i);
+        let on_limb = *part * Vector::new(-0.5 * self.spec.limb_length, 0.0);
+        math::hypot(on_body.x - on_limb.x, on_body.y - on_limb.y)
+    }
+
+    fn energy(&self) -> f64 {
+        let handles = self.limbs.iter().map(|limb| limb.part).chain([self.body]);
+        handles
+            .map(|handle| {
+                let part = &self.world.bodies[handle];
+                part.kinetic_energy() + part.mass() * GRAVITY * part.translation().y
+            })
+            .sum()
+    }
+}
+
+impl fmt::Debug for Figure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Figure")
+            .field("spec", &self.spec)
+            .field("truth", &self.truth())
+            .finish_non_exhaustive()
+    }
+}
+
+const FLOOR: Group = Group::GROUP_1;
+const PART: Group = Group::GROUP_2;
+
+/// Parts touch the floor only: the servos' range keeps the limbs apart.
+fn groups(of: Group, with: Group) -> InteractionGroups {
+    InteractionGroups::new(of, with, InteractionTestMode::And)
+}
+
+/// The direction of a limb's middle position: the first one up, the others counter-clockwise.
+fn spread(limb: usize) -> f64 {
+    FRAC_PI_2 + TAU * limb as f64 / LIMBS as f64
+}
+
+/// A limb's hinge in the body's frame.
+fn rim(spec: &StarmanSpec, limb: usize) -> Vector {
+    let (sin, cos) = math::sin_cos(spread(limb));
+    Vector::new(spec.body_radius * cos, spec.body_radius * sin)
+}
+
+/// The height of the body's middle while the tips of the two lower limbs touch the floor.
+fn standing_height(spec: &StarmanSpec) -> f64 {
+    -(spec.body_radius + spec.limb_length) * math::sin(spread(2)) + spec.limb_radius
+}
+
+fn attach(
+    world: &mut PhysicsWorld,
+    body: RigidBodyHandle,
+    centre: Vector,
+    spec: &StarmanSpec,
+    limb: usize,
+) -> Limb {
+    let half = 0.5 * spec.limb_length;
+    let (sin, cos) = math::sin_cos(spread(limb));
+    let middle = centre + Vector::new(cos, sin) * (spec.body_radius + half);
+    let part = RigidBodyBuilder::dynamic().pose(Placement::new(middle, spread(limb))).can_sleep(false);
+    let shape =
+        ColliderBuilder::capsule_x(half, spec.limb_radius).mass(spec.limb_mass).friction(spec.friction);
+    let (part, _) = world.insert(part, shape.collision_groups(groups(PART, FLOOR)));
+    let mut hinge = RevoluteJointBuilder::new()
+        .contacts_enabled(false)
+        .local_anchor1(rim(spec, limb))
+        .local_anchor2(Vector::new(-half, 0.0))
+        .motor_model(MotorModel::AccelerationBased)
+        .limits([-spec.servo_range, spec.servo_range])
+        .build();
+    // Angles count from the limb's own direction.
+    hinge.data.local_frame1.rotation = rapier2d_f64::math::Rotation::new(spread(limb));
+    let joint = world.insert_impulse_joint(body, part, hinge);
+    Limb { part, joint, servo: Servo::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settled(spec: &StarmanSpec) -> Figure {
+        let mut figure = Figure::new(spec);
+        run(&mut figure, 2.0);
+        figure
+    }
+
+    fn run(figure: &mut Figure, seconds: f64) {
+        let steps = (seconds / figure.spec.time_step).round() as u64;
+        (0..steps).for_each(|_| figure.step());
+    }
+
+    #[test]
+    fn it_stands_on_two_limbs() {
+        let spec = StarmanSpec::book();
+        let figure = settled(&spec);
+        let posture = figure.truth().posture;
+        assert!((posture.body.1 - standing_height(&spec)).abs() < 0.003, "{posture:?}");
+        assert!(posture.body.0.abs() < 0.005 && posture.roll.abs() < 0.02, "{posture:?}");
+        assert!(posture.limbs.iter().all(|angle| angle.abs() < 0.08), "{posture:?}");
+    }
+
+    #[test]
+    fn a_servo_turns_its_limb_at_its_speed_and_no_further_than_its_range() {
+        let spec = StarmanSpec::book();
+        let mut figure = settled(&spec);
+        figure.send(0, 1.0);
+        run(&mut figure, 0.5);
+        let degrees = |figure: &Figure| figure.truth().posture.limbs[0].to_degrees();
+        assert!((degrees(&figure) - 15.0).abs() < 1.5, "{}", degrees(&figure));
+        run(&mut figure, 1.0);
+        assert!((degrees(&figure) - 30.0).abs() < 1.0, "{}", degrees(&figure));
+    }
+
+    #[test]
+    fn hinges_hold_while_all_limbs_swing() {
+        for time_step in [0.010, 0.005, 0.0025] {
+            let mut figure = settled(&StarmanSpec { time_step, ..StarmanSpec::book() });
+            let mut widest: f64 = 0.0;
+            for swing in 0..40 {
+                for limb in 0..LIMBS {
+                    figure.send(limb, if (swing + limb) % 3 == 0 { 1.0 } else { -1.0 });
+                }
+                for _ in 0..(0.25 / time_step) as u32 {
+                    figure.step();
+                    widest = widest.max(figure.truth().hinge_gap);
+                }
+            }
+            assert!(widest < 0.001, "{widest} m at {time_step} s");
+        }
+    }
+
+    /// The energy at the start, the least afterwards, and the most that it ever rose again, while it collapses.
+    fn collapse(time_step: f64) -> (f64, f64, f64) {
+        let mut figure = Figure::new(&StarmanSpec { time_step, ..StarmanSpec::book() });
+        figure.power(false);
+        let begin = figure.energy();
+        let (mut least, mut rise) = (begin, 0.0_f64);
+        for _ in 0..(3.0 / time_step) as u32 {
+            figure.step();
+            rise = rise.max(figure.energy() - least);
+            least = least.min(figure.energy());
+        }
+        (begin, least, rise)
+    }
+
+    /// What rises is the error of the integration while limbs fall, so it shrinks with the step.
+    #[test]
+    fn energy_does_not_grow_without_the_servos() {
+        let (begin, least, rise) = collapse(0.005);
+        assert!(least < begin - 0.05, "it has collapsed: {least} of {begin} J");
+        assert!(rise < 0.03 * (begin - least), "{rise} of {} J", begin - least);
+        let finer = collapse(0.00125).2;
+        assert!(finer < 0.3 * rise, "{finer} and {rise} J");
+    }
+}

@@ -1,0 +1,350 @@
+use ambassador::Delegate;
+
+use super::physics::{Figure, StarmanTruth};
+use super::{LIMBS, StarmanSpec};
+use crate::geometry::{Pose, Twist};
+use crate::io::delegate::{
+    Colour, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Picture, Pixel, Psd, RadioMessage,
+    Resolution, Result, RgbImage, Viewport, ambassador_impl_Display,
+};
+use crate::io::error::require_finite;
+use crate::io::sim::Lcd;
+use crate::io::{
+    Camera, Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Keys, Lidar, Motors, Radio, Servos,
+};
+
+/// A simulated Starman, in virtual time.
+///
+/// Its servos 1 to 5 swing the limbs, the first one up, the others counter-clockwise. [`Drive::pose`] tells how far
+/// it has come along the floor; it has no wheels, no distance sensors and no camera. The display works, and key
+/// presses can be scheduled.
+#[derive(Debug, Delegate)]
+#[delegate(crate::io::Display, target = "lcd")]
+pub struct Starman {
+    figure: Figure,
+    lcd: Lcd,
+    spec: StarmanSpec,
+    /// Seconds by the robot's clock, and how many of them the physics has still to catch up with.
+    time: f64,
+    owed: f64,
+    /// What odometry adds to the place along the floor.
+    origin: Pose,
+    /// Key presses to come, the earliest first.
+    keys: Vec<(f64, Key)>,
+}
+
+/// Seconds that a call takes by the robot's clock, so that a loop without a pause lets the world move.
+const CALL: f64 = 1e-4;
+/// The longest time, in seconds, that one call may let pass.
+const LONGEST: f64 = 1e6;
+
+impl Starman {
+    /// A Starman that stands in its initial position. Fails when the specification is out of range.
+    pub fn new(spec: &StarmanSpec) -> Result<Self> {
+        spec.validate()?;
+        Ok(Self {
+            figure: Figure::new(spec),
+            lcd: Lcd::new(),
+            spec: *spec,
+            time: 0.0,
+            owed: 0.0,
+            origin: Pose::default(),
+            keys: Vec::new(),
+        })
+    }
+
+    /// Schedules key presses, at seconds by the robot's clock.
+    pub fn press_keys(&mut self, presses: impl IntoIterator<Item = (f64, Key)>) {
+        self.keys.extend(presses);
+        self.keys.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
+
+    /// What only the simulator knows; no behaviour has it.
+    pub fn truth(&self) -> StarmanTruth {
+        self.figure.truth()
+    }
+
+    /// What its display shows.
+    pub fn display(&self) -> &Lcd {
+        &self.lcd
+    }
+
+    fn pass(&mut self, seconds: f64) {
+        self.time += seconds;
+        self.owed += seconds;
+        // Half a step of slack keeps rounding from losing one.
+        while self.owed >= (1.0 - 1e-9) * self.spec.time_step {
+            self.figure.step();
+            self.owed -= self.spec.time_step;
+        }
+    }
+}
+
+impl Clock for Starman {
+    fn now(&mut self) -> Result<f64> {
+        self.pass(CALL);
+        Ok(self.time)
+    }
+
+    fn wait(&mut self, seconds: f64) -> Result<()> {
+        require_finite("time to wait", seconds)?;
+        if seconds > LONGEST {
+            return Err(Error::invalid_input("time to wait", seconds, "at most 1000000 s"));
+        }
+        self.pass(seconds.max(0.0));
+        Ok(())
+    }
+}
+
+impl Servos for Starman {
+    fn set_servo(&mut self, servo: u8, position: f64) -> Result<()> {
+        self.pass(CALL);
+        let limb = usize::from(servo).wrapping_sub(1);
+        if limb >= LIMBS {
+            return Err(Error::unsupported(format!("servo {servo}")));
+        }
+        if !(-1.0..=1.0).contains(&position) {
+            return Err(Error::invalid_input("servo position", position, "-1 to 1"));
+        }
+        self.figure.send(limb, position);
+        Ok(())
+    }
+}
+
+/// What it answers to when asked for a drive: it has a position and no wheels.
+fn no_wheels<T>() -> Result<T> {
+    Err(Error::unsupported("wheels"))
+}
+
+impl Drive for Starman {
+    fn set_speed(&mut self, _: Twist) -> Result<()> {
+        no_wheels()
+    }
+
+    fn speed(&mut self) -> Result<Twist> {
+        no_wheels()
+    }
+
+    fn pose(&mut self) -> Result<Pose> {
+        self.pass(CALL);
+        Ok(Pose { x: self.origin.x + self.figure.travelled(), ..self.origin })
+    }
+
+    fn set_pose(&mut self, pose: Pose) -> Result<()> {
+        self.pass(CALL);
+        if !pose.is_finite() {
+            let found = format!("{} m, {} m, {} rad", pose.x, pose.y, pose.heading);
+            return Err(Error::invalid_input("pose", found, "finite numbers"));
+        }
+        self.origin = Pose { x: pose.x - self.figure.travelled(), ..pose };
+        Ok(())
+    }
+
+    fn straight(&mut self, _: f64, _: f64) -> Result<()> {
+        no_wheels()
+    }
+
+    fn turn(&mut self, _: f64, _: f64) -> Result<()> {
+        no_wheels()
+    }
+
+    fn curve(&mut self, _: f64, _: f64, _: f64) -> Result<()> {
+        no_wheels()
+    }
+
+    fn remaining(&mut self) -> Result<f64> {
+        no_wheels()
+    }
+
+    fn is_done(&mut self) -> Result<bool> {
+        no_wheels()
+    }
+
+    fn wait_done(&mut self) -> Result<()> {
+        no_wheels()
+    }
+
+    fn is_stalled(&mut self) -> Result<bool> {
+        no_wheels()
+    }
+}
+
+impl Keys for Starman {
+    fn read_key(&mut self) -> Result<Option<Key>> {
+        self.pass(CALL);
+        let due = self.keys.first().is_some_and(|(time, _)| *time <= self.time);
+        Ok(due.then(|| self.keys.remove(0).1))
+    }
+
+    fn wait_key(&mut self) -> Result<Key> {
+        let Some(&(time, key)) = self.keys.first() else {
+            let message = "the program waits for a key, and no key press is scheduled";
+            return Err(Error::new(ErrorKind::Other, message));
+        };
+        self.wait(time - self.time)?;
+        self.keys.remove(0);
+        Ok(key)
+    }
+
+    fn read_touch(&mut self) -> Result<Option<(i32, i32)>> {
+        self.pass(CALL);
+        Ok(None)
+    }
+}
+
+impl DistanceSensors for Starman {
+    fn distance(&mut self, sensor: Psd) -> Result<f64> {
+        Err(Error::unsupported(sensor))
+    }
+}
+
+impl Lidar for Starman {
+    fn scan_into(&mut self, _: &mut LidarScan) -> Result<()> {
+        Err(Error::unsupported("lidar"))
+    }
+
+    fn configure_lidar(&mut self, _: LidarSettings) -> Result<()> {
+        Err(Error::unsupported("lidar"))
+    }
+}
+
+impl Camera for Starman {
+    fn set_resolution(&mut self, _: Resolution) -> Result<()> {
+        Err(Error::unsupported("camera"))
+    }
+
+    fn resolution(&mut self) -> Result<Resolution> {
+        Err(Error::unsupported("camera"))
+    }
+
+    fn image_into(&mut self, _: &mut RgbImage) -> Result<()> {
+        Err(Error::unsupported("camera"))
+    }
+}
+
+impl Radio for Starman {
+    fn radio_id(&mut self) -> Result<u32> {
+        Err(Error::unsupported("radio"))
+    }
+
+    fn radio_peers(&mut self) -> Result<Vec<u32>> {
+        Err(Error::unsupported("radio"))
+    }
+
+    fn send(&mut self, _: u32, _: &[u8]) -> Result<()> {
+        Err(Error::unsupported("radio"))
+    }
+
+    fn receive(&mut self) -> Result<Option<RadioMessage>> {
+        Err(Error::unsupported("radio"))
+    }
+}
+
+impl Motors for Starman {
+    fn set_motor(&mut self, motor: u8, _: f64) -> Result<()> {
+        Err(Error::unsupported(format!("motor {motor}")))
+    }
+}
+
+impl Encoders for Starman {
+    fn encoder(&mut self, motor: u8) -> Result<i64> {
+        Err(Error::unsupported(format!("encoder {motor}")))
+    }
+
+    fn reset_encoder(&mut self, motor: u8) -> Result<()> {
+        Err(Error::unsupported(format!("encoder {motor}")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::{Display, RobotIo};
+
+    fn starman() -> Starman {
+        Starman::new(&StarmanSpec::default()).unwrap()
+    }
+
+    #[test]
+    fn one_limb_shuffles_it_sideways() {
+        let mut starman = starman();
+        let mut places = Vec::new();
+        for _ in 0..10 {
+            places.push(starman.pose().unwrap().x);
+            starman.set_servo(3, 0.9).unwrap();
+            starman.wait(1.0).unwrap();
+            starman.set_servo(3, 0.0).unwrap();
+            starman.wait(1.0).unwrap();
+        }
+        let way = starman.pose().unwrap().x;
+        assert!(way.abs() > 0.005, "{way} m after {places:?}");
+        // Always to the same side.
+        assert!(places.windows(2).skip(1).all(|pair| (pair[1] - pair[0]) * way > 0.0), "{places:?}");
+    }
+
+    /// The book's program for its keys: one chooses the limb, two others move it.
+    fn move_limbs(robot: &mut impl RobotIo) -> Result<[f64; LIMBS]> {
+        let (mut positions, mut limb) = ([0.0; LIMBS], 0);
+        robot.set_menu(["Leg+", "+", "-", "END"])?;
+        loop {
+            match robot.wait_key()? {
+                Key::Key1 => limb = (limb + 1) % LIMBS,
+                Key::Key2 => positions[limb] = f64::min(positions[limb] + 0.2, 1.0),
+                Key::Key3 => positions[limb] = f64::max(positions[limb] - 0.2, -1.0),
+                _ => return Ok(positions),
+            }
+            for (servo, position) in (1..).zip(positions) {
+                robot.set_servo(servo, position)?;
+            }
+        }
+    }
+
+    #[test]
+    fn limbs_are_moved_by_keys() {
+        let mut starman = starman();
+        let keys = [Key::Key2, Key::Key2, Key::Key1, Key::Key3, Key::Key4];
+        starman.press_keys((1..).zip(keys).map(|(i, key)| (f64::from(i), key)));
+        let positions = move_limbs(&mut starman).unwrap();
+        assert_eq!(positions, [0.4, -0.2, 0.0, 0.0, 0.0]);
+        let limbs = starman.truth().posture.limbs;
+        assert!((limbs[0] - 0.4 * StarmanSpec::default().servo_range).abs() < 0.02, "{limbs:?}");
+        assert!(limbs[1] < -0.05, "{limbs:?}");
+    }
+
+    #[test]
+    fn equal_runs_are_equal_to_the_bit() {
+        let run = || {
+            let mut starman = starman();
+            for i in 0..20_u8 {
+                starman.set_servo(1 + i % 5, f64::from(i) / 10.0 - 1.0).unwrap();
+                starman.wait(0.25).unwrap();
+            }
+            (starman.truth(), starman.now().unwrap())
+        };
+        assert_eq!(run(), run());
+    }
+
+    #[test]
+    fn what_it_lacks_is_named() {
+        let mut starman = starman();
+        assert_eq!(starman.set_servo(6, 0.0).unwrap_err().to_string(), "the robot has no servo 6");
+        assert_eq!(starman.set_servo(0, 0.0).unwrap_err().to_string(), "the robot has no servo 0");
+        let error = starman.set_servo(1, f64::NAN).unwrap_err();
+        assert_eq!(error.to_string(), "servo position is NaN; expected -1 to 1");
+        assert_eq!(starman.straight(1.0, 1.0).unwrap_err().kind(), ErrorKind::Unsupported);
+        assert_eq!(starman.scan_into(&mut LidarScan::default()).unwrap_err().kind(), ErrorKind::Unsupported);
+        assert!(starman.wait_key().is_err(), "nobody will press one");
+    }
+
+    #[test]
+    fn specifications_out_of_range_are_named() {
+        let text = |spec: StarmanSpec| Starman::new(&spec).unwrap_err().to_string();
+        let book = StarmanSpec::book();
+        assert_eq!(
+            text(StarmanSpec { limb_mass: -1.0, ..book }),
+            "limb mass is -1; expected a positive, finite number"
+        );
+        assert_eq!(text(StarmanSpec { time_step: 0.1, ..book }), "time step is 0.1; expected at most 0.02 s");
+        assert!(text(StarmanSpec { servo_range: 1.0, ..book }).starts_with("servo range is 1; expected"));
+    }
+}

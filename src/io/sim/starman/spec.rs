@@ -1,0 +1,89 @@
+use std::f64::consts::PI;
+
+use crate::io::error::require_positive;
+use crate::io::{Error, Result};
+
+/// What a Starman is made of. Lengths in metres, masses in kilograms, angles in radians.
+///
+/// The book gives the form, the servos' range and their speed; sizes and masses are of a robot that could be built.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StarmanSpec {
+    /// The radius of the body; the limbs' hinges sit on its rim, a fifth of a turn apart.
+    pub body_radius: f64,
+    /// The mass of the body.
+    pub body_mass: f64,
+    /// From a limb's hinge to its tip.
+    pub limb_length: f64,
+    /// Half the width of a limb, whose ends are round.
+    pub limb_radius: f64,
+    /// The mass of a limb.
+    pub limb_mass: f64,
+    /// The coefficient of friction between a limb and the floor.
+    pub friction: f64,
+    /// How far a limb swings to either side.
+    pub servo_range: f64,
+    /// How fast, per second.
+    pub servo_speed: f64,
+    /// The greatest torque of a servo, in newton metres.
+    pub servo_torque: f64,
+    /// Seconds that the physics advances at a time.
+    pub time_step: f64,
+}
+
+impl StarmanSpec {
+    /// The book's robot: servos of 30 degrees to either side and 30 degrees a second.
+    pub fn book() -> Self {
+        let degree = PI / 180.0;
+        Self {
+            body_radius: 0.060,
+            body_mass: 0.600,
+            limb_length: 0.090,
+            limb_radius: 0.010,
+            limb_mass: 0.080,
+            friction: 0.8,
+            servo_range: 30.0 * degree,
+            servo_speed: 30.0 * degree,
+            servo_torque: 2.0,
+            time_step: 0.010,
+        }
+    }
+
+    /// The figure as it was first described, in a plane and weightless of any hardware: limbs that are as long as the
+    /// body is wide and snap to their angles (A. Fukunaga et al., "Motion-Synthesis Techniques for 2D Articulated
+    /// Figures", Harvard TR-05-94, 1994).
+    pub fn planar() -> Self {
+        let book = Self::book();
+        Self { limb_length: 2.0 * book.body_radius, servo_speed: 12.0 * book.servo_speed, ..book }
+    }
+
+    /// Fails with the name of what is out of range.
+    pub fn validate(&self) -> Result<()> {
+        let all = [
+            ("body radius", self.body_radius),
+            ("body mass", self.body_mass),
+            ("limb length", self.limb_length),
+            ("limb radius", self.limb_radius),
+            ("limb mass", self.limb_mass),
+            ("friction", self.friction),
+            ("servo range", self.servo_range),
+            ("servo speed", self.servo_speed),
+            ("servo torque", self.servo_torque),
+            ("time step", self.time_step),
+        ];
+        all.into_iter().try_for_each(|(name, value)| require_positive(name, value))?;
+        // Further, and neighbours would cross; coarser, and the solver cannot hold the hinges.
+        if self.servo_range > PI / 5.0 {
+            return Err(Error::invalid_input("servo range", self.servo_range, "at most a tenth of a turn"));
+        }
+        if self.time_step > 0.02 {
+            return Err(Error::invalid_input("time step", self.time_step, "at most 0.02 s"));
+        }
+        Ok(())
+    }
+}
+
+impl Default for StarmanSpec {
+    fn default() -> Self {
+        Self::book()
+    }
+}
