@@ -48,6 +48,7 @@
 //! | 5 Swarms | any number of robots in one world | [`io::sim`] |
 //! | 7 Alternative drives | cars and wheels with rollers: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
 //! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`world::formats`] |
+//! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search; MovingAI maps | [`nav::grid`], [`world`] |
 //! | 12 Evolution | genetic algorithms, evolution strategy with covariance adaptation | [`evolve`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
 //!
@@ -62,7 +63,8 @@
 //!
 //! # Features
 //!
-//! None is on by default. `picture` adds pictures as SVG, `png` the same as PNG.
+//! None is on by default. `rayon` evaluates populations in several threads, `checkpoint` keeps them on disk, `physics`
+//! adds a walking robot. `log` adds recordings, `picture` pictures as SVG, `png` the same as PNG.
 
 pub mod drive;
 pub mod evolve;

@@ -90,7 +90,7 @@ pub(crate) fn picture(args: &Args, walk: &Walk) -> Picture {
         let Some(posture) = walk.postures.get(index) else { continue };
         let middle = GAP * (figure as f64 + 0.5);
         let start = Point::new(middle, FLOOR);
-        picture.disc(start, 0.008, Style::plan().colour(Colour::GREEN).filled(1.0));
+        picture.disc(start, 0.008, Style::new(Colour::GREEN).filled(1.0).labelled("start"));
         draw(&mut picture, walk, posture, middle);
         picture.text(Point::new(middle, 0.02), format!("{:.1} s", index as f64 * walk.interval));
     }
@@ -102,11 +102,12 @@ const FLOOR: f64 = 0.05;
 
 fn draw(picture: &mut Picture, walk: &Walk, posture: &StarmanPosture, shift: f64) {
     let at = |(x, y): (f64, f64)| Point::new(x + shift, y + FLOOR);
-    let body = Style::true_path().filled(0.25);
-    picture.disc(at(posture.body), walk.body_radius, body);
+    let part = |colour| Style::new(colour).width(4.0);
+    let (blue, red) = (Colour::from_hex(0x001f_6fb4), Colour::from_hex(0x00c0_392b));
+    picture.disc(at(posture.body), walk.body_radius, part(blue).filled(0.25).labelled("body"));
     for (limb, [hinge, tip]) in posture.segments.into_iter().enumerate() {
         // The first limb shows how far the body has rolled.
-        let style = if limb == 0 { Style::odometry() } else { Style::true_path() };
-        picture.line([at(hinge), at(tip)], style.width(4.0));
+        let style = if limb == 0 { part(red).labelled("first limb") } else { part(blue).labelled("limb") };
+        picture.line([at(hinge), at(tip)], style);
     }
 }

@@ -29,7 +29,7 @@ impl StopRules {
     }
 
     /// Why to stop after these generations, if at all.
-    pub(super) fn verdict(&self, history: &[GenerationStatistics]) -> Option<StopReason> {
+    pub fn verdict(&self, history: &[GenerationStatistics]) -> Option<StopReason> {
         let last = history.last()?;
         if self.goal.is_some_and(|goal| history.iter().any(|row| row.best >= goal)) {
             return Some(StopReason::Goal);
