@@ -61,7 +61,8 @@
 //!
 //! # Features
 //!
-//! None is on by default. `picture` adds pictures as SVG, `png` the same as PNG.
+//! None is on by default. `picture` adds pictures as SVG, `png` the same as PNG; `rayon` runs vision kernels on several
+//! threads.
 
 pub mod drive;
 pub mod geometry;
