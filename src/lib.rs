@@ -42,12 +42,14 @@
 //! |---|---|---|
 //! | 1 Robots and simulation | simulated worlds and robots | [`io::sim`] |
 //! | 1 Robots and simulation | EyeSim's files: `.sim`, `.wld`, `.maz`, `.robi`, `.esObj` | [`world::formats`] |
-//! | 2 Sensors and programs | what a robot can be asked: distance sensors, keys, display, radio | [`io`] |
+//! | 2 Sensors and programs | what a robot can be asked: distance sensors, camera, keys, display, radio | [`io`] |
 //! | 3 Driving | the v-omega drive, encoders; from A to B, path followers, PID | [`io`], [`drive`] |
 //! | 4 Lidar | scans, and taking their noise out | [`io`], [`nav`] |
 //! | 5 Swarms | any number of robots in one world | [`io::sim`] |
 //! | 7 Alternative drives | cars and wheels with rollers: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
 //! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`world::formats`] |
+//! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search; MovingAI maps | [`nav::grid`], [`world`] |
+//! | 12 Evolution | genetic algorithms, evolution strategy with covariance adaptation | [`evolve`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
 //!
 //! Beside the chapters: [`geometry`] has poses, angles and units; [`random`] seeded random streams; [`world`] what a
@@ -61,10 +63,11 @@
 //!
 //! # Features
 //!
-//! None is on by default. `picture` adds pictures as SVG, `png` the same as PNG; `rayon` runs vision kernels on several
-//! threads.
+//! None is on by default. `picture` adds pictures as SVG, `png` the same as PNG; `rayon` runs vision kernels and
+//! evaluates populations on several threads; `checkpoint` saves evolutions.
 
 pub mod drive;
+pub mod evolve;
 pub mod geometry;
 pub mod io;
 pub mod kinematics;
