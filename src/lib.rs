@@ -63,8 +63,8 @@
 //!
 //! # Features
 //!
-//! None is on by default. `picture` adds pictures as SVG, `png` the same as PNG; `rayon` runs vision kernels and
-//! evaluates populations on several threads; `checkpoint` saves evolutions.
+//! None is on by default. `log` adds recordings, `picture` pictures as SVG, `png` the same as PNG; `rayon` runs vision
+//! kernels and evaluates populations on several threads; `checkpoint` saves evolutions.
 
 pub mod drive;
 pub mod evolve;
