@@ -93,6 +93,11 @@ mod walking {
         fs::remove_dir_all(folder).unwrap();
     }
 
+    #[test]
+    fn only_a_program_that_is_told_so_works_for_another() {
+        assert!(starman::work_for_another().is_none());
+    }
+
     /// Not a test of its own: the run that the test below kills.
     #[test]
     fn run_that_is_killed() {
