@@ -106,7 +106,7 @@ impl Default for WallFollowerParameters {
             speed: 0.2,
             turn_rate: 1.5,
             range_error: 0.01,
-            reach: 0.08,
+            reach: 0.065,
             lag: 0.2,
             radius: 0.06,
             sensors: WallSensors::default(),

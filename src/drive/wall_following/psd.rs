@@ -1,3 +1,4 @@
+use std::collections::VecDeque;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::memory::{Median, Memory, hit};
@@ -62,6 +63,8 @@ pub struct WallFollower {
     /// What the side sensor saw of the wall, and what the one ahead swept over.
     beside: Memory,
     swept: Memory,
+    /// What was seen last while searching.
+    approach: VecDeque<WallObservation>,
     /// How many readings in a row were not of the wall.
     strays: u32,
 }
@@ -93,6 +96,12 @@ enum State {
 const SEARCH_SPEED: f64 = 0.6;
 const SWAY: f64 = 0.42;
 const SWAY_TIME: f64 = 1.0;
+/// How many observations of the approach to a wall are remembered.
+const APPROACH: usize = 50;
+/// The angle, in radians, beyond which a wall runs across the robot's way.
+const ACROSS: f64 = 0.5;
+/// Points of the side sensor by which a wall that runs across the robot's way is known anew.
+const RENEWAL_POINTS: usize = 12;
 /// Readings in a row that say that a wall has ended, or that another begins.
 const STRAYS: u32 = 4;
 /// Points that the line of a new wall is laid through, and how far they have to reach in metres.
@@ -126,6 +135,7 @@ impl WallFollower {
             front: Median::new(),
             beside: Memory::new(120),
             swept: Memory::new(400),
+            approach: VecDeque::new(),
             strays: 0,
         };
         if let Some(side) = side {
@@ -143,8 +153,7 @@ impl WallFollower {
         // What is remembered was seen by the other image.
         if side == WallSide::Right {
             self.last = self.last.map(mirror);
-            self.beside.clear();
-            self.swept.clear();
+            self.approach.iter_mut().for_each(|seen| *seen = seen.mirrored());
         }
     }
 
@@ -206,21 +215,51 @@ impl WallFollower {
         let [left, right] = [(seen.left, self.sensors.left), (seen.right, self.sensors.right)]
             .map(|(range, mount)| range + mount.y.abs());
         let slow = SEARCH_SPEED * speed;
-        if ahead < distance + lag * slow || left.min(right) < 0.7 * distance {
-            if self.side.is_none() {
-                // The robot turns less if the wall, which is nearer on one side, gets to that side.
-                let side = if right < left { WallSide::Right } else { WallSide::Left };
-                self.choose(side);
-            }
-            self.state = State::Turning { since: self.turned, target: None };
-            self.swept.clear();
-            return Twist::STOP;
+        if self.approach.len() == APPROACH {
+            self.approach.pop_front();
+        }
+        self.approach.push_back(*seen);
+        if ahead < distance + lag * slow || left.min(right) < 0.9 * distance {
+            return self.meet(left, right, ahead);
         }
         let wish = SWAY * math::sin(TAU * (self.driven - since) / (SWAY_TIME * slow));
         let rate =
             SWAY * TAU / SWAY_TIME * math::cos(TAU * (self.driven - since + lag * slow) / (SWAY_TIME * slow));
         let error = angle_difference(heading + wish, pose.heading);
         Twist::new(slow, rate + 2.0 * error)
+    }
+
+    /// Something is near for the first time.
+    fn meet(&mut self, left: f64, right: f64, ahead: f64) -> Twist {
+        let nearer = if right < left { WallSide::Right } else { WallSide::Left };
+        // The robot turns less if the wall, which is nearer on one side, gets to that side.
+        let undecided = self.side.is_none();
+        if undecided {
+            self.choose(nearer);
+        }
+        // From here on the wall is to be to the left: of the robot or of its mirror image.
+        let beside = if undecided { left.min(right) } else { left };
+        let distance = self.parameters.distance;
+        let line = self.approached_wall().filter(|_| beside < distance && beside < ahead);
+        if let Some(line) = line {
+            self.begin_following(WallTracker::of_line(&line, self.parameters.range_error));
+            return Twist::new(0.5 * self.parameters.speed, 0.0);
+        }
+        self.begin_turning();
+        Twist::STOP
+    }
+
+    /// The wall's line, in the robot's frame, by what was seen ahead and to the left on the way to it (the book's figure
+    /// 6.2), if both belong to one wall.
+    fn approached_wall(&self) -> Option<FittedLine> {
+        let pose = self.approach.back()?.pose;
+        let front = self.approach.iter().filter_map(|seen| hit(&seen.pose, &self.sensors.front, seen.front));
+        let left = self.approach.iter().filter_map(|seen| hit(&seen.pose, &self.sensors.left, seen.left));
+        let near = |point: &Point| pose.distance_to(*point) < 3.0 * self.parameters.distance;
+        let line = FittedLine::through(left.chain(front).filter(near).map(|point| pose.to_local(point)))?;
+        let error = 1.8 * self.parameters.range_error.max(0.003);
+        let ahead = line.direction.x > 0.5 && line.distance_to(Point::origin()) < 0.0;
+        (ahead && line.rms < error && line.length > 0.05).then_some(line)
     }
 
     /// Steps 2 and 4: clockwise on the spot until the wall that is swept over lies to the left.
@@ -246,7 +285,7 @@ impl WallFollower {
             if rest < -0.5 * FRAC_PI_2 { rest + TAU } else { rest }
         });
         if let Some(line) = line.filter(|_| rest.abs() < ALIGNED) {
-            self.begin_following(WallTracker::of_line(&line, self.parameters.range_error));
+            self.begin_following(self.swept_tracker(&line, &pose));
             return Twist::STOP;
         }
         if turned > 1.5 * TAU {
@@ -278,6 +317,17 @@ impl WallFollower {
         let direction = if left_of_robot { line.direction } else { -line.direction };
         (line.length > 0.4 * SAME_WALL && line.points >= 3 * window)
             .then_some(FittedLine { direction, ..line })
+    }
+
+    /// The wall that was swept over, with its curvature.
+    fn swept_tracker(&self, line: &FittedLine, pose: &Pose) -> WallTracker {
+        let error = self.parameters.range_error;
+        let mut tracker = WallTracker::like_line(line);
+        let near = |point: &Point| (point - line.middle).norm() < 1.5 * SAME_WALL;
+        for point in self.swept.iter().map(|point| pose.to_local(point)).filter(near) {
+            tracker.update(point, error);
+        }
+        tracker
     }
 
     fn begin_following(&mut self, tracker: WallTracker) {
@@ -312,12 +362,24 @@ impl WallFollower {
                 return self.lose(&tracker, pose, ahead);
             }
         }
+        if tracker.angle().abs() > ACROSS && self.beside.len() >= RENEWAL_POINTS {
+            tracker = self.renewed(tracker, pose);
+        }
         self.state = State::Following(tracker);
         if self.meets_wall(ahead) {
             return self.begin_turning();
         }
         let error = tracker.distance() - self.parameters.distance;
         self.steer(error, tracker.angle(), self.path_curvature(tracker.curvature()))
+    }
+
+    /// The wall anew by its last points: a parabola in the robot's frame is no good for one that runs across it.
+    fn renewed(&mut self, tracker: WallTracker, pose: &Pose) -> WallTracker {
+        let error = self.parameters.range_error;
+        let line = self.beside.last_line(RENEWAL_POINTS, &[], pose);
+        let line = line.filter(|line| line.rms < 2.0 * error.max(0.002) && line.direction.x > 0.2);
+        self.beside.clear();
+        line.map_or(tracker, |line| WallTracker::of_line(&line, error))
     }
 
     /// Whether the wall ahead is as near as the robot can stop.

@@ -24,9 +24,11 @@ pub(super) enum Reading {
 }
 
 /// The variance that a metre of wall adds to its distance, slope and curvature.
-const WANDER: [f64; 3] = [2e-5, 8e-3, 60.0];
-/// The spread of the curvature of a wall of which nothing is known, in 1/m.
-const CURVATURE: f64 = 1.0;
+const WANDER: [f64; 3] = [2e-5, 8e-3, 120.0];
+/// The spread of the curvature of a wall of which nothing is known, and the tightest that is believed, in 1/m.
+const CURVATURE: f64 = 2.0;
+const TIGHTEST: f64 = 3.0;
+
 /// A reading that is off by more than this, in metres, and by more than so many standard deviations is not of the wall.
 const GATE: f64 = 0.045;
 const SIGMAS: f64 = 4.0;
@@ -47,6 +49,12 @@ impl WallTracker {
         let of_slope = 3.5 * error / (line.length.max(0.02) * count.sqrt());
         let of_distance = error / count.sqrt() + of_slope * line.middle.x.abs();
         Self::with_spread(distance, slope, [of_distance, of_slope.min(0.5), CURVATURE])
+    }
+
+    /// A wall about where a line is, whose points are still to be taken into account.
+    pub(super) fn like_line(line: &FittedLine) -> Self {
+        let slope = line.direction.y / line.direction.x.max(0.1);
+        Self::with_spread(line.middle.y - slope * line.middle.x, slope, [0.05, 0.3, CURVATURE])
     }
 
     /// A wall at a distance along which the robot seems to drive.
@@ -99,7 +107,7 @@ impl WallTracker {
         let rest = Matrix3::identity() - gain * measured;
         self.covariance =
             rest * self.covariance * rest.transpose() + gain * gain.transpose() * (noise * noise);
-        self.state.z = self.state.z.clamp(-4.0, 4.0);
+        self.state.z = self.state.z.clamp(-TIGHTEST, TIGHTEST);
         Reading::Wall
     }
 
