@@ -83,7 +83,8 @@ fn row(args: &Args, progress: &mut Progress) -> Result<Row, Failure> {
 
 fn add_room(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
     let scene = scene(seed);
-    let conditions = Conditions { seed, ..Conditions::new(&args.common, time_limit(args, &scene))? };
+    let limit = time_limit(args, &scene);
+    let conditions = Conditions { seed, common: None, ..Conditions::new(&args.common, limit)? };
     let (run, watch) = run(args, &scene, &conditions, |_| {})?;
     let followed = run.ending.as_ref().is_ok_and(|walk| walk.outcome == WallOutcome::Stopped);
     row.followed += u64::from(followed);
