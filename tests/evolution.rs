@@ -38,9 +38,17 @@ fn all_methods_find_the_same_spline() {
 }
 
 #[test]
+fn gains_of_a_wall_follower_get_better() {
+    let options = ["--task", "wall", "--generations", "3", "--noise", "1"];
+    let (status, report, err) = run("genetic", genetic::work, &options);
+    assert_eq!((status, err.as_str()), (0, ""), "{report}");
+    assert!(report["fitness"].as_f64().unwrap() > -0.02, "{report}");
+}
+
+#[test]
 fn options_without_a_meaning_are_refused() {
     let (status, _, err) = run("genetic", genetic::work, &["--world", "a.wld"]);
-    let expected = "--world: has no meaning without a robot; expected a command line without it\n";
+    let expected = "--world: has no meaning for evolution; expected a command line without it\n";
     assert_eq!((status, err.as_str()), (2, expected));
 }
 

@@ -1,0 +1,98 @@
+use std::ops::ControlFlow;
+
+use roverlab::drive::{PidParameters, PidWallFollower, PidWallParameters, run_along_wall};
+use roverlab::evolve::Trial;
+use roverlab::geometry::{Point, Pose, math};
+use roverlab::io::Result;
+use roverlab::io::sim::{SimOptions, Simulation};
+use roverlab::picture::{Mark, Picture};
+use roverlab::world::{RobotSpec, Scene, World};
+use serde_json::{Map, Value, json};
+
+use crate::common::{CommonArgs, rounded};
+
+/// A wall to follow, for which the gains of a PID controller are to be found.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Wall {
+    noise: f64,
+}
+
+/// The floor, in metres: a corridor's length of wall, and room to go wrong.
+const FLOOR: (f64, f64) = (6.0, 2.0);
+/// Seconds of a trial.
+const SECONDS: f64 = 20.0;
+/// Seconds until the robot should have come to its distance.
+const SETTLING: f64 = 4.0;
+/// What a contact costs, in metres.
+const CONTACT: f64 = 1.0;
+
+impl Wall {
+    pub(crate) const GENES: usize = 3;
+
+    pub(crate) fn new(common: &CommonArgs) -> Self {
+        Self { noise: common.noise }
+    }
+
+    fn parameters(genes: &[f64]) -> PidWallParameters {
+        let base = PidWallParameters::default();
+        let [proportional, integral, derivative] = gains(genes);
+        PidWallParameters { gains: PidParameters { proportional, integral, derivative, ..base.gains }, ..base }
+    }
+
+    /// The root of the mean squared distance from the line, in metres.
+    pub(crate) fn cost(&self, genes: &[f64], trial: Trial) -> Result<f64> {
+        Ok(self.drive(genes, trial.random().bits())?.0)
+    }
+
+    /// Drives along the wall: what it costs, and where the robot was.
+    fn drive(&self, genes: &[f64], seed: u64) -> Result<(f64, Vec<Point>)> {
+        let start = Pose::new(0.5, FLOOR.1 - 0.35, 0.2);
+        let scene = Scene::with_robot(World::walled(FLOOR.0, FLOOR.1), RobotSpec::s4(), start);
+        let simulation = Simulation::new(&scene, SimOptions::with_noise(self.noise, seed))?;
+        let (mut robot, truth) = (simulation.robot(0)?, simulation.truth());
+        let parameters = Self::parameters(genes);
+        let mut controller = PidWallFollower::new(parameters)?;
+        let (mut squares, mut count, mut way, mut lost) = (0.0, 0.0, Vec::new(), Ok(()));
+        run_along_wall(&mut robot, &mut controller, SECONDS, |time, _| match truth.pose(0) {
+            Ok(pose) => {
+                let error = FLOOR.1 - pose.y - parameters.distance;
+                if time > SETTLING {
+                    squares += error * error;
+                    count += 1.0;
+                }
+                way.push(pose.position());
+                ControlFlow::Continue(())
+            }
+            Err(error) => {
+                lost = Err(error);
+                ControlFlow::Break(())
+            }
+        })?;
+        lost?;
+        let contacts = truth.robot(0)?.contacts;
+        Ok((math::hypot((squares / f64::max(count, 1.0)).sqrt(), CONTACT * contacts as f64), way))
+    }
+
+    pub(crate) fn found(genes: &[f64]) -> Map<String, Value> {
+        let [proportional, integral, derivative] = gains(genes).map(rounded);
+        let fields = json!({ "proportional": proportional, "integral": integral, "derivative": derivative });
+        fields.as_object().cloned().unwrap_or_default()
+    }
+
+    /// The way with the best gains.
+    pub(crate) fn picture(&self, seed: u64, best: &[f64]) -> Result<Picture> {
+        let mut picture = Picture::new(&World::walled(FLOOR.0, FLOOR.1));
+        let (_, way) = self.drive(best, seed)?;
+        picture.title("The gains of a wall follower, evolved");
+        if let Some(start) = way.first() {
+            picture.mark(Mark::Start, *start);
+        }
+        picture.true_path(way);
+        Ok(picture)
+    }
+}
+
+/// Gains that are tried: 0 to 20, 0 to 4, 0 to 30.
+fn gains(genes: &[f64]) -> [f64; 3] {
+    [20.0 * genes[0], 4.0 * genes[1], 30.0 * genes[2]]
+}
