@@ -50,6 +50,7 @@
 //! | 7 Alternative drives | cars and wheels with rollers: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
 //! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`world::formats`] |
 //! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search; MovingAI maps | [`nav::grid`], [`world`] |
+//! | 14 Formula SAE | the safety system's state machine, monitors, stopping distance | [`drive::safety`] |
 //! | 12 Evolution | genetic algorithms, evolution strategy with covariance adaptation | [`evolve`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
 //!

@@ -25,6 +25,7 @@ mod omni;
 mod path;
 mod pid;
 mod relay;
+pub mod safety;
 mod spline;
 mod wall_following;
 

@@ -1,0 +1,208 @@
+// This file compiles without the standard library.
+
+/// Something that has to happen again and again: a heartbeat, a program's commands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deadline {
+    limit: f64,
+    last: Option<f64>,
+}
+
+impl Deadline {
+    /// Over when nothing has happened for so many seconds.
+    pub const fn new(limit: f64) -> Self {
+        Self { limit, last: None }
+    }
+
+    /// It has happened.
+    pub const fn feed(&mut self, now: f64) {
+        self.last = Some(now);
+    }
+
+    /// Whether it is over: it has never happened, too long ago, or the clock makes no sense.
+    pub const fn is_over(&self, now: f64) -> bool {
+        match self.last {
+            None => true,
+            // Written so that NaN is over.
+            Some(last) => !(now - last >= 0.0 && now - last <= self.limit),
+        }
+    }
+}
+
+/// Something that has to be seen several times in a row before it counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Debounce {
+    needed: u16,
+    seen: u16,
+}
+
+impl Debounce {
+    /// Counts after so many times in a row; 0 and 1 are at once.
+    pub const fn new(needed: u16) -> Self {
+        Self { needed, seen: 0 }
+    }
+
+    /// Takes in whether it is seen now. Whether it counts.
+    pub const fn update(&mut self, seen: bool) -> bool {
+        self.seen = if seen { self.seen.saturating_add(1) } else { 0 };
+        seen && self.seen >= self.needed
+    }
+}
+
+/// Whether a point lies inside a polygon of these corners, by counting crossings. What is not a number is outside, as is
+/// everything for fewer than three corners.
+pub fn is_inside(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    if !(x.is_finite() && y.is_finite()) {
+        return false;
+    }
+    let Some(mut previous) = corners.last() else { return false };
+    let mut inside = false;
+    for corner in corners {
+        let ([ax, ay], [bx, by]) = (*previous, *corner);
+        if (ay > y) != (by > y) && x < ax + (y - ay) * (bx - ax) / (by - ay) {
+            inside = !inside;
+        }
+        previous = corner;
+    }
+    inside
+}
+
+/// What a sensor's signal may do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SignalLimits {
+    /// Seconds between two readings.
+    pub age: f64,
+    /// Change of the signal in a second.
+    pub rate: f64,
+    /// Change of the signal beside that, as of noise.
+    pub step: f64,
+    /// Equal readings in a row while it should change.
+    pub repeats: u16,
+}
+
+/// What is wrong with a signal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum SignalHealth {
+    /// Nothing.
+    Good,
+    /// No readings come, or they come late.
+    Lost,
+    /// It is no number.
+    NotANumber,
+    /// It changed faster than it can.
+    Jump,
+    /// It does not change though it should.
+    Frozen,
+}
+
+/// Watches one number that a sensor gives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SignalMonitor {
+    limits: SignalLimits,
+    last: Option<(f64, f64)>,
+    repeats: u16,
+    health: SignalHealth,
+}
+
+impl SignalMonitor {
+    /// A monitor that has not seen a reading: lost, until one comes.
+    pub const fn new(limits: SignalLimits) -> Self {
+        Self { limits, last: None, repeats: 0, health: SignalHealth::Lost }
+    }
+
+    /// Takes in a reading made at a time. `alive` says that the signal should change, as while the vehicle moves. A jump is
+    /// told once, as the reading behind it is the new measure.
+    pub fn read(&mut self, now: f64, value: f64, alive: bool) {
+        if !value.is_finite() {
+            self.health = SignalHealth::NotANumber;
+            return;
+        }
+        let Some((time, before)) = self.last.replace((now, value)) else {
+            self.health = SignalHealth::Good;
+            return;
+        };
+        let (passed, change) = (now - time, value - before);
+        let largest = self.limits.step + self.limits.rate * passed.max(0.0);
+        let equal = value.to_bits() == before.to_bits() && alive;
+        self.repeats = if equal { self.repeats.saturating_add(1) } else { 0 };
+        self.health = if change > largest || change < -largest {
+            SignalHealth::Jump
+        } else if self.repeats >= self.limits.repeats {
+            SignalHealth::Frozen
+        } else {
+            SignalHealth::Good
+        };
+    }
+
+    /// What is wrong at a time.
+    pub fn health(&self, now: f64) -> SignalHealth {
+        let Some((time, _)) = self.last else { return SignalHealth::Lost };
+        let fresh = now - time >= 0.0 && now - time <= self.limits.age;
+        match self.health {
+            SignalHealth::Good if !fresh => SignalHealth::Lost,
+            health => health,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_deadline_needs_to_be_fed() {
+        let mut deadline = Deadline::new(0.5);
+        assert!(deadline.is_over(0.0));
+        deadline.feed(1.0);
+        assert!(!deadline.is_over(1.0) && !deadline.is_over(1.5));
+        // Too late, a clock that went back, and no time at all.
+        assert!(deadline.is_over(1.51) && deadline.is_over(0.9) && deadline.is_over(f64::NAN));
+    }
+
+    #[test]
+    fn once_is_not_often() {
+        let mut outside = Debounce::new(3);
+        let seen = [true, true, false, true, true, true, true, false].map(|seen| outside.update(seen));
+        assert_eq!(seen, [false, false, false, false, false, true, true, false]);
+    }
+
+    #[test]
+    fn a_fence_with_a_dent() {
+        let fence = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, 1.0], [0.0, 4.0]];
+        for (point, inside) in [
+            ([1.0, 1.0], true),
+            ([2.0, 0.5], true),
+            ([2.0, 2.0], false),
+            ([3.9, 3.5], true),
+            ([-0.1, 1.0], false),
+            ([5.0, 0.5], false),
+            ([f64::NAN, 1.0], false),
+        ] {
+            assert_eq!(is_inside(&fence, point), inside, "{point:?}");
+        }
+        assert!(!is_inside(&[], [0.0, 0.0]) && !is_inside(&fence[..2], [1.0, 0.0]));
+    }
+
+    #[test]
+    fn every_way_of_going_wrong_has_its_name() {
+        let limits = SignalLimits { age: 0.2, rate: 2.0, step: 0.1, repeats: 3 };
+        let mut signal = SignalMonitor::new(limits);
+        assert_eq!(signal.health(0.0), SignalHealth::Lost);
+        signal.read(0.0, 1.0, true);
+        signal.read(0.1, 1.2, true);
+        assert_eq!((signal.health(0.1), signal.health(0.31)), (SignalHealth::Good, SignalHealth::Lost));
+        signal.read(0.2, 1.6, true);
+        assert_eq!(signal.health(0.2), SignalHealth::Jump);
+        signal.read(0.3, 1.6, true);
+        assert_eq!(signal.health(0.3), SignalHealth::Good);
+        signal.read(0.4, f64::NAN, true);
+        assert_eq!(signal.health(0.4), SignalHealth::NotANumber);
+        for _ in 0..5 {
+            signal.read(0.5, 1.6, false);
+        }
+        assert_eq!(signal.health(0.5), SignalHealth::Good, "standing, nothing needs to change");
+        for _ in 0..3 {
+            signal.read(0.6, 1.6, true);
+        }
+        assert_eq!(signal.health(0.6), SignalHealth::Frozen);
+    }
+}
