@@ -50,9 +50,9 @@
 //! | 7 Alternative drives | cars and wheels with rollers: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
 //! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`world::formats`] |
 //! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search; MovingAI maps | [`nav::grid`], [`world`] |
-//! | 14 Formula SAE | the safety system's state machine, monitors, stopping distance | [`drive::safety`] |
-//! | 12 Evolution | genetic algorithms, evolution strategy with covariance adaptation | [`evolve`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
+//! | 12 Evolution | genetic algorithms, evolution strategy with covariance adaptation | [`evolve`] |
+//! | 14 Formula SAE | the safety system's state machine, monitors, stopping distance | [`drive::safety`] |
 //!
 //! Beside the chapters: [`geometry`] has poses, angles and units; [`random`] seeded random streams; [`world`] what a
 //! world and a robot are, with random courses in [`world::generate`]; `picture` (with the feature of that name) draws

@@ -1,6 +1,6 @@
 use roverlab::evolve::{
-    Arithmetic, CmaEs, Evolution, Gaussian, Genetic, Population, Recipe, Selection, Serial, SteadyState, StopRules,
-    Trial,
+    Arithmetic, CmaEs, Evolution, Gaussian, Genetic, Population, Recipe, Selection, Serial, SteadyState,
+    StopRules, Trial,
 };
 use roverlab::io::Result;
 use roverlab::random::Stream;
@@ -30,7 +30,9 @@ pub(crate) fn evolve(
     let mut evolution: Box<dyn Evolution<Vec<f64>>> = match method {
         Method::Genetic => Box::new(Genetic::new(first, recipe, seed)?),
         Method::SteadyState => Box::new(SteadyState::new(first, recipe, 2, seed)?),
-        Method::CmaEs => Box::new(CmaEs::new(vec![0.5; genes], 0.2, CmaEs::usual_individuals(genes).max(8), seed)?),
+        Method::CmaEs => {
+            Box::new(CmaEs::new(vec![0.5; genes], 0.2, CmaEs::usual_individuals(genes).max(8), seed)?)
+        }
     };
     while StopRules::generations(generations.into()).verdict(evolution.history()).is_none() {
         evolution.step(&mut evaluator)?;

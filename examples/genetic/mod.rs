@@ -80,12 +80,17 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     check(common)?;
     let (spline, wall, seed) = (Spline::new(common), Wall::new(common), common.seed);
     let population = match args.task {
-        Task::Spline => evolve(args.method, Spline::GENES, args.generations, seed, |genes, _| spline.cost(genes)),
-        Task::Wall => evolve(args.method, Wall::GENES, args.generations, seed, |genes, trial| wall.cost(genes, trial)),
+        Task::Spline => {
+            evolve(args.method, Spline::GENES, args.generations, seed, |genes, _| spline.cost(genes))
+        }
+        Task::Wall => {
+            evolve(args.method, Wall::GENES, args.generations, seed, |genes, trial| wall.cost(genes, trial))
+        }
     }
     .map_err(Failure::input)?;
     for row in &population.history {
-        common.tell(format_args!("generation {}: best {:.4}, mean {:.4}", row.generation, row.best, row.mean));
+        common
+            .tell(format_args!("generation {}: best {:.4}, mean {:.4}", row.generation, row.best, row.mean));
     }
     let best = population.best.as_ref().ok_or_else(|| Failure::run("nobody was evaluated"))?;
     let genes = inside(&best.genome);

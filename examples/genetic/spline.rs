@@ -67,7 +67,10 @@ impl Spline {
     /// The way; nothing where there is none.
     fn points(&self, genes: &[f64]) -> Vec<Point> {
         let path = self.path(genes);
-        path.map_or_else(|_| Vec::new(), |path| path.points().iter().map(|point| point.pose.position()).collect())
+        path.map_or_else(
+            |_| Vec::new(),
+            |path| path.points().iter().map(|point| point.pose.position()).collect(),
+        )
     }
 }
 

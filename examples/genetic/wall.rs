@@ -36,16 +36,19 @@ impl Wall {
     fn parameters(genes: &[f64]) -> PidWallParameters {
         let base = PidWallParameters::default();
         let [proportional, integral, derivative] = gains(genes);
-        PidWallParameters { gains: PidParameters { proportional, integral, derivative, ..base.gains }, ..base }
+        PidWallParameters {
+            gains: PidParameters { proportional, integral, derivative, ..base.gains },
+            ..base
+        }
     }
 
     /// The root of the mean squared distance from the line, in metres.
-    pub(crate) fn cost(&self, genes: &[f64], trial: Trial) -> Result<f64> {
+    pub(crate) fn cost(self, genes: &[f64], trial: Trial) -> Result<f64> {
         Ok(self.drive(genes, trial.random().bits())?.0)
     }
 
     /// Drives along the wall: what it costs, and where the robot was.
-    fn drive(&self, genes: &[f64], seed: u64) -> Result<(f64, Vec<Point>)> {
+    fn drive(self, genes: &[f64], seed: u64) -> Result<(f64, Vec<Point>)> {
         let start = Pose::new(0.5, FLOOR.1 - 0.35, 0.2);
         let scene = Scene::with_robot(World::walled(FLOOR.0, FLOOR.1), RobotSpec::s4(), start);
         let simulation = Simulation::new(&scene, SimOptions::with_noise(self.noise, seed))?;
@@ -70,7 +73,7 @@ impl Wall {
         })?;
         lost?;
         let contacts = truth.robot(0)?.contacts;
-        Ok((math::hypot((squares / f64::max(count, 1.0)).sqrt(), CONTACT * contacts as f64), way))
+        Ok((math::hypot((squares / f64::max(count, 1.0)).sqrt(), CONTACT * f64::from(contacts)), way))
     }
 
     pub(crate) fn found(genes: &[f64]) -> Map<String, Value> {
@@ -80,7 +83,7 @@ impl Wall {
     }
 
     /// The way with the best gains.
-    pub(crate) fn picture(&self, seed: u64, best: &[f64]) -> Result<Picture> {
+    pub(crate) fn picture(self, seed: u64, best: &[f64]) -> Result<Picture> {
         let mut picture = Picture::new(&World::walled(FLOOR.0, FLOOR.1));
         let (_, way) = self.drive(best, seed)?;
         picture.title("The gains of a wall follower, evolved");

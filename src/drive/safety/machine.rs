@@ -108,17 +108,12 @@ const fn next(state: SafetyState, causes: Causes, rises: Requests, standing: boo
     let may_arm = rises.arm && standing && causes.is_empty();
     let to_person = causes.has(Causes::DRIVER) || rises.disarm;
     match state {
-        Manual if may_arm => Armed,
-        // Soft causes do not take the wheel from a person.
-        Manual => Manual,
         Armed | Auto if causes.is_soft() => SafeStop,
         Armed | Auto if to_person => Manual,
         Armed if rises.start => Auto,
-        Armed => Armed,
-        Auto => Auto,
-        SafeStop | EmergencyStop if may_arm => Armed,
-        SafeStop => SafeStop,
-        EmergencyStop => EmergencyStop,
+        // Soft causes do not take the wheel from a person: none is asked for here.
+        Manual | SafeStop | EmergencyStop if may_arm => Armed,
+        unchanged => unchanged,
     }
 }
 
