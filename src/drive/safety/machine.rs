@@ -155,7 +155,7 @@ mod tests {
     fn random_inputs(random: &mut Stream) -> SafetyInputs {
         let bits = random.bits();
         // Causes are rare enough that every state is visited often.
-        let causes = if bits & 7 == 0 {
+        let causes = if bits.is_multiple_of(8) {
             Causes::from_bits((random.bits() & random.bits()) as u16)
         } else {
             Causes::NONE

@@ -259,7 +259,7 @@ impl Encoders for Starman {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::{Display, RobotIo};
+    use crate::io::RobotIo;
 
     fn starman() -> Starman {
         Starman::new(&StarmanSpec::default()).unwrap()
@@ -291,7 +291,7 @@ mod tests {
                 Key::Key1 => limb = (limb + 1) % LIMBS,
                 Key::Key2 => positions[limb] = f64::min(positions[limb] + 0.2, 1.0),
                 Key::Key3 => positions[limb] = f64::max(positions[limb] - 0.2, -1.0),
-                _ => return Ok(positions),
+                Key::Key4 => return Ok(positions),
             }
             for (servo, position) in (1..).zip(positions) {
                 robot.set_servo(servo, position)?;
