@@ -47,6 +47,7 @@
 //! | 4 Lidar | scans, and taking their noise out | [`io`], [`nav`] |
 //! | 5 Swarms | any number of robots in one world | [`io::sim`] |
 //! | 7 Alternative drives | cars and wheels with rollers: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
+//! | 9 Mazes | models and files, flood fill, shortest routes | [`maze`] |
 //! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`world::formats`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
 //!
@@ -61,12 +62,14 @@
 //!
 //! # Features
 //!
-//! None is on by default. `picture` adds pictures as SVG, `png` the same as PNG.
+//! None is on by default. `picture` adds pictures as SVG, `png` the same as PNG; `proptest` adds random mazes and
+//! strategies for property tests (`maze::generate`).
 
 pub mod drive;
 pub mod geometry;
 pub mod io;
 pub mod kinematics;
+pub mod maze;
 pub mod nav;
 #[cfg(feature = "picture")]
 pub mod picture;
