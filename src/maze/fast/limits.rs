@@ -21,7 +21,7 @@ pub struct RunLimits {
 }
 
 impl RunLimits {
-    /// For [`mouse`](crate::maze::mouse) in a competition maze.
+    /// For a small robot with quick motors in a competition maze.
     pub const MICROMOUSE: Self = Self {
         speed: 2.0,
         diagonal_speed: 1.5,
