@@ -49,6 +49,8 @@
 //! | 7 Alternative drives | cars and wheels with rollers: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
 //! | 9 Mazes | models and files, flood fill, shortest routes | [`maze`] |
 //! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`world::formats`] |
+//! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search; MovingAI maps | [`nav::grid`], [`world`] |
+//! | 12 Evolution | genetic algorithms, evolution strategy with covariance adaptation | [`evolve`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
 //!
 //! Beside the chapters: [`geometry`] has poses, angles and units; [`random`] seeded random streams; [`world`] what a
@@ -66,6 +68,7 @@
 //! strategies for property tests (`maze::generate`).
 
 pub mod drive;
+pub mod evolve;
 pub mod geometry;
 pub mod io;
 pub mod kinematics;
