@@ -66,6 +66,7 @@
 //!
 //! None is on by default. `picture` adds pictures as SVG, `png` the same as PNG; `proptest` adds random mazes and
 //! strategies for property tests (`maze::generate`).
+//! None is on by default. `log` adds recordings, `picture` pictures as SVG, `png` the same as PNG.
 
 pub mod drive;
 pub mod evolve;
