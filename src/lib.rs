@@ -64,9 +64,8 @@
 //!
 //! # Features
 //!
-//! None is on by default. `picture` adds pictures as SVG, `png` the same as PNG; `proptest` adds random mazes and
-//! strategies for property tests (`maze::generate`).
-//! None is on by default. `log` adds recordings, `picture` pictures as SVG, `png` the same as PNG.
+//! None is on by default. `log` adds recordings, `picture` pictures as SVG, `png` the same as PNG; `proptest` adds random
+//! mazes and strategies for property tests (`maze::generate`).
 
 pub mod drive;
 pub mod evolve;
