@@ -93,7 +93,9 @@ mod tests {
             prop_assert!(out.windows(2).all(|pair| pair[0].1 >> BucketQueue::SHIFT <= pair[1].1 >> BucketQueue::SHIFT));
             // What is below a limit comes out, and little else does.
             queue.start(0);
-            costs.iter().for_each(|&cost| queue.push(cost, 0, cost));
+            for &cost in &costs {
+                queue.push(cost, 0, cost);
+            }
             let (limit, bucket) = (1 << 19, 1 << BucketQueue::SHIFT);
             let out: Vec<_> = std::iter::from_fn(|| queue.pop_below(limit)).collect();
             prop_assert!(out.iter().all(|&(_, cost)| cost < limit + bucket));
