@@ -42,7 +42,7 @@
 //! |---|---|---|
 //! | 1 Robots and simulation | simulated worlds and robots | [`io::sim`] |
 //! | 1 Robots and simulation | EyeSim's files: `.sim`, `.wld`, `.maz`, `.robi`, `.esObj` | [`world::formats`] |
-//! | 2 Sensors and programs | what a robot can be asked: distance sensors, keys, display, radio | [`io`] |
+//! | 2 Sensors and programs | what a robot can be asked: distance sensors, camera, keys, display, radio | [`io`] |
 //! | 3 Driving | the v-omega drive, encoders; from A to B, path followers, PID | [`io`], [`drive`] |
 //! | 4 Lidar | scans, and taking their noise out | [`io`], [`nav`] |
 //! | 5 Swarms | any number of robots in one world | [`io::sim`] |
@@ -63,7 +63,8 @@
 //!
 //! # Features
 //!
-//! None is on by default. `log` adds recordings, `picture` pictures as SVG, `png` the same as PNG.
+//! None is on by default. `log` adds recordings, `picture` pictures as SVG, `png` the same as PNG; `rayon` runs vision
+//! kernels and evaluates populations on several threads; `checkpoint` saves evolutions.
 
 pub mod drive;
 pub mod evolve;
