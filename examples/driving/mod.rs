@@ -5,9 +5,9 @@
 use std::path::{Path, PathBuf};
 
 use roverlab::geometry::{Point, Pose};
-use roverlab::io;
 use roverlab::io::log::Witness;
 use roverlab::io::sim::{NoiseModel, RobotTruth, SimOptions};
+use roverlab::io::{self, Key};
 use roverlab::kinematics::OdometryErrors;
 use roverlab::picture::{Picture, SaveError};
 use roverlab::world::{DriveSpec, RobotSpec, Scene};
@@ -19,6 +19,10 @@ use crate::common::{CommonArgs, Driven, Failure, Outcome, Pacer, Report, Stage, 
 pub(crate) struct Conditions {
     pub(crate) seed: u64,
     pub(crate) noise: f64,
+    /// Brightness of the light that cameras see by.
+    pub(crate) light: f64,
+    /// Key presses and when, in seconds.
+    pub(crate) keys: Vec<(f64, Key)>,
     pub(crate) ideal_encoders: bool,
     /// Simulated seconds.
     pub(crate) time_limit: f64,
@@ -49,6 +53,8 @@ impl Conditions {
         Ok(Self {
             seed: common.seed,
             noise: common.noise,
+            light: 1.0,
+            keys: Vec::new(),
             ideal_encoders: false,
             time_limit: common.time_limit.unwrap_or(time_limit),
             common: Some(common.clone()),
@@ -74,12 +80,16 @@ impl Conditions {
         let options = SimOptions {
             time_limit: Some(self.time_limit + RESERVE),
             ideal_encoders: self.ideal_encoders,
+            light: self.light,
             ..SimOptions::with_noise(self.noise, self.seed)
         };
         let stage = match &self.common {
             Some(common) => common.stage(scene, options)?,
             None => Stage::simulated(scene, options, Vec::new())?,
         };
+        for &(time, key) in &self.keys {
+            stage.press_key(0, time, key).map_err(Failure::input)?;
+        }
         let start = scene.robots[0].pose;
         let mut robot = stage.robot(0)?;
         let mut truth = stage.truth(0)?;
