@@ -108,7 +108,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let head = head(args, &scene)?;
     let conditions = Conditions { light: args.light, ..Conditions::new(common, 60.0)? };
     let size = args.resolution.into();
-    let run = conditions.run(&scene, paced(common), |robot, step| look(robot, size, head, args.images, step))?;
+    let run =
+        conditions.run(&scene, paced(common), |robot, step| look(robot, size, head, args.images, step))?;
     let output = save(args, &run)?;
     let (file, trouble) = drawn(common, "camera.svg", || {
         let mut drawing = Drawing::new(&scene.world);
@@ -140,7 +141,10 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 fn head(args: &Args, scene: &roverlab::world::Scene) -> Result<[(u8, f64); 2], Failure> {
     let spec = &scene.robots[0].spec;
     let Some(camera) = spec.camera else {
-        return Err(Failure::input(format!("found robot {} without a camera; expected one with a camera", spec.name)));
+        return Err(Failure::input(format!(
+            "found robot {} without a camera; expected one with a camera",
+            spec.name
+        )));
     };
     let own = u8::from(matches!(spec.drive, roverlab::world::DriveSpec::Ackermann { .. }));
     let position = |option: &str, degrees: f64, largest: f64| {
@@ -149,7 +153,9 @@ fn head(args: &Args, scene: &roverlab::world::Scene) -> Result<[(u8, f64); 2], F
             // A head that cannot turn stays as it is.
             return Ok(if most == 0.0 { 0.0 } else { degrees / most });
         }
-        Err(Failure::input(format!("{option}: found {degrees}; expected at most {most:.0} degrees either way")))
+        Err(Failure::input(format!(
+            "{option}: found {degrees}; expected at most {most:.0} degrees either way"
+        )))
     };
     let pan = -position("--pan", args.pan, camera.max_pan)?;
     let tilt = position("--tilt", args.tilt, camera.max_tilt)?;
@@ -187,7 +193,10 @@ fn brightness(image: &RgbImage) -> Result<f64, Error> {
     let mut gray = vec![0; width * height];
     gray_into(image.try_into()?, GrayViewMut::new(&mut gray, width, height)?, GrayWeights::Rec601)?;
     let black = vec![0; gray.len()];
-    roverlab::vision::mean_difference(GrayView::new(&gray, width, height)?, GrayView::new(&black, width, height)?)
+    roverlab::vision::mean_difference(
+        GrayView::new(&gray, width, height)?,
+        GrayView::new(&black, width, height)?,
+    )
 }
 
 /// Writes the last image, though never unasked where a program reads the report.

@@ -145,8 +145,7 @@ impl Runner {
             Kernel::Projections => projections(colour::matches(input, &p)?)?,
             Kernel::Difference => self.difference(input, second)?.into(),
             Kernel::Blobs => {
-                let mask =
-                    if self.args.binary { self.gray(input)? } else { colour::matches(input, &p)? };
+                let mask = if self.args.binary { self.gray(input)? } else { colour::matches(input, &p)? };
                 marks::blobs(input, &mask, self.args.min_area)?
             }
             Kernel::Hough => {
@@ -163,7 +162,8 @@ impl Runner {
                     max_gap: self.args.max_gap,
                     seed: self.args.common.seed,
                 };
-                let found = HoughSegments::new(self.args.angles.into())?.find((&edges).try_into()?, parameters);
+                let found =
+                    HoughSegments::new(self.args.angles.into())?.find((&edges).try_into()?, parameters);
                 marks::segments(&edges, &found)
             }
             Kernel::Hog => marks::hog(&self.gray(input)?, &mut Hog::new(HogParameters::default())?)?,
@@ -187,7 +187,10 @@ impl Runner {
     fn on_gray(
         &self,
         input: &RgbImage,
-        kernel: impl FnOnce(roverlab::vision::GrayView<'_>, roverlab::vision::GrayViewMut<'_>) -> Result<(), Error>,
+        kernel: impl FnOnce(
+            roverlab::vision::GrayView<'_>,
+            roverlab::vision::GrayViewMut<'_>,
+        ) -> Result<(), Error>,
     ) -> Result<GrayImage, Error> {
         let gray = self.gray(input)?;
         let mut output = GrayImage::new(gray.width(), gray.height());
@@ -224,7 +227,7 @@ impl Runner {
         let threshold = self.threshold(50).min(255) as u8;
         threshold_into((&laplace).try_into()?, (&mut edges).try_into()?, threshold)?;
         let gray = self.gray(input)?;
-        let red = [255, 0, 0];
+        let red = roverlab::world::Colour::RED;
         overlay_gray_into((&gray).try_into()?, (&edges).try_into()?, red, (&mut output).try_into()?)?;
         Ok(output)
     }

@@ -20,9 +20,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let scene = common.placed(crate::room::scene)?;
     let conditions = Conditions::new(common, f64::from(args.repeat) * PERIOD + 1.0)?;
     let mut runner = Runner::new(args).map_err(Failure::input)?;
-    let run = conditions.run(&scene, paced(common), |robot, step| {
-        show(robot, &mut runner, args.repeat, step)
-    })?;
+    let run =
+        conditions.run(&scene, paced(common), |robot, step| show(robot, &mut runner, args.repeat, step))?;
     let mut report = run.report(|_| Outcome::verdict("shown"));
     if let Ok(shown) = &run.ending
         && let Some(output) = &args.output
@@ -52,9 +51,9 @@ fn show(
     let mut seen = RgbImage::default();
     for _ in 0..images {
         robot.image_into(&mut seen)?;
-        let processed = runner.run(&seen, None).map_err(|error| {
-            io::Error::new(io::ErrorKind::Other, error.to_string()).with_source(error)
-        })?;
+        let processed = runner
+            .run(&seen, None)
+            .map_err(|error| io::Error::new(io::ErrorKind::Other, error.to_string()).with_source(error))?;
         match &processed.image {
             DynamicImage::ImageLuma8(gray) if runner.kernel != Kernel::Hog => {
                 robot.draw_image(Picture::Gray(gray), Viewport::default())?;

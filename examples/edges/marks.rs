@@ -111,10 +111,12 @@ pub(crate) fn hog(gray: &GrayImage, hog: &mut Hog) -> Result<Processed, Error> {
     });
     let picture = GrayImage::from_raw(across as u32, down as u32, strongest.collect()).unwrap_or_default();
     // FNV-1a over the bits, the same on every platform.
-    let digest = descriptor.iter().flat_map(|value| value.to_bits().to_le_bytes()).fold(
-        0xcbf2_9ce4_8422_2325_u64,
-        |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3),
-    );
+    let digest = descriptor
+        .iter()
+        .flat_map(|value| value.to_bits().to_le_bytes())
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+        });
     let fields = vec![
         ("descriptor_length", json!(descriptor.len())),
         ("descriptor_digest", json!(format!("{digest:016x}"))),

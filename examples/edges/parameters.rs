@@ -2,7 +2,7 @@ use roverlab::vision::{
     Border, CannyThresholds, Error, GaussianKernel, GrayWeights, HueLimits, HueRange, HueScale, SobelScale,
 };
 
-use super::{Args, Definition, Kernel};
+use super::{Args, Definition};
 
 /// What the options and the definition say about the kernels.
 #[derive(Debug, Clone, Copy)]

@@ -21,9 +21,13 @@ pub(crate) fn scene() -> Scene {
     let mut screen = Wall::new(Point::new(2.6, 0.35), Point::new(3.0, 0.95));
     (screen.height, screen.colour) = (0.3, Colour::from_hex(0x7f_9a_6b));
     world.walls.push(screen);
-    for (name, x, y) in
-        [("can", 1.6, 1.55), ("can", 3.1, 1.1), ("soccer", 2.2, 1.95), ("golf", 1.25, 1.3), ("crate", 2.7, 2.35)]
-    {
+    for (name, x, y) in [
+        ("can", 1.6, 1.55),
+        ("can", 3.1, 1.1),
+        ("soccer", 2.2, 1.95),
+        ("golf", 1.25, 1.3),
+        ("crate", 2.7, 2.35),
+    ] {
         if let Some(kind) = ObjectKind::predefined(name) {
             world.objects.push(Object::new(Arc::new(kind), Pose::new(x, y, 0.5)));
         }

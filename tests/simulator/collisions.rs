@@ -369,9 +369,12 @@ fn before_a_box(mass: f64, fixed: bool) -> Scene {
 
 #[test]
 fn a_robot_pushes_what_is_light_and_loose_until_a_wall_stops_it() {
-    for (mass, fixed, pushing, far) in
-        [(0.4, false, true, true), (0.4, false, false, false), (0.4, true, true, false), (0.6, false, true, false)]
-    {
+    for (mass, fixed, pushing, far) in [
+        (0.4, false, true, true),
+        (0.4, false, false, false),
+        (0.4, true, true, false),
+        (0.6, false, true, false),
+    ] {
         let options = SimOptions { pushing, ..SimOptions::ideal() };
         let (mut robot, truth) = start(&before_a_box(mass, fixed), options);
         robot.set_speed(Twist::new(0.2, 0.0)).unwrap();

@@ -94,8 +94,7 @@ impl Engine {
         let mut nearest = body.wall_budget.min(body.solid_budget);
         if nearest <= 0.0 && self.options.pushing && self.push(index, &wished.pose()) {
             let body = &mut self.bodies[index];
-            body.solid_budget =
-                self.space.solids_clearance(&outline, &wished.pose(), span, LOOK_AHEAD, me);
+            body.solid_budget = self.space.solids_clearance(&outline, &wished.pose(), span, LOOK_AHEAD, me);
             nearest = body.wall_budget.min(body.solid_budget);
             // What was pushed lies at the rim and is no contact; its neighbours are looked at again soon.
             body.solid_budget = 0.0;

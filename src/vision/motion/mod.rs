@@ -2,10 +2,10 @@
 //! turns (section 11.6).
 
 mod detector;
-mod turning;
-mod watch;
 #[cfg(test)]
 mod tests;
+mod turning;
+mod watch;
 
 pub use detector::{Motion, MotionDetector, MotionParameters};
 pub use turning::TurnCompensator;

@@ -73,7 +73,9 @@ impl MotionWatch {
     /// The speed for an image that was taken at a pose of odometry.
     pub fn step(&mut self, time: f64, image: &GrayImage, pose: Pose) -> Result<Twist, Error> {
         self.motion = match self.before.take() {
-            Some((before, at)) => Some(self.compare(&before, image, angle_difference(pose.heading, at.heading))?),
+            Some((before, at)) => {
+                Some(self.compare(&before, image, angle_difference(pose.heading, at.heading))?)
+            }
             None => None,
         };
         self.before = Some((image.clone(), pose));
@@ -99,7 +101,8 @@ impl MotionWatch {
         }
         let moved: GrayView<'_> = moved.try_into()?;
         let (width, height) = (to - from, first.height());
-        self.turning.compare(moved.region((from, 0), width, height)?, second.region((from, 0), width, height)?)
+        self.turning
+            .compare(moved.region((from, 0), width, height)?, second.region((from, 0), width, height)?)
     }
 
     /// Watches for some seconds. `observe` is called at each step.

@@ -81,7 +81,8 @@ impl ColourFinder {
     fn by_histogram(&mut self, image: &RgbImage) -> Result<Option<Sighting>, Error> {
         self.columns.resize(image.width() as usize, 0);
         hue_histogram_into(image.try_into()?, &mut self.columns, self.range, self.limits)?;
-        let Some((peak, most)) = maximum(&self.columns).filter(|&(_, most)| 8 * most >= self.min_pixels) else {
+        let Some((peak, most)) = maximum(&self.columns).filter(|&(_, most)| 8 * most >= self.min_pixels)
+        else {
             return Ok(None);
         };
         // The columns around the fullest that are half as full at least.
@@ -143,9 +144,8 @@ pub fn teach_hue(image: &RgbImage, limits: HueLimits) -> Result<Option<u8>, Erro
             }
         }
     }
-    let around = |hue: usize| {
-        (0..=2 * REACH).map(|step| counts[(hue + CIRCLE + step - REACH) % CIRCLE]).sum::<u32>()
-    };
+    let around =
+        |hue: usize| (0..=2 * REACH).map(|step| counts[(hue + CIRCLE + step - REACH) % CIRCLE]).sum::<u32>();
     // The middle one of the best.
     let most = (0..CIRCLE).map(around).max().unwrap_or(0);
     if (most as usize) * 8 < across * down {

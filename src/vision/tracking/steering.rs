@@ -60,8 +60,7 @@ impl Steering {
 /// What a scan shows, in the robot's frame, without what is exempt.
 pub(super) fn obstacles(scan: &LidarScan, exempt: Option<Exempt>, points: &mut Vec<Point>) {
     points.clear();
-    let belongs =
-        |point: &Point| exempt.is_some_and(|exempt| (point - exempt.place).norm() <= exempt.reach);
+    let belongs = |point: &Point| exempt.is_some_and(|exempt| (point - exempt.place).norm() <= exempt.reach);
     points.extend(scan.points().filter(|point| !belongs(point)));
 }
 

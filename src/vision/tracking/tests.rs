@@ -119,7 +119,8 @@ fn the_can_is_pushed_home() {
         let options = SimOptions { pushing: true, ..SimOptions::with_noise(1.0, seed) };
         let simulation = Simulation::new(&scene, options).unwrap();
         let mut robot = simulation.robot(0).unwrap();
-        let mut behaviour = PushHome::new(finder(FindMethod::Blob), Point::origin(), HomeParameters::default());
+        let mut behaviour =
+            PushHome::new(finder(FindMethod::Blob), Point::origin(), HomeParameters::default());
         let outcome = behaviour.run(&mut robot, 240.0, |_, _, _| Ok(())).unwrap();
         let truth = simulation.truth();
         let home = truth.object(0).unwrap().distance_to(start.position());
