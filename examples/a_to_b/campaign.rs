@@ -148,6 +148,8 @@ fn add_run(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
         time_limit: 120.0,
         light: 1.0,
         keys: Vec::new(),
+        pushing: false,
+        others: Vec::new(),
         common: None,
     };
     let mut options = options(&args, &trip, Some(heading), &conditions);
