@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use image::RgbImage;
-use roverlab::geometry::{Point, Pose};
+use roverlab::geometry::Point;
 use roverlab::io::log::{Header, Log, LogWriter, Player};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{Camera, Clock, Drive, Lidar, Resolution, Result};
