@@ -90,8 +90,18 @@ fn every_kernel_works_on_a_file() {
         for definition in ["book", "opencv"] {
             let name = kernel.name();
             let options = [
-                "--input", text(&input), "--second", text(&second), "--kernel", &name, "--definition", definition,
-                "--output", text(&output), "--repeat", "1",
+                "--input",
+                text(&input),
+                "--second",
+                text(&second),
+                "--kernel",
+                &name,
+                "--definition",
+                definition,
+                "--output",
+                text(&output),
+                "--repeat",
+                "1",
             ];
             let ended = run("edges", edges::work, &options);
             assert_outcome(&ended, "filtered");
@@ -106,7 +116,8 @@ fn every_kernel_works_on_a_file() {
 fn definitions_differ_where_they_should() {
     let input = squares("squares3.png");
     let mean = |kernel: &str, definition: &str| {
-        let options = ["--input", text(&input), "--kernel", kernel, "--definition", definition, "--repeat", "1"];
+        let options =
+            ["--input", text(&input), "--kernel", kernel, "--definition", definition, "--repeat", "1"];
         run("edges", edges::work, &options).1["mean"].as_f64().unwrap()
     };
     for kernel in ["gray", "sobel_l1", "hue", "saturation"] {
@@ -173,7 +184,12 @@ fn motion_is_seen_where_it_is() {
     assert!(moving.1["alarms"].as_u64().unwrap() > 10, "{}", moving.1);
     let still = run("motion", motion::work, &["--time-limit", "4", "--still"]);
     assert_outcome(&still, "watched");
-    assert_eq!((still.1["alarms"].as_u64(), still.1["turned_deg"].as_f64()), (Some(0), Some(0.0)), "{}", still.1);
+    assert_eq!(
+        (still.1["alarms"].as_u64(), still.1["turned_deg"].as_f64()),
+        (Some(0), Some(0.0)),
+        "{}",
+        still.1
+    );
 }
 
 #[test]

@@ -45,13 +45,8 @@ fn good(args: &Args, seed: u64) -> Result<bool, Failure> {
     let scene = scene::drawn(seed);
     let light = Stream::new(seed).child("light", 0).between(0.3, 1.5);
     let home = args.job == Job::Home;
-    let conditions = Conditions {
-        seed,
-        light,
-        pushing: home,
-        common: None,
-        ..Conditions::new(&args.common, 300.0)?
-    };
+    let conditions =
+        Conditions { seed, light, pushing: home, common: None, ..Conditions::new(&args.common, 300.0)? };
     let run = one(args, &scene, &conditions, &mut |_| {})?;
     let Ok((Some(hue), ended)) = run.ending else { return Ok(false) };
     let objects = wanted(&scene, hue, args.tolerance)?;

@@ -26,11 +26,15 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
     let scene = common.placed(|| scene::drawn(common.seed))?;
-    let conditions =
-        Conditions { light: args.light, pushing: args.job == Job::Home, ..Conditions::new(common, TIME_LIMIT)? };
+    let conditions = Conditions {
+        light: args.light,
+        pushing: args.job == Job::Home,
+        ..Conditions::new(common, TIME_LIMIT)?
+    };
     let run = one(args, &scene, &conditions, &mut paced(common))?;
     let (file, trouble) = drawn(common, "color_tracking.svg", || picture(&scene, &run));
-    let report = report(args, &scene, &run)?.field("time_limit_s", conditions.time_limit).field("picture", file);
+    let report =
+        report(args, &scene, &run)?.field("time_limit_s", conditions.time_limit).field("picture", file);
     Ok(Report { trouble, ..report })
 }
 

@@ -110,8 +110,7 @@ fn in_scene(args: &Args, seed: u64, moves: bool) -> io::Result<Vec<[f64; 2]>> {
     let mut robot = simulation.robot(0)?;
     // Motors take a while.
     robot.wait(1.0)?;
-    let mut detector =
-        MotionDetector::new(MotionParameters::default()).map_err(|e| wrong(&e))?;
+    let mut detector = MotionDetector::new(MotionParameters::default()).map_err(|e| wrong(&e))?;
     let mut found = Vec::new();
     for _ in 0..IN_A_SCENE {
         let (first, before) = (robot.gray_image()?, truth.pose(1)?);

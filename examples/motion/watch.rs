@@ -30,7 +30,10 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let scene = common.placed(scene::book)?;
     let spec = &scene.robots[0].spec;
     let Some(camera) = spec.camera else {
-        return Err(Failure::input(format!("found robot {} without a camera; expected one with one", spec.name)));
+        return Err(Failure::input(format!(
+            "found robot {} without a camera; expected one with one",
+            spec.name
+        )));
     };
     let moves = scene.robots.len() > 1 && !args.still;
     let conditions = Conditions {
@@ -79,11 +82,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 }
 
 /// The image on the display, with a bar under the sector where something moves.
-fn show<R: Display + ?Sized>(
-    robot: &mut R,
-    watch: &MotionWatch,
-    image: &image::GrayImage,
-) -> io::Result<()> {
+fn show<R: Display + ?Sized>(robot: &mut R, watch: &MotionWatch, image: &image::GrayImage) -> io::Result<()> {
     robot.draw_image(Picture::Gray(image), Viewport::default())?;
     let Some(sector) = watch.motion().and_then(|motion| motion.strongest) else { return Ok(()) };
     let left = (sector as i32) * 320 / 3;

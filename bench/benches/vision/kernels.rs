@@ -2,11 +2,12 @@ use std::hint::black_box;
 
 use image::{GrayImage, RgbImage};
 use roverlab::vision::{
-    Border, Canny, CannyThresholds, Components, Error, GaussianKernel, GrayView, GrayViewMut, GrayWeights, Hog,
-    HogParameters, HoughLines, HoughSegments, HueLimits, HueRange, HueScale, RgbViewMut, SegmentParameters,
-    SobelScale, absolute_difference_into, gaussian_into, gray_into, gray_to_rgb_into, hsi_into, hsv_into,
-    hue_histogram_into, hue_into, hue_match_into, laplace_into, laplace_saturated_into, mean_difference,
-    overlay_gray_into, projections_into, sector_differences, sobel_l1_into, sobel_l2_into, threshold_into,
+    Border, Canny, CannyThresholds, Components, Error, GaussianKernel, GrayView, GrayViewMut, GrayWeights,
+    Hog, HogParameters, HoughLines, HoughSegments, HueLimits, HueRange, HueScale, RgbViewMut,
+    SegmentParameters, SobelScale, absolute_difference_into, gaussian_into, gray_into, gray_to_rgb_into,
+    hsi_into, hsv_into, hue_histogram_into, hue_into, hue_match_into, laplace_into, laplace_saturated_into,
+    mean_difference, overlay_gray_into, projections_into, sector_differences, sobel_l1_into, sobel_l2_into,
+    threshold_into,
 };
 use roverlab::world::Colour;
 
@@ -146,7 +147,13 @@ impl<'a> Bench<'a> {
     }
 
     /// Anything that needs no output of the bench's.
-    fn plain<T>(&mut self, kernel: &'static str, bytes: u64, peer: Option<f64>, mut call: impl FnMut(&Self) -> T) {
+    fn plain<T>(
+        &mut self,
+        kernel: &'static str,
+        bytes: u64,
+        peer: Option<f64>,
+        mut call: impl FnMut(&Self) -> T,
+    ) {
         let seconds = median(self.effort, || {
             black_box(call(black_box(self)));
         });

@@ -144,13 +144,13 @@ pub fn teach_hue(image: &RgbImage, limits: HueLimits) -> Result<Option<u8>, Erro
             }
         }
     }
-    let around =
-        |hue: usize| (0..=2 * REACH).map(|step| counts[(hue + CIRCLE + step - REACH) % CIRCLE]).sum::<u32>();
-    // The middle one of the best.
-    let most = (0..CIRCLE).map(around).max().unwrap_or(0);
-    if (most as usize) * 8 < across * down {
-        return Ok(None);
-    }
-    let best: Vec<usize> = (0..CIRCLE).filter(|&hue| around(hue) == most).collect();
-    Ok(best.get(best.len() / 2).map(|&hue| hue as u8))
+    // Those nearer to a hue help it more, so that of a single one the hue itself comes out.
+    let around = |hue: usize, weight: &dyn Fn(usize) -> u32| {
+        let near = (0..=2 * REACH).map(|step| (step, (hue + CIRCLE + step - REACH) % CIRCLE));
+        near.map(|(step, place)| weight(step.abs_diff(REACH)) * counts[place]).sum::<u32>()
+    };
+    let near_first = |distance: usize| (REACH + 1 - distance) as u32;
+    let Some(best) = (0..CIRCLE).max_by_key(|&hue| around(hue, &near_first)) else { return Ok(None) };
+    let pixels = around(best, &|_| 1) as usize;
+    Ok((8 * pixels >= across * down).then_some(best as u8))
 }
