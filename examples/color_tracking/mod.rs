@@ -7,5 +7,5 @@ mod job;
 mod scene;
 
 pub(crate) use args::{Args, Job};
-pub(crate) use campaign::{Tally, campaign};
+pub(crate) use campaign::campaign;
 pub(crate) use job::work;

@@ -107,7 +107,7 @@ pub(crate) struct Args {
     #[arg(long)]
     pub(crate) exact: bool,
 
-    /// hough, hough_probabilistic, blobs: the input is an image of edges already.
+    /// hough, `hough_probabilistic`, blobs: the input is an image of edges already.
     #[arg(long)]
     pub(crate) binary: bool,
 
@@ -119,11 +119,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "F", default_value_t = 1.0)]
     pub(crate) rho: f64,
 
-    /// hough_probabilistic: pixels that a line reaches at least.
+    /// `hough_probabilistic`: pixels that a line reaches at least.
     #[arg(long, value_name = "N", default_value_t = 30)]
     pub(crate) min_length: usize,
 
-    /// hough_probabilistic: pixels that may be missing in a line.
+    /// `hough_probabilistic`: pixels that may be missing in a line.
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub(crate) max_gap: usize,
 

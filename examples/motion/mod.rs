@@ -6,5 +6,5 @@ mod scene;
 mod watch;
 
 pub(crate) use args::Args;
-pub(crate) use campaign::{Pairs, Roc, campaign, pairs};
+pub(crate) use campaign::campaign;
 pub(crate) use watch::work;
