@@ -4,6 +4,7 @@
 //! column, what stands there and what was expected. Files are in millimetres and degrees; values are in SI units.
 
 mod args;
+pub mod bitmap;
 mod error;
 pub mod esobj;
 mod lexer;
@@ -20,7 +21,7 @@ pub mod wld;
 mod yaml;
 
 pub use error::{FormatError, Location, Parsed, Warning};
-pub use load::{load_object, load_robot, load_scene};
+pub use load::{load_object, load_robot, load_scene, parse_robot, parse_scene, read_file};
 pub use source::{DiskFiles, FileSource, MemoryFiles, SourceFile};
 
 use load::stem;
