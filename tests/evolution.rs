@@ -125,7 +125,7 @@ mod walking {
     #[test]
     fn a_killed_run_goes_on_to_the_same_end() {
         let (killed, whole) = (folder("killed"), folder("whole"));
-        for wait in [150, 400, 250] {
+        for wait in [100, 250, 175] {
             let mut child = Command::new(env::current_exe().unwrap())
                 .args(["--exact", "walking::run_that_is_killed"])
                 .env("ROVERLAB_KILLED_RUN", &killed)
@@ -146,7 +146,7 @@ mod walking {
         let folder = folder("other");
         resumable(&folder);
         let checkpoint = folder.join("run.json");
-        let options = ["--population", "9", "--checkpoint", checkpoint.to_str().unwrap()];
+        let options = ["--population", "9", "--seconds", "4", "--checkpoint", checkpoint.to_str().unwrap()];
         let (status, _, err) = run("starman", starman::work, &options);
         assert_eq!(status, 2, "{err}");
         assert!(

@@ -17,7 +17,7 @@
 //!     starman.set_servo(3, 0.0)?;
 //!     starman.wait(1.0)?;
 //! }
-//! assert!(starman.pose()?.x.abs() > 0.001);
+//! assert!(starman.pose()?.x < -0.001);
 //! # Ok(())
 //! # }
 //! ```

@@ -40,7 +40,7 @@ impl StarmanSpec {
             limb_length: 0.090,
             limb_radius: 0.010,
             limb_mass: 0.080,
-            friction: 0.8,
+            friction: 0.5,
             servo_range: 30.0 * degree,
             servo_speed: 30.0 * degree,
             servo_torque: 2.0,
