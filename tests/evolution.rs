@@ -118,7 +118,7 @@ mod walking {
         let checkpoint = folder.join("run.json");
         evolved(
             folder,
-            &["--generations", "25", "--threads", "1", "--checkpoint", checkpoint.to_str().unwrap()],
+            &["--leading", "2", "--threads", "1", "--checkpoint", checkpoint.to_str().unwrap()],
         )
     }
 

@@ -201,7 +201,8 @@ mod tests {
     fn the_corners_of_a_notched_room_are_found_under_noise() {
         let world = notched();
         for seed in 0..20 {
-            let pose = Pose::new(1.5, 0.9, 0.3 * seed as f64);
+            // From here all six walls are seen.
+            let pose = Pose::new(2.3, 0.9, 0.3 * seed as f64);
             let found = features(&world, pose, 1.0, seed);
             assert_eq!((found.walls.len(), found.corners.len()), (6, 6), "{seed}: {found:?}");
             assert!(found.objects.is_empty());
