@@ -99,7 +99,7 @@ const SWAY_TIME: f64 = 1.0;
 /// How many observations of the approach to a wall are remembered.
 const APPROACH: usize = 50;
 /// The angle, in radians, beyond which a wall runs across the robot's way.
-const ACROSS: f64 = 0.5;
+const ACROSS: f64 = 0.6;
 /// Points of the side sensor by which a wall that runs across the robot's way is known anew.
 const RENEWAL_POINTS: usize = 12;
 /// Readings in a row that say that a wall has ended, or that another begins.
@@ -377,9 +377,16 @@ impl WallFollower {
     fn renewed(&mut self, tracker: WallTracker, pose: &Pose) -> WallTracker {
         let error = self.parameters.range_error;
         let line = self.beside.last_line(RENEWAL_POINTS, &[], pose);
-        let line = line.filter(|line| line.rms < 2.0 * error.max(0.002) && line.direction.x > 0.2);
+        let along = |line: &FittedLine| line.direction.x > 0.0 && line.angle().abs() < ACROSS;
+        let line = line.filter(|line| line.rms < 2.0 * error.max(0.002) && along(line));
+        let beside = self.beside.iter().last().map(|point| pose.to_local(point).y);
         self.beside.clear();
-        line.map_or(tracker, |line| WallTracker::of_line(&line, error))
+        match (line, beside) {
+            (Some(line), _) => WallTracker::of_line(&line, error),
+            // What so few points say of the direction is not to be believed then.
+            (None, Some(distance)) => WallTracker::beside(distance, error),
+            (None, None) => tracker,
+        }
     }
 
     /// Whether the wall ahead is as near as the robot can stop.
