@@ -17,6 +17,8 @@ mod omni;
 mod programs;
 #[path = "replay/mod.rs"]
 mod replay;
+#[path = "wall_following/mod.rs"]
+mod wall_following;
 
 fn main() -> std::process::ExitCode {
     replay::main()

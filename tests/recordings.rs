@@ -16,6 +16,8 @@ mod omni;
 mod programs;
 #[path = "../examples/replay/mod.rs"]
 mod replay;
+#[path = "../examples/wall_following/mod.rs"]
+mod wall_following;
 
 use std::ffi::OsString;
 use std::fs;
@@ -101,6 +103,8 @@ fn another_behaviour_is_found_at_the_first_call_that_differs() {
     let (status, report, err) = run("a_to_b", a_to_b::work, &["--replay", name, "--scale", "1.01"]);
     assert_eq!((status, report["outcome"].as_str()), (1, Some("failed")), "{report}");
     assert!(err.contains("found the call set_speed(") && err.contains("expected set_speed("), "{err}");
+    let (status, _, err) = run("a_to_b", a_to_b::work, &["--campaign", "--runs", "1", "--record", name]);
+    assert!(status == 2 && err.contains("found no robot that drives"), "{err}");
     let (status, _, err) = run("distbug", distbug::work, &["--replay", name]);
     assert!(status == 2 && err.contains("`a_to_b`") && err.contains("expected one of `distbug`"), "{err}");
 }

@@ -89,6 +89,18 @@ impl CommonArgs {
         }
     }
 
+    /// Fails if the options ask for a recording that there cannot be, because no robot drove.
+    pub(crate) fn check_recorded(&self) -> Result<(), Failure> {
+        let option = [("--record", &self.record), ("--replay", &self.replay)];
+        match option.into_iter().find_map(|(option, file)| file.as_ref().map(|file| (option, file))) {
+            Some((option, file)) if !self.origin.is_staged() => Err(Failure::input(format!(
+                "{option} {}: found no robot that drives; expected a run that can be recorded",
+                file.display()
+            ))),
+            _ => Ok(()),
+        }
+    }
+
     /// Tells a person what happens during a run. Silent with `--json`.
     pub(crate) fn tell(&self, event: impl Display) {
         if !self.json {

@@ -1,3 +1,4 @@
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use roverlab::io::log::{Attachment, Log};
@@ -10,6 +11,7 @@ pub(crate) struct Origin {
     facts: Arc<OnceLock<Facts>>,
     trouble: Arc<Mutex<Vec<String>>>,
     files: Arc<Mutex<Vec<Attachment>>>,
+    staged: Arc<AtomicBool>,
 }
 
 /// What is known about a run from its command line.
@@ -44,6 +46,16 @@ impl Origin {
     /// The files that belong to the run.
     pub(crate) fn files(&self) -> Vec<Attachment> {
         self.files.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Notes that there was a stage, so that there is a recording.
+    pub(crate) fn set_staged(&self) {
+        self.staged.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether there was a stage.
+    pub(crate) fn is_staged(&self) -> bool {
+        self.staged.load(Ordering::Relaxed)
     }
 
     /// Notes what went wrong with a recording. The run goes on, but the program reports it and fails.

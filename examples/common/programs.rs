@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::io::Write;
 
 use crate::common::run;
-use crate::{a_to_b, ackermann, distbug, omni};
+use crate::{a_to_b, ackermann, distbug, omni, wall_following};
 
 /// Runs a program with a command line and its two outputs. Returns the exit status.
 type Run = fn(Vec<OsString>, &mut dyn Write, &mut dyn Write) -> u8;
@@ -21,6 +21,10 @@ pub(crate) const PROGRAMS: &[Program] = &[
     Program { name: "ackermann", run: |words, out, err| run("ackermann", words, out, err, ackermann::work) },
     Program { name: "distbug", run: |words, out, err| run("distbug", words, out, err, distbug::work) },
     Program { name: "omni", run: |words, out, err| run("omni", words, out, err, omni::work) },
+    Program {
+        name: "wall_following",
+        run: |words, out, err| run("wall_following", words, out, err, wall_following::work),
+    },
 ];
 
 /// A program by its name.

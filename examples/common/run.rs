@@ -42,6 +42,7 @@ where
         common.check()?;
         let mut report = work(args)?;
         report.add_trouble(common.origin.take_trouble());
+        common.check_recorded()?;
         let (seed, noise, wall_time) = (common.seed, common.noise, stopwatch.seconds());
         let header = Header { example, seed, noise, wall_time };
         let text = if common.json { report.json(header) } else { report.summary(header) };

@@ -48,6 +48,7 @@ impl CommonArgs {
             None => Stage::simulated(scene, options, self.faults()?)?,
         };
         stage.origin = self.origin.clone();
+        stage.origin.set_staged();
         if let Some(file) = &self.record {
             let header = facts.log.as_ref().map_or_else(
                 || Header {

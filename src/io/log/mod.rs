@@ -13,6 +13,7 @@
 //! | `/robot1/calls` | `roverlab.Call` | every call with its arguments, and its result or error |
 //! | `/robot1/lidar` | `foxglove.LaserScan` | scans |
 //! | `/robot1/camera` | `foxglove.RawImage` | camera images |
+//! | `/robot1/lcd` | `foxglove.RawImage` | the display, once a second when it has changed |
 //! | `/robot1/odometry` | `foxglove.PoseInFrame` | where odometry takes the robot to be |
 //! | `/robot1/transforms` | `foxglove.FrameTransform` | the same for the viewer's frames |
 //! | `/scene` | `foxglove.SceneUpdate` | walls, objects and marks |
@@ -38,6 +39,7 @@ mod recover;
 mod replay;
 mod scene;
 mod schema;
+mod shadow;
 mod truth;
 mod values;
 mod wire;

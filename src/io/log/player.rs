@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::call::{self, Call};
 use super::recording::{Event, Kind};
-use super::writer::Nanoseconds;
+use super::writer::{Nanoseconds, nanoseconds};
 use super::{Log, LogError, Replay, ReplayTruth};
 
 /// Plays a recording: hands out its robots, and what was true about them.
@@ -33,6 +33,11 @@ impl Player {
     /// What was true while a robot drove, as somebody asked who watched it.
     pub fn truth(&self, robot: usize) -> Result<ReplayTruth, LogError> {
         self.position(robot).map(ReplayTruth::new)
+    }
+
+    /// Goes to a time of the recording, in seconds: the next call of each robot is its first one from then on.
+    pub fn seek(&self, time: f64) {
+        self.positions.iter().for_each(|position| position.seek(nanoseconds(time)));
     }
 
     /// The first recorded call, of the robot of the lowest index, that no program has made: its time in seconds, and
@@ -75,6 +80,12 @@ impl Position {
 
     pub(super) fn move_to(&self, index: usize) {
         self.next.store(index, Ordering::Relaxed);
+    }
+
+    /// Goes to the first event from a time on.
+    fn seek(&self, time: Nanoseconds) {
+        let earlier = (0..).take_while(|&index| self.event(index).is_some_and(|event| event.time < time));
+        self.move_to(earlier.count());
     }
 
     /// The next call, or the end of the recording.

@@ -3,10 +3,12 @@ use std::io::Write;
 
 use super::call;
 use super::schema::Schema;
+use super::shadow::Shadow;
 use super::values::{Put, Values};
 use super::wire::Fields;
 use super::writer::{Channel, LogWriter, Nanoseconds, frame, odometry_frame};
 use crate::geometry::Pose;
+use crate::io::sim::Lcd;
 use crate::io::{Error, LidarScan, Result};
 
 /// The channels of a robot.
@@ -14,6 +16,7 @@ pub(super) const CALLS: Channel = ("calls", Schema::Call);
 pub(super) const TRUTH: Channel = ("truth", Schema::Call);
 pub(super) const LIDAR: Channel = ("lidar", Schema::LaserScan);
 pub(super) const CAMERA: Channel = ("camera", Schema::RawImage);
+pub(super) const LCD: Channel = ("lcd", Schema::RawImage);
 pub(super) const ODOMETRY: Channel = ("odometry", Schema::PoseInFrame);
 pub(super) const TRANSFORMS: Channel = ("transforms", Schema::FrameTransform);
 /// What stands in the world.
@@ -29,6 +32,7 @@ pub(super) struct Port<W: Write> {
     arguments: Values,
     result: Values,
     message: Vec<u8>,
+    shadow: Shadow,
     /// Whether the robot drives no more when this is gone.
     closes: bool,
 }
@@ -42,6 +46,7 @@ impl<W: Write> fmt::Debug for Port<W> {
 impl<W: Write> Drop for Port<W> {
     fn drop(&mut self) {
         if self.closes {
+            self.show_display();
             self.writer.close(self.track);
         }
     }
@@ -58,6 +63,7 @@ impl<W: Write> Port<W> {
             arguments: Values::default(),
             result: Values::default(),
             message: Vec::new(),
+            shadow: Shadow::default(),
             closes: true,
         }
     }
@@ -73,6 +79,23 @@ impl<W: Write> Port<W> {
     pub(super) fn begin(&mut self, time: Option<Nanoseconds>) {
         self.time = time;
         self.arguments.clear();
+        if time.is_some_and(|time| self.shadow.is_due(time)) {
+            self.show_display();
+        }
+    }
+
+    /// Draws what the robot has drawn in the call that has begun.
+    pub(super) fn draw(&mut self, drawing: impl FnOnce(&mut Lcd) -> Result<()>) {
+        self.shadow.draw(self.time.unwrap_or(0), drawing);
+    }
+
+    /// Writes what the display shows, if something has been drawn since the last time.
+    fn show_display(&mut self) {
+        let mut shadow = std::mem::take(&mut self.shadow);
+        if let Some(image) = shadow.take() {
+            self.show(LCD, |out, frames| raw_image(out, frames, image.dimensions(), image.as_raw()));
+        }
+        self.shadow = shadow;
     }
 
     pub(super) fn argument(&mut self, argument: &impl Put) {

@@ -141,9 +141,34 @@ macro_rules! recorded {
     (@show $self:ident $name:ident $result:ident) => {};
 }
 
+/// As `recorded`, for calls that change what the display shows.
+macro_rules! drawn {
+    ($capability:ident { $( fn $name:ident($($arg:ident: $type:ty),*) -> $result:ty; )* }) => {
+        impl<R: $capability + Clock, W: Write> $capability for Recorder<R, W> {
+            $( fn $name(&mut self $(, $arg: $type)*) -> Result<$result> {
+                self.begin();
+                $( self.port.argument(&$arg); )*
+                let result = self.inner.$name($($arg),*);
+                self.port.end(CALLS, stringify!($name), &result);
+                if result.is_ok() {
+                    drawn!(@draw self $name($($arg),*));
+                }
+                result
+            } )*
+        }
+    };
+    (@draw $self:ident cursor()) => {};
+    (@draw $self:ident display_size()) => {};
+    (@draw $self:ident pixel($at:ident)) => {};
+    (@draw $self:ident screenshot()) => {};
+    (@draw $self:ident $name:ident($($arg:ident),*)) => {
+        $self.port.draw(|lcd| lcd.$name($($arg),*));
+    };
+}
+
 signatures! { Drive => recorded!() }
 signatures! { DistanceSensors => recorded!() }
-signatures! { Display => recorded!() }
+signatures! { Display => drawn!() }
 signatures! { Keys => recorded!() }
 signatures! { Radio => recorded!() }
 signatures! { Motors => recorded!() }
