@@ -4,6 +4,8 @@
 mod boundary;
 mod distbug;
 pub mod grid;
+mod lidar;
+mod localisation;
 mod reachability;
 mod scan_filter;
 mod scan_matcher;
@@ -14,6 +16,11 @@ pub use boundary::WallSide;
 pub use distbug::{
     DistBug, DistBugEvent, DistBugObservation, DistBugOutcome, DistBugParameters, DistBugPhase,
 };
+pub use lidar::{
+    ExtractionParameters, Extremum, ExtremumKind, ScanCorner, ScanFeatures, ScanObject, ScanWall,
+    extract_features, local_extrema, plot_scan,
+};
+pub use localisation::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
 pub use reachability::Reachability;
 pub use scan_filter::ScanFilter;
 pub use scan_matcher::ScanMatcher;
