@@ -45,6 +45,20 @@ fn the_examples_own_maze_is_planned() {
 }
 
 #[test]
+fn the_examples_own_maze_is_explored_and_raced() {
+    for noise in ["0", "1"] {
+        let (status, report, err) = run(&["--explore", "--noise", noise, "--seed", "3"]);
+        assert_eq!((status, err.as_str()), (0, ""), "{report}");
+        assert_eq!((&report["outcome"], &report["collisions"]), (&"raced".into(), &0.into()));
+        assert_eq!(report["proved_optimal"], true);
+        let number = |name: &str| report[name].as_f64().unwrap();
+        let (planned, driven) = (number("fast_run_planned_s"), number("fast_run_s"));
+        assert!((driven - planned).abs() < 0.02 * planned, "{report}");
+        assert!(number("visited_cells") <= 64.0 && number("localisation_error_mm") < 10.0, "{report}");
+    }
+}
+
+#[test]
 fn a_file_that_is_missing_is_named() {
     let (status, report, err) = run(&["--plan", "--maze", "no/such.maze"]);
     assert_eq!((status, report), (2, Value::Null));

@@ -6,10 +6,14 @@ use crate::common::CommonArgs;
 #[derive(Debug, Clone, clap::Parser)]
 #[command(
     name = "micromouse",
-    about = "Reads a maze of any format and plans the way through it",
+    about = "Explores a maze of any format with a robot until the best way is proved, and drives it as fast as the robot can",
     after_help = "\
 Formats: the micromouse text format, kerikun11's .maze, mms's map and num, EyeSim's .maz, and the old binary files. They are
 told from the content. Unknown walls count as walls. Without --maze, a maze of the example's own.
+
+With --plan, the way through the known maze and no drive. Without it, a micromouse that knows the size of the maze, its start and
+its goal explores it: to the goal, then to such unknown walls as could make the route with the fewest steps or the fastest
+one better, and back. Then it drives the fastest run, with smooth turns and diagonals.
 
 JSON fields:
   maze, format                the file, and its format: text, maze, map, num, eyesim or binary
@@ -23,8 +27,18 @@ JSON fields:
   fewest_turns                fewest turns of any route; -1 when there is none
   fewest_turns_steps          steps of the shortest of those routes; -1 when there is none
   route                       the route of the fewest steps and then turns, a letter n, e, s or w for each step
-  picture
-Outcomes: planned, unreachable."
+With a drive instead of the last six:
+  proved_optimal              whether no unknown wall can make the best route better, or give one where there is none
+  visited_cells, looks        cells that the robot has been in, and stops to look around
+  unknown_walls               walls that it need not know
+  exploration_s               simulated seconds until it is back at the start
+  fast_run_planned_s          seconds from standstill to standstill by the plan; null without a way
+  fast_run_s                  the same as driven
+  fast_run_steps              cells of the fast run
+  localisation_error_mm       true error of where the robot takes itself to be in the end
+  cell_mm
+  picture                     always
+Outcomes: planned, raced, unreachable, timed_out, collided, failed."
 )]
 pub(crate) struct Args {
     /// The maze.
@@ -32,8 +46,16 @@ pub(crate) struct Args {
     pub(crate) maze: Option<PathBuf>,
 
     /// Plan the way and do not drive.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "explore")]
     pub(crate) plan: bool,
+
+    /// Explore and race: the default.
+    #[arg(long)]
+    pub(crate) explore: bool,
+
+    /// An EyeBot S4 in a maze of twice the size, as in the book.
+    #[arg(long)]
+    pub(crate) doubled: bool,
 
     #[command(flatten)]
     pub(crate) common: CommonArgs,

@@ -3,6 +3,7 @@
 #![allow(dead_code, unused_imports, reason = "example and tests use their own parts of this")]
 
 mod args;
+mod explore;
 mod picture;
 mod plan;
 mod scene;
@@ -14,5 +15,5 @@ use crate::common::{Failure, Report};
 /// The work of the example.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     args.common.check_picture()?;
-    plan::plan(args)
+    if args.plan { plan::plan(args) } else { explore::explore(args) }
 }

@@ -1,4 +1,5 @@
 use roverlab::geometry::{Point, Vector};
+use roverlab::io::sim::TICK;
 use roverlab::maze::files::MazeFile;
 use roverlab::maze::{Cell, Maze, Route, Scale};
 use roverlab::picture::{Mark, Picture, SERIES, Style};
@@ -46,4 +47,13 @@ pub(crate) fn of_plan(file: &MazeFile, short: Option<&Route>, straight: Option<&
 /// The middles of a route's cells, a little aside so that two routes can be told apart.
 fn points(route: &Route, scale: Scale, shift: f64) -> Vec<Point> {
     route.cells().map(|cell: Cell| scale.centre(cell) + Vector::new(shift, shift)).collect()
+}
+
+/// Where the robot drove: pale while it explored, coloured by its speed on the fast run.
+pub(crate) fn add_drive(picture: &mut Picture, path: &[Point], split: usize) {
+    let style = Style::new(SERIES[1]).width(1.6).opacity(0.6).labelled("exploration");
+    picture.line(path[..split].iter().copied(), style);
+    let fast = &path[split.saturating_sub(1)..];
+    let speeds = fast.windows(2).map(|pair| (pair[1], (pair[1] - pair[0]).norm() / TICK));
+    picture.speed_path(speeds);
 }

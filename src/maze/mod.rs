@@ -2,7 +2,8 @@
 //!
 //! A [`Maze`] is what a robot knows of a maze: its walls are present, absent or unknown. [`files`] reads and writes all
 //! formats that people use for them. [`FloodFill`] counts steps, [`shortest_route`] finds the way with the fewest steps
-//! or turns.
+//! or turns, [`FastPlanner`] the fastest run with smooth turns and diagonals. An [`Explorer`] says what to look at next, and a
+//! [`MazeRunner`] drives a robot there: it explores, and then races.
 //!
 //! ```
 //! use roverlab::maze::{Preference, Unknown, files, shortest_route};
@@ -32,6 +33,7 @@ mod flood;
 pub mod generate;
 mod model;
 mod route;
+mod run;
 mod scale;
 
 pub use compass::{Cell, Direction};
@@ -41,4 +43,8 @@ pub use fast::{FastPlan, FastPlanner, LimitsError, Piece, RunLimits, Trajectory,
 pub use flood::{Distances, FloodFill, IncrementalFlood, Passages, distances_from_start, distances_to_goal};
 pub use model::{Maze, SizeError, Unknown, Wall};
 pub use route::{Preference, Route, shortest_route, shortest_route_between};
+pub use run::{
+    Calibration, Exploration, MazeLocaliser, MazeRunner, Rig, RunnerParameters, Sensor, Tracker,
+    TrackerParameters, mouse,
+};
 pub use scale::Scale;

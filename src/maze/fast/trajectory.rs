@@ -73,6 +73,13 @@ impl Trajectory {
         Ok(trajectory)
     }
 
+    /// A turn on the spot from standstill to standstill, as fast as the limits allow.
+    pub fn pivot(start: Pose, angle: f64, limits: &RunLimits) -> Self {
+        let mut trajectory = Self { segments: Vec::new(), end: start };
+        trajectory.append_pivot(angle, limits);
+        trajectory
+    }
+
     fn append(&mut self, piece: &Piece, repertoire: &Repertoire) {
         match *piece {
             Piece::Pivot { angle } => self.append_pivot(angle, &repertoire.limits),

@@ -1,0 +1,139 @@
+use roverlab::geometry::{Point, Pose};
+use roverlab::io::sim::NoiseModel;
+use roverlab::maze::files::MazeFile;
+use roverlab::maze::{
+    Exploration, FastPlan, Goals, Maze, MazeRunner, Rig, RunnerParameters, Scale, TwoPhaseExplorer, Verdict,
+    mouse,
+};
+use roverlab::picture::Picture;
+use roverlab::world::{RobotSpec, Scene};
+
+use super::plan::with_maze;
+use super::{Args, picture, scene};
+use crate::common::{Failure, Outcome, Report, millimetres, rounded};
+use crate::driving::{Conditions, Run, drawn, paced};
+
+/// What the robot says after its drive.
+#[derive(Debug, Clone)]
+pub(crate) struct Told {
+    pub(crate) exploration: Exploration,
+    /// What it knows about the maze.
+    pub(crate) known: Maze,
+    pub(crate) plan: Option<FastPlan>,
+    /// Seconds of the fast run.
+    pub(crate) race: Option<f64>,
+    /// Steps of the watcher before the fast run.
+    pub(crate) explored_steps: usize,
+    /// Where it takes itself to be in the end.
+    pub(crate) pose: Pose,
+}
+
+/// The robot, and the maze in its size.
+pub(crate) fn kit(doubled: bool) -> (RobotSpec, Scale, RunnerParameters) {
+    if doubled {
+        (RobotSpec::s4(), Scale::DOUBLED, RunnerParameters::EYEBOT)
+    } else {
+        (mouse(), Scale::MICROMOUSE, RunnerParameters::MICROMOUSE)
+    }
+}
+
+/// Lets a robot explore a maze and race through it.
+pub(crate) fn explore(args: &Args) -> Result<Report, Failure> {
+    let file = scene::maze(args)?;
+    let (spec, scale, _) = kit(args.doubled);
+    for defect in &file.defects {
+        args.common.tell(format_args!("defect: {defect}"));
+    }
+    let scene = stage(&file, &spec, scale);
+    let limit = 600.0 + 40.0 * file.maze.cell_count() as f64;
+    let conditions = Conditions::new(&args.common, limit)?;
+    let run = conditions.run(&scene, paced(&args.common), |robot, step| {
+        drive(robot, args, &file.maze, conditions.noise, conditions.odometry_errors(), step)
+    })?;
+    let (drawing, trouble) = drawn(&args.common, "micromouse.svg", || picture_of(&file, &run, scale));
+    let report = run.report(|told| match (told.exploration.verdict, told.race) {
+        (Verdict::Unreachable, _) => Outcome::verdict("unreachable"),
+        (_, Some(_)) => Outcome::verdict("raced"),
+        (_, None) => Outcome::verdict("explored"),
+    });
+    let report = with_maze(report, args, &file);
+    Ok(Report { trouble, ..with_run(report, &run, scale).field("picture", drawing) })
+}
+
+fn stage(file: &MazeFile, spec: &RobotSpec, scale: Scale) -> Scene {
+    let start = scale.pose(file.maze.start(), file.maze.heading());
+    Scene::with_robot(scale.world(&file.maze), spec.clone(), start)
+}
+
+/// The robot's program: it knows the size of the maze, its start and its goal.
+fn drive(
+    robot: &mut crate::common::Driven,
+    args: &Args,
+    truth: &Maze,
+    noise: f64,
+    errors: roverlab::kinematics::OdometryErrors,
+    step: &mut dyn FnMut(),
+) -> roverlab::io::Result<Told> {
+    let (spec, scale, parameters) = kit(args.doubled);
+    let rig = Rig::new(&spec, errors, NoiseModel::real().scaled(noise).range)?;
+    let mut known = Maze::unexplored(truth.width(), truth.height()).map_err(|error| {
+        roverlab::io::Error::new(roverlab::io::ErrorKind::InvalidInput, error.to_string())
+    })?;
+    known.set_start(truth.start(), truth.heading());
+    known.set_goals(truth.goals());
+    let mut steps = 0;
+    let mut watch = |_: Pose| {
+        steps += 1;
+        step();
+    };
+    let mut runner = MazeRunner::new(robot, rig, known, scale, parameters)?;
+    let mut explorer = TwoPhaseExplorer::new(Goals::StepsAndTime(Box::new(runner.planner())));
+    let exploration = runner.explore(&mut explorer, &mut watch)?;
+    let plan = runner.plan_fast_run();
+    let race = plan.as_ref().map(|plan| runner.race(plan, &mut watch)).transpose()?;
+    let (known, pose) = (runner.maze().clone(), runner.pose());
+    drop(runner);
+    let raced = race.map_or(0, |race| (race / parameters.tracker.period) as usize);
+    Ok(Told { exploration, known, plan, race, explored_steps: steps.max(raced) - raced, pose })
+}
+
+fn with_run(report: Report, run: &Run<Told>, scale: Scale) -> Report {
+    let told = run.ending.as_ref().ok();
+    let proved = told.is_some_and(|told| told.exploration.verdict != Verdict::Explored);
+    let seconds = |time: Option<f64>| time.map(rounded);
+    let error = told.map(|told| run.truth.pose.distance_to(told.pose.position()));
+    report
+        .field("proved_optimal", proved)
+        .field("visited_cells", told.map(|told| told.exploration.visited))
+        .field("looks", told.map(|told| told.exploration.looks))
+        .field("unknown_walls", told.map(|told| told.known.unknown_walls()))
+        .field("exploration_s", seconds(told.map(|told| told.exploration.time)))
+        .field("fast_run_planned_s", seconds(told.and_then(|told| Some(told.plan.as_ref()?.time))))
+        .field("fast_run_s", seconds(told.and_then(|told| told.race)))
+        .field("fast_run_steps", told.and_then(|told| Some(told.plan.as_ref()?.route.steps())))
+        .field("localisation_error_mm", error.map(millimetres))
+        .field("cell_mm", millimetres(scale.cell))
+}
+
+fn picture_of(file: &MazeFile, run: &Run<Told>, scale: Scale) -> Picture {
+    let path: Vec<Point> = run.positions().collect();
+    let told = run.ending.as_ref().ok();
+    let split = told.map_or(path.len(), |told| told.explored_steps.min(path.len()));
+    let mut picture = picture::of_maze(&file.maze, scale);
+    let caption = match told.map(|told| (told, told.race)) {
+        Some((told, Some(race))) => format!(
+            "explored to the proof in {:.0} s and {} of {} cells; fast run {race:.2} s",
+            told.exploration.time,
+            told.exploration.visited,
+            file.maze.cell_count()
+        ),
+        Some((told, None)) => format!("no way to the goal; {} cells seen", told.exploration.visited),
+        None => "the drive failed".into(),
+    };
+    picture.title("Micromouse").caption(caption);
+    picture::add_drive(&mut picture, &path, split);
+    for &place in &run.truth.contact_places {
+        picture.mark(roverlab::picture::Mark::Contact, place);
+    }
+    picture
+}

@@ -1,0 +1,280 @@
+use nalgebra::{SMatrix, SVector};
+
+use super::rig::{Rig, Sensor};
+use super::sight::{Crossing, Crossings};
+use crate::geometry::{Pose, Vector, angle_difference, direction, math, normalize_angle};
+use crate::maze::{Maze, Scale, Wall};
+
+/// Where a robot is in a maze whose walls are partly known, from odometry and three distance sensors.
+///
+/// An extended Kalman filter estimates the pose together with what is systematic about the robot: how far it really goes for
+/// a metre of odometry, how far it really turns, and how it bends to one side. Each reading is compared with the known wall
+/// that it should come from, which centres the robot between walls and tells how far it is from one ahead. Where a wall ends
+/// beside the robot, a reading from the wrong side of the end tells how far along the robot is (*wall-edge correction*).
+#[derive(Debug, Clone)]
+pub struct MazeLocaliser {
+    rig: Rig,
+    scale: Scale,
+    /// x, y, heading, and the three of [`Calibration`].
+    state: SVector<f64, 6>,
+    covariance: SMatrix<f64, 6, 6>,
+    odometry: Pose,
+}
+
+/// What is systematic about a robot's odometry.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Calibration {
+    /// Metres really driven for a metre of odometry.
+    pub distance: f64,
+    /// Radians really turned for a radian of odometry, at a distance of 1.
+    pub angle: f64,
+    /// Radians really turned for each metre of odometry straight ahead.
+    pub bend: f64,
+}
+
+/// Indices into the state.
+const HEADING: usize = 2;
+const DISTANCE: usize = 3;
+const ANGLE: usize = 4;
+const BEND: usize = 5;
+
+/// The least standard deviations, which keep the filter open for what it does not know about: metres for a reading, metres
+/// and radians at the start.
+const LEAST_RANGE: f64 = 1e-3;
+const START: [f64; 2] = [1e-3, 4e-3];
+/// Innovations beyond so many standard deviations come from something else than the wall.
+const GATE: f64 = 4.0;
+/// Metres from a corner within which a ray may meet something else than a wall's face.
+const CORNER: f64 = 0.012;
+/// Metres beyond, within which a reading as from a post is taken for one.
+const STRAY: f64 = 0.015;
+
+impl MazeLocaliser {
+    /// A robot at a known pose in the maze, at rest, whose odometry reads `odometry`.
+    pub fn new(rig: Rig, scale: Scale, pose: Pose, odometry: Pose) -> Self {
+        let e = rig.errors;
+        let [place, heading] = START;
+        let deviations = [place, place, heading, e.wheel_scale, e.track, e.wheel_mismatch / rig.track]
+            .map(|d| d * d + 1e-14);
+        Self {
+            rig,
+            scale,
+            state: SVector::from([pose.x, pose.y, pose.heading, 1.0, 1.0, 0.0]),
+            covariance: SMatrix::from_diagonal(&SVector::from(deviations)),
+            odometry,
+        }
+    }
+
+    /// The most likely pose.
+    pub fn pose(&self) -> Pose {
+        Pose::new(self.state[0], self.state[1], normalize_angle(self.state[HEADING]))
+    }
+
+    /// What has been learnt about the robot.
+    pub fn calibration(&self) -> Calibration {
+        Calibration { distance: self.state[DISTANCE], angle: self.state[ANGLE], bend: self.state[BEND] }
+    }
+
+    /// Standard deviations of the position, in the worse direction, and of the heading.
+    pub fn deviations(&self) -> (f64, f64) {
+        let (xx, yy) = (self.covariance[(0, 0)], self.covariance[(1, 1)]);
+        (xx.max(yy).sqrt(), self.covariance[(HEADING, HEADING)].sqrt())
+    }
+
+    /// Moves on to a new reading of odometry.
+    pub fn predict(&mut self, odometry: Pose) {
+        let moved = odometry.position() - self.odometry.position();
+        let turned = angle_difference(odometry.heading, self.odometry.heading);
+        let middle = self.odometry.heading + 0.5 * turned;
+        let length = moved.dot(&direction(middle));
+        self.odometry = odometry;
+        if length != 0.0 || turned != 0.0 {
+            self.advance(length, turned);
+        }
+    }
+
+    fn advance(&mut self, length: f64, turned: f64) {
+        let s = &mut self.state;
+        let (real_length, angle) = (s[DISTANCE] * length, s[DISTANCE] * s[ANGLE] * turned + s[BEND] * length);
+        let middle = s[HEADING] + 0.5 * angle;
+        let (sin, cos) = math::sin_cos(middle);
+        let mut jacobian = SMatrix::<f64, 6, 6>::identity();
+        // How the heading depends on the calibration, and the position on half of that.
+        let slopes = [(DISTANCE, s[ANGLE] * turned), (ANGLE, s[DISTANCE] * turned), (BEND, length)];
+        for (index, slope) in slopes {
+            jacobian[(HEADING, index)] = slope;
+            jacobian[(0, index)] = -0.5 * real_length * sin * slope;
+            jacobian[(1, index)] = 0.5 * real_length * cos * slope;
+        }
+        jacobian[(0, DISTANCE)] += length * cos;
+        jacobian[(1, DISTANCE)] += length * sin;
+        jacobian[(0, HEADING)] = -real_length * sin;
+        jacobian[(1, HEADING)] = real_length * cos;
+        s[0] += real_length * cos;
+        s[1] += real_length * sin;
+        s[HEADING] += angle;
+        self.covariance = jacobian * self.covariance * jacobian.transpose();
+        self.add_slip(length, turned, (sin, cos));
+    }
+
+    /// Slip of both wheels, which grows with the square root of the way.
+    fn add_slip(&mut self, length: f64, turned: f64, (sin, cos): (f64, f64)) {
+        let aside = 0.5 * self.rig.track * turned;
+        let slip = self.rig.errors.slip * self.rig.errors.slip + 1e-10;
+        let wheels = [length - aside, length + aside].map(|way| slip * way.abs());
+        let along = 0.25 * (wheels[0] + wheels[1]);
+        let around = (wheels[0] + wheels[1]) / (self.rig.track * self.rig.track);
+        self.covariance[(0, 0)] += along * cos * cos;
+        self.covariance[(1, 1)] += along * sin * sin;
+        self.covariance[(0, 1)] += along * sin * cos;
+        self.covariance[(1, 0)] += along * sin * cos;
+        self.covariance[(HEADING, HEADING)] += around;
+    }
+
+    /// Learns from a reading of one of the rig's sensors, infinite without a return.
+    pub fn correct(&mut self, maze: &Maze, sensor: &Sensor, reading: f64) {
+        let pose = self.pose();
+        let yaw = pose.heading + sensor.mount.yaw;
+        let (sin, cos) = math::sin_cos(pose.heading);
+        let (x, y) = (sensor.mount.x, sensor.mount.y);
+        let offset = Vector::new(x * cos - y * sin, x * sin + y * cos);
+        let ray = direction(yaw);
+        let deviation = self.rig.range_error.max(LEAST_RANGE);
+        for crossing in Crossings::new(maze, self.scale, pose.position() + offset, ray) {
+            // A blunt angle onto the walls tells little about where the robot is.
+            let straight_on = if crossing.upright { ray.x } else { ray.y };
+            if crossing.distance > sensor.max_range || straight_on.abs() < 0.5 {
+                return;
+            }
+            let model = Model { crossing, offset, ray };
+            let slack = GATE * (deviation + self.deviation(&model.range_slope()));
+            let agrees = (reading - crossing.distance).abs() < slack.min(0.3 * self.scale.cell);
+            // How far along the wall the ray may be from where it seems to be.
+            let margin = CORNER + 2.0 * self.deviation(&model.along_slope());
+            let edge = self.edge(&crossing, agrees, reading, deviation);
+            if let Some(edge) = edge.filter(|_| straight_on.abs() > 0.9) {
+                self.correct_edge(&model, edge);
+                return;
+            }
+            match crossing.wall {
+                Wall::Unknown => return,
+                Wall::Absent => {
+                    // A post may be in the way.
+                    let post = margin + 0.5 * self.scale.wall;
+                    if agrees && crossing.corner_distance() < post + STRAY {
+                        self.correct_post(&model, reading, deviation);
+                        return;
+                    }
+                    if crossing.corner_distance() < post {
+                        return;
+                    }
+                }
+                Wall::Present => {
+                    let firm = crossing.beyond == Wall::Present || crossing.corner_distance() > margin;
+                    if agrees && firm {
+                        let (slope, variance) = (model.range_slope(), deviation * deviation);
+                        self.update(&slope, reading - crossing.distance, variance);
+                    }
+                    return;
+                }
+            }
+        }
+    }
+
+    /// The standard deviation of something that depends on the state with a slope.
+    fn deviation(&self, slope: &SVector<f64, 6>) -> f64 {
+        slope.dot(&(self.covariance * slope)).max(0.0).sqrt()
+    }
+
+    /// Where the end of a wall must be that the reading has seen on the other side of the ray than it should be: a wall that
+    /// is not there any more, or one that is still there.
+    fn edge(&self, crossing: &Crossing, agrees: bool, reading: f64, deviation: f64) -> Option<f64> {
+        let ends = (crossing.wall, crossing.beyond);
+        let outward = (crossing.corner - crossing.along).signum();
+        let post = 0.5 * self.scale.wall;
+        let longer = reading > crossing.distance + 0.3 * self.scale.cell + GATE * deviation;
+        match ends {
+            // The wall ends, its post included, behind the corner.
+            (Wall::Present, Wall::Absent) if longer => Some(crossing.corner + outward * post),
+            (Wall::Absent, Wall::Present) if agrees => Some(crossing.corner - outward * post),
+            _ => None,
+        }
+    }
+
+    /// Moves the robot to where the ray meets a post.
+    fn correct_post(&mut self, model: &Model, reading: f64, deviation: f64) {
+        let width = self.scale.wall;
+        self.update(&model.range_slope(), reading - model.crossing.distance, deviation * deviation);
+        // Anywhere on the face of the post.
+        let off = model.crossing.corner - model.crossing.along;
+        self.update(&model.along_slope(), off, width * width / 12.0 + 1e-5);
+    }
+
+    /// Moves the robot along a wall to where its end is.
+    fn correct_edge(&mut self, model: &Model, edge: f64) {
+        let innovation = edge - model.crossing.along;
+        let slope = model.along_slope();
+        let own = (slope.transpose() * self.covariance * slope)[0];
+        // Half of a tick's way, and how sharply a beam sees an edge.
+        let deviation = 0.004;
+        let variance = deviation * deviation;
+        if innovation * innovation < GATE * GATE * (own + variance) {
+            self.update(&slope, innovation, variance);
+        }
+    }
+
+    /// A measurement of one number: its slope by the state, by how much it differs, and its variance.
+    fn update(&mut self, slope: &SVector<f64, 6>, innovation: f64, variance: f64) {
+        let spread = self.covariance * slope;
+        let total = slope.dot(&spread) + variance;
+        if innovation * innovation > GATE * GATE * total {
+            return;
+        }
+        let gain = spread / total;
+        self.state += gain * innovation;
+        self.covariance -= gain * spread.transpose();
+        // Rounding must not make it lopsided.
+        self.covariance = 0.5 * (self.covariance + self.covariance.transpose());
+    }
+}
+
+/// How a reading depends on the state.
+struct Model {
+    crossing: Crossing,
+    /// From the robot to the sensor, in the maze's frame.
+    offset: Vector,
+    ray: Vector,
+}
+
+impl Model {
+    /// Slopes of the distance to the face of the wall.
+    fn range_slope(&self) -> SVector<f64, 6> {
+        let (offset, ray, d) = (self.offset, self.ray, self.crossing.distance);
+        let mut slope = SVector::zeros();
+        if self.crossing.upright {
+            slope[0] = -1.0 / ray.x;
+            slope[HEADING] = (offset.y + d * ray.y) / ray.x;
+        } else {
+            slope[1] = -1.0 / ray.y;
+            slope[HEADING] = -(offset.x + d * ray.x) / ray.y;
+        }
+        slope
+    }
+
+    /// Slopes of the place along the wall.
+    fn along_slope(&self) -> SVector<f64, 6> {
+        let (offset, ray, d) = (self.offset, self.ray, self.crossing.distance);
+        let range = self.range_slope();
+        let mut slope = SVector::zeros();
+        if self.crossing.upright {
+            slope[1] = 1.0;
+            slope[0] = range[0] * ray.y;
+            slope[HEADING] = offset.x + d * ray.x + range[HEADING] * ray.y;
+        } else {
+            slope[0] = 1.0;
+            slope[1] = range[1] * ray.x;
+            slope[HEADING] = -(offset.y + d * ray.y) + range[HEADING] * ray.x;
+        }
+        slope
+    }
+}

@@ -1,0 +1,305 @@
+use super::localiser::{Calibration, MazeLocaliser};
+use super::look::{self, View};
+use super::rig::Rig;
+use super::tracker::{Tracker, TrackerParameters};
+use crate::geometry::{Pose, Twist, angle_difference};
+use crate::io::{Clock, DistanceSensors, Drive, Error, ErrorKind, Result};
+use crate::maze::{
+    Cell, Direction, Explorer, FastPlan, FastPlanner, Maze, RunLimits, Scale, Step, Trajectory, Unknown,
+    Verdict, Wall,
+};
+
+/// How a robot drives through mazes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RunnerParameters {
+    /// What the robot does at most while it explores.
+    pub exploring: RunLimits,
+    /// What it does at most on the fast run.
+    pub racing: RunLimits,
+    /// How it is kept on its way.
+    pub tracker: TrackerParameters,
+    /// Readings of each sensor that are averaged when it looks around.
+    pub readings: usize,
+}
+
+impl RunnerParameters {
+    /// For a micromouse.
+    pub const MICROMOUSE: Self = Self {
+        exploring: RunLimits {
+            speed: 0.8,
+            diagonal_speed: 0.6,
+            acceleration: 3.0,
+            lateral_acceleration: 2.0,
+            pivot_speed: 8.0,
+            angular_acceleration: 80.0,
+        },
+        racing: RunLimits::MICROMOUSE,
+        tracker: TrackerParameters::MICROMOUSE,
+        readings: 8,
+    };
+
+    /// For an EyeBot in the book's larger maze.
+    pub const EYEBOT: Self = Self {
+        exploring: RunLimits {
+            speed: 0.5,
+            diagonal_speed: 0.4,
+            acceleration: 0.6,
+            lateral_acceleration: 0.4,
+            pivot_speed: 3.0,
+            angular_acceleration: 6.0,
+        },
+        racing: RunLimits::EYEBOT,
+        tracker: TrackerParameters::EYEBOT,
+        readings: 8,
+    };
+}
+
+/// What an exploration came to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Exploration {
+    /// How it ended.
+    pub verdict: Verdict,
+    /// How many cells the robot has been in.
+    pub visited: usize,
+    /// How often it stopped to look around.
+    pub looks: usize,
+    /// Seconds.
+    pub time: f64,
+}
+
+/// A robot that knows where it is in a maze of which it knows a part: looks around, drives, explores, races.
+///
+/// The frame is that of the maze: its lower left corner is the origin. What the robot has learnt about its own odometry
+/// while it explored makes the fast run precise.
+#[derive(Debug)]
+pub struct MazeRunner<'r, R: ?Sized> {
+    robot: &'r mut R,
+    parameters: RunnerParameters,
+    rig: Rig,
+    scale: Scale,
+    localiser: MazeLocaliser,
+    maze: Maze,
+    at: (Cell, Direction),
+    visited: Vec<bool>,
+    explorer: FastPlanner,
+    racer: FastPlanner,
+}
+
+impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
+    /// A robot that stands in the middle of the maze's start cell and faces its start heading. `maze` is what it knows.
+    pub fn new(
+        robot: &'r mut R,
+        rig: Rig,
+        maze: Maze,
+        scale: Scale,
+        parameters: RunnerParameters,
+    ) -> Result<Self> {
+        let invalid = |error: crate::maze::LimitsError| {
+            Error::new(ErrorKind::InvalidInput, error.to_string()).with_source(error)
+        };
+        let explorer = FastPlanner::new(scale, parameters.exploring).map_err(invalid)?;
+        let racer = FastPlanner::new(scale, parameters.racing).map_err(invalid)?;
+        let at = (maze.start(), maze.heading());
+        let odometry = robot.pose()?;
+        let localiser = MazeLocaliser::new(rig.clone(), scale, scale.pose(at.0, at.1), odometry);
+        let visited = vec![false; maze.cell_count()];
+        Ok(Self { robot, parameters, rig, scale, localiser, maze, at, visited, explorer, racer })
+    }
+
+    /// What is known about the maze.
+    pub fn maze(&self) -> &Maze {
+        &self.maze
+    }
+
+    /// Where the robot takes itself to be.
+    pub fn pose(&self) -> Pose {
+        self.localiser.pose()
+    }
+
+    /// What the robot has learnt about its odometry.
+    pub fn calibration(&self) -> Calibration {
+        self.localiser.calibration()
+    }
+
+    /// Whether the robot has been in a cell.
+    pub fn has_visited(&self, cell: Cell) -> bool {
+        self.maze.contains(cell) && self.visited[self.maze.index(cell)]
+    }
+
+    /// A planner of fast runs for this robot.
+    pub fn planner(&self) -> FastPlanner {
+        self.racer.clone()
+    }
+
+    /// Explores until the explorer has finished, and faces the start heading again at the start. `watch` is called at every
+    /// step with where the robot takes itself to be.
+    pub fn explore(
+        &mut self,
+        explorer: &mut dyn Explorer,
+        watch: &mut dyn FnMut(Pose),
+    ) -> Result<Exploration> {
+        let begin = self.robot.now()?;
+        let mut looks = 0;
+        loop {
+            if !self.maze.is_known(self.at.0) {
+                self.look_around(watch)?;
+                looks += 1;
+            }
+            match explorer.next(&self.maze, self.at) {
+                Step::Go(cell) => self.go_to(cell, watch)?,
+                Step::Finished(verdict) => {
+                    self.face(self.maze.heading(), watch)?;
+                    let visited = self.visited.iter().filter(|&&visited| visited).count();
+                    return Ok(Exploration { verdict, visited, looks, time: self.robot.now()? - begin });
+                }
+            }
+        }
+    }
+
+    /// Looks at the walls of the cell and of those behind its openings. Turns if it has not seen what is behind.
+    fn look_around(&mut self, watch: &mut dyn FnMut(Pose)) -> Result<()> {
+        self.look(watch)?;
+        for _ in 0..3 {
+            let (cell, heading) = self.at;
+            if self.maze.is_known(cell) {
+                return Ok(());
+            }
+            let back = self.maze.wall(cell, heading.opposite()) == Wall::Unknown;
+            self.face(if back { heading.left() } else { heading }, watch)?;
+            self.look(watch)?;
+        }
+        let (cell, heading) = self.at;
+        let message = format!("the walls around cell {cell} cannot be made out, facing {heading}");
+        Err(Error::new(ErrorKind::Diverged, message))
+    }
+
+    fn look(&mut self, watch: &mut dyn FnMut(Pose)) -> Result<()> {
+        let (cell, _) = self.at;
+        let index = self.maze.index(cell);
+        self.visited[index] = true;
+        let mut sums = [(0.0, 0_usize); 3];
+        for _ in 0..self.parameters.readings.max(1) {
+            let readings = self.sense()?;
+            for (sum, reading) in sums.iter_mut().zip(readings).filter(|(_, reading)| reading.is_finite()) {
+                *sum = (sum.0 + reading, sum.1 + 1);
+            }
+            watch(self.localiser.pose());
+            self.wait_for_tick()?;
+        }
+        for (sensor, (sum, count)) in self.rig.sensors.into_iter().zip(sums) {
+            let reading =
+                if 2 * count > self.parameters.readings { sum / count as f64 } else { f64::INFINITY };
+            let pose = self.localiser.pose();
+            let direction = Direction::nearest(pose.heading + sensor.mount.yaw);
+            let (dx, dy) = direction.step();
+            let along = |x: f64, y: f64| x * f64::from(dx) + y * f64::from(dy);
+            let foot = pose.to_world(crate::geometry::Point::new(sensor.mount.x, sensor.mount.y));
+            let offset = foot - self.scale.centre(cell);
+            let ahead = along(offset.x, offset.y);
+            let view = View {
+                cell,
+                direction,
+                distance: reading + ahead,
+                range: sensor.max_range + ahead,
+                heading_deviation: self.localiser.deviations().1,
+            };
+            look::enter(&mut self.maze, self.scale, &view);
+        }
+        Ok(())
+    }
+
+    /// Reads odometry and the sensors, and learns from them. Returns the readings.
+    fn sense(&mut self) -> Result<[f64; 3]> {
+        let odometry = self.robot.pose()?;
+        self.localiser.predict(odometry);
+        let mut readings = [f64::INFINITY; 3];
+        for (sensor, reading) in self.rig.sensors.iter().zip(&mut readings) {
+            *reading = self.robot.distance(sensor.id)?;
+            self.localiser.correct(&self.maze, sensor, *reading);
+        }
+        Ok(readings)
+    }
+
+    /// Lets time pass up to the next step.
+    fn wait_for_tick(&mut self) -> Result<()> {
+        let period = self.parameters.tracker.period;
+        let now = self.robot.now()?;
+        let next = (now / period + 1e-6).floor() * period + period;
+        self.robot.wait(next - now)
+    }
+
+    /// Turns on the spot towards a direction.
+    pub fn face(&mut self, direction: Direction, watch: &mut dyn FnMut(Pose)) -> Result<()> {
+        let (cell, heading) = self.at;
+        if direction != heading {
+            let angle = angle_difference(direction.heading(), heading.heading());
+            let start = self.scale.pose(cell, heading);
+            let trajectory = Trajectory::pivot(start, angle, &self.parameters.exploring);
+            self.follow(trajectory, watch)?;
+            self.at = (cell, direction);
+        }
+        Ok(())
+    }
+
+    /// Drives to a cell by the fastest way through walls that are known to be absent.
+    pub fn go_to(&mut self, cell: Cell, watch: &mut dyn FnMut(Pose)) -> Result<()> {
+        let plan = self.explorer.plan_from(&self.maze, Unknown::Closed, self.at, |other| other == cell);
+        let Some(plan) = plan else {
+            let message = format!("no known way from cell {} to cell {cell}", self.at.0);
+            return Err(Error::new(ErrorKind::Other, message));
+        };
+        self.drive(&plan, self.parameters.exploring, watch).map(|_| ())
+    }
+
+    /// The fastest run from the start to the goal through walls that are known to be absent; `None` if no way leads there.
+    pub fn plan_fast_run(&mut self) -> Option<FastPlan> {
+        self.racer.plan(&self.maze, Unknown::Closed)
+    }
+
+    /// Drives a plan of [`plan_fast_run`](Self::plan_fast_run) from the start. Returns the seconds from standstill to
+    /// standstill.
+    pub fn race(&mut self, plan: &FastPlan, watch: &mut dyn FnMut(Pose)) -> Result<f64> {
+        self.drive(plan, self.parameters.racing, watch)
+    }
+
+    fn drive(&mut self, plan: &FastPlan, limits: RunLimits, watch: &mut dyn FnMut(Pose)) -> Result<f64> {
+        let trajectory = Trajectory::new(plan, self.scale, limits)
+            .map_err(|error| Error::new(ErrorKind::InvalidInput, error.to_string()).with_source(error))?;
+        let time = self.follow(trajectory, watch)?;
+        for cell in plan.route.cells() {
+            let index = self.maze.index(cell);
+            self.visited[index] = true;
+        }
+        let heading = Direction::nearest(self.localiser.pose().heading);
+        self.at = (plan.route.end(), heading);
+        Ok(time)
+    }
+
+    /// Follows a trajectory to its end. Returns the seconds that it took.
+    fn follow(&mut self, trajectory: Trajectory, watch: &mut dyn FnMut(Pose)) -> Result<f64> {
+        let tracker = Tracker::new(trajectory, self.parameters.tracker, self.rig.lag);
+        let period = self.parameters.tracker.period;
+        let limit = 2.0 * tracker.trajectory().duration() + 5.0;
+        self.wait_for_tick()?;
+        // Steps are counted from the tick at which the motors first obey.
+        let begin = (self.robot.now()? / period + 1e-6).floor() * period;
+        loop {
+            let now = (self.robot.now()? / period + 1e-6).floor() * period - begin;
+            self.sense()?;
+            let pose = self.localiser.pose();
+            watch(pose);
+            let speed = self.robot.speed()?;
+            let Some(command) = tracker.step(now, pose, speed) else {
+                self.robot.set_speed(Twist::STOP)?;
+                return Ok(now);
+            };
+            self.robot.set_speed(command)?;
+            if now > limit || self.robot.is_stalled()? {
+                self.robot.set_speed(Twist::STOP)?;
+                let message = format!("the robot is stuck at {:.3}, {:.3} m", pose.x, pose.y);
+                return Err(Error::new(ErrorKind::Diverged, message));
+            }
+            self.wait_for_tick()?;
+        }
+    }
+}
