@@ -67,10 +67,9 @@
 //! # Features
 //!
 //! None is on by default. `log` adds recordings, `picture` pictures as SVG, `png` the same as PNG; `proptest` adds random
-//! mazes and strategies for property tests (`maze::generate`).
-//! None is on by default. `log` adds recordings, `picture` pictures as SVG, `png` the same as PNG; `rayon` runs vision
-//! kernels and evaluates populations on several threads; `checkpoint` saves evolutions; `physics` adds a
-//! walking robot.
+//! mazes and strategies for property tests (`maze::generate`), `testing` those and checks for planners of one's own;
+//! `petgraph` searches graphs of that crate; `rayon` runs vision kernels and evaluates populations on several threads;
+//! `checkpoint` saves evolutions; `physics` adds a walking robot.
 
 pub mod drive;
 pub mod evolve;
@@ -82,6 +81,8 @@ pub mod nav;
 #[cfg(feature = "picture")]
 pub mod picture;
 pub mod random;
+#[cfg(feature = "testing")]
+pub mod testing;
 pub mod vision;
 pub mod world;
 

@@ -1,11 +1,13 @@
 //! Navigation (book, chapter 10): sensor-based navigation among unknown obstacles, the truth about which goals
-//! can be reached, and planning on maps ([`grid`]).
+//! can be reached, and planning on maps ([`grid`]) and in graphs ([`graph`]).
 
 mod boundary;
 mod distbug;
+pub mod graph;
 pub mod grid;
 mod lidar;
 mod localisation;
+mod log_odds;
 mod reachability;
 mod scan_filter;
 mod scan_matcher;
@@ -21,6 +23,7 @@ pub use lidar::{
     extract_features, local_extrema, plot_scan,
 };
 pub use localisation::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
+pub use log_odds::{LogOddsError, LogOddsMap, LogOddsParameters};
 pub use reachability::Reachability;
 pub use scan_filter::ScanFilter;
 pub use scan_matcher::ScanMatcher;

@@ -12,11 +12,17 @@
 //! | [`LazyThetaStar`] | short, in any direction | nothing |
 //! | [`QuadtreePlanner`] | short, in any direction | a [`Quadtree`], and which of its leaves are neighbours |
 //!
+//! [`DStarLite`] keeps its plan while the map changes. [`inflated`] leaves a robot's outline room, [`DistanceField`] tells
+//! how much there is.
+//!
 //! *Octile* paths go from cell to cell, along edges and along diagonals whose both side cells are free.
 
 mod any_angle;
 mod components;
 mod cost;
+mod distance;
+mod dstar_lite;
+mod inflate;
 mod jump;
 mod path;
 mod quadtree;
@@ -27,6 +33,9 @@ mod tests;
 
 pub use any_angle::{AnyAngle, LazyThetaStar};
 pub use components::Components;
+pub use distance::DistanceField;
+pub use dstar_lite::DStarLite;
+pub use inflate::inflated;
 pub use jump::{JumpPointSearch, PreparedJumps};
 pub use path::{End, GridPath, GridPlanner, PlanError, SearchStatistics};
 pub use quadtree::{

@@ -1,0 +1,295 @@
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use super::cost::{DIAGONAL, STRAIGHT, octile};
+use super::path::{End, GridPath, PlanError, SearchStatistics};
+use crate::world::{BitGrid, GridCell};
+
+/// D\* Lite: the shortest octile path of a robot that finds out on its way that the map is different.
+///
+/// The search runs from the goal to the robot and is kept. When cells turn out to be blocked or free, what depends on
+/// them alone is computed anew.
+///
+/// S. Koenig, M. Likhachev, *D\* Lite*, AAAI 2002. A new plan takes time in proportion to the cells whose distance to the
+/// goal has changed and matters, times the logarithm of the queue's length; memory is 24 bytes a cell.
+///
+/// ```
+/// use roverlab::nav::grid::DStarLite;
+/// use roverlab::world::{BitGrid, GridCell};
+/// let grid = BitGrid::from_text("....\n....\n....")?;
+/// let mut planner = DStarLite::new(&grid, GridCell::new(0, 1), GridCell::new(3, 1)).unwrap();
+/// assert_eq!(planner.plan().unwrap().cost, 3.0);
+/// planner.move_to(GridCell::new(1, 1)).unwrap();
+/// planner.set_free(GridCell::new(2, 1), false);
+/// assert_eq!(planner.plan().unwrap().cost, 4.0);
+/// # Ok::<(), roverlab::world::BitGridError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct DStarLite {
+    grid: BitGrid,
+    robot: GridCell,
+    goal: GridCell,
+    /// The distance to the goal as last propagated, and as the neighbours say.
+    cells: Vec<Distances>,
+    queue: BinaryHeap<Reverse<Entry>>,
+    /// By how much keys have grown since the beginning, as the robot has moved.
+    shift: u64,
+    /// Where the robot was when cells changed last.
+    before: GridCell,
+    statistics: SearchStatistics,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Distances {
+    settled: u64,
+    implied: u64,
+    /// The key with which the cell is on the queue, if it is.
+    key: Option<Key>,
+}
+
+type Key = (u64, u64);
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Entry {
+    key: Key,
+    cell: u32,
+}
+
+const FAR: u64 = u64::MAX / 4;
+
+impl DStarLite {
+    /// Takes over a map, the robot's cell and the goal. The goal may be blocked now and become free later.
+    pub fn new(grid: &BitGrid, robot: GridCell, goal: GridCell) -> Result<Self, PlanError> {
+        if grid.width() == 0 || grid.height() == 0 {
+            return Err(PlanError::EmptyMap);
+        }
+        let unknown = Distances { settled: FAR, implied: FAR, key: None };
+        let mut this = Self {
+            cells: vec![unknown; grid.width() * grid.height()],
+            grid: grid.clone(),
+            robot,
+            goal,
+            queue: BinaryHeap::new(),
+            shift: 0,
+            before: robot,
+            statistics: SearchStatistics::default(),
+        };
+        for (end, cell) in [(End::Start, robot), (End::Goal, goal)] {
+            this.check_inside(end, cell)?;
+        }
+        let index = this.index(goal);
+        this.cells[index].implied = 0;
+        this.enqueue(goal);
+        Ok(this)
+    }
+
+    /// The map as it is known.
+    pub fn grid(&self) -> &BitGrid {
+        &self.grid
+    }
+
+    /// Tells where the robot is.
+    pub fn move_to(&mut self, robot: GridCell) -> Result<(), PlanError> {
+        self.check_inside(End::Start, robot)?;
+        self.robot = robot;
+        Ok(())
+    }
+
+    /// Tells that a cell is free or blocked. Outside the map nothing happens.
+    pub fn set_free(&mut self, cell: GridCell, free: bool) {
+        if !self.grid.contains(cell) || self.grid.is_free(cell) == free {
+            return;
+        }
+        self.shift += between(self.before, self.robot);
+        self.before = self.robot;
+        self.grid.set_free(cell, free);
+        // All steps that the cell is part of, or beside, begin and end around it.
+        for row in cell.row.saturating_sub(1)..(cell.row + 2).min(self.grid.height()) {
+            for column in cell.column.saturating_sub(1)..(cell.column + 2).min(self.grid.width()) {
+                self.update(GridCell::new(column, row));
+            }
+        }
+    }
+
+    /// The shortest path from the robot to the goal on the map as it is known. Its statistics are those of this call.
+    pub fn plan(&mut self) -> Result<GridPath, PlanError> {
+        for (end, cell) in [(End::Start, self.robot), (End::Goal, self.goal)] {
+            if !self.grid.is_free(cell) {
+                return Err(PlanError::Blocked { end, cell });
+            }
+        }
+        self.statistics = SearchStatistics::default();
+        self.settle();
+        let mut cells = vec![self.robot];
+        let mut at = self.robot;
+        let unreachable = PlanError::Unreachable { start: self.robot, goal: self.goal };
+        if self.cells[self.index(at)].implied >= FAR {
+            return Err(unreachable);
+        }
+        while at != self.goal {
+            let next = self.steps(at).into_iter().flatten();
+            let best = next.min_by_key(|&(cell, cost)| cost + self.cells[self.index(cell)].settled);
+            at = best.ok_or(unreachable)?.0;
+            cells.push(at);
+        }
+        Ok(GridPath::through(&cells, self.statistics))
+    }
+
+    /// Computes distances until that of the robot is right.
+    fn settle(&mut self) {
+        while let Some(&Reverse(Entry { key, cell: index })) = self.queue.peek() {
+            let cell = self.cell(index);
+            let known = self.cells[index as usize];
+            if known.key != Some(key) {
+                self.queue.pop();
+                continue;
+            }
+            let robot = self.cells[self.index(self.robot)];
+            if key >= self.key(self.robot) && robot.implied == robot.settled {
+                return;
+            }
+            self.queue.pop();
+            self.cells[index as usize].key = None;
+            self.statistics.expanded += 1;
+            if key < self.key(cell) {
+                self.enqueue(cell);
+                continue;
+            }
+            let label = &mut self.cells[index as usize];
+            if label.settled > label.implied {
+                label.settled = label.implied;
+            } else {
+                label.settled = FAR;
+                self.update(cell);
+            }
+            for (next, _) in self.steps(cell).into_iter().flatten() {
+                self.update(next);
+            }
+        }
+    }
+
+    /// Asks a cell's neighbours for its distance, and puts it on the queue if that is news.
+    fn update(&mut self, cell: GridCell) {
+        let index = self.index(cell);
+        if cell != self.goal {
+            let steps = self.steps(cell).into_iter().flatten();
+            let best = steps.map(|(next, cost)| cost + self.cells[self.index(next)].settled).min();
+            self.cells[index].implied = best.unwrap_or(FAR).min(FAR);
+        }
+        self.cells[index].key = None;
+        if self.cells[index].implied != self.cells[index].settled {
+            self.enqueue(cell);
+        }
+    }
+
+    fn enqueue(&mut self, cell: GridCell) {
+        let (index, key) = (self.index(cell), self.key(cell));
+        self.cells[index].key = Some(key);
+        self.statistics.generated += 1;
+        self.queue.push(Reverse(Entry { key, cell: index as u32 }));
+    }
+
+    fn key(&self, cell: GridCell) -> Key {
+        let Distances { settled, implied, .. } = self.cells[self.index(cell)];
+        let distance = settled.min(implied);
+        (distance + between(self.robot, cell) + self.shift, distance)
+    }
+
+    /// The cells that one step leads to, and its length.
+    fn steps(&self, cell: GridCell) -> [Option<(GridCell, u64)>; 8] {
+        let at = |dx: isize, dy: isize| {
+            GridCell::new(cell.column.wrapping_add_signed(dx), cell.row.wrapping_add_signed(dy))
+        };
+        let free = |dx, dy| self.grid.is_free(at(dx, dy));
+        let steps = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
+        steps.map(|(dx, dy)| {
+            let open = free(0, 0) && free(dx, dy) && free(dx, 0) && free(0, dy);
+            open.then(|| (at(dx, dy), if dx != 0 && dy != 0 { DIAGONAL } else { STRAIGHT }))
+        })
+    }
+
+    fn check_inside(&self, end: End, cell: GridCell) -> Result<(), PlanError> {
+        let (width, height) = (self.grid.width(), self.grid.height());
+        if self.grid.contains(cell) { Ok(()) } else { Err(PlanError::Outside { end, cell, width, height }) }
+    }
+
+    fn index(&self, cell: GridCell) -> usize {
+        cell.row * self.grid.width() + cell.column
+    }
+
+    fn cell(&self, index: u32) -> GridCell {
+        GridCell::new(index as usize % self.grid.width(), index as usize / self.grid.width())
+    }
+}
+
+fn between(a: GridCell, b: GridCell) -> u64 {
+    octile(a.column.abs_diff(b.column) as u32, a.row.abs_diff(b.row) as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::nav::grid::{GridPlanner, GridSearch};
+    use crate::random::Stream;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(150))]
+
+        /// After every move and every change the path is that of A*.
+        #[test]
+        fn plans_are_those_of_a_star(width in 2..25usize, height in 2..25usize, share in 0.5..0.95f64, seed in any::<u64>()) {
+            let mut stream = Stream::new(seed);
+            let mut grid = BitGrid::from_fn(width, height, |_, _| stream.chance(share)).unwrap();
+            let any = |stream: &mut Stream| GridCell::new(stream.below(width), stream.below(height));
+            let (mut robot, goal) = (any(&mut stream), any(&mut stream));
+            grid.set_free(robot, true);
+            let mut planner = DStarLite::new(&grid, robot, goal).unwrap();
+            for _ in 0..25 {
+                let expected = GridSearch::astar(&grid).plan(robot, goal);
+                let found = planner.plan();
+                if let (Ok(expected), Ok(found)) = (&expected, &found) {
+                    prop_assert!((expected.cost - found.cost).abs() < 1e-9, "{} for {}", found.cost, expected.cost);
+                } else {
+                    prop_assert_eq!(expected.as_ref().err(), found.as_ref().err());
+                }
+                if let Some(next) = found.ok().and_then(|path| path.points.get(1).copied()) {
+                    robot = GridCell::at(next).unwrap();
+                    planner.move_to(robot).unwrap();
+                }
+                for _ in 0..stream.below(4) {
+                    let (cell, free) = (any(&mut stream), stream.chance(share));
+                    if cell != robot {
+                        grid.set_free(cell, free);
+                        planner.set_free(cell, free);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_small_change_takes_a_small_search() {
+        // A wall with a gap at its far end, which the first search has to find.
+        let grid = BitGrid::from_fn(100, 100, |x, y| x != 50 || y < 4).unwrap();
+        let mut planner = DStarLite::new(&grid, GridCell::new(0, 50), GridCell::new(99, 50)).unwrap();
+        let path = planner.plan().unwrap();
+        let first = path.statistics.expanded;
+        planner.move_to(GridCell::at(path.points[10]).unwrap()).unwrap();
+        planner.set_free(GridCell::at(path.points[12]).unwrap(), false);
+        let second = planner.plan().unwrap().statistics.expanded;
+        assert!(second > 0 && 3 * second < first, "{second} after {first}");
+    }
+
+    #[test]
+    fn ends_outside_are_named() {
+        let grid = BitGrid::from_text("..").unwrap();
+        let outside = GridCell::new(2, 0);
+        let error = DStarLite::new(&grid, GridCell::new(0, 0), outside).unwrap_err();
+        assert_eq!(error, PlanError::Outside { end: End::Goal, cell: outside, width: 2, height: 1 });
+        let mut planner = DStarLite::new(&grid, GridCell::new(0, 0), GridCell::new(1, 0)).unwrap();
+        assert!(planner.move_to(outside).is_err());
+        planner.set_free(GridCell::new(1, 0), false);
+        assert_eq!(planner.plan(), Err(PlanError::Blocked { end: End::Goal, cell: GridCell::new(1, 0) }));
+    }
+}

@@ -1,0 +1,163 @@
+use crate::geometry::Point;
+use crate::nav::grid::{AnyAngle, GridPath, GridPlanner, GridSearch, PlanError};
+use crate::world::{BitGrid, GridCell};
+
+/// Which ways count as the shortest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Movement {
+    /// Steps along edges and along diagonals whose both side cells are free.
+    Octile,
+    /// Straight lines in any direction, which may touch corners.
+    AnyAngle,
+}
+
+/// What a planner did wrong.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("from {start} to {goal}: {what}")]
+pub struct Violation {
+    /// The start of the query.
+    pub start: GridCell,
+    /// Its goal.
+    pub goal: GridCell,
+    /// What was found, and what was expected.
+    pub what: String,
+}
+
+/// Costs that differ by less are the same: sums are rounded.
+const TOLERANCE: f64 = 1e-6;
+
+fn violation(start: GridCell, goal: GridCell, what: String) -> Violation {
+    Violation { start, goal, what }
+}
+
+/// The planner's cost is that of the shortest way. Queries without an answer pass.
+///
+/// The truth is Dijkstra's algorithm, or this library's shortest paths in any direction.
+pub fn optimal(
+    planner: &mut impl GridPlanner,
+    grid: &BitGrid,
+    movement: Movement,
+    start: GridCell,
+    goal: GridCell,
+) -> Result<(), Violation> {
+    let truth = match movement {
+        Movement::Octile => GridSearch::dijkstra(grid).plan(start, goal),
+        Movement::AnyAngle => AnyAngle::new(grid).plan(start, goal),
+    };
+    match (planner.plan(start, goal), truth) {
+        (Ok(path), Ok(best)) if (path.cost - best.cost).abs() > TOLERANCE => {
+            let what = format!("a path of {} cells was found; the shortest has {}", path.cost, best.cost);
+            Err(violation(start, goal, what))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The planner's path leads from the start to the goal along straight lines that enter no blocked cell, and is as long as it
+/// says. Queries without an answer pass.
+pub fn collision_free(
+    planner: &mut impl GridPlanner,
+    grid: &BitGrid,
+    start: GridCell,
+    goal: GridCell,
+) -> Result<(), Violation> {
+    let Ok(path) = planner.plan(start, goal) else { return Ok(()) };
+    let ends = (path.points.first().copied(), path.points.last().copied());
+    if ends != (Some(start.centre()), Some(goal.centre())) {
+        return Err(violation(
+            start,
+            goal,
+            format!("a path with the ends {ends:?}; expected the middles of both cells"),
+        ));
+    }
+    for pair in path.points.windows(2) {
+        if let Some(cell) = entered(grid, pair[0], pair[1]) {
+            let what = format!("the way from {} to {} enters the blocked cell {cell}", pair[0], pair[1]);
+            return Err(violation(start, goal, what));
+        }
+    }
+    let length: f64 = path.points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    if (length - path.cost).abs() > TOLERANCE {
+        return Err(violation(start, goal, format!("a cost of {} for a path of {length} cells", path.cost)));
+    }
+    Ok(())
+}
+
+/// A blocked cell, or a place outside, whose inside a segment meets.
+fn entered(grid: &BitGrid, a: Point, b: Point) -> Option<GridCell> {
+    let bounds = |a: f64, b: f64, cells: usize| {
+        let low = (a.min(b) - 1.0).floor().max(0.0) as usize;
+        low..((a.max(b) + 1.0).ceil() as usize).min(cells)
+    };
+    let outside = |p: Point| {
+        !(0.0..=grid.width() as f64).contains(&p.x) || !(0.0..=grid.height() as f64).contains(&p.y)
+    };
+    if outside(a) || outside(b) {
+        return Some(GridCell::new(grid.width(), grid.height()));
+    }
+    let rows = bounds(a.y, b.y, grid.height());
+    let cells =
+        rows.flat_map(|row| bounds(a.x, b.x, grid.width()).map(move |column| GridCell::new(column, row)));
+    cells.into_iter().find(|&cell| !grid.is_free(cell) && meets(a, b, cell))
+}
+
+/// Whether a part of a segment lies inside a cell, edges aside.
+fn meets(a: Point, b: Point, cell: GridCell) -> bool {
+    let (mut first, mut last) = (0.0f64, 1.0f64);
+    for (from, d, low) in [(a.x, b.x - a.x, cell.column as f64), (a.y, b.y - a.y, cell.row as f64)] {
+        let (low, high) = (low + TOLERANCE, low + 1.0 - TOLERANCE);
+        if d == 0.0 {
+            if from <= low || from >= high {
+                return false;
+            }
+            continue;
+        }
+        let (one, other) = ((low - from) / d, (high - from) / d);
+        (first, last) = (first.max(one.min(other)), last.min(one.max(other)));
+    }
+    first < last
+}
+
+/// The planner finds a path if there is one, and says that there is none if there is none.
+pub fn complete(
+    planner: &mut impl GridPlanner,
+    grid: &BitGrid,
+    start: GridCell,
+    goal: GridCell,
+) -> Result<(), Violation> {
+    let there_is_one = GridSearch::dijkstra(grid).plan(start, goal).is_ok();
+    match planner.plan(start, goal) {
+        Ok(_) if !there_is_one => Err(violation(start, goal, "a path was found; there is none".into())),
+        Err(error) if there_is_one => Err(violation(start, goal, format!("no path ({error}); there is one"))),
+        _ => Ok(()),
+    }
+}
+
+/// The way from one cell to another one is no longer than the detour by a third. Holds for every planner that finds the
+/// shortest ways. Queries without an answer pass.
+pub fn triangle_inequality(
+    planner: &mut impl GridPlanner,
+    start: GridCell,
+    by: GridCell,
+    goal: GridCell,
+) -> Result<(), Violation> {
+    let mut cost = |from, to| planner.plan(from, to).map(|path| path.cost);
+    let (Ok(direct), Ok(first), Ok(second)) = (cost(start, goal), cost(start, by), cost(by, goal)) else {
+        return Ok(());
+    };
+    if direct > first + second + TOLERANCE {
+        let what = format!("a path of {direct} cells; by {by} there is one of {}", first + second);
+        return Err(violation(start, goal, what));
+    }
+    Ok(())
+}
+
+/// A planner made from a closure.
+#[derive(Debug, Clone, Copy)]
+pub struct PlanWith<F>(pub F);
+
+impl<F: FnMut(GridCell, GridCell) -> Result<GridPath, PlanError>> GridPlanner for PlanWith<F> {
+    fn plan(&mut self, start: GridCell, goal: GridCell) -> Result<GridPath, PlanError> {
+        self.0(start, goal)
+    }
+}

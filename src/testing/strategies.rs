@@ -1,0 +1,141 @@
+use std::ops::Range;
+
+use proptest::prelude::*;
+
+use crate::random::Stream;
+use crate::world::generate::{Course, CourseOptions, obstacle_course};
+use crate::world::{BitGrid, GridCell};
+
+/// Grids of some widths and heights, at least one cell: scattered cells, boxes, or rooms with doors, with few to many
+/// cells blocked.
+///
+/// A failing grid is not made smaller cell by cell, but through its size.
+pub fn grids(widths: Range<usize>, heights: Range<usize>) -> impl Strategy<Value = BitGrid> {
+    (widths, heights, 0..3usize, 0.0..1.0f64, any::<u64>()).prop_map(|(width, height, kind, share, seed)| {
+        let (width, height) = (width.max(1), height.max(1));
+        let mut stream = Stream::new(seed);
+        match kind {
+            0 => scattered(width, height, 0.4 + 0.6 * share, &mut stream),
+            1 => boxes(width, height, (20.0 * share) as usize, &mut stream),
+            _ => rooms(width, height, 3 + (8.0 * share) as usize, &mut stream),
+        }
+    })
+}
+
+/// Grids as of [`grids`], each with three of its free cells, possibly the same; not always connected. If a grid has no free
+/// cell, its first one is made free.
+pub fn grid_queries(
+    widths: Range<usize>,
+    heights: Range<usize>,
+) -> impl Strategy<Value = (BitGrid, [GridCell; 3])> {
+    (grids(widths, heights), any::<[prop::sample::Index; 3]>()).prop_map(|(mut grid, indices)| {
+        if grid.count_free() == 0 {
+            grid.set_free(GridCell::new(0, 0), true);
+        }
+        let cells: Vec<GridCell> = grid.free_cells().collect();
+        (grid, indices.map(|index| *index.get(&cells)))
+    })
+}
+
+fn scattered(width: usize, height: usize, share: f64, stream: &mut Stream) -> BitGrid {
+    filled(width, height, |_, _| stream.chance(share))
+}
+
+fn boxes(width: usize, height: usize, count: usize, stream: &mut Stream) -> BitGrid {
+    let mut grid = filled(width, height, |_, _| true);
+    for _ in 0..count {
+        let (x, y) = (stream.below(width), stream.below(height));
+        let (w, h) = (1 + stream.below(width.div_ceil(3)), 1 + stream.below(height.div_ceil(3)));
+        for row in y..y + h {
+            for column in x..x + w {
+                grid.set_free(GridCell::new(column, row), false);
+            }
+        }
+    }
+    grid
+}
+
+fn rooms(width: usize, height: usize, size: usize, stream: &mut Stream) -> BitGrid {
+    let is_wall = |at: usize| at % size == size - 1;
+    let mut grid = filled(width, height, |x, y| !is_wall(x) && !is_wall(y));
+    for (x, y) in (0..height).step_by(size).flat_map(|y| (0..width).step_by(size).map(move |x| (x, y))) {
+        let mut door = |column: usize, row: usize| {
+            if stream.chance(0.75) {
+                grid.set_free(GridCell::new(column, row), true);
+            }
+        };
+        door(x + size - 1, y + (x / size + y / size) % (size - 1));
+        door(x + (x / size) % (size - 1), y + size - 1);
+    }
+    grid
+}
+
+fn filled(width: usize, height: usize, is_free: impl FnMut(usize, usize) -> bool) -> BitGrid {
+    BitGrid::from_fn(width, height, is_free)
+        .unwrap_or_else(|error| panic!("a strategy's sizes are too large: {error}"))
+}
+
+/// A maze with one way between every two places, and the way between two of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Maze {
+    /// The maze: passages one cell wide, between walls one cell thick.
+    pub grid: BitGrid,
+    /// Where the way begins.
+    pub start: GridCell,
+    /// Where it ends.
+    pub goal: GridCell,
+    /// The cells of the only way from one to the other, both included. Its length is one less.
+    pub way: Vec<GridCell>,
+}
+
+/// Mazes of some numbers of places in both directions, at least one, with the answer known from how they were made. The grid
+/// has twice as many columns and rows, less one. No diagonal step is possible in them.
+pub fn mazes(widths: Range<usize>, heights: Range<usize>) -> impl Strategy<Value = Maze> {
+    (widths, heights, any::<u64>()).prop_map(|(width, height, seed)| {
+        let (width, height) = (width.max(1), height.max(1));
+        let mut stream = Stream::new(seed);
+        maze(width, height, &mut stream)
+    })
+}
+
+fn maze(width: usize, height: usize, stream: &mut Stream) -> Maze {
+    let mut grid = filled(2 * width - 1, 2 * height - 1, |_, _| false);
+    let [start, goal] = [(); 2].map(|()| (stream.below(width), stream.below(height)));
+    // Depth first from the start: the way to the goal is what lies on the stack when it is met.
+    let place = |(x, y): (usize, usize)| GridCell::new(2 * x, 2 * y);
+    let mut stack = vec![start];
+    grid.set_free(place(start), true);
+    let mut way = Vec::new();
+    while let Some(&(x, y)) = stack.last() {
+        if (x, y) == goal && way.is_empty() {
+            way.clone_from(&stack);
+        }
+        let around = [(x + 1, y), (x.wrapping_sub(1), y), (x, y + 1), (x, y.wrapping_sub(1))];
+        let mut next: Vec<_> = around
+            .into_iter()
+            .filter(|&(x, y)| x < width && y < height && !grid.is_free(place((x, y))))
+            .collect();
+        stream.shuffle(&mut next);
+        let Some(&next) = next.first() else {
+            stack.pop();
+            continue;
+        };
+        grid.set_free(place(next), true);
+        grid.set_free(GridCell::new(x + next.0, y + next.1), true);
+        stack.push(next);
+    }
+    let mut cells = vec![place(start)];
+    for pair in way.windows(2) {
+        cells.push(GridCell::new(pair[0].0 + pair[1].0, pair[0].1 + pair[1].1));
+        cells.push(place(pair[1]));
+    }
+    Maze { grid, start: place(start), goal: place(goal), way: cells }
+}
+
+/// Worlds of obstacles with a start and a goal, and the answer whether a way leads there, as
+/// [`obstacle_course`] makes them.
+pub fn worlds() -> impl Strategy<Value = Course> {
+    any::<u64>().prop_filter_map("no course of this seed", |seed| {
+        obstacle_course(&mut Stream::new(seed), &CourseOptions::default()).ok()
+    })
+}
