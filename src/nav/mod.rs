@@ -2,7 +2,7 @@
 //! can be reached.
 
 mod boundary;
-mod distbug;
+mod bug;
 mod reachability;
 mod scan_filter;
 mod scan_matcher;
@@ -10,8 +10,10 @@ mod scan_reference;
 mod surroundings;
 
 pub use boundary::WallSide;
-pub use distbug::{
-    DistBug, DistBugEvent, DistBugObservation, DistBugOutcome, DistBugParameters, DistBugPhase,
+pub use bug::{
+    Alg1, Alg2, Bug, Bug1, Bug2, BugEvent, BugKind, BugObservation, BugOutcome, BugParameters, BugPhase,
+    Class1, DistBug, DistBugEvent, DistBugObservation, DistBugOutcome, DistBugParameters, DistBugPhase,
+    Guarantee, LeaveBug, OneBug, PathBound, Rev1, Rev2, TangentBug, UnknownBug, run_bug,
 };
 pub use reachability::Reachability;
 pub use scan_filter::ScanFilter;

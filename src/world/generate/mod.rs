@@ -11,6 +11,7 @@ mod bent;
 mod border;
 mod course;
 mod enclosure;
+mod family;
 mod figure;
 mod layout;
 mod options;
@@ -20,5 +21,6 @@ mod straight;
 mod survey;
 
 pub use course::{Course, obstacle_course};
+pub use family::{CourseFamily, UnknownFamily};
 pub use options::{CourseOptions, CourseOptionsError};
 pub use repertoire::ObstacleKind;

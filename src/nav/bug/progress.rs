@@ -16,6 +16,17 @@ pub(super) struct LoopProgress {
     boxed_in: u32,
 }
 
+/// What the latest step has shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Lap {
+    /// There is more of the boundary to come.
+    Open,
+    /// The robot is back where the loop began, which is so many metres long.
+    Closed(f64),
+    /// There is no way on at all.
+    BoxedIn,
+}
+
 /// Steps without a free heading after which the robot is boxed in.
 const BOXED_IN_STEPS: u32 = 40;
 /// Full turns after which the place where the loop began should have been found.
@@ -27,13 +38,13 @@ impl LoopProgress {
     }
 
     /// Takes in where the robot is and the heading that it takes; whether it is back where the loop began.
-    pub(super) fn update(&mut self, pose: Pose, heading: Option<f64>, radius: f64) -> bool {
+    pub(super) fn update(&mut self, pose: Pose, heading: Option<f64>, radius: f64) -> Lap {
         let moved = pose.distance_to(self.last.position());
         let turned = angle_difference(pose.heading, self.last.heading);
         self.last = pose;
         let Some(heading) = heading else {
             self.boxed_in += 1;
-            return self.boxed_in > BOXED_IN_STEPS;
+            return if self.boxed_in > BOXED_IN_STEPS { Lap::BoxedIn } else { Lap::Open };
         };
         self.boxed_in = 0;
         let Some(begin) = self.begin else {
@@ -43,7 +54,7 @@ impl LoopProgress {
             if in_line || self.approach > 6.0 * radius {
                 self.begin = Some(pose);
             }
-            return false;
+            return Lap::Open;
         };
         self.travelled += moved;
         self.turned += turned;
@@ -55,8 +66,8 @@ impl LoopProgress {
         if self.turned.abs() > LOST_TURNS * TAU {
             // It has been round without finding the place, so its pose there was wrong. The loop begins anew here.
             *self = Self { begin: Some(pose), ..Self::new(pose) };
-            return false;
+            return Lap::Open;
         }
-        near && same_way && been_away && all_round
+        if near && same_way && been_away && all_round { Lap::Closed(self.travelled) } else { Lap::Open }
     }
 }
