@@ -48,6 +48,8 @@
 //! | 5 Swarms | any number of robots in one world | [`io::sim`] |
 //! | 7 Alternative drives | cars and wheels with rollers: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
 //! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`world::formats`] |
+//! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search; MovingAI maps | [`nav::grid`], [`world`] |
+//! | 12 Evolution | genetic algorithms, evolution strategy with covariance adaptation | [`evolve`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
 //!
 //! Beside the chapters: [`geometry`] has poses, angles and units; [`random`] seeded random streams; [`world`] what a
@@ -64,6 +66,7 @@
 //! None is on by default. `picture` adds pictures as SVG, `png` the same as PNG.
 
 pub mod drive;
+pub mod evolve;
 pub mod geometry;
 pub mod io;
 pub mod kinematics;

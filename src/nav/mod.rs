@@ -1,8 +1,9 @@
-//! Navigation (book, chapter 10): sensor-based navigation among unknown obstacles, and the truth about which goals
-//! can be reached.
+//! Navigation (book, chapter 10): sensor-based navigation among unknown obstacles, the truth about which goals
+//! can be reached, and planning on maps ([`grid`]).
 
 mod boundary;
 mod bug;
+pub mod grid;
 mod reachability;
 mod scan_filter;
 mod scan_matcher;

@@ -3,6 +3,7 @@
 //! A [`Scene`] is a [`World`] with robots in it. The types are plain data in SI units; the readers and writers of
 //! the EyeSim and ROS formats are in [`formats`].
 
+mod bit_grid;
 mod body;
 mod clearance;
 mod colour;
@@ -15,6 +16,7 @@ mod scene;
 pub mod space;
 mod wall;
 
+pub use bit_grid::{BitGrid, BitGridError, GridCell};
 pub use body::{Axis, Body, Collider, Place3};
 pub use clearance::{Clearance, Raster, RasterError};
 pub use colour::Colour;

@@ -24,3 +24,7 @@ pub(super) const MAX_STATEMENTS: usize = 200_000;
 pub(super) const MAX_DEFINITIONS: usize = 1_000;
 /// Solid parts and sensors of a robot or an object.
 pub(super) const MAX_PARTS: usize = 10_000;
+/// Bytes of a text file that draws a grid: one for each cell.
+pub(super) const MAX_GRID_BYTES: u64 = 64 << 20;
+/// Queries of a scenario file.
+pub(super) const MAX_QUERIES: usize = 1_000_000;

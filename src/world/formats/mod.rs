@@ -10,6 +10,7 @@ mod lexer;
 mod limits;
 mod load;
 pub mod maz;
+pub mod movingai;
 mod number;
 pub mod robi;
 pub mod ros_map;

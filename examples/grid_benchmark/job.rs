@@ -1,0 +1,119 @@
+use roverlab::nav::grid::{GridPlanner, GridSearch, JumpPointSearch, PreparedJumps};
+use roverlab::world::BitGrid;
+use roverlab::world::formats::movingai::{self, Query};
+
+use super::{Algorithm, Args, own_map, table};
+use crate::common::{Failure, Printed, Progress, Stopwatch};
+
+/// What came of all queries.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Result {
+    pub(crate) map: String,
+    pub(crate) algorithm: Algorithm,
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    pub(crate) queries: usize,
+    pub(crate) solved: usize,
+    pub(crate) optimal: usize,
+    /// Lengths in terms of the published ones, of the queries that have got a path and a length.
+    pub(crate) ratios: Vec<f64>,
+    /// Microseconds of each query, in ascending order.
+    pub(crate) times: Vec<f64>,
+    pub(crate) preprocess_ms: f64,
+    pub(crate) expanded: usize,
+}
+
+impl Result {
+    /// Whether all is as it should be.
+    pub(crate) fn is_good(&self) -> bool {
+        self.solved == self.queries && (!self.algorithm.is_octile() || self.optimal == self.queries)
+    }
+
+    /// The time that a share of the queries stays below.
+    pub(crate) fn time(&self, share: f64) -> Option<f64> {
+        let rank = (share * self.times.len() as f64).ceil() as usize;
+        self.times.get(rank.saturating_sub(1)).copied()
+    }
+}
+
+/// The work of the example.
+pub(crate) fn work(args: &Args) -> std::result::Result<Printed, Failure> {
+    let stopwatch = Stopwatch::start();
+    let (name, grid, queries) = match (&args.map, &args.scen) {
+        (Some(map), Some(scen)) => {
+            let grid = movingai::load_map(map).map_err(Failure::input)?.value.grid();
+            let queries = movingai::load_scenarios(scen).map_err(Failure::input)?.value;
+            if let Some(query) = queries.iter().find(|q| (q.width, q.height) != (grid.width(), grid.height()))
+            {
+                return Err(Failure::input(format!(
+                    "{}: found queries for a map of {} x {} cells; expected {} x {}, as in {}",
+                    scen.display(),
+                    query.width,
+                    query.height,
+                    grid.width(),
+                    grid.height(),
+                    map.display()
+                )));
+            }
+            (map.display().to_string(), grid, queries)
+        }
+        _ => own_map::with_queries(args.seed),
+    };
+    let result = answer(name, &grid, &queries, args);
+    let wall_time = stopwatch.seconds();
+    let text = if args.json { table::json(&result, args, wall_time) } else { table::text(&result) };
+    Ok(Printed { text, message: None, status: u8::from(!result.is_good()) })
+}
+
+fn planner(algorithm: Algorithm, grid: &BitGrid) -> Box<dyn GridPlanner> {
+    match algorithm {
+        Algorithm::Dijkstra => Box::new(GridSearch::dijkstra(grid)),
+        Algorithm::Astar => Box::new(GridSearch::astar(grid)),
+        Algorithm::Jps => Box::new(JumpPointSearch::new(grid)),
+        Algorithm::JpsPlus => Box::new(PreparedJumps::new(grid)),
+    }
+}
+
+fn answer(map: String, grid: &BitGrid, queries: &[Query], args: &Args) -> Result {
+    let stopwatch = Stopwatch::start();
+    let mut planner = planner(args.algorithm, grid);
+    let mut result = Result {
+        map,
+        algorithm: args.algorithm,
+        width: grid.width(),
+        height: grid.height(),
+        queries: queries.len(),
+        solved: 0,
+        optimal: 0,
+        ratios: Vec::new(),
+        times: Vec::new(),
+        preprocess_ms: 1e3 * stopwatch.seconds(),
+        expanded: 0,
+    };
+    let mut progress = Progress::start();
+    for (index, query) in queries.iter().enumerate() {
+        progress.show(|| format!("{index} of {} queries", queries.len()));
+        ask(&mut *planner, query, args.repeat.get(), &mut result);
+    }
+    result.times.sort_by(f64::total_cmp);
+    result
+}
+
+fn ask(planner: &mut dyn GridPlanner, query: &Query, repeat: u32, result: &mut Result) {
+    let (mut answer, mut time) = (None, f64::INFINITY);
+    for _ in 0..repeat {
+        let stopwatch = Stopwatch::start();
+        let plan = planner.plan(query.start, query.goal);
+        time = time.min(1e6 * stopwatch.seconds());
+        answer = plan.ok();
+    }
+    result.times.push(time);
+    let Some(path) = answer else { return };
+    result.solved += 1;
+    result.expanded += path.statistics.expanded;
+    let tolerance = (2e-5 * query.optimal).max(0.006);
+    result.optimal += usize::from((path.cost - query.optimal).abs() <= tolerance);
+    if query.optimal > 0.0 {
+        result.ratios.push(path.cost / query.optimal);
+    }
+}

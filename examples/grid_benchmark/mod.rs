@@ -1,0 +1,87 @@
+//! What the example `grid_benchmark` is made of.
+
+mod job;
+mod own_map;
+mod table;
+
+pub(crate) use job::work;
+
+use std::num::NonZero;
+use std::path::PathBuf;
+
+/// The command line of the example `grid_benchmark`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    name = "grid_benchmark",
+    about = "Answers the queries of a scenario file on a grid map and compares the paths' lengths with the published ones",
+    after_help = "\
+Without --map and --scen, the map is one of rooms and the queries are drawn; --seed says which. Their lengths are then
+Dijkstra's.
+
+JSON fields:
+  map, algorithm, width, height
+  queries                     how many
+  solved                      those with a path
+  optimal                     those whose path is as long as published, within max(0.006, 2e-5 of the length)
+  mean_ratio, worst_ratio     length in terms of the published one
+  median_us, p95_us           time of a query, microseconds
+  preprocess_ms               time to get ready for the map
+  mean_expanded               nodes taken off the queue, per query
+Outcomes: solved; wrong if a query got no path, or one of an octile planner is not as long as published."
+)]
+pub(crate) struct Args {
+    /// MovingAI map.
+    #[arg(long, value_name = "FILE.map", requires = "scen")]
+    pub(crate) map: Option<PathBuf>,
+
+    /// MovingAI scenarios for the map.
+    #[arg(long, value_name = "FILE.scen", requires = "map")]
+    pub(crate) scen: Option<PathBuf>,
+
+    /// The planner.
+    #[arg(long, value_enum, default_value = "jps_plus")]
+    pub(crate) algorithm: Algorithm,
+
+    /// Answer every query so often and count the fastest time.
+    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true)]
+    pub(crate) repeat: NonZero<u32>,
+
+    /// Seed of the example's own map and queries.
+    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true)]
+    pub(crate) seed: u64,
+
+    /// Print exactly one JSON object on standard output, and nothing else there.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The planners.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum Algorithm {
+    /// Dijkstra's algorithm.
+    Dijkstra,
+    /// A*.
+    Astar,
+    /// Jump point search without preparation.
+    Jps,
+    /// Jump point search with all jumps prepared.
+    JpsPlus,
+}
+
+impl Algorithm {
+    /// Its name on the command line.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Dijkstra => "dijkstra",
+            Self::Astar => "astar",
+            Self::Jps => "jps",
+            Self::JpsPlus => "jps_plus",
+        }
+    }
+
+    /// Whether its paths are of the kind whose lengths scenario files hold.
+    pub(crate) fn is_octile(self) -> bool {
+        matches!(self, Self::Dijkstra | Self::Astar | Self::Jps | Self::JpsPlus)
+    }
+}

@@ -1,0 +1,36 @@
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use super::evaluator::{Evaluator, Round, Trial};
+use crate::io::{Error, ErrorKind, Result};
+
+/// Evaluates individuals in several threads. The result does not depend on how many.
+#[derive(Debug)]
+pub struct Parallel<F> {
+    fitness: F,
+    pool: ThreadPool,
+}
+
+impl<F> Parallel<F> {
+    /// An evaluator by a function of genome and trial, in so many threads; 0 takes one for each processor.
+    pub fn new(threads: usize, fitness: F) -> Result<Self> {
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
+            Error::new(ErrorKind::Other, "no threads for the evaluation").with_source(error)
+        })?;
+        Ok(Self { fitness, pool })
+    }
+
+    /// How many threads there are.
+    pub fn threads(&self) -> usize {
+        self.pool.current_num_threads()
+    }
+}
+
+impl<G: Sync, F: Fn(&G, Trial) -> Result<f64> + Sync> Evaluator<G> for Parallel<F> {
+    fn evaluate(&mut self, genomes: &[G], round: Round) -> Result<Vec<f64>> {
+        let Self { fitness, pool } = self;
+        let evaluate = |(i, genome): (usize, &G)| fitness(genome, round.trial(i));
+        // One at a time, as the time that an individual takes is anybody's guess.
+        pool.install(|| genomes.par_iter().enumerate().with_max_len(1).map(evaluate).collect())
+    }
+}

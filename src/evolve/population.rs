@@ -1,0 +1,119 @@
+use super::evaluator::{Evaluator, Round, check_fitness};
+use super::genome::Genome;
+use super::statistics::GenerationStatistics;
+use crate::io::{Error, Result};
+
+/// A genome with its fitness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub struct Individual<G> {
+    /// What it is made of.
+    pub genome: G,
+    /// How fit it is.
+    pub fitness: f64,
+}
+
+/// All that a run has come to: enough to go on from.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub struct Population<G> {
+    /// The seed of the run.
+    pub seed: u64,
+    /// The generation, from 0.
+    pub generation: u64,
+    /// The individuals.
+    pub genomes: Vec<G>,
+    /// The fitness of each; empty until they are evaluated.
+    pub fitness: Vec<f64>,
+    /// The fittest individual of all generations so far.
+    pub best: Option<Individual<G>>,
+    /// A row for each generation that was evaluated.
+    pub history: Vec<GenerationStatistics>,
+}
+
+impl<G: Genome> Population<G> {
+    /// A population at its beginning. Fails when there is nobody, or when lengths differ.
+    pub fn new(genomes: Vec<G>, seed: u64) -> Result<Self> {
+        let population =
+            Self { seed, generation: 0, genomes, fitness: Vec::new(), best: None, history: Vec::new() };
+        population.validate()?;
+        Ok(population)
+    }
+
+    /// Fails when this cannot be gone on from: nobody, genomes of different lengths, another number of fitness values
+    /// than of individuals.
+    pub fn validate(&self) -> Result<()> {
+        let Some(first) = self.genomes.first() else {
+            return Err(Error::invalid_input("population", "empty", "at least one individual"));
+        };
+        let length = first.genes().len();
+        if let Some(i) = self.genomes.iter().position(|genome| genome.genes().len() != length) {
+            let found = self.genomes[i].genes().len();
+            return Err(Error::invalid_input(
+                &format!("length of genome {i}"),
+                found,
+                &format!("{length} genes, as the first has"),
+            ));
+        }
+        if self.is_evaluated() {
+            check_fitness(&self.fitness, self.genomes.len(), self.round())
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Whether the fitness of this generation is known.
+    pub fn is_evaluated(&self) -> bool {
+        !self.fitness.is_empty()
+    }
+
+    /// The present generation's trials.
+    pub fn round(&self) -> Round {
+        Round { seed: self.seed, generation: self.generation }
+    }
+
+    /// Places of the individuals, the fittest first; equals in the order in which they stand.
+    pub fn ranking(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.fitness.len()).collect();
+        order.sort_by(|&a, &b| self.fitness[b].total_cmp(&self.fitness[a]));
+        order
+    }
+
+    /// A number that tells populations apart: FNV-1a over all genes and fitness values.
+    pub fn hash(&self) -> u64 {
+        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+        let mut mix = |bytes: &[u8]| {
+            for byte in bytes {
+                hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+            }
+        };
+        self.genomes.iter().for_each(|genome| mix(&genome.to_bytes()));
+        self.fitness.iter().for_each(|fitness| mix(&fitness.to_bits().to_be_bytes()));
+        hash
+    }
+
+    pub(super) fn evaluations(&self) -> u64 {
+        self.history.last().map_or(0, |row| row.evaluations)
+    }
+
+    /// Finds out how fit everybody is.
+    pub(super) fn evaluate(&mut self, evaluator: &mut dyn Evaluator<G>) -> Result<()> {
+        let fitness = evaluator.evaluate(&self.genomes, self.round())?;
+        check_fitness(&fitness, self.genomes.len(), self.round())?;
+        self.fitness = fitness;
+        self.note(self.genomes.len());
+        Ok(())
+    }
+
+    /// Takes in the generation after so many new evaluations: its row, and the fittest so far.
+    pub(super) fn note(&mut self, evaluated: usize) {
+        let evaluations = self.evaluations() + evaluated as u64;
+        let row = GenerationStatistics::new(self.generation, evaluations, &self.genomes, &self.fitness);
+        self.history.push(row);
+        let fittest = self.ranking()[0];
+        if self.best.as_ref().is_none_or(|best| self.fitness[fittest] > best.fitness) {
+            let genome = self.genomes[fittest].clone();
+            self.best = Some(Individual { genome, fitness: self.fitness[fittest] });
+        }
+    }
+}

@@ -1,0 +1,220 @@
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::evaluator::{Evaluator, Round, Trial};
+use super::genome::Genome;
+use crate::io::{Error, ErrorKind, Result};
+
+/// Evaluates individuals in other processes, which may run on other machines.
+///
+/// A process gets one individual a line on its standard input: seed, generation, index, and the genome's bytes in
+/// hexadecimal digits. It answers each with a line: the index and the bits of the fitness in hexadecimal digits, or
+/// `error` and a message. [`serve`] is such a process in one call.
+#[derive(Debug)]
+pub struct Processes {
+    workers: Vec<Worker>,
+}
+
+#[derive(Debug)]
+struct Worker {
+    child: Child,
+    input: ChildStdin,
+    output: BufReader<ChildStdout>,
+}
+
+impl Processes {
+    /// Starts so many processes of a command. Fails when one cannot be started.
+    pub fn start(count: usize, mut command: impl FnMut() -> Command) -> Result<Self> {
+        if count == 0 {
+            return Err(Error::invalid_input("processes", count, "at least 1"));
+        }
+        let workers = (0..count).map(|_| Worker::start(command())).collect::<Result<_>>()?;
+        Ok(Self { workers })
+    }
+}
+
+impl<G: Genome> Evaluator<G> for Processes {
+    fn evaluate(&mut self, genomes: &[G], round: Round) -> Result<Vec<f64>> {
+        let next = AtomicUsize::new(0);
+        // Whoever is free takes the next individual; its place decides where the fitness goes.
+        let work = |worker: &mut Worker| -> Result<Vec<(usize, f64)>> {
+            let mut found = Vec::new();
+            loop {
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                let Some(genome) = genomes.get(index) else { return Ok(found) };
+                found.push((index, worker.ask(genome, round.trial(index))?));
+            }
+        };
+        let answers = std::thread::scope(|scope| {
+            let threads: Vec<_> =
+                self.workers.iter_mut().map(|worker| scope.spawn(|| work(worker))).collect();
+            let crashed = |_| Err(Error::new(ErrorKind::Other, "a thread of the evaluation panicked"));
+            threads
+                .into_iter()
+                .map(|thread| thread.join().unwrap_or_else(crashed))
+                .collect::<Result<Vec<_>>>()
+        })?;
+        let mut fitness = vec![f64::NAN; genomes.len()];
+        for (index, value) in answers.into_iter().flatten() {
+            fitness[index] = value;
+        }
+        Ok(fitness)
+    }
+}
+
+impl Worker {
+    fn start(mut command: Command) -> Result<Self> {
+        let failed = |error: std::io::Error| {
+            Error::new(ErrorKind::Other, "a process of the evaluation cannot be started").with_source(error)
+        };
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map_err(failed)?;
+        let pipes = child.stdin.take().zip(child.stdout.take());
+        let (input, output) =
+            pipes.ok_or_else(|| Error::new(ErrorKind::Other, "a process of the evaluation has no pipes"))?;
+        Ok(Self { child, input, output: BufReader::new(output) })
+    }
+
+    /// The fitness that the process finds.
+    fn ask<G: Genome>(&mut self, genome: &G, trial: Trial) -> Result<f64> {
+        let question = question(genome, trial);
+        let mut answer = String::new();
+        let asked = self.input.write_all(question.as_bytes()).and_then(|()| self.input.flush());
+        match asked.and_then(|()| self.output.read_line(&mut answer)) {
+            Ok(length) if length > 0 => parse_answer(answer.trim_end(), trial.index),
+            Ok(_) => Err(self.lost(None)),
+            Err(error) => Err(self.lost(Some(error))),
+        }
+    }
+
+    /// The error of a process that is gone.
+    fn lost(&mut self, error: Option<std::io::Error>) -> Error {
+        let status = self.child.wait().map_or_else(|_| "unknown".into(), |status| status.to_string());
+        let message = format!("a process of the evaluation ended: {status}");
+        let lost = Error::new(ErrorKind::Disconnected, message);
+        match error {
+            Some(error) => lost.with_source(error),
+            None => lost,
+        }
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        // The end of its input ends a process that reads it; one that does not is ended here.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Answers what [`Processes`] asks, until the input ends: the main function of an evaluating process.
+pub fn serve<G: Genome>(
+    input: impl BufRead,
+    mut output: impl Write,
+    mut fitness: impl FnMut(&G, Trial) -> Result<f64>,
+) -> Result<()> {
+    let broken = |error: std::io::Error| {
+        Error::new(ErrorKind::Disconnected, "the link to the evaluation is broken").with_source(error)
+    };
+    for line in input.lines() {
+        let (genome, trial) = parse_question::<G>(&line.map_err(broken)?)?;
+        let answer = match fitness(&genome, trial) {
+            Ok(value) => format!("{} {:016x}\n", trial.index, value.to_bits()),
+            Err(error) => format!("{} error {}\n", trial.index, error.to_string().replace('\n', " ")),
+        };
+        output.write_all(answer.as_bytes()).and_then(|()| output.flush()).map_err(broken)?;
+    }
+    Ok(())
+}
+
+fn question<G: Genome>(genome: &G, trial: Trial) -> String {
+    let Trial { round: Round { seed, generation }, index } = trial;
+    let digits: Vec<String> = genome.to_bytes().iter().map(|byte| format!("{byte:02x}")).collect();
+    format!("{seed} {generation} {index} {}\n", digits.concat())
+}
+
+fn parse_question<G: Genome>(line: &str) -> Result<(G, Trial)> {
+    let refused = || {
+        let expected = "seed, generation, index and the genome's bytes in hexadecimal digits";
+        Error::invalid_input("question", format!("`{line}`"), expected)
+    };
+    let parse = || {
+        let mut words = line.split(' ');
+        let seed = words.next()?.parse().ok()?;
+        let generation = words.next()?.parse().ok()?;
+        let index = words.next()?.parse().ok()?;
+        let digits = words.next()?;
+        let bytes: Option<Vec<u8>> = (0..digits.len())
+            .step_by(2)
+            .map(|i| digits.get(i..i + 2).and_then(|pair| u8::from_str_radix(pair, 16).ok()))
+            .collect();
+        Some((G::from_bytes(&bytes?)?, Round { seed, generation }.trial(index)))
+    };
+    parse().ok_or_else(refused)
+}
+
+fn parse_answer(line: &str, index: usize) -> Result<f64> {
+    let rest = line.strip_prefix(&format!("{index} "));
+    if let Some(message) = rest.and_then(|rest| rest.strip_prefix("error ")) {
+        return Err(Error::new(
+            ErrorKind::Other,
+            format!("individual {index} cannot be evaluated: {message}"),
+        ));
+    }
+    rest.and_then(|bits| u64::from_str_radix(bits, 16).ok()).map(f64::from_bits).ok_or_else(|| {
+        let expected = format!("{index} and the fitness in hexadecimal digits");
+        Error::invalid_input("answer of a process of the evaluation", format!("`{line}`"), &expected)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trial(index: usize) -> Trial {
+        Round { seed: 7, generation: 3 }.trial(index)
+    }
+
+    #[test]
+    fn questions_are_answered() {
+        let questions = [question(&vec![1_u8, 255], trial(0)), question(&vec![2_u8], trial(9))].concat();
+        let mut answers = Vec::new();
+        serve(questions.as_bytes(), &mut answers, |genome: &Vec<u8>, asked| {
+            assert_eq!(asked.round, trial(0).round);
+            Ok(f64::from(genome[0]) + 0.1)
+        })
+        .unwrap();
+        let answers = String::from_utf8(answers).unwrap();
+        let found: Vec<f64> =
+            answers.lines().zip([0, 9]).map(|(line, index)| parse_answer(line, index).unwrap()).collect();
+        assert_eq!(found, [1.1, 2.1]);
+    }
+
+    #[test]
+    fn nonsense_is_named() {
+        let text = |line| parse_question::<Vec<u8>>(line).unwrap_err().to_string();
+        let expected = "expected seed, generation, index and the genome's bytes in hexadecimal digits";
+        assert_eq!(text("1 2"), format!("question is `1 2`; {expected}"));
+        assert_eq!(text("1 2 3 0g"), format!("question is `1 2 3 0g`; {expected}"));
+        let text = |line| parse_answer(line, 4).unwrap_err().to_string();
+        assert_eq!(text("4 error no ground"), "individual 4 cannot be evaluated: no ground");
+        assert!(text("5 00").starts_with("answer of a process of the evaluation is `5 00`; expected 4 and"));
+    }
+
+    #[test]
+    fn processes_that_end_or_cannot_start_are_errors() {
+        let error = Processes::start(1, || Command::new("/no/such/program")).unwrap_err();
+        assert_eq!(error.to_string(), "a process of the evaluation cannot be started");
+        // The test program, told to run a test that it does not have, ends without an answer.
+        let idle = || {
+            let mut command = Command::new(std::env::current_exe().unwrap());
+            command.args(["--exact", "no such test"]);
+            command
+        };
+        assert!(Processes::start(2, idle).unwrap().evaluate(&[vec![1_u8]], trial(0).round).is_err());
+        assert_eq!(
+            Processes::start(0, || Command::new("x")).unwrap_err().to_string(),
+            "processes is 0; expected at least 1"
+        );
+    }
+}

@@ -1,0 +1,173 @@
+use crate::io::{Error, Result};
+use crate::random::Stream;
+
+/// How parents are chosen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Selection {
+    /// The wheel of fitness (book, section 12.3): an individual with twice the fitness is chosen twice as often.
+    /// Fitness below zero counts as zero; when no fitness is above zero, all are chosen alike.
+    Wheel,
+    /// The fittest of so many individuals drawn at random.
+    Tournament {
+        /// Individuals in a tournament, at least 1.
+        size: usize,
+    },
+    /// By rank: the fittest is chosen `pressure` times as often as the average, the least fit `2 - pressure` times,
+    /// the others in between. Equal fitness shares its ranks.
+    Rank {
+        /// From 1, all alike, to 2.
+        pressure: f64,
+    },
+}
+
+impl Selection {
+    /// Fails with what is out of range.
+    pub fn validate(&self) -> Result<()> {
+        match *self {
+            Selection::Tournament { size: 0 } => {
+                Err(Error::invalid_input("tournament size", 0, "at least 1"))
+            }
+            Selection::Rank { pressure } if !(1.0..=2.0).contains(&pressure) => {
+                Err(Error::invalid_input("rank pressure", pressure, "1 to 2"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Prepares to choose among individuals of the given fitness.
+    pub fn among(self, fitness: &[f64]) -> Selector<'_> {
+        let cumulative = match self {
+            Selection::Wheel => running_sums(fitness.iter().map(|f| f.max(0.0))),
+            Selection::Tournament { .. } => Vec::new(),
+            Selection::Rank { pressure } => running_sums(rank_weights(fitness, pressure).into_iter()),
+        };
+        Selector { selection: self, fitness, cumulative }
+    }
+}
+
+/// Chooses parents of one generation.
+#[derive(Debug, Clone)]
+pub struct Selector<'a> {
+    selection: Selection,
+    fitness: &'a [f64],
+    /// Sums of the weights up to and including each individual.
+    cumulative: Vec<f64>,
+}
+
+impl Selector<'_> {
+    /// The index of a parent; 0 when there is nobody.
+    pub fn select(&self, random: &mut Stream) -> usize {
+        match self.selection {
+            Selection::Tournament { size } => self.tournament(size, random),
+            Selection::Wheel | Selection::Rank { .. } => self.spin(random),
+        }
+    }
+
+    fn tournament(&self, size: usize, random: &mut Stream) -> usize {
+        let mut best = random.below(self.fitness.len());
+        for _ in 1..size {
+            let rival = random.below(self.fitness.len());
+            if self.fitness[rival] > self.fitness[best] {
+                best = rival;
+            }
+        }
+        best
+    }
+
+    fn spin(&self, random: &mut Stream) -> usize {
+        let total = self.cumulative.last().copied().unwrap_or(0.0);
+        if !(total > 0.0 && total.is_finite()) {
+            return random.below(self.fitness.len());
+        }
+        let stop = total * random.uniform();
+        self.cumulative.partition_point(|sum| *sum <= stop).min(self.fitness.len() - 1)
+    }
+}
+
+fn running_sums(weights: impl Iterator<Item = f64>) -> Vec<f64> {
+    weights
+        .scan(0.0, |sum, weight| {
+            *sum += weight;
+            Some(*sum)
+        })
+        .collect()
+}
+
+/// The weight of each individual by its rank among all.
+fn rank_weights(fitness: &[f64], pressure: f64) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..fitness.len()).collect();
+    order.sort_by(|&a, &b| fitness[a].total_cmp(&fitness[b]));
+    let last = (fitness.len().max(2) - 1) as f64;
+    let mut weights = vec![0.0; fitness.len()];
+    let mut begin = 0;
+    for equals in order.chunk_by(|&a, &b| fitness[a] == fitness[b]) {
+        let rank = begin as f64 + 0.5 * (equals.len() - 1) as f64;
+        for &individual in equals {
+            weights[individual] = (2.0 - pressure) + 2.0 * (pressure - 1.0) * rank / last;
+        }
+        begin += equals.len();
+    }
+    weights
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How often each is chosen in many draws, as a part of all.
+    fn shares(selection: Selection, fitness: &[f64]) -> Vec<f64> {
+        let selector = selection.among(fitness);
+        let mut random = Stream::new(5);
+        let mut counts = vec![0.0; fitness.len()];
+        for _ in 0..40_000 {
+            counts[selector.select(&mut random)] += 1.0 / 40_000.0;
+        }
+        counts
+    }
+
+    fn near(found: &[f64], expected: &[f64]) -> bool {
+        found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.01)
+    }
+
+    #[test]
+    fn the_wheel_is_proportional_to_fitness() {
+        assert!(near(&shares(Selection::Wheel, &[1.0, 2.0, 5.0]), &[0.125, 0.25, 0.625]));
+    }
+
+    #[test]
+    fn fitness_of_zero_or_less_is_never_chosen_while_any_is_above() {
+        assert!(near(&shares(Selection::Wheel, &[-3.0, 2.0, 0.0]), &[0.0, 1.0, 0.0]));
+    }
+
+    #[test]
+    fn without_fitness_or_with_equal_fitness_all_are_alike() {
+        let third = [1.0 / 3.0; 3];
+        for fitness in [[0.0; 3], [-1.0; 3], [7.0; 3]] {
+            for selection in
+                [Selection::Wheel, Selection::Rank { pressure: 1.8 }, Selection::Tournament { size: 3 }]
+            {
+                assert!(near(&shares(selection, &fitness), &third), "{selection:?} {fitness:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn ranks_count_and_not_how_far_apart_they_are() {
+        let expected = [0.2 / 3.0, 1.0 / 3.0, 1.8 / 3.0];
+        assert!(near(&shares(Selection::Rank { pressure: 1.8 }, &[-1e9, 3.0, 4.0]), &expected));
+    }
+
+    #[test]
+    fn the_fittest_wins_every_tournament_that_it_is_in() {
+        // Chances that the best of two draws is the lowest, the middle, the highest.
+        let expected = [1.0 / 9.0, 3.0 / 9.0, 5.0 / 9.0];
+        assert!(near(&shares(Selection::Tournament { size: 2 }, &[1.0, 2.0, 9.0]), &expected));
+    }
+
+    #[test]
+    fn settings_out_of_range_are_named() {
+        let text = |selection: Selection| selection.validate().unwrap_err().to_string();
+        assert_eq!(text(Selection::Tournament { size: 0 }), "tournament size is 0; expected at least 1");
+        assert_eq!(text(Selection::Rank { pressure: f64::NAN }), "rank pressure is NaN; expected 1 to 2");
+    }
+}

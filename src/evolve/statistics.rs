@@ -1,0 +1,56 @@
+use super::genome::Genome;
+
+/// A generation in numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub struct GenerationStatistics {
+    /// The generation, from 0.
+    pub generation: u64,
+    /// Individuals evaluated since the start, this generation included.
+    pub evaluations: u64,
+    /// The greatest fitness.
+    pub best: f64,
+    /// The mean fitness.
+    pub mean: f64,
+    /// The least fitness.
+    pub worst: f64,
+    /// How much the genomes differ: the standard deviation of a gene among the individuals, as the mean over all
+    /// genes.
+    pub diversity: f64,
+}
+
+impl GenerationStatistics {
+    pub(super) fn new<G: Genome>(generation: u64, evaluations: u64, genomes: &[G], fitness: &[f64]) -> Self {
+        Self {
+            generation,
+            evaluations,
+            best: fitness.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            mean: fitness.iter().sum::<f64>() / fitness.len() as f64,
+            worst: fitness.iter().copied().fold(f64::INFINITY, f64::min),
+            diversity: diversity(genomes),
+        }
+    }
+}
+
+fn diversity<G: Genome>(genomes: &[G]) -> f64 {
+    let length = genomes.first().map_or(0, |genome| genome.genes().len());
+    let deviation = |position: usize| {
+        let values = || genomes.iter().map(|genome| genome.genes()[position].into());
+        let count = genomes.len() as f64;
+        let mean: f64 = values().sum::<f64>() / count;
+        (values().map(|value: f64| (value - mean) * (value - mean)).sum::<f64>() / count).sqrt()
+    };
+    (0..length).map(deviation).sum::<f64>() / length.max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_generation_in_numbers() {
+        let genomes = [vec![1_u8, 10], vec![3, 10], vec![1, 10], vec![3, 10]];
+        let row = GenerationStatistics::new(4, 20, &genomes, &[2.0, -1.0, 5.0, 0.0]);
+        assert_eq!((row.best, row.mean, row.worst, row.diversity), (5.0, 1.5, -1.0, 0.5));
+    }
+}

@@ -1,0 +1,97 @@
+use super::evaluator::{Evaluator, check_fitness};
+use super::evolution::Evolution;
+use super::genome::Genome;
+use super::population::Population;
+use super::recipe::Recipe;
+use crate::io::{Error, Result};
+use crate::random::Stream;
+
+/// A genetic algorithm without generations: a few children at a time take the places of the least fit, if they are
+/// fitter (D. Whitley, "The GENITOR algorithm and selection pressure", ICGA 1989).
+///
+/// What other algorithms call a generation is one such replacement here; the first is the evaluation of everybody. The
+/// recipe's elite has no meaning, as the fittest always stay.
+#[derive(Debug)]
+pub struct SteadyState<G> {
+    population: Population<G>,
+    recipe: Recipe<G>,
+    children: usize,
+}
+
+impl<G: Genome> SteadyState<G> {
+    /// A run that starts from these genomes and makes so many children at a time.
+    pub fn new(genomes: Vec<G>, recipe: Recipe<G>, children: usize, seed: u64) -> Result<Self> {
+        Self::resume(Population::new(genomes, seed)?, recipe, children)
+    }
+
+    /// A run that goes on from where another one was.
+    pub fn resume(population: Population<G>, recipe: Recipe<G>, children: usize) -> Result<Self> {
+        population.validate()?;
+        recipe.validate()?;
+        if children == 0 {
+            return Err(Error::invalid_input("children at a time", children, "at least 1"));
+        }
+        Ok(Self { population, recipe, children })
+    }
+
+    /// Puts a child into the place of the least fit, if it is no less fit.
+    fn place(&mut self, genome: G, fitness: f64) {
+        let Some(&last) = self.population.ranking().last() else { return };
+        if fitness >= self.population.fitness[last] {
+            self.population.genomes[last] = genome;
+            self.population.fitness[last] = fitness;
+        }
+    }
+}
+
+impl<G: Genome> Evolution<G> for SteadyState<G> {
+    fn population(&self) -> &Population<G> {
+        &self.population
+    }
+
+    /// Evaluates everybody at first, and afterwards makes and places children.
+    fn step(&mut self, evaluator: &mut dyn Evaluator<G>) -> Result<()> {
+        if !self.population.is_evaluated() {
+            return self.population.evaluate(evaluator);
+        }
+        let mut round = self.population.round();
+        round.generation += 1;
+        let Population { seed, genomes, fitness, .. } = &self.population;
+        let mut random = Stream::new(*seed).child("breeding", round.generation);
+        let children = self.recipe.breed(genomes, fitness, self.children, &mut random);
+        let found = evaluator.evaluate(&children, round)?;
+        check_fitness(&found, children.len(), round)?;
+        for (genome, fitness) in children.into_iter().zip(found) {
+            self.place(genome, fitness);
+        }
+        self.population.generation = round.generation;
+        self.population.note(self.children);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Serial, StopRules, Trial};
+    use super::*;
+
+    #[test]
+    fn nobody_is_replaced_by_somebody_less_fit() {
+        let ones = |genome: &Vec<u8>, _: Trial| Ok(f64::from(genome[0].count_ones()));
+        let genomes: Vec<Vec<u8>> = (0..12).map(|gene| vec![gene]).collect();
+        let mut evolution = SteadyState::new(genomes, Recipe::book(2), 2, 3).unwrap();
+        evolution.run(&mut Serial::new(ones), &StopRules::generations(200), |_| Ok(())).unwrap();
+        let history = &evolution.population().history;
+        assert!(
+            history.windows(2).all(|rows| rows[0].worst <= rows[1].worst && rows[0].best <= rows[1].best)
+        );
+        assert_eq!(evolution.best().unwrap().fitness, 8.0);
+        assert_eq!(history[199].evaluations, 12 + 199 * 2);
+    }
+
+    #[test]
+    fn no_children_is_an_error() {
+        let error = SteadyState::new(vec![vec![1_u8]], Recipe::book(2), 0, 3).unwrap_err();
+        assert_eq!(error.to_string(), "children at a time is 0; expected at least 1");
+    }
+}

@@ -1,0 +1,154 @@
+//! The search that both forms of jump point search share.
+
+use super::planes::{Landing, Planes};
+use crate::nav::grid::cost::octile;
+use crate::nav::grid::path::SearchStatistics;
+use crate::nav::grid::queue::BucketQueue;
+use crate::world::GridCell;
+
+/// Where jumps lead.
+pub(super) trait Jumps {
+    /// How many nodes there are. The node of that number is the start.
+    fn count(&self) -> usize;
+
+    /// The jumps from the start, in all directions.
+    fn leave_start(&self, x: usize, y: usize, land: impl FnMut(Arrival));
+
+    /// The jumps from a jump point that was reached in some direction.
+    fn leave_node(&self, node: u32, at: Landing, land: impl FnMut(Arrival));
+}
+
+/// The end of a jump.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Arrival {
+    pub(super) node: u32,
+    pub(super) at: Landing,
+}
+
+/// What is known about a node.
+#[derive(Debug, Clone, Copy, Default)]
+struct Label {
+    cost: u64,
+    x: u32,
+    y: u32,
+    parent: u32,
+    /// The query that this is about, and the direction of arrival in the lowest three bits.
+    query: u32,
+}
+
+/// Everything that a search keeps from one query to the next.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Search {
+    labels: Vec<Label>,
+    query: u32,
+    queue: BucketQueue,
+}
+
+/// The parent of the nodes that jumps from the start end at, and the start itself.
+const NO_NODE: u32 = u32::MAX;
+
+impl Search {
+    /// Finds the shortest path, of which there must be one. Returns its turning cells, between which it goes
+    /// diagonally first.
+    pub(super) fn run(
+        &mut self,
+        planes: &Planes,
+        jumps: &impl Jumps,
+        start: GridCell,
+        goal: GridCell,
+    ) -> (Vec<GridCell>, SearchStatistics) {
+        self.begin(jumps.count());
+        let mut statistics = SearchStatistics { expanded: 1, generated: 1 };
+        let (x, y) = (start.column + 1, start.row + 1);
+        let goal = planes.target(goal.column + 1, goal.row + 1);
+        if planes.sees(x, y, &goal) {
+            return (self.turns(start, NO_NODE, goal.x, goal.y), statistics);
+        }
+        let (mut best, mut last) = (u64::MAX, NO_NODE);
+        let estimate = |x: usize, y: usize| octile(x.abs_diff(goal.x) as u32, y.abs_diff(goal.y) as u32);
+        self.queue.start(estimate(x, y));
+        jumps.leave_start(x, y, |arrival| {
+            self.reach(
+                arrival,
+                octile_between(x, y, arrival.at),
+                NO_NODE,
+                u64::MAX,
+                &estimate,
+                &mut statistics,
+            );
+        });
+        while let Some((node, cost)) = self.queue.pop() {
+            let label = self.labels[node as usize];
+            if label.cost != cost || cost >= best {
+                continue;
+            }
+            statistics.expanded += 1;
+            let (x, y) = (label.x as usize, label.y as usize);
+            if planes.sees(x, y, &goal) {
+                // Nothing else that comes from here can be shorter.
+                let total = cost + estimate(x, y);
+                if total < best {
+                    (best, last) = (total, node);
+                }
+                continue;
+            }
+            let at = Landing { x, y, direction: label.query as usize & 7 };
+            jumps.leave_node(node, at, |arrival| {
+                let total = cost + octile_between(x, y, arrival.at);
+                self.reach(arrival, total, node, best, &estimate, &mut statistics);
+            });
+        }
+        (self.turns(start, last, goal.x, goal.y), statistics)
+    }
+
+    fn begin(&mut self, count: usize) {
+        if self.labels.len() != count || self.query >= u32::MAX - 16 {
+            self.labels = vec![Label::default(); count];
+            self.query = 0;
+        }
+        self.query += 8;
+    }
+
+    #[inline]
+    fn reach(
+        &mut self,
+        arrival: Arrival,
+        cost: u64,
+        parent: u32,
+        best: u64,
+        estimate: &impl Fn(usize, usize) -> u64,
+        statistics: &mut SearchStatistics,
+    ) {
+        let label = &mut self.labels[arrival.node as usize];
+        if label.query & !7 == self.query && label.cost <= cost {
+            return;
+        }
+        let at = arrival.at;
+        let sum = cost + estimate(at.x, at.y);
+        if sum >= best {
+            return;
+        }
+        let query = self.query | at.direction as u32;
+        *label = Label { cost, x: at.x as u32, y: at.y as u32, parent, query };
+        statistics.generated += 1;
+        self.queue.push(sum, arrival.node, cost);
+    }
+
+    fn turns(&self, start: GridCell, last: u32, goal_x: usize, goal_y: usize) -> Vec<GridCell> {
+        let mut turns = vec![GridCell::new(goal_x - 1, goal_y - 1)];
+        let mut node = last;
+        while node != NO_NODE {
+            let label = self.labels[node as usize];
+            turns.push(GridCell::new(label.x as usize - 1, label.y as usize - 1));
+            node = label.parent;
+        }
+        turns.push(start);
+        turns.reverse();
+        turns
+    }
+}
+
+#[inline]
+fn octile_between(x: usize, y: usize, at: Landing) -> u64 {
+    octile(x.abs_diff(at.x) as u32, y.abs_diff(at.y) as u32)
+}

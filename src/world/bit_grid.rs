@@ -1,0 +1,335 @@
+use super::{Cell, OccupancyGrid};
+use crate::geometry::{Point, Pose};
+
+/// The place of a cell in a grid: its column and row, both from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct GridCell {
+    /// The column.
+    pub column: usize,
+    /// The row.
+    pub row: usize,
+}
+
+impl GridCell {
+    /// The cell in a column and row.
+    pub const fn new(column: usize, row: usize) -> Self {
+        Self { column, row }
+    }
+
+    /// The cell's middle, in cells: half a cell from its edges.
+    pub fn centre(self) -> Point {
+        Point::new(self.column as f64 + 0.5, self.row as f64 + 0.5)
+    }
+
+    /// The cell that holds a point given in cells, unless a coordinate is negative or none.
+    pub fn at(point: Point) -> Option<Self> {
+        let inside = point.x >= 0.0 && point.y >= 0.0;
+        inside.then(|| Self::new(point.x as usize, point.y as usize))
+    }
+}
+
+impl std::fmt::Display for GridCell {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "({}, {})", self.column, self.row)
+    }
+}
+
+/// A grid of cells that are free or blocked, one bit each, packed 64 to a word.
+///
+/// All that lies outside is blocked. Which way rows count is the map's business: those of [`OccupancyGrid`] count
+/// upwards, those of pictures and of MovingAI's maps downwards.
+///
+/// ```
+/// use roverlab::world::{BitGrid, GridCell};
+/// let grid = BitGrid::from_text("..#\n...")?;
+/// assert_eq!((grid.width(), grid.height(), grid.count_free()), (3, 2, 5));
+/// assert!(!grid.is_free(GridCell::new(2, 0)) && !grid.is_free(GridCell::new(3, 0)));
+/// # Ok::<(), roverlab::world::BitGridError>(())
+/// ```
+#[derive(Clone, PartialEq, Eq)]
+pub struct BitGrid {
+    width: usize,
+    height: usize,
+    /// Words of a row.
+    stride: usize,
+    /// Row by row; a set bit is a free cell, the lowest bit the first column. Bits beyond the width are 0.
+    words: Vec<u64>,
+}
+
+/// Why there is no grid.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BitGridError {
+    /// The grid would not fit into memory.
+    #[error("a grid of {width} x {height} cells; expected at most {} cells", BitGrid::MAX_CELLS)]
+    TooLarge {
+        /// Cells in a row.
+        width: usize,
+        /// Rows.
+        height: usize,
+    },
+    /// A drawing has lines of different lengths.
+    #[error("line {line} of a drawn grid has {found} cells; expected {expected}, as the first line")]
+    Ragged {
+        /// The line, from 1.
+        line: usize,
+        /// Its cells.
+        found: usize,
+        /// The cells of the first line.
+        expected: usize,
+    },
+}
+
+impl BitGrid {
+    /// The most cells that a grid may have.
+    pub const MAX_CELLS: usize = 1 << 25;
+
+    /// A grid of blocked cells.
+    pub fn blocked(width: usize, height: usize) -> Result<Self, BitGridError> {
+        if width.saturating_mul(height) > Self::MAX_CELLS || width.max(height) > Self::MAX_CELLS {
+            return Err(BitGridError::TooLarge { width, height });
+        }
+        let stride = width.div_ceil(64);
+        Ok(Self { width, height, stride, words: vec![0; stride * height] })
+    }
+
+    /// A grid whose cells are free where `is_free(column, row)`.
+    pub fn from_fn(
+        width: usize,
+        height: usize,
+        mut is_free: impl FnMut(usize, usize) -> bool,
+    ) -> Result<Self, BitGridError> {
+        let mut grid = Self::blocked(width, height)?;
+        for row in 0..height {
+            let words = &mut grid.words[row * grid.stride..][..grid.stride];
+            for column in 0..width {
+                words[column / 64] |= u64::from(is_free(column, row)) << (column % 64);
+            }
+        }
+        Ok(grid)
+    }
+
+    /// A grid drawn with one line for each row, the first one first: `#` and `@` are blocked, all else is free.
+    pub fn from_text(text: &str) -> Result<Self, BitGridError> {
+        let rows: Vec<Vec<char>> = text.lines().map(|line| line.chars().collect()).collect();
+        let width = rows.first().map_or(0, Vec::len);
+        if let Some(row) = rows.iter().position(|row| row.len() != width) {
+            return Err(BitGridError::Ragged { line: row + 1, found: rows[row].len(), expected: width });
+        }
+        Self::from_fn(width, rows.len(), |column, row| !matches!(rows[row][column], '#' | '@'))
+    }
+
+    /// The free cells of an occupancy grid, in the same columns and rows. Unknown cells are blocked.
+    pub fn from_occupancy(grid: &OccupancyGrid) -> Self {
+        let free = |column, row| grid.cell(column, row) == Cell::Free;
+        Self::from_fn(grid.width(), grid.height(), free).unwrap_or_else(|_| Self::empty())
+    }
+
+    /// The same as an occupancy grid, with cells of `resolution` metres and the outer corner of the first one at
+    /// `origin`.
+    pub fn to_occupancy(&self, resolution: f64, origin: Pose) -> Result<OccupancyGrid, super::GridError> {
+        let mut grid = OccupancyGrid::unknown(self.width, self.height, resolution, origin)?;
+        for row in 0..self.height {
+            for column in 0..self.width {
+                let free = self.is_free(GridCell::new(column, row));
+                grid.set(column, row, if free { Cell::Free } else { Cell::Occupied });
+            }
+        }
+        Ok(grid)
+    }
+
+    fn empty() -> Self {
+        Self { width: 0, height: 0, stride: 0, words: Vec::new() }
+    }
+
+    /// Cells in a row.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Whether a cell lies within the grid.
+    #[inline]
+    pub fn contains(&self, cell: GridCell) -> bool {
+        cell.column < self.width && cell.row < self.height
+    }
+
+    /// Whether a cell is free. What lies outside is not.
+    #[inline]
+    pub fn is_free(&self, cell: GridCell) -> bool {
+        self.contains(cell) && self.words[self.word(cell)] >> (cell.column % 64) & 1 != 0
+    }
+
+    /// Makes a cell free or blocked. Outside the grid nothing happens.
+    pub fn set_free(&mut self, cell: GridCell, free: bool) {
+        if self.contains(cell) {
+            let (word, bit) = (self.word(cell), 1 << (cell.column % 64));
+            if free {
+                self.words[word] |= bit;
+            } else {
+                self.words[word] &= !bit;
+            }
+        }
+    }
+
+    /// The words of a row: bit `c % 64` of word `c / 64` is set if column `c` is free.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such row.
+    #[inline]
+    pub fn row(&self, row: usize) -> &[u64] {
+        &self.words[row * self.stride..][..self.stride]
+    }
+
+    /// How many cells are free.
+    pub fn count_free(&self) -> usize {
+        self.words.iter().map(|word| word.count_ones() as usize).sum()
+    }
+
+    /// The free cells, row by row.
+    pub fn free_cells(&self) -> impl Iterator<Item = GridCell> + '_ {
+        (0..self.height)
+            .flat_map(move |row| ones(self.row(row)).map(move |column| GridCell::new(column, row)))
+    }
+
+    /// The grid with columns and rows exchanged.
+    #[must_use]
+    pub fn transposed(&self) -> Self {
+        let stride = self.height.div_ceil(64);
+        let mut words = vec![0; stride * self.width];
+        for block_row in 0..stride {
+            for block_column in 0..self.stride {
+                let mut block = [0; 64];
+                for (i, word) in block.iter_mut().enumerate() {
+                    let row = block_row * 64 + i;
+                    *word = if row < self.height { self.words[row * self.stride + block_column] } else { 0 };
+                }
+                transpose_block(&mut block);
+                let columns = self.width - block_column * 64;
+                for (i, word) in block.iter().enumerate().take(columns) {
+                    words[(block_column * 64 + i) * stride + block_row] = *word;
+                }
+            }
+        }
+        Self { width: self.height, height: self.width, stride, words }
+    }
+
+    #[inline]
+    fn word(&self, cell: GridCell) -> usize {
+        cell.row * self.stride + cell.column / 64
+    }
+}
+
+impl std::fmt::Debug for BitGrid {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        writeln!(f, "{} x {} cells", self.width, self.height)?;
+        for row in 0..self.height.min(64) {
+            let symbol = |column| if self.is_free(GridCell::new(column, row)) { '.' } else { '#' };
+            writeln!(f, "{}", (0..self.width.min(128)).map(symbol).collect::<String>())?;
+        }
+        Ok(())
+    }
+}
+
+/// The positions of the set bits in a row of words.
+pub(crate) fn ones(words: &[u64]) -> impl Iterator<Item = usize> + '_ {
+    words.iter().enumerate().flat_map(|(index, &word)| {
+        let mut rest = word;
+        std::iter::from_fn(move || {
+            (rest != 0).then(|| {
+                let bit = rest.trailing_zeros() as usize;
+                rest &= rest - 1;
+                64 * index + bit
+            })
+        })
+    })
+}
+
+/// Exchanges rows and columns of 64 x 64 bits, by halves, quarters, and so on.
+fn transpose_block(block: &mut [u64; 64]) {
+    let (mut width, mut mask) = (32, 0x0000_0000_ffff_ffffu64);
+    while width != 0 {
+        let mut row = 0;
+        while row < 64 {
+            let swap = ((block[row] >> width) ^ block[row + width]) & mask;
+            block[row] ^= swap << width;
+            block[row + width] ^= swap;
+            row = (row + width + 1) & !width;
+        }
+        width >>= 1;
+        mask ^= mask << width;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn a_drawing_becomes_a_grid() {
+        let grid = BitGrid::from_text(".#.\n@..").unwrap();
+        let free: Vec<_> = grid.free_cells().map(|cell| (cell.column, cell.row)).collect();
+        assert_eq!(free, [(0, 0), (2, 0), (1, 1), (2, 1)]);
+        assert_eq!(format!("{grid:?}"), "3 x 2 cells\n.#.\n#..\n");
+        let error = BitGrid::from_text("..\n...").unwrap_err();
+        assert_eq!(error.to_string(), "line 2 of a drawn grid has 3 cells; expected 2, as the first line");
+        assert_eq!(BitGrid::from_text("").unwrap().count_free(), 0);
+    }
+
+    #[test]
+    fn absurd_grids_are_refused() {
+        assert!(BitGrid::blocked(usize::MAX, 2).is_err() && BitGrid::blocked(usize::MAX, 0).is_err());
+        assert!(BitGrid::blocked(1 << 13, (1 << 12) + 1).is_err());
+        assert_eq!(BitGrid::blocked(0, 7).unwrap().count_free(), 0);
+    }
+
+    #[test]
+    fn occupancy_keeps_free_cells() {
+        let mut map = OccupancyGrid::unknown(3, 2, 0.1, Pose::default()).unwrap();
+        map.set(1, 0, Cell::Free);
+        map.set(2, 1, Cell::Occupied);
+        let grid = BitGrid::from_occupancy(&map);
+        assert_eq!(grid.free_cells().collect::<Vec<_>>(), [GridCell::new(1, 0)]);
+        let back = grid.to_occupancy(0.1, Pose::default()).unwrap();
+        assert_eq!((back.count(Cell::Free), back.count(Cell::Occupied)), (1, 5));
+    }
+
+    #[test]
+    fn the_cell_of_a_point() {
+        assert_eq!(GridCell::at(Point::new(2.9, 0.0)), Some(GridCell::new(2, 0)));
+        assert_eq!(GridCell::at(GridCell::new(5, 7).centre()), Some(GridCell::new(5, 7)));
+        assert_eq!(GridCell::at(Point::new(-0.1, 0.0)), None);
+        assert_eq!(GridCell::at(Point::new(f64::NAN, 0.0)), None);
+    }
+
+    proptest! {
+        #[test]
+        fn transposing_exchanges_columns_and_rows(
+            width in 0..150usize, height in 0..150usize, seed in any::<u64>()
+        ) {
+            let mut stream = crate::random::Stream::new(seed);
+            let grid = BitGrid::from_fn(width, height, |_, _| stream.between(0.0, 1.0) < 0.5).unwrap();
+            let turned = grid.transposed();
+            prop_assert_eq!((turned.width(), turned.height()), (height, width));
+            prop_assert!(grid.free_cells().all(|c| turned.is_free(GridCell::new(c.row, c.column))));
+            prop_assert_eq!(turned.count_free(), grid.count_free());
+            prop_assert_eq!(turned.transposed(), grid);
+        }
+
+        #[test]
+        fn a_set_cell_is_read_back(column in 0..200usize, row in 0..3usize, free in any::<bool>()) {
+            let mut grid = BitGrid::from_fn(130, 3, |_, _| !free).unwrap();
+            let before = grid.clone();
+            let cell = GridCell::new(column, row);
+            grid.set_free(cell, free);
+            prop_assert_eq!(grid.is_free(cell), free && column < 130);
+            prop_assert_eq!(grid == before, column >= 130);
+        }
+    }
+}

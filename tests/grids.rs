@@ -1,0 +1,114 @@
+//! The planners on grids through the example `grid_benchmark`, on small maps of the project, and on published maps where
+//! the environment variable `ROVERLAB_DATA` names the folder that holds `movingai/`.
+
+#[path = "../examples/common/mod.rs"]
+mod common;
+#[path = "../examples/grid_benchmark/mod.rs"]
+mod grid_benchmark;
+
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use roverlab::nav::grid::{GridPlanner, GridSearch, JumpPointSearch, PreparedJumps};
+use roverlab::world::formats::movingai;
+use serde_json::Value;
+
+fn run(options: &[&str]) -> (u8, Value, String) {
+    let words = ["grid_benchmark", "--json"].iter().chain(options).map(OsString::from);
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    let status = common::run_printing(words, &mut out, &mut err, grid_benchmark::work);
+    let report = serde_json::from_slice(&out).unwrap_or(Value::Null);
+    (status, report, String::from_utf8(err).unwrap())
+}
+
+#[test]
+fn own_maps_are_answered_as_their_scenarios_say() {
+    for map in ["yard", "spiral"] {
+        let name = |ending: &str| format!("tests/data/grids/{map}.map{ending}");
+        for algorithm in ["dijkstra", "astar", "jps", "jps_plus"] {
+            let (map, scen) = (name(""), name(".scen"));
+            let (status, report, err) = run(&["--map", &map, "--scen", &scen, "--algorithm", algorithm]);
+            assert_eq!(
+                (status, report["outcome"].as_str(), err.as_str()),
+                (0, Some("solved"), ""),
+                "{report}"
+            );
+            assert_eq!(report["optimal"], report["queries"], "{report}");
+            for field in ["mean_ratio", "worst_ratio", "median_us", "p95_us", "preprocess_ms"] {
+                assert!(report[field].is_number(), "{field} in {report}");
+            }
+        }
+    }
+}
+
+#[test]
+fn without_options_there_is_a_map_of_rooms() {
+    let (status, report, _) = run(&[]);
+    assert_eq!((status, report["queries"].as_u64(), report["optimal"].as_u64()), (0, Some(200), Some(200)));
+    assert_ne!(run(&["--seed", "2"]).1["mean_expanded"], report["mean_expanded"]);
+}
+
+#[test]
+fn a_wrong_length_is_found_and_wrong_files_are_named() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let scen = folder.join("wrong.scen");
+    fs::write(&scen, "version 1\n0 yard 8 6 0 0 7 0 7.5\n").unwrap();
+    let options = ["--map", "tests/data/grids/yard.map", "--scen", scen.to_str().unwrap()];
+    let (status, report, _) = run(&options);
+    assert_eq!((status, report["outcome"].as_str()), (1, Some("wrong")), "{report}");
+    fs::write(&scen, "version 1\n0 yard 9 6 0 0 7 0 7\n").unwrap();
+    let (status, _, err) = run(&options);
+    assert!(
+        status == 2 && err.contains("found queries for a map of 9 x 6 cells") && err.lines().count() == 1,
+        "{err}"
+    );
+    let (status, _, err) = run(&["--map", "nowhere.map", "--scen", "nowhere.scen"]);
+    assert!(status == 2 && err.contains("nowhere.map:1:1: found"), "{err}");
+    let (status, _, err) = run(&["--map", "nowhere.map"]);
+    assert!(status == 2 && err.contains("--scen"), "{err}");
+}
+
+fn published() -> Option<PathBuf> {
+    std::env::var_os("ROVERLAB_DATA").map(|folder| Path::new(&folder).join("movingai"))
+}
+
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+/// Some queries of every published scenario file, by all octile planners.
+#[test]
+fn published_lengths_are_met() {
+    let Some(folder) = published() else { return };
+    let mut compared = 0;
+    for scen in files(&folder.join("scen")).iter().flat_map(|kind| files(kind)) {
+        let queries = movingai::load_scenarios(&scen).unwrap().value;
+        let kind = scen.parent().unwrap().file_name().unwrap();
+        let name = Path::new(&queries[0].map).file_name().unwrap();
+        let map = folder.join("map").join(kind).join(name);
+        let grid = movingai::load_map(&map).unwrap().value.grid();
+        let mut planners: [Box<dyn GridPlanner>; 4] = [
+            Box::new(GridSearch::dijkstra(&grid)),
+            Box::new(GridSearch::astar(&grid)),
+            Box::new(JumpPointSearch::new(&grid)),
+            Box::new(PreparedJumps::new(&grid)),
+        ];
+        for query in queries.iter().step_by(queries.len() / 10 + 1) {
+            for planner in &mut planners {
+                let path = planner.plan(query.start, query.goal).unwrap();
+                let tolerance = (2e-5 * query.optimal).max(0.006);
+                assert!(
+                    (path.cost - query.optimal).abs() <= tolerance,
+                    "{}: {query:?}: {}",
+                    map.display(),
+                    path.cost
+                );
+            }
+            compared += 1;
+        }
+    }
+    assert!(compared >= 100, "only {compared} queries");
+}
