@@ -27,8 +27,8 @@ JSON fields:
   runs               list of {bug, family, seed, outcome, reachable, correct, contacts, path_mm, shortest_mm, hits}
   picture            the file's name, or null
 and with --campaign, instead of them:
-  bugs               list of {bug, complete, runs, correct, contacts, wrong_seeds, bounds_checked, bounds_broken, closest}
-                     where `closest` is the largest ratio of a path to its bound
+  bugs               list of {bug, complete, runs, correct, contacts, wrong_seeds, contact_seeds, bounds_checked,
+                     bounds_broken, closest} where `closest` is the largest ratio of a path to its bound
 Intervals are [low, high]: 95 %, by the bootstrap over courses.
 Outcomes: compared, wrong (a verdict of an algorithm that is proved complete, or a bound), passed, collided."
 )]

@@ -105,6 +105,7 @@ struct Row {
     runs: usize,
     contacts: u32,
     wrong: Vec<u64>,
+    touched: Vec<u64>,
     bounded: usize,
     broken: Vec<u64>,
     /// The largest share of a bound.
@@ -122,6 +123,7 @@ fn row(kind: BugKind, checked: &[Checked]) -> Row {
         runs: runs.len(),
         contacts: runs.iter().map(|run| run.contacts).sum(),
         wrong: seeds(&|run| !run.correct),
+        touched: seeds(&|run| run.contacts > 0),
         bounded: runs.iter().filter(|run| run.of_bound.is_some()).count(),
         broken: seeds(&breaks),
         closest: runs.iter().filter_map(|run| run.of_bound).reduce(f64::max),
@@ -144,7 +146,8 @@ fn text(bugs: &[BugKind], checked: &[Checked]) -> String {
             row.closest.map_or("-".into(), |share| format!("{share:.3}")),
         )
         .expect("writing to a string does not fail");
-        for (what, list) in [("wrong", &row.wrong), ("bound broken", &row.broken)] {
+        for (what, list) in [("wrong", &row.wrong), ("contact", &row.touched), ("bound broken", &row.broken)]
+        {
             if !list.is_empty() {
                 writeln!(seeds, "{}, {what}: seeds {list:?}", row.kind.name())
                     .expect("writing to a string does not fail");
@@ -164,6 +167,7 @@ fn json(bugs: &[BugKind], checked: &[Checked]) -> Value {
             "correct": row.runs - row.wrong.len(),
             "contacts": row.contacts,
             "wrong_seeds": row.wrong,
+            "contact_seeds": row.touched,
             "bounds_checked": row.bounded,
             "bounds_broken": row.broken,
             "closest": row.closest.map(rounded),

@@ -19,6 +19,7 @@ pub(super) struct Body {
     /// The noise-filtered hits of the scan in the robot's frame.
     pub(super) points: Vec<Point>,
     pub(super) events: Vec<BugEvent>,
+    slow_to_pass: bool,
     look: LookRound,
     filter: ScanFilter,
     matcher: ScanMatcher,
@@ -56,7 +57,7 @@ const LOOKING_TURN: f64 = 2.0;
 const SETTLING_STEPS: u32 = 12;
 
 impl Body {
-    pub(super) fn new(goal: Point, parameters: BugParameters) -> Result<Self> {
+    pub(super) fn new(goal: Point, parameters: BugParameters, slow_to_pass: bool) -> Result<Self> {
         parameters.validate()?;
         if !(goal.x.is_finite() && goal.y.is_finite()) {
             return Err(Error::invalid_input("goal", goal, "finite numbers"));
@@ -69,6 +70,7 @@ impl Body {
             surroundings: Surroundings::default(),
             points: Vec::new(),
             events: Vec::new(),
+            slow_to_pass,
             look: LookRound::default(),
             filter: ScanFilter::new(EXPECTED_NOISE),
             matcher: ScanMatcher::new(),
@@ -206,7 +208,8 @@ impl Body {
     fn safe_speed(&self) -> f64 {
         // The motors' lag lets the robot roll on for about 0.2 s; a little more is reserve.
         const STOPPING_TIME: f64 = 0.45;
-        let outline = self.parameters.robot_radius + 0.5 * self.parameters.least_clearance;
+        let passing = if self.slow_to_pass && self.phase == BugPhase::ToGoal { 1.0 } else { 0.5 };
+        let outline = self.parameters.robot_radius + passing * self.parameters.least_clearance;
         let (ahead, _) = self.surroundings.free_distance(direction(0.0), outline);
         let goal = self.goal_distance();
         let creep = 0.02;

@@ -50,6 +50,12 @@ impl Default for DistRule {
 }
 
 impl Strategy for DistRule {
+    /// It turns the nearer way, which leads past.
+    const SLOW_TO_PASS: bool = false;
+
+    /// A boundary begun anew costs it a part of a lap at the most.
+    const LOST_TURNS: f64 = 2.0;
+
     /// Takes in how near to the goal the boundary of a new obstacle begins. If the last leave has not brought the
     /// robot as much nearer as it promised, free ranges are relied upon less from now on; so the robot cannot go back
     /// and forth for ever because of errors.

@@ -39,7 +39,7 @@ const IN_LINE: f64 = 0.5;
 
 impl<S: Strategy> Engine<S> {
     pub(super) fn new(goal: Point, parameters: BugParameters, strategy: S) -> Result<Self> {
-        Ok(Self { body: Body::new(goal, parameters)?, strategy, following: None })
+        Ok(Self { body: Body::new(goal, parameters, S::SLOW_TO_PASS)?, strategy, following: None })
     }
 
     /// One control step: what the robot shall do until the next.
@@ -83,7 +83,7 @@ impl<S: Strategy> Engine<S> {
             side,
             boundary: BoundaryFollower::new(side, body.parameters.follow_distances(), anchor),
             nearest: view.distance,
-            progress: LoopProgress::new(pose),
+            progress: LoopProgress::new(pose, S::LOST_TURNS),
             travelled: 0.0,
             last: point,
             in_line: false,
@@ -163,7 +163,7 @@ impl<S: Strategy> Engine<S> {
                 Some(None)
             }
             Decision::BeginLap => {
-                self.following.as_mut()?.progress = LoopProgress::new(self.body.pose);
+                self.following.as_mut()?.progress = LoopProgress::new(self.body.pose, S::LOST_TURNS);
                 Some(None)
             }
             Decision::GiveUp => {
@@ -200,7 +200,7 @@ impl<S: Strategy> Engine<S> {
         let (pose, side) = (self.body.pose, following.side.other());
         following.side = side;
         following.boundary.turn_back();
-        following.progress = LoopProgress::new(pose);
+        following.progress = LoopProgress::new(pose, S::LOST_TURNS);
         following.in_line = false;
         self.body.phase = BugPhase::Following(side);
         self.body.events.push(BugEvent::Reverse { point: pose.position(), side });

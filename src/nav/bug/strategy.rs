@@ -8,6 +8,14 @@ use crate::nav::boundary::WallSide;
 ///
 /// The engine drives the body by it. All lengths are in metres.
 pub(super) trait Strategy: Debug + Clone {
+    /// Whether the robot slows down on its way to the goal for what it would pass with less than the least clearance.
+    /// Whoever may turn either way then must, since a robot rolls on while it turns.
+    const SLOW_TO_PASS: bool = true;
+
+    /// Full turns, one way, after which the robot should have come back to where it began to follow a boundary; if not,
+    /// it has been wrong about the place. Along a spiral it turns several times before it unwinds.
+    const LOST_TURNS: f64 = 4.0;
+
     /// While the goal is driven at: another heading than straight to it, if the algorithm has one.
     fn detour(&mut self, _body: &Body, _view: &GoalView) -> Option<f64> {
         None
