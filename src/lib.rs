@@ -63,7 +63,7 @@
 //!
 //! # Features
 //!
-//! None is on by default. `picture` adds pictures as SVG, `png` the same as PNG.
+//! None is on by default. `log` adds recordings, `picture` pictures as SVG, `png` the same as PNG.
 
 pub mod drive;
 pub mod evolve;

@@ -133,8 +133,8 @@ fn wrong_values_are_named_with_what_was_expected() {
         (&["--time-limit", "0"], &["--time-limit", "above 0"]),
         (&["--seed", "-1"], &["--seed", "'-1'"]),
         (&["--picture", "run.gif"], &["--picture", "run.gif", ".svg or .png"]),
-        (&["--record", "run.mcap"], &["--record run.mcap", "recordings are not part of this version"]),
-        (&["--replay", "run.mcap"], &["--replay run.mcap", "recordings are not part of this version"]),
+        (&["--record", "no/such/run.mcap"], &["--record no/such/run.mcap", "expected one that exists"]),
+        (&["--replay", "no-such.mcap"], &["--replay no-such.mcap"]),
         (&["--robios", "libeyebot.so"], &["libeyebot.so", "feature `robios`"]),
     ];
     for &(options, parts) in cases {

@@ -271,8 +271,9 @@ fn robots_that_cannot_do_it_are_refused() {
     let mut scene = distbug::scene();
     scene.robots[0].spec = RobotSpec { lidar: Some(lidar), ..s4 }.into();
     let trip = common::Trip { goal: scene.world.markers[0].position, scene };
-    let options = distbug::Options { seed: 1, noise: 0.0, time_limit: 5.0, faults: Vec::new() };
-    let drive = distbug::drive(&trip, &options, |_, _| {}).unwrap();
+    let options = distbug::Options { seed: 1, noise: 0.0, time_limit: 5.0 };
+    let stage = common::Stage::simulated(&trip.scene, distbug::sim_options(&options), Vec::new()).unwrap();
+    let drive = distbug::drive(&trip, &options, &stage, |_, _| {}).unwrap();
     assert!(
         matches!(&drive.ending, distbug::Ending::Failed(error) if error.contains("full turn")),
         "{:?}",
@@ -305,10 +306,11 @@ fn the_picture_shows_the_run() {
 fn what_happens_is_told_in_order() {
     let scene = distbug::scene();
     let trip = common::Trip { goal: scene.world.markers[0].position, scene };
-    let options = distbug::Options { seed: 1, noise: 1.0, time_limit: 600.0, faults: Vec::new() };
+    let options = distbug::Options { seed: 1, noise: 1.0, time_limit: 600.0 };
+    let stage = common::Stage::simulated(&trip.scene, distbug::sim_options(&options), Vec::new()).unwrap();
     let mut told = Vec::new();
     let mut clock = 0.0;
-    let drive = distbug::drive(&trip, &options, |time, news| {
+    let drive = distbug::drive(&trip, &options, &stage, |time, news| {
         assert!(time >= clock);
         clock = time;
         told.extend(news.iter().cloned());

@@ -146,7 +146,7 @@ fn add_run(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
         noise: row.kind.noise(),
         ideal_encoders: row.kind == Kind::Ideal,
         time_limit: 120.0,
-        faults: Vec::new(),
+        common: None,
     };
     let mut options = options(&args, &trip, Some(heading), &conditions);
     if row.kind == Kind::Landmark {

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use roverlab::geometry::Pose;
 use roverlab::io::wrappers::Fault;
 
-use super::Failure;
 use super::values::{GoalOption, parse_goal, parse_noise, parse_picture, parse_pose, parse_seconds};
+use super::{Failure, Origin};
 
 /// The options that all examples have. Flatten it into an example's own.
 #[derive(Debug, Clone, clap::Args)]
@@ -45,11 +45,11 @@ pub(crate) struct CommonArgs {
     #[arg(long, value_name = "FILE", value_parser = parse_picture)]
     pub(crate) picture: Option<PathBuf>,
 
-    /// Write a recording of the run (not in this version).
+    /// Record the run.
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) record: Option<PathBuf>,
 
-    /// Run the behaviour against a recording (not in this version).
+    /// Run against a recording, with its options; others come before them.
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) replay: Option<PathBuf>,
 
@@ -68,17 +68,17 @@ pub(crate) struct CommonArgs {
     /// Inject a fault T seconds into the run: stuck, lost, nan, jump, late, link, hang or clock. May be repeated.
     #[arg(long, value_name = "KIND@T")]
     pub(crate) fault: Vec<String>,
+
+    /// What the run is, for recordings.
+    #[arg(skip)]
+    pub(crate) origin: Origin,
 }
 
 impl CommonArgs {
     /// Fails if this build cannot do what the options ask for.
     pub(crate) fn check(&self) -> Result<(), Failure> {
-        let recording = self.record.as_ref().map(|file| ("--record", file));
-        if let Some((option, file)) = recording.or(self.replay.as_ref().map(|file| ("--replay", file))) {
-            return Err(Failure::input(format!(
-                "{option} {}: recordings are not part of this version; expected a command line without {option}",
-                file.display()
-            )));
+        if let Some(file) = &self.record {
+            check_writable("--record", file)?;
         }
         match &self.robios {
             Some(library) => Err(Failure::input(format!(
@@ -105,7 +105,7 @@ impl CommonArgs {
 
     /// Fails if pictures cannot be written where the options ask for one, before a long run is in vain.
     pub(crate) fn check_picture(&self) -> Result<(), Failure> {
-        self.picture.as_deref().map_or(Ok(()), check_writable)
+        self.picture.as_deref().map_or(Ok(()), |file| check_writable("--picture", file))
     }
 
     /// The faults to inject.
@@ -115,19 +115,20 @@ impl CommonArgs {
     }
 }
 
-fn check_writable(picture: &Path) -> Result<(), Failure> {
+/// Fails if a file cannot be written where an option asks for one.
+fn check_writable(option: &str, file: &Path) -> Result<(), Failure> {
     let refused = |found: String, expected: &str| {
-        Err(Failure::input(format!("--picture {}: found {found}; expected {expected}", picture.display())))
+        Err(Failure::input(format!("{option} {}: found {found}; expected {expected}", file.display())))
     };
-    let folder = picture.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
         return refused(format!("no folder {}", folder.display()), "one that exists");
     }
-    if picture.is_dir() {
+    if file.is_dir() {
         return refused("a folder of this name".into(), "the name of a file");
     }
     // Pictures are written beside an older file and then take its place, so it is the folder that counts.
-    let trial = folder.join(format!(".picture-{}.tmp", std::process::id()));
+    let trial = folder.join(format!(".roverlab-{}.tmp", std::process::id()));
     match File::create(&trial).and_then(|_| fs::remove_file(&trial)) {
         Ok(()) => Ok(()),
         Err(error) => refused(format!("folder {} ({error})", folder.display()), "one that can be written to"),

@@ -24,21 +24,47 @@
 //!     })
 //! }
 //! ```
+//!
+//! # Recordings
+//!
+//! An example that takes its robots from a [`Stage`] can record and replay its runs:
+//!
+//! ```ignore
+//! let stage = args.common.stage(&scene, SimOptions::with_noise(args.common.noise, args.common.seed))?;
+//! let mut robot = stage.robot(0)?; // instead of `simulation.robot(0)`; --fault is in it
+//! let mut truth = stage.truth(0)?; // instead of `simulation.truth()`: for verdicts and pictures
+//! behaviour.run(&mut robot, limit, |_| path.push(truth.pose(0)))?;
+//! drop(robot); // lets go of the world, as a simulated robot does
+//! let end = truth.robot(0)?;
+//! ```
+//!
+//! With `--record` the stage writes down what robot and truth are asked and answer, with `--replay` they are made of
+//! a recording, and without either it is the simulator alone. Several robots in threads: take all of them before the
+//! first one drives, and give each thread a truth of its own, `stage.truth(index)`. What goes wrong with a recording
+//! reaches the report by itself. Runs that nobody records, as those of a campaign, use `Stage::simulated`.
+//!
+//! The command line of a recorded run is in the recording, but for what does not affect the run and for the names of
+//! files. `--replay` reads it from there, so an option may not depend on anything but the command line.
 
 #![allow(dead_code, unused_imports, reason = "every example uses its own part of this")]
 
 mod args;
+mod command_line;
 mod failure;
+mod origin;
 mod report;
 mod run;
+mod stage;
 mod trip;
 mod values;
 mod wall_clock;
 
 pub(crate) use args::CommonArgs;
 pub(crate) use failure::Failure;
+pub(crate) use origin::Origin;
 pub(crate) use report::{Outcome, Report, millimetres, point_in_mm, rounded};
 pub(crate) use run::{Printed, main, run, run_printing};
+pub(crate) use stage::{Driven, Stage, StageTruth};
 pub(crate) use trip::Trip;
 pub(crate) use values::{
     GoalOption, parse_goal, parse_noise, parse_picture, parse_point, parse_pose, parse_seconds,

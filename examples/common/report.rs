@@ -101,6 +101,12 @@ impl Report {
         self
     }
 
+    /// Adds what else went wrong after the run.
+    pub(crate) fn add_trouble(&mut self, more: Vec<String>) {
+        let all: Vec<String> = self.trouble.take().into_iter().chain(more).collect();
+        self.trouble = (!all.is_empty()).then(|| all.join("\n"));
+    }
+
     /// The word for how the run ended, contacts included.
     pub(crate) fn word(&self) -> &str {
         if self.collided() { "collided" } else { &self.outcome.word }

@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 
+use super::command_line::{self, Refusal};
 use super::report::Header;
 use super::wall_clock::Stopwatch;
 use super::{CommonArgs, Failure, Report};
@@ -30,11 +31,17 @@ pub(crate) fn run<A>(
 where
     A: clap::Parser + AsRef<CommonArgs>,
 {
-    run_printing(command_line, out, err, |args: &A| {
+    let args = match command_line::parse(example, command_line) {
+        Ok(args) => Ok(args),
+        Err(Refusal::Parser(error)) => Err(error),
+        Err(Refusal::Recording(failure)) => return complain(err, &failure),
+    };
+    run_parsed(args, out, err, |args: &A| {
         let common = args.as_ref();
         let stopwatch = Stopwatch::start();
         common.check()?;
-        let report = work(args)?;
+        let mut report = work(args)?;
+        report.add_trouble(common.origin.take_trouble());
         let (seed, noise, wall_time) = (common.seed, common.noise, stopwatch.seconds());
         let header = Header { example, seed, noise, wall_time };
         let text = if common.json { report.json(header) } else { report.summary(header) };
@@ -60,7 +67,17 @@ pub(crate) fn run_printing<A: clap::Parser>(
     err: &mut dyn Write,
     work: impl FnOnce(&A) -> Result<Printed, Failure>,
 ) -> u8 {
-    let args = match A::try_parse_from(command_line) {
+    run_parsed(A::try_parse_from(command_line), out, err, work)
+}
+
+/// Does the work of a command line that has been read, or says what is wrong with it.
+fn run_parsed<A>(
+    args: Result<A, clap::Error>,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+    work: impl FnOnce(&A) -> Result<Printed, Failure>,
+) -> u8 {
+    let args = match args {
         Ok(args) => args,
         Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
             return written(write!(out, "{}", error.render()), err, 0);

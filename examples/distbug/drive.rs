@@ -1,10 +1,10 @@
 use roverlab::geometry::{Point, Pose};
-use roverlab::io::sim::{RobotTruth, SimOptions, Simulation, Truth};
-use roverlab::io::wrappers::{Fault, Faulty};
+use roverlab::io::log::Witness;
+use roverlab::io::sim::{RobotTruth, SimOptions};
 use roverlab::io::{self, ErrorKind};
 use roverlab::nav::{DistBug, DistBugEvent, DistBugOutcome, DistBugParameters, WallSide};
 
-use crate::common::{Failure, Trip};
+use crate::common::{Failure, Stage, StageTruth, Trip};
 
 /// How to drive.
 #[derive(Debug, Clone)]
@@ -13,7 +13,6 @@ pub(crate) struct Options {
     pub(crate) noise: f64,
     /// Simulated seconds.
     pub(crate) time_limit: f64,
-    pub(crate) faults: Vec<Fault>,
 }
 
 /// How the behaviour ended.
@@ -82,24 +81,24 @@ impl Drive {
     }
 }
 
-/// Drives the first robot of a scene to a goal by DistBug. `watch` is called with the time at every step, and with
+/// Drives the first robot of a stage to a goal by DistBug. `watch` is called with the time at every step, and with
 /// what happened there.
 ///
-/// Fails if the robot cannot be simulated or cannot run DistBug. What goes wrong on the way is part of the result.
+/// Fails if there is no such robot, or it cannot run DistBug. What goes wrong on the way is part of the result.
 pub(crate) fn drive(
     trip: &Trip,
     options: &Options,
+    stage: &Stage,
     mut watch: impl FnMut(f64, &[Event]),
 ) -> Result<Drive, Failure> {
-    let simulation = Simulation::new(&trip.scene, sim_options(options)).map_err(Failure::input)?;
     let start = trip.start();
     let radius = trip.spec().footprint.bounding_radius();
     let parameters = DistBugParameters::for_radius(radius);
     let mut bug = DistBug::new(start.to_local(trip.goal), parameters).map_err(Failure::input)?;
-    let mut robot = Faulty::new(simulation.robot(0).map_err(Failure::input)?, options.faults.clone());
-    let mut log = Log::new(simulation.truth(), start);
+    let mut robot = stage.robot(0)?;
+    let mut log = Log::new(stage.truth(0)?, start);
     let result = bug.run(&mut robot, options.time_limit, |bug, _| {
-        let time = log.truth.time();
+        let time = log.truth.time().unwrap_or_default();
         watch(time, log.note(time, bug));
     });
     // The robot lets go of the world, so that what is true stays as it is.
@@ -107,7 +106,8 @@ pub(crate) fn drive(
     log.finish(&bug, trip.goal, ending(result))
 }
 
-fn sim_options(options: &Options) -> SimOptions {
+/// How the simulator runs.
+pub(crate) fn sim_options(options: &Options) -> SimOptions {
     // The behaviour's own limit comes first, unless its clock has stopped.
     const RESERVE: f64 = 1.0;
     SimOptions {
@@ -126,7 +126,7 @@ fn ending(result: io::Result<DistBugOutcome>) -> Ending {
 
 /// What has been seen of a run so far.
 struct Log {
-    truth: Truth,
+    truth: StageTruth,
     start: Pose,
     events: Vec<Event>,
     contacts: usize,
@@ -135,7 +135,7 @@ struct Log {
 }
 
 impl Log {
-    fn new(truth: Truth, start: Pose) -> Self {
+    fn new(truth: StageTruth, start: Pose) -> Self {
         Self {
             truth,
             start,
@@ -181,7 +181,7 @@ impl Log {
             ending,
             events: self.events,
             odometry: self.start.compose(&truth.odometry),
-            sim_time: self.truth.time(),
+            sim_time: self.truth.time().map_err(Failure::run)?,
             goal_distance: truth.pose.distance_to(goal),
             believed_distance: bug.goal_distance(),
             true_path: self.true_path,

@@ -6,7 +6,7 @@ use roverlab::geometry::{Point, units};
 use roverlab::nav::{DistBugOutcome, WallSide};
 use roverlab::world::DriveSpec;
 
-use super::{Args, Drive, Ending, Event, Happening, Options, drive, picture, scene};
+use super::{Args, Drive, Ending, Event, Happening, Options, drive, picture, scene, sim_options};
 use crate::common::{CommonArgs, Failure, Outcome, Pacer, Progress, Report, Trip, millimetres, point_in_mm};
 
 /// The picture that is drawn unless another file is named.
@@ -15,13 +15,12 @@ const PICTURE: &str = "distbug.svg";
 /// The work of the example: drives, tells what happens, draws.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
-    let faults = common.faults()?;
     common.check_picture()?;
     let trip = common.trip(scene)?;
     check_drive(common, &trip)?;
     check_robot(common, &trip)?;
     let time_limit = common.time_limit.unwrap_or_else(|| trip.generous_time_limit());
-    let options = Options { seed: common.seed, noise: common.noise, time_limit, faults };
+    let options = Options { seed: common.seed, noise: common.noise, time_limit };
 
     let drive = watched(common, &trip, &options)?;
     let (picture, trouble) = match drawn(common, &trip, &drive, &options) {
@@ -78,7 +77,8 @@ fn watched(common: &CommonArgs, trip: &Trip, options: &Options) -> Result<Drive,
     ));
     let (pacer, mut progress) = (Pacer::start(), Progress::start());
     let (mut hits, mut leaves) = (0, 0);
-    let drive = drive(trip, options, |time, news| {
+    let stage = common.stage(&trip.scene, sim_options(options))?;
+    let drive = drive(trip, options, &stage, |time, news| {
         if common.realtime {
             pacer.keep(time);
         }

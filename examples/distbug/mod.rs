@@ -15,7 +15,7 @@ mod trial;
 pub(crate) use args::Args;
 pub(crate) use campaign::{CampaignArgs, campaign, trials};
 pub(crate) use course::scene;
-pub(crate) use drive::{Drive, Ending, Event, Happening, Options, drive};
+pub(crate) use drive::{Drive, Ending, Event, Happening, Options, drive, sim_options};
 pub(crate) use job::work;
 pub(crate) use save::save;
 pub(crate) use table::text;

@@ -3,8 +3,8 @@ use roverlab::random::Stream;
 use roverlab::world::generate::{Course, CourseOptions, obstacle_course};
 use roverlab::world::{Colour, Marker, RobotSpec, Scene};
 
-use super::{Ending, Options, drive};
-use crate::common::{Failure, Trip};
+use super::{Ending, Options, drive, sim_options};
+use crate::common::{Failure, Stage, Trip};
 
 /// One course of a campaign, driven once at every level of noise.
 #[derive(Debug, Clone)]
@@ -94,8 +94,9 @@ pub(crate) fn trial(seed: u64, noises: &[f64]) -> Result<Trial, Failure> {
     let trip = trip(&course, spec);
     let time_limit = trip.generous_time_limit();
     let runs = noises.iter().map(|&noise| {
-        let options = Options { seed, noise, time_limit, faults: Vec::new() };
-        let drive = drive(&trip, &options, |_, _| {})?;
+        let options = Options { seed, noise, time_limit };
+        let stage = Stage::simulated(&trip.scene, sim_options(&options), Vec::new())?;
+        let drive = drive(&trip, &options, &stage, |_, _| {})?;
         let judgement = Judgement::of(&drive.ending, course.reachable, drive.goal_distance, noise);
         let arrived = judgement == Judgement::Correct && course.reachable;
         Ok(Run {

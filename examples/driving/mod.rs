@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 
 use roverlab::geometry::{Point, Pose};
 use roverlab::io;
-use roverlab::io::sim::{NoiseModel, RobotTruth, SimOptions, SimRobot, Simulation, Truth};
-use roverlab::io::wrappers::{Fault, Faulty};
+use roverlab::io::log::Witness;
+use roverlab::io::sim::{NoiseModel, RobotTruth, SimOptions};
 use roverlab::kinematics::OdometryErrors;
 use roverlab::picture::{Picture, SaveError};
 use roverlab::world::{DriveSpec, RobotSpec, Scene};
 
-use crate::common::{CommonArgs, Failure, Outcome, Pacer, Report};
+use crate::common::{CommonArgs, Driven, Failure, Outcome, Pacer, Report, Stage, StageTruth};
 
 /// How the simulator runs.
 #[derive(Debug, Clone)]
@@ -22,7 +22,8 @@ pub(crate) struct Conditions {
     pub(crate) ideal_encoders: bool,
     /// Simulated seconds.
     pub(crate) time_limit: f64,
-    pub(crate) faults: Vec<Fault>,
+    /// What decides where the robot comes from; a simulator that nobody records without it.
+    pub(crate) common: Option<CommonArgs>,
 }
 
 /// How a robot's program ended: what it says, or why the robot failed.
@@ -43,12 +44,14 @@ pub(crate) struct Run<T> {
 
 impl Conditions {
     pub(crate) fn new(common: &CommonArgs, time_limit: f64) -> Result<Self, Failure> {
+        // Wrong ones are found before anything begins.
+        common.faults()?;
         Ok(Self {
             seed: common.seed,
             noise: common.noise,
             ideal_encoders: false,
             time_limit: common.time_limit.unwrap_or(time_limit),
-            faults: common.faults()?,
+            common: Some(common.clone()),
         })
     }
 
@@ -64,7 +67,7 @@ impl Conditions {
         &self,
         scene: &Scene,
         mut watch: impl FnMut(f64),
-        program: impl FnOnce(&mut Faulty<SimRobot>, &mut dyn FnMut()) -> io::Result<T>,
+        program: impl FnOnce(&mut Driven, &mut dyn FnMut()) -> io::Result<T>,
     ) -> Result<Run<T>, Failure> {
         // The program's own limit comes first, unless its clock has stopped.
         const RESERVE: f64 = 1.0;
@@ -73,27 +76,30 @@ impl Conditions {
             ideal_encoders: self.ideal_encoders,
             ..SimOptions::with_noise(self.noise, self.seed)
         };
-        let simulation = Simulation::new(scene, options).map_err(Failure::input)?;
+        let stage = match &self.common {
+            Some(common) => common.stage(scene, options)?,
+            None => Stage::simulated(scene, options, Vec::new())?,
+        };
         let start = scene.robots[0].pose;
-        let mut robot = Faulty::new(simulation.robot(0).map_err(Failure::input)?, self.faults.clone());
-        let truth = simulation.truth();
+        let mut robot = stage.robot(0)?;
+        let mut truth = stage.truth(0)?;
         let (mut true_path, mut odometry_path) = (vec![start], vec![start.position()]);
         let result = program(&mut robot, &mut || {
             if let Ok(robot) = truth.robot(0) {
                 true_path.push(robot.pose);
                 odometry_path.push(start.compose(&robot.odometry).position());
             }
-            watch(truth.time());
+            watch(truth.time().unwrap_or_default());
         });
         // The robot lets go of the world, so that what is true stays as it is.
         drop(robot);
-        finish(result, &truth, start, true_path, odometry_path)
+        finish(result, &mut truth, start, true_path, odometry_path)
     }
 }
 
 fn finish<T>(
     result: io::Result<T>,
-    truth: &Truth,
+    truth: &mut StageTruth,
     start: Pose,
     true_path: Vec<Pose>,
     odometry_path: Vec<Point>,
@@ -102,7 +108,7 @@ fn finish<T>(
     Ok(Run {
         ending: result.map_err(|error| Failure::from(error).to_string()),
         odometry: start.compose(&end.odometry),
-        sim_time: truth.time(),
+        sim_time: truth.time().map_err(Failure::run)?,
         truth: end,
         true_path,
         odometry_path,

@@ -11,4 +11,11 @@ pub trait Clock {
 
     /// Lets the given number of seconds pass. Zero or less returns at once.
     fn wait(&mut self, seconds: f64) -> Result<()>;
+
+    /// The time as [`now`](Clock::now) tells it, for logs: asking takes no time of the robot's and leaves no trace.
+    ///
+    /// A clock that costs nothing to read need not implement it.
+    fn peek_time(&mut self) -> Result<f64> {
+        self.now()
+    }
 }

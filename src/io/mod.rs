@@ -17,7 +17,10 @@ mod mock;
 mod psd;
 mod radio;
 pub mod sim;
+#[macro_use]
 pub mod wrappers;
+#[cfg(feature = "log")]
+pub mod log;
 
 pub use actuators::{Encoders, Motors, Servos};
 pub use camera::{Camera, Resolution};

@@ -25,6 +25,10 @@ impl Clock for MockRobot {
         self.pass(seconds);
         Ok(())
     }
+
+    fn peek_time(&mut self) -> Result<f64> {
+        Ok(self.time)
+    }
 }
 
 impl DistanceSensors for MockRobot {

@@ -162,6 +162,10 @@ impl FleetRobot<'_> {
         ask(self.engine, self.index)
     }
 
+    pub(super) fn own_time(&self) -> f64 {
+        self.engine.time()
+    }
+
     pub(super) fn time(&mut self) -> Result<f64> {
         self.call(|engine, _| Ok(engine.time()))
     }

@@ -50,8 +50,13 @@ impl SimRobot {
         answer
     }
 
+    /// The robot's own clock, in seconds.
+    pub(super) fn own_time(&self) -> f64 {
+        self.clock as f64 / NANOSECONDS
+    }
+
     pub(super) fn time(&mut self) -> Result<f64> {
-        let now = self.clock as f64 / NANOSECONDS;
+        let now = self.own_time();
         self.call(|_, _| Ok(now))
     }
 

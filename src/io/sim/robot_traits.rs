@@ -40,6 +40,10 @@ macro_rules! robot_through_engine {
             fn wait(&mut self, seconds: f64) -> Result<()> {
                 self.pause(seconds)
             }
+
+            fn peek_time(&mut self) -> Result<f64> {
+                Ok(self.own_time())
+            }
         }
 
         impl Drive for $robot {

@@ -203,6 +203,10 @@ impl<R: Clock> Clock for Faulty<R> {
         self.inner.wait(seconds)?;
         ready
     }
+
+    fn peek_time(&mut self) -> Result<f64> {
+        self.inner.peek_time()
+    }
 }
 
 impl<R: DistanceSensors + Clock> DistanceSensors for Faulty<R> {

@@ -210,6 +210,10 @@ impl<R: Clock + Drive> Clock for Limited<R> {
         self.inner.wait(left)?;
         self.keep_up()
     }
+
+    fn peek_time(&mut self) -> Result<f64> {
+        self.inner.peek_time()
+    }
 }
 
 impl<R: Clock + Drive> Drive for Limited<R> {

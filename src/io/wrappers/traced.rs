@@ -180,6 +180,10 @@ impl<R: Clock, W: io::Write> Clock for Traced<R, W> {
         self.close(&result, |line, done| done.put(line));
         result
     }
+
+    fn peek_time(&mut self) -> Result<f64> {
+        self.inner.peek_time()
+    }
 }
 
 impl<R: Lidar + Clock, W: io::Write> Lidar for Traced<R, W> {

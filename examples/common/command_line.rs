@@ -1,0 +1,96 @@
+use std::ffi::OsString;
+use std::fs;
+use std::path::Path;
+
+use clap::parser::ValueSource;
+use clap::{ArgAction, ArgMatches, Command, CommandFactory};
+use roverlab::io::log::Log;
+
+use super::origin::Facts;
+use super::{CommonArgs, Failure};
+
+/// Options that do not affect a run, or are the names of files.
+const NOT_RECORDED: [&str; 8] =
+    ["record", "replay", "picture", "json", "realtime", "world", "robot", "robios"];
+
+/// Why a command line is not one to run.
+pub(crate) enum Refusal {
+    /// The parser says why, or shows its help.
+    Parser(clap::Error),
+    /// The recording to replay is none.
+    Recording(Failure),
+}
+
+/// Reads a command line. With `--replay`, the options of the recording come with it.
+pub(crate) fn parse<A>(example: &str, command_line: impl IntoIterator<Item = OsString>) -> Result<A, Refusal>
+where
+    A: clap::Parser + AsRef<CommonArgs>,
+{
+    let mut words: Vec<OsString> = command_line.into_iter().collect();
+    let log =
+        replayed(&words).map(|file| recording(example, &file)).transpose().map_err(Refusal::Recording)?;
+    if let Some(log) = &log {
+        let given = words.split_off(1.min(words.len()));
+        let recorded = log.header().options.iter().filter(|option| !repeats(option, &given));
+        words.extend(recorded.map(OsString::from).collect::<Vec<_>>());
+        words.extend(given);
+    }
+    let mut command = A::command();
+    let mut matches = command.try_get_matches_from_mut(words).map_err(Refusal::Parser)?;
+    let options = options(&command, &matches);
+    let args =
+        A::from_arg_matches_mut(&mut matches).map_err(|error| Refusal::Parser(error.format(&mut command)))?;
+    args.as_ref().origin.set(Facts { program: example.into(), options, log });
+    Ok(args)
+}
+
+/// The file behind `--replay`.
+fn replayed(words: &[OsString]) -> Option<OsString> {
+    let words = || words.iter().skip(1).take_while(|word| *word != "--");
+    let joined = words().find_map(|word| word.to_str()?.strip_prefix("--replay=").map(OsString::from));
+    joined.or_else(|| words().skip_while(|word| *word != "--replay").nth(1).cloned())
+}
+
+fn recording(example: &str, file: &OsString) -> Result<Log, Failure> {
+    let name = Path::new(file).display();
+    let refused = |error: &dyn std::fmt::Display| Failure::input(format!("--replay {name}: {error}"));
+    let bytes = fs::read(file).map_err(|error| refused(&error))?;
+    let log = Log::read(bytes).map_err(|error| refused(&error))?;
+    let program = &log.header().program;
+    if program != example {
+        return Err(refused(&format!(
+            "found a recording of the program `{program}`; expected one of `{example}`"
+        )));
+    }
+    Ok(log)
+}
+
+/// Whether a recorded option, `--name=value` or `--name`, is given anew.
+fn repeats(option: &str, given: &[OsString]) -> bool {
+    let name = option.split('=').next().unwrap_or(option);
+    given.iter().filter_map(|word| word.to_str()).any(|word| word.split('=').next() == Some(name))
+}
+
+/// The options that affect a run, as they were given, in the order of the command.
+fn options(command: &Command, matches: &ArgMatches) -> Vec<String> {
+    let mut options = Vec::new();
+    for arg in command.get_arguments() {
+        let id = arg.get_id().as_str();
+        let given = matches.value_source(id) == Some(ValueSource::CommandLine);
+        if !given || NOT_RECORDED.contains(&id) {
+            continue;
+        }
+        let name = arg.get_long().map(|long| format!("--{long}"));
+        if matches!(arg.get_action(), ArgAction::SetTrue | ArgAction::SetFalse) {
+            options.extend(name);
+            continue;
+        }
+        let values =
+            matches.get_raw(id).into_iter().flatten().map(|value| value.to_string_lossy().into_owned());
+        options.extend(values.map(|value| match &name {
+            Some(name) => format!("{name}={value}"),
+            None => value,
+        }));
+    }
+    options
+}

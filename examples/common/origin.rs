@@ -1,0 +1,44 @@
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use roverlab::io::log::Log;
+
+/// What a run is: the program and the options that affect it, and the recording that it replays.
+///
+/// The command line sets it when it has been read. Copies share it.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Origin {
+    facts: Arc<OnceLock<Facts>>,
+    trouble: Arc<Mutex<Vec<String>>>,
+}
+
+/// What is known about a run from its command line.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Facts {
+    /// The example's name.
+    pub(crate) program: String,
+    /// The options that affect the run, in the order of `--help`.
+    pub(crate) options: Vec<String>,
+    /// What is replayed.
+    pub(crate) log: Option<Log>,
+}
+
+impl Origin {
+    /// Sets what is known, once.
+    pub(crate) fn set(&self, facts: Facts) {
+        let _ = self.facts.set(facts);
+    }
+
+    pub(crate) fn facts(&self) -> Facts {
+        self.facts.get().cloned().unwrap_or_default()
+    }
+
+    /// Notes what went wrong with a recording. The run goes on, but the program reports it and fails.
+    pub(crate) fn note(&self, trouble: String) {
+        self.trouble.lock().unwrap_or_else(PoisonError::into_inner).push(trouble);
+    }
+
+    /// What has been noted.
+    pub(crate) fn take_trouble(&self) -> Vec<String> {
+        std::mem::take(&mut *self.trouble.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}

@@ -1,0 +1,95 @@
+use std::collections::BTreeMap;
+
+/// The version of what recordings hold. A recording of a newer one is refused.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// The name of the MCAP metadata record that makes a file a recording of this project.
+pub(super) const METADATA: &str = "roverlab";
+
+/// What a recording says about the run: enough to run the program again.
+///
+/// It holds nothing about where and when a run took place: no names of files, no dates.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Header {
+    /// The program's name.
+    pub program: String,
+    /// The options that affect the run, as on a command line.
+    pub options: Vec<String>,
+    /// The seed of every random stream.
+    pub seed: Option<u64>,
+    /// The version of this crate that made the recording; a new header has the present one.
+    pub version: String,
+    /// Files that belong to the run, such as its world, with their whole contents.
+    pub attachments: Vec<Attachment>,
+}
+
+/// A file in a recording.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Attachment {
+    /// What it is: `world.wld`, say.
+    pub name: String,
+    /// Its type, as on the web: `text/plain`, say.
+    pub media_type: String,
+    /// What it holds.
+    pub data: Vec<u8>,
+}
+
+impl Header {
+    /// The header of a program's run with some options.
+    pub fn new(program: impl Into<String>, options: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        Self {
+            program: program.into(),
+            options: options.into_iter().map(Into::into).collect(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            ..Self::default()
+        }
+    }
+
+    /// A digest of all attachments, their names included.
+    fn digest(&self) -> u64 {
+        let parts = self.attachments.iter().flat_map(|file| [file.name.as_bytes(), &file.data]);
+        // The 64-bit FNV-1a digest (Fowler, Noll and Vo), with the length ahead of each part.
+        let with_length =
+            parts.flat_map(|part| (part.len() as u64).to_le_bytes().into_iter().chain(part.iter().copied()));
+        with_length.fold(0xcbf2_9ce4_8422_2325, |digest: u64, byte| {
+            (digest ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+        })
+    }
+
+    /// The text of the MCAP metadata record.
+    pub(super) fn metadata(&self) -> BTreeMap<String, String> {
+        let mut fields = BTreeMap::from([
+            ("schema".to_owned(), SCHEMA_VERSION.to_string()),
+            ("version".to_owned(), self.version.clone()),
+            ("program".to_owned(), self.program.clone()),
+            ("attachments".to_owned(), format!("{:016x}", self.digest())),
+        ]);
+        if let Some(seed) = self.seed {
+            fields.insert("seed".to_owned(), seed.to_string());
+        }
+        for (index, option) in self.options.iter().enumerate() {
+            fields.insert(format!("option {index:04}"), option.clone());
+        }
+        fields
+    }
+
+    /// The header of a metadata record, without its attachments; and the version of its schema.
+    pub(super) fn read(fields: &BTreeMap<String, String>) -> Option<(Self, u32)> {
+        let schema = fields.get("schema")?.parse().ok()?;
+        let options =
+            fields.range("option ".to_owned()..).take_while(|(name, _)| name.starts_with("option "));
+        let header = Self {
+            program: fields.get("program").cloned().unwrap_or_default(),
+            options: options.map(|(_, option)| option.clone()).collect(),
+            seed: fields.get("seed").and_then(|seed| seed.parse().ok()),
+            version: fields.get("version").cloned().unwrap_or_default(),
+            attachments: Vec::new(),
+        };
+        Some((header, schema))
+    }
+
+    /// An attachment by its name.
+    pub fn attachment(&self, name: &str) -> Option<&Attachment> {
+        self.attachments.iter().find(|attachment| attachment.name == name)
+    }
+}

@@ -1,0 +1,169 @@
+use std::fmt;
+use std::io::Write;
+
+use super::call;
+use super::schema::Schema;
+use super::values::{Put, Values};
+use super::wire::Fields;
+use super::writer::{Channel, LogWriter, Nanoseconds, frame};
+use crate::geometry::Pose;
+use crate::io::{Error, LidarScan, Result};
+
+/// The channels of a robot.
+pub(super) const CALLS: Channel = ("calls", Schema::Call);
+pub(super) const TRUTH: Channel = ("truth", Schema::Call);
+pub(super) const LIDAR: Channel = ("lidar", Schema::LaserScan);
+pub(super) const CAMERA: Channel = ("camera", Schema::RawImage);
+pub(super) const ODOMETRY: Channel = ("odometry", Schema::PoseInFrame);
+pub(super) const TRANSFORMS: Channel = ("transforms", Schema::FrameTransform);
+
+/// A robot's way into a recording: it makes messages of calls and of what they show.
+pub(super) struct Port<W: Write> {
+    writer: LogWriter<W>,
+    track: usize,
+    frame: String,
+    odometry_frame: String,
+    time: Option<Nanoseconds>,
+    arguments: Values,
+    result: Values,
+    message: Vec<u8>,
+    /// Whether the robot drives no more when this is gone.
+    closes: bool,
+}
+
+impl<W: Write> fmt::Debug for Port<W> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Port").field("track", &self.track).field("time", &self.time).finish_non_exhaustive()
+    }
+}
+
+impl<W: Write> Drop for Port<W> {
+    fn drop(&mut self) {
+        if self.closes {
+            self.writer.close(self.track);
+        }
+    }
+}
+
+impl<W: Write> Port<W> {
+    pub(super) fn new(writer: LogWriter<W>, track: usize) -> Self {
+        Self {
+            writer,
+            track,
+            frame: frame(track),
+            odometry_frame: format!("{}/odometry", frame(track)),
+            time: None,
+            arguments: Values::default(),
+            result: Values::default(),
+            message: Vec::new(),
+            closes: true,
+        }
+    }
+
+    /// Another way into the recording of the same robot, which may outlive it.
+    pub(super) fn beside(writer: LogWriter<W>, track: usize) -> Self {
+        let mut port = Self::new(writer, track);
+        port.closes = false;
+        port
+    }
+
+    /// Begins a call at a time; one that nobody can tell is that of the message before.
+    pub(super) fn begin(&mut self, time: Option<Nanoseconds>) {
+        self.time = time;
+        self.arguments.clear();
+    }
+
+    pub(super) fn argument(&mut self, argument: &impl Put) {
+        argument.put(&mut self.arguments);
+    }
+
+    /// Writes the call that has begun.
+    pub(super) fn end<T: Put>(&mut self, channel: Channel, method: &str, result: &Result<T>) {
+        self.end_with(channel, method, result.as_ref().map(|value| value as &dyn PutAny));
+    }
+
+    fn end_with(&mut self, channel: Channel, method: &str, result: std::result::Result<&dyn PutAny, &Error>) {
+        self.result.clear();
+        let result = match result {
+            Ok(value) => {
+                value.put_any(&mut self.result);
+                Ok(&self.result)
+            }
+            Err(error) => Err(error),
+        };
+        self.message.clear();
+        call::write(&mut self.message, method, &self.arguments, result);
+        self.writer.push(self.track, self.time, channel, &self.message);
+    }
+
+    /// Writes a message on a channel that is there to be seen.
+    pub(super) fn show(&mut self, channel: Channel, fill: impl FnOnce(&mut Fields<'_>, &Frames<'_>)) {
+        self.message.clear();
+        let frames =
+            Frames { time: self.time.unwrap_or(0), robot: &self.frame, odometry: &self.odometry_frame };
+        fill(&mut Fields(&mut self.message), &frames);
+        self.writer.push(self.track, self.time, channel, &self.message);
+    }
+}
+
+/// What the messages of a robot refer to.
+#[derive(Debug)]
+pub(super) struct Frames<'a> {
+    pub(super) time: Nanoseconds,
+    pub(super) robot: &'a str,
+    pub(super) odometry: &'a str,
+}
+
+trait PutAny {
+    fn put_any(&self, out: &mut Values);
+}
+
+impl<T: Put> PutAny for T {
+    fn put_any(&self, out: &mut Values) {
+        self.put(out);
+    }
+}
+
+/// A `foxglove.LaserScan`.
+pub(super) fn laser_scan(out: &mut Fields<'_>, frames: &Frames<'_>, scan: &LidarScan) {
+    let gaps = scan.ranges.len().saturating_sub(1) as f64;
+    out.time(1, frames.time);
+    out.text(2, frames.robot);
+    out.message(3, |pose| write_pose(pose, &scan.mount));
+    out.double(4, scan.angle_min);
+    out.double(5, scan.angle_min + scan.angle_increment * gaps);
+    out.doubles(6, &scan.ranges);
+}
+
+/// A `foxglove.RawImage` of 8 bits a channel.
+pub(super) fn raw_image(out: &mut Fields<'_>, frames: &Frames<'_>, (width, height): (u32, u32), data: &[u8]) {
+    out.time(1, frames.time);
+    out.fixed32(2, width);
+    out.fixed32(3, height);
+    out.text(4, "rgb8");
+    out.fixed32(5, 3 * width);
+    out.text(7, frames.robot);
+    out.bytes(6, data);
+}
+
+/// A `foxglove.PoseInFrame` of odometry.
+pub(super) fn pose_in_frame(out: &mut Fields<'_>, frames: &Frames<'_>, pose: &Pose) {
+    out.time(1, frames.time);
+    out.text(2, frames.odometry);
+    out.message(3, |message| write_pose(message, pose));
+}
+
+/// A `foxglove.FrameTransform` from odometry's frame to the robot's.
+pub(super) fn frame_transform(out: &mut Fields<'_>, frames: &Frames<'_>, pose: &Pose) {
+    out.time(1, frames.time);
+    out.text(2, frames.odometry);
+    out.text(3, frames.robot);
+    out.vector(4, pose.x, pose.y, 0.0);
+    out.heading(5, pose.heading);
+}
+
+/// A `foxglove.Pose`.
+pub(super) fn write_pose(out: &mut Fields<'_>, pose: &Pose) {
+    out.vector(1, pose.x, pose.y, 0.0);
+    out.heading(2, pose.heading);
+}

@@ -1,0 +1,165 @@
+use mcap::records::{MessageHeader, Record, op};
+
+use super::LogError;
+
+const MAGIC: &[u8] = mcap::MAGIC;
+/// An opcode and a length.
+const FRAME: usize = 9;
+
+/// A record in a file: its kind, where it begins, and what it holds.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Framed<'a> {
+    pub(super) opcode: u8,
+    pub(super) start: usize,
+    pub(super) body: &'a [u8],
+}
+
+impl<'a> Framed<'a> {
+    /// Where the next record begins.
+    pub(super) fn end(&self) -> usize {
+        self.start + FRAME + self.body.len()
+    }
+
+    pub(super) fn parse(&self) -> Result<Record<'a>, LogError> {
+        if self.opcode == op::ATTACHMENT && !attachment_fits(self.body) {
+            return Err(LogError::damaged(format!("an attachment at byte {} is too short", self.start)));
+        }
+        mcap::parse_record(self.opcode, self.body)
+            .map_err(|error| LogError::damaged(format!("{error} at byte {}", self.start)))
+    }
+}
+
+/// Whether an attachment's fields end before its last four bytes, as the parser takes for granted.
+fn attachment_fits(body: &[u8]) -> bool {
+    let length = |at: usize, size: usize| {
+        let bytes = body.get(at..at.checked_add(size)?)?;
+        let value = bytes.iter().rev().fold(0, |value: u64, &byte| value << 8 | u64::from(byte));
+        usize::try_from(value).ok()
+    };
+    let after = |at: usize| length(at, 4).and_then(|name| at.checked_add(4)?.checked_add(name));
+    let data = after(16).and_then(after);
+    data.and_then(|at| at.checked_add(8 + 4)).is_some_and(|end| end <= body.len())
+}
+
+/// The records in some bytes, from a place on; `None` for one that is cut off.
+pub(super) fn records(bytes: &[u8], start: usize) -> impl Iterator<Item = Option<Framed<'_>>> {
+    let mut at = start;
+    std::iter::from_fn(move || {
+        if at >= bytes.len() {
+            return None;
+        }
+        let record = record_at(bytes, at);
+        at = record.as_ref().map_or(bytes.len(), Framed::end);
+        Some(record)
+    })
+}
+
+fn record_at(bytes: &[u8], start: usize) -> Option<Framed<'_>> {
+    let head = bytes.get(start..start + FRAME)?;
+    let length = u64::from_le_bytes(head[1..].try_into().ok()?);
+    let body = start + FRAME;
+    let end = body.checked_add(usize::try_from(length).ok()?)?;
+    Some(Framed { opcode: head[0], start, body: bytes.get(body..end)? })
+}
+
+/// A message in a file.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MessageAt<'a> {
+    pub(super) header: MessageHeader,
+    pub(super) data: &'a [u8],
+}
+
+/// The parts of a message record's body.
+pub(super) fn message(body: &[u8]) -> Option<MessageAt<'_>> {
+    let (head, data) = body.split_at_checked(22)?;
+    let header = MessageHeader {
+        channel_id: u16::from_le_bytes(head[..2].try_into().ok()?),
+        sequence: u32::from_le_bytes(head[2..6].try_into().ok()?),
+        log_time: u64::from_le_bytes(head[6..14].try_into().ok()?),
+        publish_time: u64::from_le_bytes(head[14..].try_into().ok()?),
+    };
+    Some(MessageAt { header, data })
+}
+
+/// The records of a whole file, up to the end of its data. Fails if a byte of the file is not as it was written.
+pub(super) fn whole(bytes: &[u8]) -> Result<Vec<Framed<'_>>, LogError> {
+    if !bytes.starts_with(MAGIC) {
+        let cut_off = bytes.len() < MAGIC.len() && MAGIC.starts_with(bytes) && !bytes.is_empty();
+        return Err(if cut_off { truncated(bytes) } else { LogError::NoMcap });
+    }
+    let mut data = Vec::new();
+    let mut summary: Option<usize> = None;
+    for record in records(bytes, MAGIC.len()) {
+        let record = record.ok_or_else(|| truncated(bytes))?;
+        match record.opcode {
+            op::DATA_END if summary.is_none() => {
+                let Record::DataEnd(end) = record.parse()? else { continue };
+                check("data section", end.data_section_crc, &bytes[..record.start])?;
+                summary = Some(record.end());
+            }
+            op::FOOTER => {
+                let start =
+                    summary.ok_or_else(|| LogError::damaged("a footer before the end of the data"))?;
+                check_end(bytes, start, &record)?;
+                return Ok(data);
+            }
+            _ if summary.is_none() => data.push(record),
+            _ => {}
+        }
+    }
+    Err(truncated(bytes))
+}
+
+fn truncated(bytes: &[u8]) -> LogError {
+    LogError::Truncated { at: bytes.len() as u64 }
+}
+
+fn check(part: &str, saved: u32, bytes: &[u8]) -> Result<(), LogError> {
+    // Zero says that no checksum was made.
+    if saved == 0 || saved == crc32fast::hash(bytes) {
+        return Ok(());
+    }
+    Err(LogError::damaged(format!("the checksum of the {part} differs")))
+}
+
+/// Checks the summary, the footer and what follows it.
+fn check_end(bytes: &[u8], start: usize, footer: &Framed<'_>) -> Result<(), LogError> {
+    const CRC: usize = 4;
+    let Record::Footer(parsed) = footer.parse()? else { return Ok(()) };
+    let end = footer.end();
+    if footer.body.len() != 8 + 8 + CRC {
+        return Err(LogError::damaged("the footer has another length"));
+    }
+    if parsed.summary_start != 0 && parsed.summary_start != start as u64 {
+        return Err(LogError::damaged("the footer points elsewhere than to the summary"));
+    }
+    check("summary", parsed.summary_crc, &bytes[start..end - CRC])?;
+    match &bytes[end..] {
+        rest if rest == MAGIC => Ok(()),
+        rest if rest.len() < MAGIC.len() && MAGIC.starts_with(rest) => Err(truncated(bytes)),
+        _ => Err(LogError::damaged("other bytes than the end mark of an MCAP file at its end")),
+    }
+}
+
+/// What a chunk holds: its messages and what declares them. Fails if it is not as it was written.
+pub(super) fn chunk<'a>(record: &Framed<'a>) -> Result<Vec<Framed<'a>>, LogError> {
+    let mut fixed = record.body.iter().as_slice();
+    let mut number = |size: usize| -> Option<u64> {
+        let (head, rest) = fixed.split_at_checked(size)?;
+        fixed = rest;
+        Some(head.iter().rev().fold(0, |value, &byte| value << 8 | u64::from(byte)))
+    };
+    let short = || LogError::damaged(format!("the chunk at byte {} is too short", record.start));
+    let (_, _, size, crc, name) = (number(8), number(8), number(8), number(4), number(4).ok_or_else(short)?);
+    let (name, rest) = fixed.split_at_checked(name as usize).ok_or_else(short)?;
+    if !name.is_empty() {
+        return Err(LogError::Compressed { compression: String::from_utf8_lossy(name).into_owned() });
+    }
+    let (length, data) = rest.split_at_checked(8).ok_or_else(short)?;
+    let length = u64::from_le_bytes(length.try_into().map_err(|_| short())?);
+    if length != data.len() as u64 || size != Some(length) {
+        return Err(LogError::damaged(format!("the chunk at byte {} has another length", record.start)));
+    }
+    check(&format!("chunk at byte {}", record.start), crc.unwrap_or(0) as u32, data)?;
+    records(data, 0).map(|inner| inner.ok_or_else(short)).collect()
+}

@@ -1,0 +1,273 @@
+use std::collections::BTreeMap;
+use std::io::Write;
+
+use super::call::Call;
+use super::player::Position;
+use super::port::{Port, TRUTH};
+use super::recording::Kind;
+use super::values::{Put, Take, Taking, Values};
+use crate::geometry::{Point, Pose};
+use crate::io::sim::{RobotTruth, TrailPoint, Truth};
+use crate::io::{Error, ErrorKind, Result};
+
+/// Who knows what is true in a world: a simulator, or the recording of what one said.
+pub trait Witness {
+    /// Seconds since the start of the world.
+    fn time(&mut self) -> Result<f64>;
+
+    /// A robot's pose in the world.
+    fn pose(&mut self, robot: usize) -> Result<Pose>;
+
+    /// All that is true about a robot.
+    fn robot(&mut self, robot: usize) -> Result<RobotTruth>;
+}
+
+impl Witness for Truth {
+    fn time(&mut self) -> Result<f64> {
+        Ok(Truth::time(self))
+    }
+
+    fn pose(&mut self, robot: usize) -> Result<Pose> {
+        Truth::pose(self, robot)
+    }
+
+    fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
+        Truth::robot(self, robot)
+    }
+}
+
+impl<T: Witness + ?Sized> Witness for Box<T> {
+    fn time(&mut self) -> Result<f64> {
+        (**self).time()
+    }
+
+    fn pose(&mut self, robot: usize) -> Result<Pose> {
+        (**self).pose(robot)
+    }
+
+    fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
+        (**self).robot(robot)
+    }
+}
+
+/// A witness whose answers are recorded, made by [`LogWriter::witness`](super::LogWriter::witness).
+#[derive(Debug)]
+pub struct RecordedTruth<T, W: Write> {
+    inner: T,
+    port: Port<W>,
+    /// How much of each robot's lists the recording holds already.
+    known: BTreeMap<usize, (usize, usize)>,
+}
+
+impl<T: Witness, W: Write> RecordedTruth<T, W> {
+    pub(super) fn new(inner: T, port: Port<W>) -> Self {
+        Self { inner, port, known: BTreeMap::new() }
+    }
+}
+
+impl<T: Witness, W: Write> Witness for RecordedTruth<T, W> {
+    fn time(&mut self) -> Result<f64> {
+        self.port.begin(None);
+        let result = self.inner.time();
+        self.port.end(TRUTH, "time", &result);
+        result
+    }
+
+    fn pose(&mut self, robot: usize) -> Result<Pose> {
+        self.port.begin(None);
+        self.port.argument(&robot);
+        let result = self.inner.pose(robot);
+        self.port.end(TRUTH, "pose", &result);
+        result
+    }
+
+    fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
+        self.port.begin(None);
+        self.port.argument(&robot);
+        let result = self.inner.robot(robot);
+        let known = self.known.entry(robot).or_default();
+        let news = result.as_ref().map(|truth| News::since(*known, truth)).map_err(copy);
+        if let Ok(truth) = &result {
+            *known = (truth.contact_places.len(), truth.trail.len());
+        }
+        self.port.end(TRUTH, "robot", &news);
+        result
+    }
+}
+
+/// An error with the same kind and words.
+fn copy(error: &Error) -> Error {
+    Error::new(error.kind(), error.to_string())
+}
+
+/// What is true about a robot, with the ends of its lists that are new.
+#[derive(Debug, Clone, PartialEq)]
+struct News {
+    /// Places and trail hold what is new alone.
+    truth: RobotTruth,
+    /// How many places and trail points come before.
+    before: (usize, usize),
+}
+
+impl News {
+    fn since((places, trail): (usize, usize), truth: &RobotTruth) -> Self {
+        // A list that is shorter than before is another one.
+        let before = (places.min(truth.contact_places.len()), trail.min(truth.trail.len()));
+        let truth = RobotTruth {
+            contact_places: truth.contact_places[before.0..].to_vec(),
+            trail: truth.trail[before.1..].to_vec(),
+            pose: truth.pose,
+            odometry: truth.odometry,
+            contacts: truth.contacts,
+            path_length: truth.path_length,
+        };
+        Self { truth, before }
+    }
+
+    /// The whole truth, from the one before.
+    fn after(self, old: Option<&RobotTruth>) -> RobotTruth {
+        let places = old.map_or(&[][..], |old| &old.contact_places);
+        let trail = old.map_or(&[][..], |old| &old.trail);
+        let mut truth = self.truth;
+        truth.contact_places =
+            places.iter().take(self.before.0).copied().chain(truth.contact_places).collect();
+        truth.trail = trail.iter().take(self.before.1).copied().chain(truth.trail).collect();
+        truth
+    }
+}
+
+impl Put for News {
+    fn put(&self, out: &mut Values) {
+        let RobotTruth { pose, odometry, contacts, contact_places, path_length, trail } = &self.truth;
+        pose.put(out);
+        odometry.put(out);
+        path_length.put(out);
+        contacts.put(out);
+        for (before, new) in [(self.before.0, contact_places.len()), (self.before.1, trail.len())] {
+            before.put(out);
+            new.put(out);
+        }
+        for place in contact_places {
+            out.numbers.extend([place.x, place.y]);
+        }
+        for point in trail {
+            point.time.put(out);
+            point.pose.put(out);
+            point.odometry.put(out);
+        }
+    }
+}
+
+impl Take for News {
+    fn take(from: &mut Taking<'_>) -> Option<Self> {
+        let (pose, odometry) = (Pose::take(from)?, Pose::take(from)?);
+        let (path_length, contacts) = (f64::take(from)?, u32::take(from)?);
+        let (places, new_places) = (usize::take(from)?, usize::take(from)?);
+        let (points, new_points) = (usize::take(from)?, usize::take(from)?);
+        let mut contact_places = Vec::new();
+        for _ in 0..new_places {
+            contact_places.push(Point::new(f64::take(from)?, f64::take(from)?));
+        }
+        let mut trail = Vec::new();
+        for _ in 0..new_points {
+            trail.push(TrailPoint {
+                time: f64::take(from)?,
+                pose: Pose::take(from)?,
+                odometry: Pose::take(from)?,
+            });
+        }
+        let truth = RobotTruth { pose, odometry, contacts, contact_places, path_length, trail };
+        Some(Self { truth, before: (places, points) })
+    }
+}
+
+/// A witness made of a recording: it says what the recorded one said, as far as the replayed robot has come.
+///
+/// A question that was not recorded at this place is answered as the last one of its kind.
+#[derive(Debug, Clone)]
+pub struct ReplayTruth {
+    position: Position,
+    /// The next event of the robot's to look at.
+    next: usize,
+    time: Option<f64>,
+    poses: BTreeMap<usize, Pose>,
+    robots: BTreeMap<usize, RobotTruth>,
+}
+
+/// A question about the truth.
+type Question<'a> = (&'a str, Option<usize>);
+
+impl ReplayTruth {
+    pub(super) fn new(position: Position) -> Self {
+        Self { position, next: 0, time: None, poses: BTreeMap::new(), robots: BTreeMap::new() }
+    }
+
+    /// Takes in the recorded answers up to the next one to a question; all those before the robot's next call if there
+    /// is no such one.
+    fn catch_up(&mut self, question: Question<'_>) {
+        let position = self.position.clone();
+        let end = position.next_call();
+        let is_asked = |index: usize| {
+            position.event(index).filter(|event| event.kind == Kind::Truth).is_some_and(|event| {
+                Call::read(position.log().data(event)).is_some_and(|call| asked(&call) == question)
+            })
+        };
+        // Behind the robot's place, what was recorded there is looked at again in order.
+        let behind = (self.next..end).find(|&index| is_asked(index));
+        let last = behind.map_or(end, |index| index + 1);
+        for index in self.next..last {
+            let Some(event) = position.event(index).filter(|event| event.kind == Kind::Truth) else {
+                continue;
+            };
+            if let Some(call) = Call::read(position.log().data(event)) {
+                self.take_in(&call);
+            }
+        }
+        self.next = self.next.max(last);
+    }
+
+    fn take_in(&mut self, call: &Call<'_>) {
+        let Ok(result) = &call.result else { return };
+        match asked(call) {
+            ("time", None) => self.time = result.take().or(self.time),
+            ("pose", Some(robot)) => {
+                if let Some(pose) = result.take() {
+                    self.poses.insert(robot, pose);
+                }
+            }
+            ("robot", Some(robot)) => {
+                if let Some(news) = result.take::<News>() {
+                    let truth = news.after(self.robots.get(&robot));
+                    self.robots.insert(robot, truth);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// What a recorded question asks.
+fn asked<'a>(call: &Call<'a>) -> Question<'a> {
+    (call.method, call.arguments.take())
+}
+
+fn untold(what: &str) -> Error {
+    Error::new(ErrorKind::Unsupported, format!("the recording does not say {what}"))
+}
+
+impl Witness for ReplayTruth {
+    fn time(&mut self) -> Result<f64> {
+        self.catch_up(("time", None));
+        self.time.ok_or_else(|| untold("what time it was in the world"))
+    }
+
+    fn pose(&mut self, robot: usize) -> Result<Pose> {
+        self.catch_up(("pose", Some(robot)));
+        self.poses.get(&robot).copied().ok_or_else(|| untold("where the robot was"))
+    }
+
+    fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
+        self.catch_up(("robot", Some(robot)));
+        self.robots.get(&robot).cloned().ok_or_else(|| untold("what was true about the robot"))
+    }
+}

@@ -1,0 +1,281 @@
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, VecDeque};
+use std::fmt;
+use std::io::{self, Write};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use mcap::records::{MessageHeader, Metadata};
+use mcap::write::NoSeek;
+use mcap::{McapError, WriteOptions, Writer};
+
+use super::header::METADATA;
+use super::port::Port;
+use super::schema::Schema;
+use super::{Header, RecordedTruth, Recorder, Witness};
+
+/// A channel of a recording: the part of its topic behind the robot's name, and what it carries.
+pub(super) type Channel = (&'static str, Schema);
+
+/// Nanoseconds of recorded time.
+pub(super) type Nanoseconds = u64;
+
+/// Seconds as a recording holds them; what is no time is 0.
+pub(super) fn nanoseconds(seconds: f64) -> Nanoseconds {
+    // Casting clips what is out of range.
+    (seconds * 1e9).round() as u64
+}
+
+/// A recording that is being written: an MCAP file, into anything that takes bytes.
+///
+/// One or several robots write into it through [`recorder`](LogWriter::recorder); what they did is merged by its
+/// time, so that the file does not depend on how their programs' threads are scheduled. A chunk of the file ends with
+/// each second of the robots' time, or when it is full, and is flushed.
+///
+/// A sink that fails does not disturb the run: the rest is not recorded, and [`finish`](LogWriter::finish) returns
+/// the first error. A file should be buffered.
+///
+/// ```
+/// use roverlab::io::log::{Header, Log, LogWriter, Replay};
+/// use roverlab::io::{Clock, DistanceSensors, MockRobot, Psd, Result};
+///
+/// fn look(robot: &mut (impl Clock + DistanceSensors)) -> Result<f64> {
+///     robot.wait(0.5)?;
+///     robot.distance(Psd::FRONT)
+/// }
+///
+/// # fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
+/// let writer = LogWriter::new(Vec::new(), &Header::new("look", ["--seed", "7"]))?;
+/// let mut robot = writer.recorder(MockRobot::new().with_distance(Psd::FRONT, 1.5), 0);
+/// look(&mut robot)?;
+/// drop(robot);
+///
+/// let log = Log::read(writer.finish()?)?;
+/// assert_eq!(log.header().program, "look");
+/// assert_eq!(look(&mut Replay::new(&log, 0)?)?, 1.5);
+/// # Ok(())
+/// # }
+/// ```
+pub struct LogWriter<W: Write> {
+    shared: Arc<Mutex<Shared<W>>>,
+}
+
+impl<W: Write> Clone for LogWriter<W> {
+    fn clone(&self) -> Self {
+        Self { shared: Arc::clone(&self.shared) }
+    }
+}
+
+impl<W: Write> fmt::Debug for LogWriter<W> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shared = self.lock();
+        f.debug_struct("LogWriter").field("robots", &shared.tracks.len()).finish_non_exhaustive()
+    }
+}
+
+struct Shared<W: Write> {
+    /// Gone when the recording is finished.
+    file: Option<Writer<NoSeek<W>>>,
+    failure: Option<io::Error>,
+    tracks: Vec<Track>,
+    /// The number of each channel in the file and of its next message, by robot and topic.
+    channels: BTreeMap<(usize, &'static str), (u16, u32)>,
+    /// The second of the open chunk, and the bytes in it.
+    second: u64,
+    bytes: usize,
+}
+
+/// What one robot has recorded and is not yet in the file.
+#[derive(Debug)]
+struct Track {
+    /// Whether the robot still drives, so that the others' messages wait for its.
+    open: bool,
+    /// The time of its last message.
+    last: Nanoseconds,
+    queue: VecDeque<Message>,
+}
+
+#[derive(Debug)]
+struct Message {
+    time: Nanoseconds,
+    channel: Channel,
+    data: Vec<u8>,
+}
+
+/// A chunk that holds more bytes than this ends.
+const CHUNK_BYTES: usize = 1 << 20;
+const SECOND: u64 = 1_000_000_000;
+
+impl<W: Write> LogWriter<W> {
+    /// Begins a recording with its header.
+    pub fn new(sink: W, header: &Header) -> io::Result<Self> {
+        let options = WriteOptions::new()
+            .compression(None)
+            .disable_seeking(true)
+            .chunk_size(None)
+            .profile("")
+            .library(concat!("roverlab ", env!("CARGO_PKG_VERSION")));
+        let mut file = options.create(NoSeek::new(sink)).map_err(as_io)?;
+        let metadata = Metadata { name: METADATA.into(), metadata: header.metadata() };
+        file.write_metadata(&metadata).map_err(as_io)?;
+        for attachment in &header.attachments {
+            let attachment = mcap::Attachment {
+                log_time: 0,
+                create_time: 0,
+                name: attachment.name.clone(),
+                media_type: attachment.media_type.clone(),
+                data: attachment.data.as_slice().into(),
+            };
+            file.attach(&attachment).map_err(as_io)?;
+        }
+        file.flush().map_err(as_io)?;
+        let shared = Shared {
+            file: Some(file),
+            failure: None,
+            tracks: Vec::new(),
+            channels: BTreeMap::new(),
+            second: 0,
+            bytes: 0,
+        };
+        Ok(Self { shared: Arc::new(Mutex::new(shared)) })
+    }
+
+    /// Records a robot under an index of its own, from 0. When several robots drive at once, call this for all of
+    /// them before the first one does.
+    pub fn recorder<R>(&self, robot: R, index: usize) -> Recorder<R, W> {
+        self.lock().track(index).open = true;
+        Recorder::new(robot, Port::new(self.clone(), index))
+    }
+
+    /// Records what a witness says who watches a robot, by the robot's index.
+    pub fn witness<T: Witness>(&self, witness: T, robot: usize) -> RecordedTruth<T, W> {
+        RecordedTruth::new(witness, Port::beside(self.clone(), robot))
+    }
+
+    /// Ends the recording, and returns the sink; or the first error that it gave. What recorders that still exist
+    /// are asked later is not recorded.
+    pub fn finish(self) -> io::Result<W> {
+        let mut shared = self.lock();
+        for index in 0..shared.tracks.len() {
+            shared.tracks[index].open = false;
+        }
+        shared.drain();
+        let file = shared.file.take();
+        if let Some(failure) = shared.failure.take() {
+            return Err(failure);
+        }
+        let Some(mut file) = file else {
+            return Err(io::Error::other("the recording has been finished before"));
+        };
+        file.finish().map_err(as_io)?;
+        Ok(file.into_inner().into_inner())
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Shared<W>> {
+        // A panic elsewhere leaves whole messages behind.
+        self.shared.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Writes a message of a robot, at the time of the one before if there is none. Its messages stay in the order in
+    /// which they come.
+    pub(super) fn push(&self, track: usize, time: Option<Nanoseconds>, channel: Channel, data: &[u8]) {
+        let mut shared = self.lock();
+        if shared.file.is_none() || shared.failure.is_some() {
+            return;
+        }
+        let last = &mut shared.track(track).last;
+        let time = time.unwrap_or(*last);
+        *last = time;
+        let alone = shared
+            .tracks
+            .iter()
+            .enumerate()
+            .all(|(other, state)| state.queue.is_empty() && (other == track || !state.open));
+        if alone {
+            shared.write(track, time, channel, data);
+            return;
+        }
+        shared.track(track).queue.push_back(Message { time, channel, data: data.to_vec() });
+        shared.drain();
+    }
+
+    /// Notes that a robot drives no more: the others need not wait for it.
+    pub(super) fn close(&self, track: usize) {
+        let mut shared = self.lock();
+        shared.tracks[track].open = false;
+        shared.drain();
+    }
+}
+
+impl<W: Write> Shared<W> {
+    /// The track of a robot; one that nobody drives is closed.
+    fn track(&mut self, index: usize) -> &mut Track {
+        while self.tracks.len() <= index {
+            self.tracks.push(Track { open: false, last: 0, queue: VecDeque::new() });
+        }
+        &mut self.tracks[index]
+    }
+
+    /// Writes what is certain to come next: the earliest message, once every robot that drives has one waiting.
+    fn drain(&mut self) {
+        while !self.tracks.iter().any(|track| track.open && track.queue.is_empty()) {
+            let heads = self.tracks.iter().enumerate();
+            let next = heads
+                .filter_map(|(index, track)| track.queue.front().map(|message| (message.time, index)))
+                .min();
+            let Some((_, index)) = next else { return };
+            if let Some(message) = self.tracks[index].queue.pop_front() {
+                self.write(index, message.time, message.channel, &message.data);
+            }
+        }
+    }
+
+    fn write(&mut self, track: usize, time: Nanoseconds, channel: Channel, data: &[u8]) {
+        if self.failure.is_none() {
+            self.failure = self.try_write(track, time, channel, data).err().map(as_io);
+        }
+    }
+
+    fn try_write(
+        &mut self,
+        track: usize,
+        time: u64,
+        (topic, schema): Channel,
+        data: &[u8],
+    ) -> Result<(), McapError> {
+        let Some(file) = &mut self.file else { return Ok(()) };
+        if time / SECOND > self.second || self.bytes > CHUNK_BYTES {
+            file.flush()?;
+            (self.second, self.bytes) = (self.second.max(time / SECOND), 0);
+        }
+        let (id, sequence) = match self.channels.entry((track, topic)) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => {
+                let schema = file.add_schema(schema.name(), "protobuf", &schema.descriptor())?;
+                let name = full_topic(track, topic);
+                new.insert((file.add_channel(schema, &name, "protobuf", &BTreeMap::new())?, 0))
+            }
+        };
+        let header =
+            MessageHeader { channel_id: *id, sequence: *sequence, log_time: time, publish_time: time };
+        *sequence = sequence.wrapping_add(1);
+        self.bytes += data.len();
+        file.write_to_known_channel(&header, data)
+    }
+}
+
+/// The topic of a robot; one that begins with a slash belongs to all.
+fn full_topic(track: usize, topic: &str) -> String {
+    if topic.starts_with('/') { topic.to_owned() } else { format!("/{}/{topic}", frame(track)) }
+}
+
+/// The name of a robot's own frame.
+pub(super) fn frame(track: usize) -> String {
+    format!("robot{}", track + 1)
+}
+
+fn as_io(error: McapError) -> io::Error {
+    match error {
+        McapError::Io(error) => error,
+        other => io::Error::other(other),
+    }
+}
