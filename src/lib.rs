@@ -42,11 +42,13 @@
 //! |---|---|---|
 //! | 1 Robots and simulation | simulated worlds and robots | [`io::sim`] |
 //! | 1 Robots and simulation | EyeSim's files: `.sim`, `.wld`, `.maz`, `.robi`, `.esObj` | [`world::formats`] |
-//! | 2 Sensors and programs | what a robot can be asked: distance sensors, keys, display, radio | [`io`] |
+//! | 2 Sensors and programs | what a robot can be asked: distance sensors, camera, keys, display, radio | [`io`] |
 //! | 3 Driving | the v-omega drive, encoders; from A to B, path followers, PID | [`io`], [`drive`] |
 //! | 4 Lidar | scans, and taking their noise out | [`io`], [`nav`] |
 //! | 5 Swarms | any number of robots in one world | [`io::sim`] |
+//! | 6 Wall following | walls of any shape, by distance sensors, PID or lidar | [`drive`] |
 //! | 7 Alternative drives | cars and wheels with rollers: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
+//! | 9 Mazes | models and files, flood fill, shortest routes | [`maze`] |
 //! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`world::formats`] |
 //! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search; MovingAI maps | [`nav::grid`], [`world`] |
 //! | 12 Evolution | genetic algorithms, evolution strategy with covariance adaptation | [`evolve`] |
@@ -63,13 +65,17 @@
 //!
 //! # Features
 //!
-//! None is on by default. `log` adds recordings, `picture` pictures as SVG, `png` the same as PNG.
+//! None is on by default. `log` adds recordings, `picture` pictures as SVG, `png` the same as PNG; `proptest` adds random
+//! mazes and strategies for property tests (`maze::generate`).
+//! None is on by default. `log` adds recordings, `picture` pictures as SVG, `png` the same as PNG; `rayon` runs vision
+//! kernels and evaluates populations on several threads; `checkpoint` saves evolutions.
 
 pub mod drive;
 pub mod evolve;
 pub mod geometry;
 pub mod io;
 pub mod kinematics;
+pub mod maze;
 pub mod nav;
 #[cfg(feature = "picture")]
 pub mod picture;

@@ -66,8 +66,22 @@ impl Conditions {
     pub(crate) fn run<T>(
         &self,
         scene: &Scene,
-        mut watch: impl FnMut(f64),
+        watch: impl FnMut(f64),
         program: impl FnOnce(&mut Driven, &mut dyn FnMut()) -> io::Result<T>,
+    ) -> Result<Run<T>, Failure> {
+        self.run_watched(scene, watch, |robot, step| {
+            program(robot, &mut || {
+                step();
+            })
+        })
+    }
+
+    /// The same for a program with a watcher, who learns the true pose at each step.
+    pub(crate) fn run_watched<T>(
+        &self,
+        scene: &Scene,
+        mut watch: impl FnMut(f64),
+        program: impl FnOnce(&mut Driven, &mut dyn FnMut() -> Pose) -> io::Result<T>,
     ) -> Result<Run<T>, Failure> {
         // The program's own limit comes first, unless its clock has stopped.
         const RESERVE: f64 = 1.0;
@@ -90,6 +104,7 @@ impl Conditions {
                 odometry_path.push(start.compose(&robot.odometry).position());
             }
             watch(truth.time().unwrap_or_default());
+            *true_path.last().unwrap_or(&start)
         });
         // The robot lets go of the world, so that what is true stays as it is.
         drop(robot);

@@ -10,6 +10,8 @@
 //! - [`CarToB`]: the same for a car, within its turning circle (chapter 7);
 //! - [`OmniTracker`]: along any path with any heading on wheels with rollers (chapter 7);
 //! - [`LandmarkFilter`]: odometry corrected by what a lidar sees of known landmarks;
+//! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6); [`PidWallFollower`],
+//!   [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`] beside it;
 //! - [`Pid`] and [`RelayTuner`]: a PID controller and how to find its gains.
 
 mod a_to_b;
@@ -24,6 +26,7 @@ mod path;
 mod pid;
 mod relay;
 mod spline;
+mod wall_following;
 
 pub use a_to_b::{AToB, AToBCommand, AToBObservation, AToBOutcome, AToBParameters, Goal, Method};
 pub use car::{CarCommand, CarDriver, CarOutcome, CarParameters, CarToB};
@@ -35,3 +38,8 @@ pub use path::{Path, PathPoint, Waypoint};
 pub use pid::{Pid, PidParameters};
 pub use relay::{RelayTuner, UltimateGain};
 pub use spline::Hermite;
+pub use wall_following::{
+    FollowsWalls, LidarWallFollower, LidarWallParameters, PidWallFollower, PidWallParameters,
+    TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallObservation, WallOutcome, WallPhase,
+    WallSensors, WallSide, run_along_wall,
+};

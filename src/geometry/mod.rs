@@ -3,11 +3,13 @@
 //! Conventions follow ROS REP 103: metres and radians, x forward, y left, angles counter-clockwise. Millimetres
 //! and degrees, which the book, EyeSim's files and the command line use, are converted here and nowhere else.
 
+mod line;
 pub mod math;
 mod pose;
 mod shapes;
 pub mod units;
 
+pub use line::FittedLine;
 pub use pose::{Pose, Twist, angle_difference, normalize_angle};
 pub use shapes::{Aabb, Segment};
 

@@ -34,13 +34,24 @@ pub use mock::{Call, MockRobot, Script};
 pub use psd::{DistanceSensors, Psd};
 pub use radio::{Radio, RadioMessage};
 
-/// A full robot: every capability at once. A [`Camera`] comes on top where there is one.
+/// A full robot: every capability at once.
 pub trait RobotIo:
-    Clock + Drive + DistanceSensors + Lidar + Display + Keys + Radio + Motors + Servos + Encoders
+    Clock + Drive + DistanceSensors + Lidar + Camera + Display + Keys + Radio + Motors + Servos + Encoders
 {
 }
 
 impl<R> RobotIo for R where
-    R: Clock + Drive + DistanceSensors + Lidar + Display + Keys + Radio + Motors + Servos + Encoders + ?Sized
+    R: Clock
+        + Drive
+        + DistanceSensors
+        + Lidar
+        + Camera
+        + Display
+        + Keys
+        + Radio
+        + Motors
+        + Servos
+        + Encoders
+        + ?Sized
 {
 }

@@ -198,6 +198,16 @@ impl<'a, const C: usize> ViewMut<'a, C> {
         self.shape.stride == self.shape.width * C
     }
 
+    /// The image in parts of so many rows each, the last one perhaps of fewer.
+    #[cfg(feature = "rayon")]
+    pub(super) fn into_bands(self, rows: usize) -> Vec<Self> {
+        let Shape { width, height, stride } = self.shape;
+        let parts = self.data.chunks_mut(rows * stride).zip((0..height).step_by(rows));
+        parts
+            .map(|(data, top)| Self { data, shape: Shape { width, height: rows.min(height - top), stride } })
+            .collect()
+    }
+
     /// Fails unless the output has the size of the input.
     pub(super) fn require_size(&self, expected: (usize, usize)) -> Result<(), Error> {
         require_size("output", self.size(), expected)

@@ -21,7 +21,7 @@ pub use body::{Axis, Body, Collider, Place3};
 pub use clearance::{Clearance, Raster, RasterError};
 pub use colour::Colour;
 pub use grid::{Cell, GridError, OccupancyGrid};
-pub use object::{Marker, Object, ObjectKind, Shape};
+pub use object::{Billboard, Marker, Object, ObjectKind, Shape};
 pub use robot::{
     CameraSpec, DriveSpec, Footprint, LidarSpec, MotorSpec, Mount, PsdSpec, RobotSpec, SpecError,
 };

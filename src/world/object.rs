@@ -1,6 +1,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use image::RgbaImage;
+
 use super::{Body, Colour};
 use crate::geometry::{Point, Pose};
 
@@ -116,6 +118,23 @@ impl Object {
     pub fn new(kind: Arc<ObjectKind>, pose: Pose) -> Self {
         Self { kind, pose, elevation: 0.0 }
     }
+}
+
+/// A picture on an upright board of no thickness: a sign, a figure, a poster.
+///
+/// Cameras see it; no robot touches it and no other sensor notices it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Billboard {
+    /// The middle of its lower edge; its picture faces the way of the heading, and its back is gray.
+    pub pose: Pose,
+    /// Metres from its left to its right edge.
+    pub width: f64,
+    /// Metres from its lower to its upper edge.
+    pub height: f64,
+    /// Metres from the floor to its lower edge.
+    pub elevation: f64,
+    /// The picture; pixels less than half opaque are not there.
+    pub image: Arc<RgbaImage>,
 }
 
 /// A coloured mark on the floor, which no robot touches.

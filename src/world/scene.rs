@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::{Marker, Object, RobotSpec, Wall};
+use super::{Billboard, Marker, Object, RobotSpec, Wall};
 use crate::geometry::{Aabb, Point, Pose, Vector};
 
 /// A place without robots: floor, walls, objects and marks.
@@ -17,6 +17,8 @@ pub struct World {
     pub objects: Vec<Object>,
     /// Marks on the floor.
     pub markers: Vec<Marker>,
+    /// Signs and figures, for cameras alone.
+    pub billboards: Vec<Billboard>,
     /// The start pose that the world file itself names.
     pub start: Option<Pose>,
     /// Named places: the letters of a maze.
@@ -36,6 +38,7 @@ impl World {
             walls: Vec::new(),
             objects: Vec::new(),
             markers: Vec::new(),
+            billboards: Vec::new(),
             start: None,
             places: Vec::new(),
             terrain: None,

@@ -6,9 +6,9 @@ use super::robot::{MockRobot, take_due, unscripted};
 use crate::geometry::{Pose, Twist};
 use crate::io::error::require_finite;
 use crate::io::{
-    Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font, Key, Keys,
-    Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Result, Servos,
-    Viewport,
+    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
+    Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution,
+    Result, Servos, Viewport,
 };
 use crate::kinematics::Displacement;
 use crate::world::Colour;
@@ -49,6 +49,28 @@ impl Lidar for MockRobot {
     fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
         self.command(Call::ConfigureLidar(settings));
         settings.validate()
+    }
+}
+
+impl Camera for MockRobot {
+    fn set_resolution(&mut self, resolution: Resolution) -> Result<()> {
+        self.command(Call::SetResolution(resolution));
+        self.resolution = resolution;
+        Ok(())
+    }
+
+    fn resolution(&mut self) -> Result<Resolution> {
+        self.pass(self.charge);
+        Ok(self.resolution)
+    }
+
+    fn image_into(&mut self, image: &mut RgbImage) -> Result<()> {
+        let quiet = |robot: &MockRobot| {
+            let (width, height) = robot.resolution.dimensions();
+            robot.or_quiet(RgbImage::new(width, height))
+        };
+        *image = self.read("camera", |robot| robot.image.as_mut(), quiet)?;
+        Ok(())
     }
 }
 

@@ -1,7 +1,7 @@
 use std::fmt::Write;
 
 use crate::geometry::{Pose, Twist};
-use crate::io::{DisplayOption, Fill, Font, Key, LidarSettings, Pixel, Viewport};
+use crate::io::{DisplayOption, Fill, Font, Key, LidarSettings, Pixel, Resolution, Viewport};
 use crate::world::Colour;
 
 /// A command that a [`MockRobot`](super::MockRobot) was given, with its arguments. Readings are not commands.
@@ -24,6 +24,8 @@ pub enum Call {
     WaitDone,
     /// `configure_lidar(settings)`
     ConfigureLidar(LidarSettings),
+    /// `set_resolution(resolution)`
+    SetResolution(Resolution),
     /// `wait_key()`
     WaitKey,
     /// `send(to, data)`

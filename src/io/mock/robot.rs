@@ -1,11 +1,13 @@
 use std::collections::{BTreeMap, VecDeque};
 
+use image::RgbImage;
+
 use super::call::{Call, difference};
 use super::ideal::IdealDrive;
 use super::script::Script;
 use crate::geometry::{Pose, Twist};
 use crate::io::sim::Lcd;
-use crate::io::{Error, ErrorKind, Key, LidarScan, Pixel, Psd, RadioMessage, Result};
+use crate::io::{Error, ErrorKind, Key, LidarScan, Pixel, Psd, RadioMessage, Resolution, Result};
 use crate::kinematics::Displacement;
 
 /// A robot for unit tests of programs: its sensors read what a script says, and it writes down every command.
@@ -54,6 +56,8 @@ pub struct MockRobot {
     calls: Vec<Call>,
     pub(super) distances: BTreeMap<Psd, Script<f64>>,
     pub(super) scan: Option<Script<LidarScan>>,
+    pub(super) image: Option<Script<RgbImage>>,
+    pub(super) resolution: Resolution,
     pub(super) pose: Option<Script<Pose>>,
     pub(super) speed: Option<Script<Twist>>,
     pub(super) remaining: Option<Script<f64>>,
@@ -89,7 +93,7 @@ impl MockRobot {
         Self::default()
     }
 
-    /// Readings without a script are quiet instead of errors: nothing in range, an empty scan, standing still at the
+    /// Readings without a script are quiet instead of errors: nothing in range, an empty scan, a black image, standing still at the
     /// origin, no key, touch or message, robot 1 alone on the radio.
     #[must_use]
     pub fn lenient(self) -> Self {
@@ -113,6 +117,12 @@ impl MockRobot {
     #[must_use]
     pub fn with_scan(self, script: impl Into<Script<LidarScan>>) -> Self {
         Self { scan: Some(script.into()), ..self }
+    }
+
+    /// What the camera sees. Images are given as they are, whatever the resolution.
+    #[must_use]
+    pub fn with_image(self, script: impl Into<Script<RgbImage>>) -> Self {
+        Self { image: Some(script.into()), ..self }
     }
 
     /// What odometry says of the pose. A script goes before an ideal drive.

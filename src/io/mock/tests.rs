@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    Clock, Display, DistanceSensors, Drive, Encoders, Error, ErrorKind, Key, Keys, Lidar, LidarScan, Psd,
-    Radio, RadioMessage,
+    Camera, Clock, Display, DistanceSensors, Drive, Encoders, Error, ErrorKind, Key, Keys, Lidar, LidarScan,
+    Psd, Radio, RadioMessage, Resolution,
 };
 
 #[test]
@@ -16,6 +16,7 @@ fn unscripted_readings_are_errors_that_name_the_sensor() {
         ("front PSD", robot.distance(Psd::FRONT).unwrap_err()),
         ("PSD 12", robot.distance(Psd(12)).unwrap_err()),
         ("lidar", robot.scan().unwrap_err()),
+        ("camera", robot.image().unwrap_err()),
         ("pose", robot.pose().unwrap_err()),
         ("speed", robot.speed().unwrap_err()),
         ("rest of the manoeuvre", robot.is_done().unwrap_err()),
@@ -39,6 +40,8 @@ fn a_lenient_robot_reads_quiet_answers() {
     let mut robot = MockRobot::new().lenient();
     assert_eq!(robot.distance(Psd(3)).unwrap(), f64::INFINITY);
     assert_eq!(robot.scan().unwrap(), LidarScan::default());
+    assert_eq!(robot.resolution().unwrap(), Resolution::Qqvga);
+    assert_eq!(robot.image().unwrap(), image::RgbImage::new(160, 120));
     assert_eq!((robot.pose().unwrap(), robot.speed().unwrap()), (Pose::default(), Twist::STOP));
     assert!(robot.is_done().unwrap() && !robot.is_stalled().unwrap());
     assert_eq!((robot.read_key().unwrap(), robot.read_touch().unwrap()), (None, None));

@@ -1,6 +1,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use super::camera::CameraDevice;
 use super::course::Course;
 use super::mechanics::Powertrain;
 use super::{Lcd, SimOptions};
@@ -27,6 +28,7 @@ pub(super) struct Body {
     psds: Box<[PsdDevice]>,
     pub(super) psd_noise: Stream,
     pub(super) lidar: Option<Box<LidarDevice>>,
+    pub(super) camera: Option<Box<CameraDevice>>,
     pub(super) mailbox: VecDeque<RadioMessage>,
     pub(super) keys: VecDeque<KeyPress>,
     /// Made when the program first draws: most robots of a fleet never do.
@@ -177,6 +179,9 @@ impl Body {
             psds: psds.collect(),
             psd_noise: streams.child("psd", 0),
             lidar,
+            camera: spec.camera.map(|camera| {
+                Box::new(CameraDevice::new(camera, placement.elevation, streams.child("camera", 0)))
+            }),
             mailbox: VecDeque::new(),
             keys: VecDeque::new(),
             lcd: None,

@@ -125,6 +125,10 @@ impl Mechanics for Car {
         self.autopilot.set_motor(motor, fraction * self.wheels.speed_limit());
     }
 
+    fn servos(&self) -> u8 {
+        1
+    }
+
     fn set_servo(&mut self, servo: u8, position: f64) -> Result<()> {
         if servo != 1 {
             return Err(Error::unsupported(format!("servo {servo}")));

@@ -1,12 +1,15 @@
+use image::RgbImage;
+
 use super::body::Body;
+use super::camera::{CameraDevice, Moment, Studio};
 use super::options::ticks_in;
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
 use crate::geometry::{Pose, Twist};
 use crate::io::error::{require_finite, require_positive};
-use crate::io::{Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Result};
+use crate::io::{Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result};
 use crate::kinematics::{Displacement, PlanarMotion};
 use crate::random::Stream;
-use crate::world::space::{Contact, Solid, Space};
+use crate::world::space::{Contact, Solid, SolidId, Space};
 use crate::world::{RobotPlacement, Scene, World};
 
 /// A world and its robots at one instant, and how they get to the next.
@@ -20,6 +23,7 @@ pub(super) struct Engine {
     motions: Vec<PlanarMotion>,
     pub(super) contacts: Vec<Contact>,
     outbox: Vec<Letter>,
+    studio: Box<Studio>,
     trail_ticks: Option<u64>,
 }
 
@@ -43,9 +47,8 @@ impl Engine {
         options.validate()?;
         check_world(&scene.world)?;
         let mut space = Space::new(&scene.world.walls);
-        for object in &scene.world.objects {
-            space.add(Solid::from(object));
-        }
+        let objects: Vec<SolidId> =
+            scene.world.objects.iter().map(|object| space.add(Solid::from(object))).collect();
         let root = Stream::new(options.seed);
         let mut bodies = Vec::with_capacity(scene.robots.len());
         for (index, placement) in scene.robots.iter().enumerate() {
@@ -53,6 +56,8 @@ impl Engine {
             let solid = space.add(Solid::from(placement));
             bodies.push(Body::new(placement, solid, &options, &root.child("robot", index as u64))?);
         }
+        let robots: Vec<SolidId> = bodies.iter().map(|body| body.solid).collect();
+        let studio = Box::new(Studio::new(scene, &objects, &robots));
         let motions = vec![PlanarMotion::default(); bodies.len()];
         let trail_ticks = options.trail_interval.map(ticks_in);
         Ok(Self {
@@ -63,6 +68,7 @@ impl Engine {
             motions,
             contacts: Vec::new(),
             outbox: Vec::new(),
+            studio,
             trail_ticks,
         })
     }
@@ -172,7 +178,35 @@ impl Engine {
     }
 
     pub(super) fn set_servo(&mut self, index: usize, servo: u8, position: f64) -> Result<()> {
-        self.bodies[index].drive.get_mut().set_servo(servo, position)
+        let body = &mut self.bodies[index];
+        let own = body.drive.get().servos();
+        match (&mut body.camera, servo.checked_sub(own)) {
+            // The head's two servos come after those of the drive.
+            (Some(camera), Some(head @ 1..=2)) => camera.set_servo(head, position, self.tick),
+            _ => body.drive.get_mut().set_servo(servo, position),
+        }
+    }
+
+    /// The camera of a robot that has one.
+    fn camera(&mut self, index: usize) -> Result<&mut CameraDevice> {
+        self.bodies[index].camera.as_deref_mut().ok_or_else(|| Error::unsupported("camera"))
+    }
+
+    pub(super) fn resolution(&mut self, index: usize) -> Result<Resolution> {
+        Ok(self.camera(index)?.resolution)
+    }
+
+    pub(super) fn set_resolution(&mut self, index: usize, resolution: Resolution) -> Result<()> {
+        self.camera(index)?.resolution = resolution;
+        Ok(())
+    }
+
+    pub(super) fn image_into(&mut self, index: usize, image: &mut RgbImage) -> Result<()> {
+        let body = &mut self.bodies[index];
+        let pose = body.pose();
+        let Some(camera) = &mut body.camera else { return Err(Error::unsupported("camera")) };
+        let moment = Moment { tick: self.tick, light: self.options.light, noise: &self.options.noise };
+        camera.take(&mut self.studio, &self.space, (index, pose), moment, image)
     }
 
     pub(super) fn set_odometry(&mut self, index: usize, pose: Pose) -> Result<()> {

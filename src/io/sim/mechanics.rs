@@ -27,6 +27,11 @@ pub(super) trait Mechanics {
     /// Drives one motor with a fraction of its full speed and leaves the others as they are.
     fn set_motor(&mut self, motor: usize, fraction: f64);
 
+    /// How many servos the drive has.
+    fn servos(&self) -> u8 {
+        0
+    }
+
     /// Moves a servo of the drive, numbered from 1.
     fn set_servo(&mut self, servo: u8, _position: f64) -> Result<()> {
         Err(Error::unsupported(format!("servo {servo}")))

@@ -24,6 +24,7 @@
 
 mod autopilot;
 mod body;
+mod camera;
 mod car;
 mod collision;
 mod course;

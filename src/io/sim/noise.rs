@@ -18,12 +18,28 @@ pub struct NoiseModel {
     pub range: f64,
     /// Relative error of length and angle, drawn anew for every drive command.
     pub command: f64,
+    /// Shot noise of the camera: levels (of 255) on white; it falls with the square root of the brightness.
+    pub shot: f64,
+    /// Relative error of the camera's exposure, which drifts in the course of seconds.
+    pub exposure: f64,
+    /// Blur of the camera, in pixels of an image 320 pixels wide; in proportion for others.
+    pub blur: f64,
 }
 
 impl NoiseModel {
     /// No sensor or drive error at all. Encoders still count whole ticks.
     pub const fn ideal() -> Self {
-        Self { wheel_scale: 0.0, wheel_mismatch: 0.0, track: 0.0, slip: 0.0, range: 0.0, command: 0.0 }
+        Self {
+            wheel_scale: 0.0,
+            wheel_mismatch: 0.0,
+            track: 0.0,
+            slip: 0.0,
+            range: 0.0,
+            command: 0.0,
+            shot: 0.0,
+            exposure: 0.0,
+            blur: 0.0,
+        }
     }
 
     /// As on the real robot.
@@ -35,6 +51,9 @@ impl NoiseModel {
             slip: 0.0005,
             range: 0.010,
             command: 0.0,
+            shot: 3.0,
+            exposure: 0.03,
+            blur: 0.5,
         }
     }
 
@@ -53,6 +72,9 @@ impl NoiseModel {
             slip: self.slip * factor,
             range: self.range * factor,
             command: self.command * factor,
+            shot: self.shot * factor,
+            exposure: self.exposure * factor,
+            blur: self.blur * factor,
         }
     }
 
@@ -65,6 +87,9 @@ impl NoiseModel {
             ("slip", self.slip, 1.0),
             ("range error", self.range, 1000.0),
             ("command error", self.command, 1.0),
+            ("shot noise", self.shot, 255.0),
+            ("exposure error", self.exposure, 1.0),
+            ("blur", self.blur, 10.0),
         ] {
             if !(0.0..=limit).contains(&value) {
                 return Err(Error::invalid_input(name, value, &format!("0 to {limit}")));

@@ -8,6 +8,8 @@ pub struct SimOptions {
     pub seed: u64,
     /// Drive and sensor errors.
     pub noise: NoiseModel,
+    /// How bright the light is that cameras see by, as a factor; 1 is a well lit room.
+    pub light: f64,
     /// Whether encoders measure exactly instead of counting whole ticks.
     pub ideal_encoders: bool,
     /// Seconds that every call of a robot takes, so that a loop that only reads a sensor still lets time pass.
@@ -29,6 +31,7 @@ impl Default for SimOptions {
         Self {
             seed: 1,
             noise: NoiseModel::real(),
+            light: 1.0,
             ideal_encoders: false,
             call_duration: 1e-4,
             time_limit: None,
@@ -51,6 +54,9 @@ impl SimOptions {
     /// Fails with the name of the option that is out of range.
     pub(super) fn validate(&self) -> Result<()> {
         self.noise.validate()?;
+        if !(self.light.is_finite() && (0.0..=100.0).contains(&self.light)) {
+            return Err(Error::invalid_input("light", self.light, "0 to 100"));
+        }
         let limit = self.time_limit.unwrap_or(0.0);
         if !(limit.is_finite() && limit >= 0.0) {
             return Err(Error::invalid_input("time limit", limit, "a finite number of at least 0"));

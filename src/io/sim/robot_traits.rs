@@ -4,9 +4,9 @@ use super::engine::Engine;
 use super::{FleetRobot, SimRobot};
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font, Key, Keys,
-    Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Result, Servos,
-    Viewport,
+    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
+    Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution,
+    Result, Servos, Viewport,
 };
 use crate::kinematics::Displacement;
 use crate::world::Colour;
@@ -105,6 +105,20 @@ macro_rules! robot_through_engine {
 
             fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
                 self.call(|engine, i| engine.configure_lidar(i, settings))
+            }
+        }
+
+        impl Camera for $robot {
+            fn set_resolution(&mut self, resolution: Resolution) -> Result<()> {
+                self.call(|engine, i| engine.set_resolution(i, resolution))
+            }
+
+            fn resolution(&mut self) -> Result<Resolution> {
+                self.call(|engine, i| engine.resolution(i))
+            }
+
+            fn image_into(&mut self, image: &mut RgbImage) -> Result<()> {
+                self.call(|engine, i| engine.image_into(i, image))
             }
         }
 

@@ -11,6 +11,8 @@ pub enum Sensor {
     Psd(Psd),
     /// The laser scanner.
     Lidar,
+    /// The camera.
+    Camera,
     /// The pose and the speed that odometry measures.
     Odometry,
     /// All of them.
@@ -32,7 +34,7 @@ pub enum FaultKind {
     Stuck(Sensor),
     /// The sensor is gone: an error of the kind [`Disconnected`](ErrorKind::Disconnected).
     Lost(Sensor),
-    /// The sensor reads NaN.
+    /// The sensor reads NaN; a camera's image is black.
     Nan(Sensor),
     /// Odometry jumps: from its first reading on it is off as if the robot had been shifted by this pose, given in
     /// the robot's frame, without moving. Setting the pose cures it.
@@ -55,7 +57,7 @@ pub enum FaultKind {
 ///
 /// As text, a fault is `KIND@T`, `KIND:DEVICE@T`, `KIND@T-T2` or `KIND:DEVICE@T-T2` with times in seconds. The kinds
 /// are `stuck`, `lost`, `nan`, `jump`, `late`, `link`, `hang` and `clock`; the devices, for the first three and
-/// `late`, are `front`, `left`, `right`, `back`, `psdN`, `lidar`, `odometry` and, if none is named, `all`. An amount
+/// `late`, are `front`, `left`, `right`, `back`, `psdN`, `lidar`, `camera`, `odometry` and, if none is named, `all`. An amount
 /// may follow kind or device behind an equals sign:
 ///
 /// | text | means |
@@ -102,7 +104,7 @@ impl Fault {
 }
 
 const KINDS: &str = "stuck, lost, nan, jump, late, link, hang or clock";
-const DEVICES: &str = "front, left, right, back, psdN, lidar, odometry or all";
+const DEVICES: &str = "front, left, right, back, psdN, lidar, camera, odometry or all";
 const LATE: f64 = 0.5;
 const HANG: f64 = 1.0;
 const JUMP: [f64; 3] = [100.0, 100.0, 15.0];
@@ -195,6 +197,7 @@ fn parse_sensor(device: &str) -> std::result::Result<Sensor, String> {
         "right" => Sensor::Psd(Psd::RIGHT),
         "back" => Sensor::Psd(Psd::BACK),
         "lidar" => Sensor::Lidar,
+        "camera" => Sensor::Camera,
         "odometry" => Sensor::Odometry,
         "all" => Sensor::All,
         other => match other.strip_prefix("psd").map(str::parse) {
@@ -229,6 +232,7 @@ impl fmt::Display for Sensor {
             Sensor::Psd(Psd::BACK) => f.write_str("back"),
             Sensor::Psd(Psd(id)) => write!(f, "psd{id}"),
             Sensor::Lidar => f.write_str("lidar"),
+            Sensor::Camera => f.write_str("camera"),
             Sensor::Odometry => f.write_str("odometry"),
             Sensor::All => f.write_str("all"),
         }
@@ -266,6 +270,7 @@ mod tests {
         prop_oneof![
             any::<u8>().prop_map(|id| Sensor::Psd(Psd(id))),
             Just(Sensor::Lidar),
+            Just(Sensor::Camera),
             Just(Sensor::Odometry),
             Just(Sensor::All)
         ]
@@ -330,7 +335,7 @@ mod tests {
             ("stuck@5-2", "fault \"stuck@5-2\": the end, 2, is not after the start, 5"),
             (
                 "lost:nose@1",
-                "fault \"lost:nose@1\": unknown device \"nose\"; expected front, left, right, back, psdN, lidar, odometry or all",
+                "fault \"lost:nose@1\": unknown device \"nose\"; expected front, left, right, back, psdN, lidar, camera, odometry or all",
             ),
             ("link:front@1", "fault \"link:front@1\": link takes no device, found \"front\""),
             (

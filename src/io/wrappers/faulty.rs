@@ -6,9 +6,9 @@ use super::fault::{Fault, FaultKind, Sensor};
 use super::memory::{Disturbance, Memory};
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font, Key, Keys,
-    Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Result, Servos,
-    Viewport,
+    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
+    Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution,
+    Result, Servos, Viewport,
 };
 use crate::world::Colour;
 
@@ -38,6 +38,7 @@ pub struct Faulty<R> {
     horizon: f64,
     distances: BTreeMap<Psd, Memory<f64>>,
     scans: Memory<LidarScan>,
+    images: Memory<RgbImage>,
     poses: Memory<Pose>,
     speeds: Memory<Twist>,
 }
@@ -76,6 +77,7 @@ impl<R> Faulty<R> {
             horizon,
             distances: BTreeMap::new(),
             scans: Memory::new(horizon),
+            images: Memory::new(horizon),
             poses: Memory::new(horizon),
             speeds: Memory::new(horizon),
         }
@@ -241,6 +243,34 @@ impl<R: Lidar + Clock> Lidar for Faulty<R> {
             self.require(time, Sensor::Lidar, "lidar")?;
         }
         self.inner.configure_lidar(settings)
+    }
+}
+
+impl<R: Camera + Clock> Camera for Faulty<R> {
+    fn set_resolution(&mut self, resolution: Resolution) -> Result<()> {
+        if let Some(time) = self.begin()? {
+            self.require(time, Sensor::Camera, "camera")?;
+        }
+        self.inner.set_resolution(resolution)
+    }
+
+    fn resolution(&mut self) -> Result<Resolution> {
+        if let Some(time) = self.begin()? {
+            self.require(time, Sensor::Camera, "camera")?;
+        }
+        self.inner.resolution()
+    }
+
+    fn image_into(&mut self, image: &mut RgbImage) -> Result<()> {
+        let Some(time) = self.begin()? else { return self.inner.image_into(image) };
+        self.require(time, Sensor::Camera, "camera")?;
+        self.inner.image_into(image)?;
+        let disturbance = self.disturbance(time, Sensor::Camera);
+        *image = self.images.pass(time, std::mem::take(image), disturbance);
+        if self.is_nan(time, Sensor::Camera) {
+            image.fill(0);
+        }
+        Ok(())
     }
 }
 

@@ -2,8 +2,9 @@ use image::RgbImage;
 
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font, Key, Keys, Lidar,
-    LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Result, Servos, Viewport,
+    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font, Key, Keys,
+    Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution, Result,
+    Servos, Viewport,
 };
 use crate::world::Colour;
 
@@ -291,4 +292,4 @@ impl<R: Motors + Clock + Drive> Motors for Limited<R> {
     }
 }
 
-hooked! { Limited, keep_up, [Clock Drive], DistanceSensors, Lidar, Display, Keys, Radio, Servos, Encoders }
+hooked! { Limited, keep_up, [Clock Drive], DistanceSensors, Lidar, Camera, Display, Keys, Radio, Servos, Encoders }

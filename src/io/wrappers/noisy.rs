@@ -9,8 +9,9 @@ use crate::io::delegate::{
     ambassador_impl_Motors, ambassador_impl_Radio, ambassador_impl_Servos,
 };
 use crate::io::{
-    Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font, Key, Keys, Lidar,
-    LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Result, Servos, Viewport,
+    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font, Key, Keys,
+    Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution, Result,
+    Servos, Viewport,
 };
 use crate::random::Stream;
 use crate::world::Colour;
@@ -22,6 +23,8 @@ pub struct Noise {
     pub distance: f64,
     /// Of each range of a lidar scan, in metres.
     pub lidar: f64,
+    /// Of each channel of an image's pixels, in levels of 255.
+    pub image: f64,
     /// Of odometry's x and y, in metres.
     pub position: f64,
     /// Of odometry's heading, in radians.
@@ -34,14 +37,22 @@ pub struct Noise {
 
 impl Noise {
     /// No noise at all.
-    pub const NONE: Noise =
-        Noise { distance: 0.0, lidar: 0.0, position: 0.0, heading: 0.0, linear: 0.0, angular: 0.0 };
+    pub const NONE: Noise = Noise {
+        distance: 0.0,
+        lidar: 0.0,
+        image: 0.0,
+        position: 0.0,
+        heading: 0.0,
+        linear: 0.0,
+        angular: 0.0,
+    };
 
     /// Fails with the name of the standard deviation that is negative or not finite.
     pub fn validate(&self) -> Result<()> {
         for (name, sigma) in [
             ("noise of distances", self.distance),
             ("noise of lidar ranges", self.lidar),
+            ("noise of images", self.image),
             ("noise of the position", self.position),
             ("noise of the heading", self.heading),
             ("noise of the forward speed", self.linear),
@@ -56,13 +67,22 @@ impl Noise {
 }
 
 impl Default for Noise {
-    /// Ten millimetres on every distance, as EyeSim adds when its sensor noise is on, and a little on odometry.
+    /// Ten millimetres on every distance, as EyeSim adds when its sensor noise is on, and a little on images and
+    /// odometry.
     fn default() -> Self {
-        Self { distance: 0.01, lidar: 0.01, position: 0.002, heading: 0.005, linear: 0.002, angular: 0.01 }
+        Self {
+            distance: 0.01,
+            lidar: 0.01,
+            image: 2.0,
+            position: 0.002,
+            heading: 0.005,
+            linear: 0.002,
+            angular: 0.01,
+        }
     }
 }
 
-/// A robot whose readings carry extra noise: distances, lidar scans and odometry.
+/// A robot whose readings carry extra noise: distances, lidar scans, images and odometry.
 ///
 /// Each sensor has its own random stream, so reading one more often changes nothing for another. Noise never makes a
 /// distance negative, never turns "nothing in range" into a distance, and never carries a range beyond the lidar's
@@ -82,6 +102,7 @@ pub struct Noisy<R> {
     parent: Stream,
     distances: BTreeMap<Psd, Stream>,
     lidar: Stream,
+    image: Stream,
     pose: Stream,
     speed: Stream,
 }
@@ -97,6 +118,7 @@ impl<R> Noisy<R> {
             parent: stream.clone(),
             distances: BTreeMap::new(),
             lidar: stream.child("noisy lidar", 0),
+            image: stream.child("noisy image", 0),
             pose: stream.child("noisy pose", 0),
             speed: stream.child("noisy speed", 0),
         })
@@ -149,6 +171,28 @@ impl<R: Lidar> Lidar for Noisy<R> {
 
     fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
         self.inner.configure_lidar(settings)
+    }
+}
+
+impl<R: Camera> Camera for Noisy<R> {
+    fn set_resolution(&mut self, resolution: Resolution) -> Result<()> {
+        self.inner.set_resolution(resolution)
+    }
+
+    fn resolution(&mut self) -> Result<Resolution> {
+        self.inner.resolution()
+    }
+
+    fn image_into(&mut self, image: &mut RgbImage) -> Result<()> {
+        self.inner.image_into(image)?;
+        if self.noise.image == 0.0 {
+            return Ok(());
+        }
+        for level in image.iter_mut() {
+            // Half a level more, since the conversion to whole ones cuts.
+            *level = (add(f64::from(*level), self.noise.image, &mut self.image) + 0.5) as u8;
+        }
+        Ok(())
     }
 }
 

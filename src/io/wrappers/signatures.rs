@@ -35,6 +35,13 @@ macro_rules! signatures {
             fn configure_lidar(settings: LidarSettings) -> ();
         } }
     };
+    (Camera => $then:ident!($($context:tt)*)) => {
+        $then! { $($context)* Camera {
+            fn set_resolution(resolution: Resolution) -> ();
+            fn resolution() -> Resolution;
+            fn image_into(image: &mut RgbImage) -> ();
+        } }
+    };
     (Display => $then:ident!($($context:tt)*)) => {
         $then! { $($context)* Display {
             fn print(text: &str) -> ();

@@ -4,7 +4,8 @@ use image::RgbImage;
 
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Picture, Psd, RadioMessage, Viewport,
+    DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Picture, Psd, RadioMessage, Resolution,
+    Viewport,
 };
 use crate::world::Colour;
 
@@ -39,7 +40,22 @@ macro_rules! debug_tokens {
     };
 }
 
-debug_tokens!(f64, u8, u32, i32, i64, bool, &str, Vec<u32>, (i32, i32), [&str; 4], Key, Fill, DisplayOption);
+debug_tokens!(
+    f64,
+    u8,
+    u32,
+    i32,
+    i64,
+    bool,
+    &str,
+    Vec<u32>,
+    (i32, i32),
+    [&str; 4],
+    Key,
+    Fill,
+    DisplayOption,
+    Resolution
+);
 
 macro_rules! list_tokens {
     ($($type:ty, $value:ident => [$($part:expr),*];)*) => {

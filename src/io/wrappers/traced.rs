@@ -6,8 +6,9 @@ use image::RgbImage;
 use super::trace_text::{Digest, Token, put_scan};
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys, Lidar, LidarScan,
-    LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Result, Servos, Viewport,
+    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys, Lidar,
+    LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos,
+    Viewport,
 };
 use crate::world::Colour;
 
@@ -202,6 +203,33 @@ impl<R: Lidar + Clock, W: io::Write> Lidar for Traced<R, W> {
         self.arguments(&[&settings]);
         let result = self.inner.configure_lidar(settings);
         self.close(&result, |line, done| done.put(line));
+        result
+    }
+}
+
+impl<R: Camera + Clock, W: io::Write> Camera for Traced<R, W> {
+    fn set_resolution(&mut self, resolution: Resolution) -> Result<()> {
+        let time = self.time();
+        self.open(time, "set_resolution");
+        self.arguments(&[&resolution]);
+        let result = self.inner.set_resolution(resolution);
+        self.close(&result, |line, done| done.put(line));
+        result
+    }
+
+    fn resolution(&mut self) -> Result<Resolution> {
+        let time = self.time();
+        self.open(time, "resolution");
+        let result = self.inner.resolution();
+        self.close(&result, |line, resolution| resolution.put(line));
+        result
+    }
+
+    fn image_into(&mut self, image: &mut RgbImage) -> Result<()> {
+        let time = self.time();
+        self.open(time, "image_into");
+        let result = self.inner.image_into(image);
+        self.close(&result, |line, ()| image.put(line));
         result
     }
 }

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod colour;
+mod gradients;
 mod naive;
 mod shapes;
 

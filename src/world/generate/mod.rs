@@ -6,9 +6,13 @@
 //! The same stream gives the same world on every platform.
 //!
 //! Algorithms that find their way to a goal by sensors (chapter 10) are judged on such courses.
+//!
+//! [`room`] draws a room with corners of many angles, curved walls and doors, whose wall can be followed all the way round
+//! (chapter 6).
 
 mod bent;
 mod border;
+mod contour;
 mod course;
 mod enclosure;
 mod family;
@@ -16,6 +20,7 @@ mod figure;
 mod layout;
 mod options;
 mod repertoire;
+mod room;
 mod round;
 mod straight;
 mod survey;
@@ -24,3 +29,4 @@ pub use course::{Course, obstacle_course};
 pub use family::{CourseFamily, UnknownFamily};
 pub use options::{CourseOptions, CourseOptionsError};
 pub use repertoire::ObstacleKind;
+pub use room::{Room, RoomFeature, RoomOptions, RoomOptionsError, room};

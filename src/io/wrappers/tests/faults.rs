@@ -4,7 +4,8 @@ use super::{CALLS, busy_robot, call};
 use crate::geometry::{Pose, Twist, angle_difference};
 use crate::io::wrappers::{Fault, FaultKind, Faulty, Sensor};
 use crate::io::{
-    Clock, Display, DistanceSensors, Drive, Error, ErrorKind, Lidar, LidarScan, MockRobot, Psd, Script,
+    Camera, Clock, Display, DistanceSensors, Drive, Error, ErrorKind, Lidar, LidarScan, MockRobot, Psd,
+    Resolution, Script,
 };
 
 /// A robot whose readings are functions of time and whose calls take none.
@@ -56,6 +57,32 @@ fn stuck_covers_lidar_and_odometry() {
     let first = (robot.scan().unwrap(), robot.pose().unwrap(), robot.speed().unwrap());
     robot.wait(1.5).unwrap();
     assert_eq!((robot.scan().unwrap(), robot.pose().unwrap(), robot.speed().unwrap()), first);
+}
+
+#[test]
+fn a_camera_gets_stuck_late_dark_and_lost() {
+    let shade = |robot: &mut Faulty<MockRobot>| robot.image().map(|image| image.as_raw()[0]);
+    let camera = |faults: &str| {
+        let scene = |time: f64| Ok(image::RgbImage::from_pixel(2, 2, image::Rgb([10 * time as u8 + 10; 3])));
+        let faults = faults.split(' ').map(|fault| fault.parse().unwrap()).collect();
+        Faulty::new(MockRobot::new().with_image(Script::function(scene)), faults)
+    };
+    let at = |robot: &mut Faulty<MockRobot>| {
+        let shades = (0..4).map(|_| {
+            let seen = shade(robot);
+            robot.wait(1.0).unwrap();
+            seen.unwrap()
+        });
+        shades.collect::<Vec<u8>>()
+    };
+    assert_eq!(at(&mut camera("stuck:camera@1-3")), [10, 10, 10, 40]);
+    assert_eq!(at(&mut camera("late:camera=1@2")), [10, 20, 20, 30]);
+    assert_eq!(at(&mut camera("nan:camera@1-2")), [10, 0, 30, 40]);
+    assert_eq!(at(&mut camera("stuck:lidar@0")), [10, 20, 30, 40]);
+    let mut lost = camera("lost:camera@0");
+    assert_eq!(shade(&mut lost).unwrap_err().to_string(), "the camera is gone");
+    assert_eq!(kind(lost.set_resolution(Resolution::Vga)), ErrorKind::Disconnected);
+    assert_eq!(kind(lost.resolution()), ErrorKind::Disconnected);
 }
 
 #[test]

@@ -6,8 +6,8 @@ mod traces;
 
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, MockRobot, Psd, RadioMessage, RobotIo, Script,
-    Viewport,
+    DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, MockRobot, Psd, RadioMessage, Resolution,
+    RobotIo, Script, Viewport,
 };
 use crate::world::Colour;
 
@@ -26,6 +26,9 @@ fn busy_robot() -> MockRobot {
         .with_distance(Psd::FRONT, Script::function(|time| Ok(0.5 + 0.1 * time)))
         .with_distance(Psd::LEFT, f64::INFINITY)
         .with_scan(Script::function(move |time| Ok(scan(time))))
+        .with_image(Script::function(|time| {
+            Ok(image::RgbImage::from_pixel(4, 3, image::Rgb([(50.0 * time) as u8, 200, 0])))
+        }))
         .with_encoder(1, Script::function(|time| Ok((1000.0 * time) as i64)))
         .with_keys([(0.0, Key::Key1), (0.4, Key::Key3), (1.0, Key::Key4)])
         .with_touches([(0.2, (3, 4))])
@@ -33,7 +36,7 @@ fn busy_robot() -> MockRobot {
         .with_ideal_drive()
 }
 
-const CALLS: u8 = 40;
+const CALLS: u8 = 42;
 
 /// Makes one of all the calls that a robot understands and gives what came back.
 fn call(robot: &mut (impl RobotIo + ?Sized), number: u8) -> String {
@@ -80,7 +83,9 @@ fn call(robot: &mut (impl RobotIo + ?Sized), number: u8) -> String {
         36 => format!("{:?} {:?} {:?}", robot.radio_id(), robot.radio_peers(), robot.receive()),
         37 => format!("{:?}", robot.send(2, b"hi")),
         38 => format!("{:?} {:?}", robot.set_motor(1, 0.5), robot.set_servo(1, -0.5)),
-        _ => format!("{:?} {:?}", robot.encoder(1), robot.reset_encoder(1)),
+        39 => format!("{:?} {:?}", robot.encoder(1), robot.reset_encoder(1)),
+        40 => format!("{:?} {:?}", robot.set_resolution(Resolution::Vga), robot.resolution()),
+        _ => format!("{:?}", robot.image()),
     }
 }
 

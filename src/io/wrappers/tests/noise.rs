@@ -1,7 +1,7 @@
 use super::busy_robot;
 use crate::geometry::{Pose, Twist};
 use crate::io::wrappers::{Fault, Faulty, Noise, Noisy};
-use crate::io::{DistanceSensors, Drive, ErrorKind, Lidar, LidarScan, MockRobot, Psd};
+use crate::io::{Camera, DistanceSensors, Drive, ErrorKind, Lidar, LidarScan, MockRobot, Psd};
 use crate::random::Stream;
 
 fn noisy(robot: MockRobot, noise: Noise) -> Noisy<MockRobot> {
@@ -17,8 +17,15 @@ fn mean_and_deviation(samples: &[f64]) -> (f64, f64) {
 
 #[test]
 fn every_reading_has_the_deviation_that_was_asked_for() {
-    let noise =
-        Noise { distance: 0.01, lidar: 0.02, position: 0.03, heading: 0.04, linear: 0.05, angular: 0.06 };
+    let noise = Noise {
+        distance: 0.01,
+        lidar: 0.02,
+        image: 2.0,
+        position: 0.03,
+        heading: 0.04,
+        linear: 0.05,
+        angular: 0.06,
+    };
     let scan = LidarScan { range_max: 9.0, ranges: vec![1.0], ..LidarScan::default() };
     let robot = MockRobot::new()
         .with_distance(Psd::FRONT, 1.0)
@@ -39,6 +46,21 @@ fn every_reading_has_the_deviation_that_was_asked_for() {
         assert!((mean - 1.0).abs() < 0.05 * sigma, "{mean} {sigma}");
         assert!((deviation / sigma - 1.0).abs() < 0.05, "{deviation} {sigma}");
     }
+}
+
+#[test]
+fn images_have_noise_that_keeps_to_bytes() {
+    let level =
+        |level| MockRobot::new().with_image(image::RgbImage::from_pixel(60, 50, image::Rgb([level; 3])));
+    let samples = |value: u8, sigma: f64| {
+        let mut robot = noisy(level(value), Noise { image: sigma, ..Noise::NONE });
+        robot.image().unwrap().iter().map(|&v| f64::from(v)).collect::<Vec<f64>>()
+    };
+    let (mean, deviation) = mean_and_deviation(&samples(100, 5.0));
+    assert!((mean - 100.0).abs() < 0.3 && (deviation - 5.0).abs() < 0.25, "{mean} {deviation}");
+    let (dark, bright) = (samples(0, 200.0), samples(255, 200.0));
+    assert!(dark.contains(&0.0) && dark.contains(&255.0) && bright.contains(&0.0) && bright.contains(&255.0));
+    assert_eq!(samples(100, 0.0), vec![100.0; 9000]);
 }
 
 #[test]

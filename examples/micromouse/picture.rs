@@ -1,0 +1,49 @@
+use roverlab::geometry::{Point, Vector};
+use roverlab::maze::files::MazeFile;
+use roverlab::maze::{Cell, Maze, Route, Scale};
+use roverlab::picture::{Mark, Picture, SERIES, Style};
+
+/// The maze, its start and its goal.
+pub(crate) fn of_maze(maze: &Maze, scale: Scale) -> Picture {
+    let mut picture = Picture::new(&scale.world(maze));
+    let half = 0.5 * scale.cell;
+    for goal in maze.goals() {
+        let centre = scale.centre(goal);
+        let corners = [(-half, -half), (half, -half), (half, half), (-half, half)];
+        let style = Style::new(SERIES[2]).filled(0.25).opacity(0.0).labelled("goal");
+        picture.polygon(corners.map(|(x, y)| centre + Vector::new(x, y)), style);
+    }
+    picture.mark(Mark::Start, scale.centre(maze.start()));
+    picture
+}
+
+/// The routes with the fewest steps and with the fewest turns.
+pub(crate) fn of_plan(file: &MazeFile, short: Option<&Route>, straight: Option<&Route>) -> Picture {
+    let scale = Scale::MICROMOUSE;
+    let mut picture = of_maze(&file.maze, scale);
+    let caption = match (short, straight) {
+        (Some(short), Some(straight)) => format!(
+            "shortest route: {} steps, {} turns; fewest turns: {} in {} steps",
+            short.steps(),
+            short.turns(),
+            straight.turns(),
+            straight.steps()
+        ),
+        _ => "no way to the goal".into(),
+    };
+    picture.title("Micromouse").caption(caption);
+    let shift = 0.06 * scale.cell;
+    if let Some(straight) = straight {
+        let style = Style::new(SERIES[1]).width(2.0).labelled("fewest turns");
+        picture.line(points(straight, scale, shift), style);
+    }
+    if let Some(short) = short {
+        picture.line(points(short, scale, -shift), Style::new(SERIES[0]).width(2.6).labelled("fewest steps"));
+    }
+    picture
+}
+
+/// The middles of a route's cells, a little aside so that two routes can be told apart.
+fn points(route: &Route, scale: Scale, shift: f64) -> Vec<Point> {
+    route.cells().map(|cell: Cell| scale.centre(cell) + Vector::new(shift, shift)).collect()
+}

@@ -1,0 +1,48 @@
+use roverlab::maze::files::{self, MazeFile, MazeFormat};
+
+use super::Args;
+use crate::common::Failure;
+
+/// The example's own maze: small, with a way round on either side and a staircase for diagonals.
+const OWN: &str = "\
+o---o---o---o---o---o---o---o---o
+|               |               |
+o   o---o---o   o   o---o---o   o
+|   |       |       |       |   |
+o   o   o   o---o---o   o   o   o
+|   |   |               |   |   |
+o   o   o---o   o---o---o   o   o
+|   |       | G   G |       |   |
+o   o---o   o   o   o   o---o   o
+|       |   | G   G |   |       |
+o---o   o   o---o   o   o   o---o
+|       |           |           |
+o   o---o---o---o---o---o---o   o
+|   |       |       |       |   |
+o   o   o---o   o---o   o---o   o
+| S |       |       |           |
+o---o---o---o---o---o---o---o---o
+";
+
+/// The maze that the options name, or the example's own.
+pub(crate) fn maze(args: &Args) -> Result<MazeFile, Failure> {
+    let named = args.maze.as_ref().or(args.common.world.as_ref());
+    let file = match named {
+        Some(file) => files::load(file),
+        None => files::parse(OWN.as_bytes(), "the example's own maze"),
+    };
+    file.map_err(Failure::input)
+}
+
+/// A format by its name in reports.
+pub(crate) fn name(format: MazeFormat) -> &'static str {
+    match format {
+        MazeFormat::Text => "text",
+        MazeFormat::Maze => "maze",
+        MazeFormat::Map => "map",
+        MazeFormat::Num => "num",
+        MazeFormat::EyeSim => "eyesim",
+        MazeFormat::Binary => "binary",
+        _ => "other",
+    }
+}

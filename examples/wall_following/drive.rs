@@ -1,0 +1,93 @@
+use std::ops::ControlFlow;
+
+use roverlab::drive::{
+    FollowsWalls, LidarWallFollower, LidarWallParameters, PidWallFollower, PidWallParameters,
+    TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallOutcome, WallSensors, WallSide,
+    run_along_wall,
+};
+use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar};
+
+use super::Controller;
+
+/// What the robot is told.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Options {
+    pub(crate) controller: Controller,
+    pub(crate) side: Option<WallSide>,
+    /// Metres and metres per second.
+    pub(crate) distance: f64,
+    pub(crate) speed: f64,
+    /// The robot's radius, and what its ranges err by.
+    pub(crate) radius: f64,
+    pub(crate) range_error: f64,
+    pub(crate) sensors: WallSensors,
+    /// Simulated seconds.
+    pub(crate) time_limit: f64,
+}
+
+/// What the robot says at the end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Walk {
+    pub(crate) outcome: WallOutcome,
+    /// Where the wall was.
+    pub(crate) side: Option<WallSide>,
+}
+
+/// Lets a robot follow a wall. `watch` is called after each step with whether the robot takes itself to be beside a wall.
+pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
+    robot: &mut R,
+    options: &Options,
+    watch: &mut dyn FnMut(bool) -> ControlFlow<()>,
+) -> io::Result<Walk> {
+    let Options { side, distance, speed, sensors, time_limit, .. } = *options;
+    let one_side = side.unwrap_or(WallSide::Left);
+    match options.controller {
+        Controller::Psd => {
+            let mut follower = WallFollower::new(WallFollowerParameters {
+                side,
+                distance,
+                speed,
+                radius: options.radius,
+                range_error: options.range_error,
+                sensors,
+                ..WallFollowerParameters::default()
+            })?;
+            let outcome = walk(robot, &mut follower, time_limit, watch)?;
+            Ok(Walk { outcome, side: follower.side() })
+        }
+        Controller::Pid => {
+            let parameters = PidWallParameters {
+                side: one_side,
+                distance,
+                speed,
+                sensors,
+                ..PidWallParameters::default()
+            };
+            let mut follower = PidWallFollower::new(parameters)?;
+            let outcome = walk(robot, &mut follower, time_limit, watch)?;
+            Ok(Walk { outcome, side: Some(one_side) })
+        }
+        Controller::Lidar => {
+            let parameters =
+                LidarWallParameters { side: one_side, distance, speed, ..LidarWallParameters::default() };
+            let mut follower = LidarWallFollower::new(parameters)?;
+            let outcome = walk(robot, &mut follower, time_limit, watch)?;
+            Ok(Walk { outcome, side: Some(one_side) })
+        }
+        Controller::Book => {
+            let safe = distance - sensors.left.y.abs();
+            let mut follower = TwoLevelWallFollower::new(safe, speed);
+            let outcome = walk(robot, &mut follower, time_limit, watch)?;
+            Ok(Walk { outcome, side: Some(WallSide::Left) })
+        }
+    }
+}
+
+fn walk<R: Clock + Drive + ?Sized, C: FollowsWalls<R>>(
+    robot: &mut R,
+    controller: &mut C,
+    time_limit: f64,
+    watch: &mut dyn FnMut(bool) -> ControlFlow<()>,
+) -> io::Result<WallOutcome> {
+    run_along_wall(robot, controller, time_limit, |_, controller| watch(controller.is_beside_wall()))
+}

@@ -1,0 +1,128 @@
+use std::ops::ControlFlow;
+
+use roverlab::geometry::{Pose, angle_difference};
+use roverlab::world::space::{Solid, Space, Span};
+use roverlab::world::{Footprint, Scene};
+
+use super::corners::{Corner, corners};
+
+/// The errors of many distances.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Errors {
+    sum_of_squares: f64,
+    count: u64,
+    /// The largest, in metres.
+    pub(crate) worst: f64,
+}
+
+impl Errors {
+    fn add(&mut self, error: f64) {
+        self.sum_of_squares += error * error;
+        self.count += 1;
+        self.worst = self.worst.max(error.abs());
+    }
+
+    pub(crate) fn merge(&mut self, other: &Self) {
+        self.sum_of_squares += other.sum_of_squares;
+        self.count += other.count;
+        self.worst = self.worst.max(other.worst);
+    }
+
+    /// The root of their mean square in metres; `None` without any.
+    pub(crate) fn rms(&self) -> Option<f64> {
+        (self.count > 0).then(|| (self.sum_of_squares / self.count as f64).sqrt())
+    }
+}
+
+/// Watches a robot on its way round.
+#[derive(Debug)]
+pub(crate) struct Watch {
+    space: Space,
+    span: Span,
+    corners: Vec<Corner>,
+    distance: f64,
+    wanted: u32,
+    last: Pose,
+    driven: f64,
+    /// Where the wall was found, and how far the robot had driven by then.
+    begin: Option<(Pose, f64)>,
+    pub(crate) laps: u32,
+    pub(crate) lap_length: Option<f64>,
+    pub(crate) away_from_corners: Errors,
+    pub(crate) everywhere: Errors,
+    /// Where the error was largest.
+    pub(crate) worst_place: Option<Pose>,
+}
+
+/// Metres behind the place where the wall was found from which errors count.
+const SETTLING: f64 = 0.3;
+/// A lap ends within so many metres of its begin, with a heading like then, and not before so many metres.
+const LAP: (f64, f64, f64) = (0.2, 0.8, 1.0);
+
+impl Watch {
+    pub(crate) fn new(scene: &Scene, distance: f64, laps: u32) -> Self {
+        let mut space = Space::new(&scene.world.walls);
+        for object in &scene.world.objects {
+            space.add(Solid::from(object));
+        }
+        let robot = Solid::from(&scene.robots[0]);
+        Self {
+            space,
+            span: Span { bottom: robot.bottom, top: robot.top },
+            corners: corners(&scene.world, distance),
+            distance,
+            wanted: laps,
+            last: scene.robots[0].pose,
+            driven: 0.0,
+            begin: None,
+            laps: 0,
+            lap_length: None,
+            away_from_corners: Errors::default(),
+            everywhere: Errors::default(),
+            worst_place: None,
+        }
+    }
+
+    /// Takes in where the robot is. Breaks after the last lap.
+    pub(crate) fn see(&mut self, pose: Pose, beside_wall: bool) -> ControlFlow<()> {
+        self.driven += pose.distance_to(self.last.position());
+        self.last = pose;
+        let Some((begin, since)) = self.begin else {
+            if beside_wall {
+                self.begin = Some((pose, self.driven));
+            }
+            return ControlFlow::Continue(());
+        };
+        let way = self.driven - since;
+        if way < SETTLING {
+            // The lap begins where the robot has been beside the wall for a while.
+            self.begin = beside_wall.then_some((pose, since));
+            return ControlFlow::Continue(());
+        }
+        self.measure(pose);
+        let (near, alike, least) = LAP;
+        let back = pose.distance_to(begin.position()) < near
+            && angle_difference(pose.heading, begin.heading).abs() < alike;
+        if back && way > SETTLING + least {
+            self.laps += 1;
+            self.lap_length.get_or_insert(way - SETTLING);
+            self.begin = Some((begin, self.driven - SETTLING));
+        }
+        if self.laps >= self.wanted { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    fn measure(&mut self, pose: Pose) {
+        const POINT: f64 = 1e-6;
+        let limit = 4.0 * self.distance;
+        let point = Footprint::Disc { radius: POINT };
+        let error = self.space.clearance(&point, &pose, self.span, limit, None) + POINT - self.distance;
+        self.everywhere.add(error);
+        if self.corners.iter().any(|corner| pose.distance_to(corner.place) < corner.reach) {
+            return;
+        }
+        if error.abs() > self.away_from_corners.worst {
+            self.worst_place = Some(pose);
+        }
+        self.away_from_corners.add(error);
+    }
+}

@@ -1,0 +1,52 @@
+use roverlab::drive::WallOutcome;
+use roverlab::geometry::units;
+use roverlab::picture::{Mark, Picture, Style};
+use roverlab::world::{Colour, Scene};
+
+use super::drive::Walk;
+use super::{Args, Watch};
+use crate::driving::{Conditions, Run};
+
+/// A picture of a run: the room, where the robot was, and where its error was largest.
+pub(crate) fn of(
+    args: &Args,
+    scene: &Scene,
+    run: &Run<Walk>,
+    watch: &Watch,
+    conditions: &Conditions,
+) -> Picture {
+    let outline = scene.robots[0].spec.footprint;
+    let start = scene.robots[0].pose;
+    let mut picture = Picture::new(&scene.world);
+    let ending = match &run.ending {
+        _ if run.truth.contacts > 0 => "collided",
+        Ok(walk) if walk.outcome == WallOutcome::Stopped => "all the way round",
+        Ok(walk) if walk.outcome == WallOutcome::Blocked => "blocked",
+        Ok(_) => "timed out",
+        Err(_) => "failed",
+    };
+    picture.title(format!("Wall following ({}): {ending}", args.controller.name()));
+    let mm =
+        |length: Option<f64>| length.map_or("-".into(), |length| format!("{:.1} mm", units::to_mm(length)));
+    picture.caption(format!(
+        "rms {}, worst {} away from corners; {:.0} s, noise {}, seed {}",
+        mm(watch.away_from_corners.rms()),
+        mm(watch.away_from_corners.rms().map(|_| watch.away_from_corners.worst)),
+        run.sim_time,
+        conditions.noise,
+        conditions.seed
+    ));
+    picture.true_path(run.positions());
+    picture.odometry_path(run.odometry_path.iter().copied());
+    let pale = Style::new(Colour::from_hex(0x8a_90_9c)).opacity(0.5);
+    picture.robot_with(start, &outline, pale);
+    if let Some(worst) = watch.worst_place {
+        picture.mark_named(Mark::Waypoint, worst.position(), "largest error");
+    }
+    picture.robot(run.truth.pose, &outline);
+    picture.mark(Mark::Start, start.position());
+    for &point in &run.truth.contact_places {
+        picture.mark(Mark::Contact, point);
+    }
+    picture
+}

@@ -1,0 +1,74 @@
+use std::collections::VecDeque;
+
+use crate::geometry::{FittedLine, Point, Pose, direction};
+
+/// The last points that a sensor has seen, in the frame of odometry, in order.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Memory {
+    points: VecDeque<Point>,
+    most: usize,
+}
+
+impl Memory {
+    pub(super) fn new(most: usize) -> Self {
+        Self { points: VecDeque::with_capacity(most), most }
+    }
+
+    pub(super) fn add(&mut self, point: Point) {
+        if self.points.len() == self.most {
+            self.points.pop_front();
+        }
+        self.points.push_back(point);
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.points.clear();
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = Point> + Clone + '_ {
+        self.points.iter().copied()
+    }
+
+    /// The line through some points and the last ones, as seen from a pose.
+    pub(super) fn last_line(&self, count: usize, first: &[Point], pose: &Pose) -> Option<FittedLine> {
+        let skipped = self.points.len().checked_sub(count)?;
+        let points = first.iter().copied().chain(self.iter().skip(skipped));
+        FittedLine::through(points.map(|point| pose.to_local(point)))
+    }
+}
+
+/// The point that a sensor sees, in the frame of odometry.
+pub(super) fn hit(pose: &Pose, mount: &Pose, range: f64) -> Option<Point> {
+    range.is_finite().then(|| pose.to_world(mount.position() + direction(mount.heading) * range))
+}
+
+/// The middle one of the last readings of a sensor: a single wrong one does not show.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Median {
+    last: [f64; Self::WIDTH],
+    next: usize,
+}
+
+impl Median {
+    const WIDTH: usize = 5;
+
+    pub(super) fn new() -> Self {
+        Self { last: [f64::INFINITY; Self::WIDTH], next: 0 }
+    }
+
+    pub(super) fn add(&mut self, reading: f64) -> f64 {
+        self.last[self.next] = reading;
+        self.next = (self.next + 1) % Self::WIDTH;
+        self.value()
+    }
+
+    pub(super) fn value(&self) -> f64 {
+        let mut sorted = self.last;
+        sorted.sort_by(f64::total_cmp);
+        sorted[Self::WIDTH / 2]
+    }
+}

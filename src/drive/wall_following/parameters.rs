@@ -1,0 +1,175 @@
+use std::f64::consts::FRAC_PI_2;
+
+use crate::geometry::{Pose, normalize_angle};
+use crate::io::error::require_positive;
+use crate::io::{Error, Result};
+use crate::world::RobotSpec;
+
+/// On which side of the robot the followed wall is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WallSide {
+    /// To the left, as in the book.
+    Left,
+    /// To the right.
+    Right,
+}
+
+/// Where the distance sensors sit on the robot and where they point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WallSensors {
+    /// The one ahead.
+    pub front: Pose,
+    /// The one to the left.
+    pub left: Pose,
+    /// The one to the right.
+    pub right: Pose,
+}
+
+impl Default for WallSensors {
+    /// Those of an S4.
+    fn default() -> Self {
+        Self {
+            front: Pose::new(0.060, 0.0, 0.0),
+            left: Pose::new(0.055, 0.045, FRAC_PI_2),
+            right: Pose::new(0.055, -0.045, -FRAC_PI_2),
+        }
+    }
+}
+
+impl WallSensors {
+    /// The sensors 1 to 3 of a robot. Fails if it lacks one, or one points elsewhere than ahead, to the left and to the
+    /// right.
+    pub fn of(spec: &RobotSpec) -> Result<Self> {
+        let find = |id: u8, name: &str, yaw: f64| {
+            let psd = spec.psds.iter().find(|psd| psd.id == id);
+            let psd = psd.ok_or_else(|| Error::unsupported(format!("{name} PSD")))?;
+            let mount = Pose::new(psd.mount.x, psd.mount.y, psd.mount.yaw);
+            if normalize_angle(mount.heading - yaw).abs() < 0.1 {
+                return Ok(mount);
+            }
+            let found = format!("{} rad", mount.heading);
+            Err(Error::invalid_input(
+                &format!("direction of the {name} PSD"),
+                found,
+                &format!("about {yaw:.2} rad"),
+            ))
+        };
+        Ok(Self {
+            front: find(1, "front", 0.0)?,
+            left: find(2, "left", FRAC_PI_2)?,
+            right: find(3, "right", -FRAC_PI_2)?,
+        })
+    }
+
+    /// The sensors of the mirrored robot.
+    pub(super) fn mirrored(&self) -> Self {
+        Self { front: mirror(self.front), left: mirror(self.right), right: mirror(self.left) }
+    }
+}
+
+/// A pose as a mirror along the x axis shows it.
+pub(super) fn mirror(pose: Pose) -> Pose {
+    Pose::new(pose.x, -pose.y, -pose.heading)
+}
+
+/// What [`WallFollower`](super::WallFollower) goes by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WallFollowerParameters {
+    /// On which side the wall is to be; `None`: on that to which the robot has to turn less.
+    pub side: Option<WallSide>,
+    /// Metres between the wall and the robot's middle.
+    pub distance: f64,
+    /// Metres per second along the wall.
+    pub speed: f64,
+    /// Radians per second on the spot.
+    pub turn_rate: f64,
+    /// The standard deviation of a range reading, in metres.
+    pub range_error: f64,
+    /// Metres along the wall in which an error of distance dies away.
+    pub reach: f64,
+    /// The seconds by which the robot turns later than it is told.
+    pub lag: f64,
+    /// The distance from the robot's middle to its outline, in metres.
+    pub radius: f64,
+    /// Where the sensors sit.
+    pub sensors: WallSensors,
+    /// Seconds from one step to the next.
+    pub period: f64,
+}
+
+impl Default for WallFollowerParameters {
+    /// 0.2 m/s at 0.2 m from the wall, for an S4 with the noise of the real one.
+    fn default() -> Self {
+        Self {
+            side: None,
+            distance: 0.2,
+            speed: 0.2,
+            turn_rate: 1.5,
+            range_error: 0.01,
+            reach: 0.065,
+            lag: 0.2,
+            radius: 0.06,
+            sensors: WallSensors::default(),
+            period: 0.01,
+        }
+    }
+}
+
+impl WallFollowerParameters {
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<()> {
+        require_positive("speed", self.speed)?;
+        require_positive("turn rate", self.turn_rate)?;
+        require_positive("reach", self.reach)?;
+        require_positive("lag", self.lag)?;
+        require_positive("radius", self.radius)?;
+        require_positive("control period", self.period)?;
+        let least = 1.5 * self.radius;
+        if !(self.distance >= least && self.distance <= 5.0) {
+            return Err(Error::invalid_input(
+                "distance",
+                self.distance,
+                &format!("{least} m, one and a half of the robot's radius, to 5 m"),
+            ));
+        }
+        let error = self.range_error;
+        if !(0.0..0.5 * self.distance).contains(&error) {
+            return Err(Error::invalid_input("range error", error, "0 to half the distance"));
+        }
+        Ok(())
+    }
+}
+
+/// What a wall follower sees at a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WallObservation {
+    /// Where odometry takes the robot to be.
+    pub pose: Pose,
+    /// Metres from the front sensor to what is ahead; infinite if there is nothing.
+    pub front: f64,
+    /// The same to the left.
+    pub left: f64,
+    /// The same to the right.
+    pub right: f64,
+}
+
+impl WallObservation {
+    pub(super) fn check(&self) -> Result<()> {
+        let ranges = [("front", self.front), ("left", self.left), ("right", self.right)];
+        for (name, range) in ranges {
+            if range.is_nan() {
+                let name = format!("{name} range");
+                return Err(Error::invalid_input(&name, range, "metres, or infinity without a return"));
+            }
+        }
+        if self.pose.is_finite() {
+            return Ok(());
+        }
+        Err(Error::invalid_input("observed pose", format!("{:?}", self.pose), "finite numbers"))
+    }
+
+    /// What the mirrored robot sees.
+    pub(super) fn mirrored(&self) -> Self {
+        Self { pose: mirror(self.pose), front: self.front, left: self.right, right: self.left }
+    }
+}

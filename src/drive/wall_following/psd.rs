@@ -1,0 +1,475 @@
+use std::collections::VecDeque;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use super::memory::{Median, Memory, hit};
+use super::parameters::mirror;
+use super::tracker::{Reading, WallTracker};
+use super::{WallFollowerParameters, WallObservation, WallSensors, WallSide};
+use crate::geometry::{FittedLine, Point, Pose, Twist, angle_difference, math, normalize_angle};
+use crate::io::Result;
+
+/// What a [`WallFollower`] is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum WallPhase {
+    /// Driving straight on until a wall is near (the book's step 1).
+    Searching,
+    /// Turning until the wall lies beside it (steps 2 and 4).
+    Turning,
+    /// Driving along the wall (step 3).
+    Following,
+    /// Driving round an outer corner or the end of a wall.
+    Rounding,
+}
+
+/// Follows walls with three distance sensors, one ahead and one on either side (book, chapter 6, done properly).
+///
+/// Every reading is a point in the frame of odometry, and walls are known by lines and curves through points. The robot
+/// drives until something is near, swaying a little, so that one ray ahead covers its whole width. Then it turns on the spot
+/// while the ray ahead sweeps over what stands there; the line through these points, not a fixed angle, says where the wall
+/// is, in corners too, where the ranges to the left and to the right belong to different walls. Along the wall a Kalman
+/// filter knows its distance, direction and curvature. Where the wall ends the robot drives round the end at the same
+/// distance until it sees the next wall.
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use roverlab::drive::{run_along_wall, WallFollower, WallFollowerParameters};
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// # fn main() -> roverlab::io::Result<()> {
+/// let scene = Scene::with_robot(World::walled(2.0, 2.0), RobotSpec::s4(), Pose::new(1.0, 1.0, 0.4));
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let mut follower = WallFollower::new(WallFollowerParameters::default())?;
+/// run_along_wall(&mut simulation.robot(0)?, &mut follower, 60.0, |_, _| ControlFlow::Continue(()))?;
+/// let truth = simulation.truth().robot(0)?;
+/// assert_eq!(truth.contacts, 0);
+/// assert!(truth.path_length > 6.0);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct WallFollower {
+    parameters: WallFollowerParameters,
+    /// The sensors of the robot or of its mirror image: inside, the wall is always to the left.
+    sensors: WallSensors,
+    side: Option<WallSide>,
+    state: State,
+    last: Option<Pose>,
+    /// Metres and radians since the start.
+    driven: f64,
+    turned: f64,
+    front: Median,
+    /// What the side sensor saw of the wall, and what the one ahead swept over.
+    beside: Memory,
+    swept: Memory,
+    /// What was seen last while searching.
+    approach: VecDeque<WallObservation>,
+    /// How many readings in a row were not of the wall.
+    strays: u32,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum State {
+    Searching {
+        /// The heading of the straight line, and where on it the robot began.
+        heading: f64,
+        since: f64,
+    },
+    Turning {
+        /// How much has been turned since the wall was met.
+        since: f64,
+        /// The heading along the wall, as known so far.
+        target: Option<f64>,
+    },
+    Following(WallTracker),
+    Rounding {
+        /// The end of the wall, and its direction there.
+        corner: Point,
+        along: f64,
+        /// When it was lost.
+        since: f64,
+    },
+}
+
+/// The part of the speed with which a robot searches, the radians by which it sways, and the seconds of a sway.
+const SEARCH_SPEED: f64 = 0.6;
+const SWAY: f64 = 0.42;
+const SWAY_TIME: f64 = 1.0;
+/// How many observations of the approach to a wall are remembered.
+const APPROACH: usize = 50;
+/// The angle, in radians, beyond which a wall runs across the robot's way.
+const ACROSS: f64 = 0.5;
+/// Points of the side sensor by which a wall that runs across the robot's way is known anew.
+const RENEWAL_POINTS: usize = 12;
+/// Readings in a row that say that a wall has ended, or that another begins.
+const STRAYS: u32 = 4;
+/// Points that the line of a new wall is laid through, and how far they have to reach in metres.
+const NEW_WALL_POINTS: usize = 20;
+const NEW_WALL_LENGTH: f64 = 0.03;
+/// A new wall whose line passes the corner at less than this, in metres, begins there; for how many points that counts.
+const AT_CORNER: f64 = 0.05;
+const CORNER_WEIGHT: usize = 8;
+/// The angle to a new wall, in radians, at which it is followed.
+const NEW_WALL_ANGLE: f64 = 0.3;
+/// Metres around the nearest point that was swept over in which points belong to the same wall.
+const SAME_WALL: f64 = 0.13;
+/// The heading error, in radians, at which a turn ends.
+const ALIGNED: f64 = 0.08;
+/// Turning proportionally to the rest of the angle, in 1/s.
+const TURN_GAIN: f64 = 2.5;
+
+impl WallFollower {
+    /// A follower that knows of no wall yet.
+    pub fn new(parameters: WallFollowerParameters) -> Result<Self> {
+        parameters.validate()?;
+        let side = parameters.side;
+        let mut follower = Self {
+            parameters,
+            sensors: parameters.sensors,
+            side: None,
+            state: State::Searching { heading: 0.0, since: 0.0 },
+            last: None,
+            driven: 0.0,
+            turned: 0.0,
+            front: Median::new(),
+            beside: Memory::new(120),
+            swept: Memory::new(400),
+            approach: VecDeque::new(),
+            strays: 0,
+        };
+        if let Some(side) = side {
+            follower.choose(side);
+        }
+        Ok(follower)
+    }
+
+    fn choose(&mut self, side: WallSide) {
+        self.side = Some(side);
+        self.sensors = match side {
+            WallSide::Left => self.parameters.sensors,
+            WallSide::Right => self.parameters.sensors.mirrored(),
+        };
+        // What is remembered was seen by the other image.
+        if side == WallSide::Right {
+            self.last = self.last.map(mirror);
+            self.approach.iter_mut().for_each(|seen| *seen = seen.mirrored());
+        }
+    }
+
+    /// On which side the wall is, once that is decided.
+    pub fn side(&self) -> Option<WallSide> {
+        self.side
+    }
+
+    /// What the robot is doing.
+    pub fn phase(&self) -> WallPhase {
+        match self.state {
+            State::Searching { .. } => WallPhase::Searching,
+            State::Turning { .. } => WallPhase::Turning,
+            State::Following(_) => WallPhase::Following,
+            State::Rounding { .. } => WallPhase::Rounding,
+        }
+    }
+
+    /// What it goes by.
+    pub fn parameters(&self) -> &WallFollowerParameters {
+        &self.parameters
+    }
+
+    /// The next speed.
+    pub fn step(&mut self, observation: &WallObservation) -> Result<Twist> {
+        observation.check()?;
+        if self.side == Some(WallSide::Right) {
+            let twist = self.step_left(&observation.mirrored());
+            return Ok(Twist::new(twist.linear, -twist.angular));
+        }
+        Ok(self.step_left(observation))
+    }
+
+    /// The speed of the robot or of its mirror image, whose wall is to the left.
+    fn step_left(&mut self, seen: &WallObservation) -> Twist {
+        let pose = seen.pose;
+        let motion = self.last.map_or(Pose::default(), |last| last.inverse().compose(&pose));
+        if self.last.is_none() {
+            self.state = State::Searching { heading: pose.heading, since: 0.0 };
+        }
+        self.last = Some(pose);
+        self.driven += math::hypot(motion.x, motion.y);
+        self.turned += motion.heading.abs();
+        let ahead = self.front.add(seen.front) + self.sensors.front.x;
+        let aside = hit(&pose, &self.sensors.left, seen.left);
+        let before = hit(&pose, &self.sensors.front, seen.front);
+        match self.state.clone() {
+            State::Searching { heading, since } => self.search(seen, ahead, heading, since),
+            State::Turning { since, target } => self.turn(seen, before, since, target),
+            State::Following(tracker) => self.follow(tracker, &motion, &pose, ahead, aside),
+            State::Rounding { corner, along, since } => self.round(&pose, ahead, aside, corner, along, since),
+        }
+    }
+
+    /// Step 1: straight on, swaying.
+    fn search(&mut self, seen: &WallObservation, ahead: f64, heading: f64, since: f64) -> Twist {
+        let WallFollowerParameters { distance, speed, lag, .. } = self.parameters;
+        let pose = seen.pose;
+        let [left, right] = [(seen.left, self.sensors.left), (seen.right, self.sensors.right)]
+            .map(|(range, mount)| range + mount.y.abs());
+        let slow = SEARCH_SPEED * speed;
+        if self.approach.len() == APPROACH {
+            self.approach.pop_front();
+        }
+        self.approach.push_back(*seen);
+        if ahead < distance + lag * slow || left.min(right) < 0.9 * distance {
+            return self.meet(left, right, ahead);
+        }
+        let wish = SWAY * math::sin(TAU * (self.driven - since) / (SWAY_TIME * slow));
+        let rate =
+            SWAY * TAU / SWAY_TIME * math::cos(TAU * (self.driven - since + lag * slow) / (SWAY_TIME * slow));
+        let error = angle_difference(heading + wish, pose.heading);
+        Twist::new(slow, rate + 2.0 * error)
+    }
+
+    /// Something is near for the first time.
+    fn meet(&mut self, left: f64, right: f64, ahead: f64) -> Twist {
+        let nearer = if right < left { WallSide::Right } else { WallSide::Left };
+        // The robot turns less if the wall, which is nearer on one side, gets to that side.
+        let undecided = self.side.is_none();
+        if undecided {
+            self.choose(nearer);
+        }
+        // From here on the wall is to be to the left: of the robot or of its mirror image.
+        let beside = if undecided { left.min(right) } else { left };
+        let distance = self.parameters.distance;
+        let line = self.approached_wall().filter(|_| beside < distance && beside < ahead);
+        if let Some(line) = line {
+            self.begin_following(WallTracker::of_line(&line, self.parameters.range_error));
+            return Twist::new(0.5 * self.parameters.speed, 0.0);
+        }
+        self.begin_turning();
+        Twist::STOP
+    }
+
+    /// The wall's line, in the robot's frame, by what was seen ahead and to the left on the way to it (the book's figure
+    /// 6.2), if both belong to one wall.
+    fn approached_wall(&self) -> Option<FittedLine> {
+        let pose = self.approach.back()?.pose;
+        let front = self.approach.iter().filter_map(|seen| hit(&seen.pose, &self.sensors.front, seen.front));
+        let left = self.approach.iter().filter_map(|seen| hit(&seen.pose, &self.sensors.left, seen.left));
+        let near = |point: &Point| pose.distance_to(*point) < 3.0 * self.parameters.distance;
+        let line = FittedLine::through(left.chain(front).filter(near).map(|point| pose.to_local(point)))?;
+        let error = 1.8 * self.parameters.range_error.max(0.003);
+        let ahead = line.direction.x > 0.5 && line.distance_to(Point::origin()) < 0.0;
+        (ahead && line.rms < error && line.length > 0.05).then_some(line)
+    }
+
+    /// Steps 2 and 4: clockwise on the spot until the wall that is swept over lies to the left.
+    fn turn(
+        &mut self,
+        seen: &WallObservation,
+        before: Option<Point>,
+        since: f64,
+        target: Option<f64>,
+    ) -> Twist {
+        let pose = seen.pose;
+        if let Some(point) = before {
+            self.swept.add(point);
+        }
+        let turned = self.turned - since;
+        let line = self.swept_wall(&pose);
+        let target = line.map_or(target, |line| Some(normalize_angle(pose.heading + line.angle())));
+        self.state = State::Turning { since, target };
+        let rate = self.parameters.turn_rate;
+        // The heading error is taken the long way round: the wall must pass ahead of the robot first.
+        let rest = target.map_or(FRAC_PI_2, |target| {
+            let rest = -angle_difference(target, pose.heading);
+            if rest < -0.5 * FRAC_PI_2 { rest + TAU } else { rest }
+        });
+        if let Some(line) = line.filter(|_| rest.abs() < ALIGNED) {
+            self.begin_following(self.swept_tracker(&line, &pose));
+            return Twist::STOP;
+        }
+        if turned > 1.5 * TAU {
+            self.state = State::Searching { heading: pose.heading, since: self.driven };
+        }
+        Twist::new(0.0, -(TURN_GAIN * rest).clamp(-rate, rate))
+    }
+
+    /// The line through the points that were swept over near to the nearest one, in the robot's frame, its direction that
+    /// in which the robot is to drive.
+    fn swept_wall(&self, pose: &Pose) -> Option<FittedLine> {
+        let position = pose.position();
+        let window = 5;
+        if self.swept.len() < 3 * window {
+            return None;
+        }
+        let points: Vec<Point> = self.swept.iter().collect();
+        let nearest = points
+            .windows(window)
+            .map(|some| {
+                let sum: nalgebra::Vector2<f64> = some.iter().map(|point| point.coords).sum();
+                Point::from(sum / window as f64)
+            })
+            .min_by(|a, b| (a - position).norm().total_cmp(&(b - position).norm()))?;
+        let near = points.iter().copied().filter(|point| (point - nearest).norm() < SAME_WALL);
+        let line = FittedLine::through(near.map(|point| pose.to_local(point)))?;
+        // Seen from inside, a wall to the left runs the way in which the robot drives.
+        let left_of_robot = line.distance_to(Point::origin()) < 0.0;
+        let direction = if left_of_robot { line.direction } else { -line.direction };
+        (line.length > 0.4 * SAME_WALL && line.points >= 3 * window)
+            .then_some(FittedLine { direction, ..line })
+    }
+
+    /// The wall that was swept over, with its curvature.
+    fn swept_tracker(&self, line: &FittedLine, pose: &Pose) -> WallTracker {
+        let error = self.parameters.range_error;
+        let mut tracker = WallTracker::like_line(line);
+        let near = |point: &Point| (point - line.middle).norm() < 1.5 * SAME_WALL;
+        for point in self.swept.iter().map(|point| pose.to_local(point)).filter(near) {
+            tracker.update(point, error);
+        }
+        tracker
+    }
+
+    fn begin_following(&mut self, tracker: WallTracker) {
+        self.state = State::Following(tracker);
+        self.beside.clear();
+        self.strays = 0;
+    }
+
+    /// Step 3: along the wall.
+    fn follow(
+        &mut self,
+        mut tracker: WallTracker,
+        motion: &Pose,
+        pose: &Pose,
+        ahead: f64,
+        aside: Option<Point>,
+    ) -> Twist {
+        tracker.predict(motion);
+        let reading = aside.map_or(Reading::Beyond, |point| {
+            tracker.update(pose.to_local(point), self.parameters.range_error)
+        });
+        if let Some(point) = aside {
+            self.beside.add(point);
+        }
+        self.strays = if reading == Reading::Wall { 0 } else { self.strays + 1 };
+        if self.strays >= STRAYS {
+            self.strays = 0;
+            if reading == Reading::Before {
+                let distance = aside.map_or(self.parameters.distance, |point| pose.to_local(point).y);
+                tracker = WallTracker::beside(distance, self.parameters.range_error);
+            } else {
+                return self.lose(&tracker, pose, ahead);
+            }
+        }
+        if tracker.angle().abs() > ACROSS && self.beside.len() >= RENEWAL_POINTS {
+            tracker = self.renewed(tracker, pose);
+        }
+        self.state = State::Following(tracker);
+        if self.meets_wall(ahead) {
+            return self.begin_turning();
+        }
+        let error = tracker.distance() - self.parameters.distance;
+        self.steer(error, tracker.angle(), self.path_curvature(tracker.curvature()))
+    }
+
+    /// The wall anew by its last points: a parabola in the robot's frame is no good for one that runs across it.
+    fn renewed(&mut self, tracker: WallTracker, pose: &Pose) -> WallTracker {
+        let error = self.parameters.range_error;
+        let line = self.beside.last_line(RENEWAL_POINTS, &[], pose);
+        let line = line.filter(|line| line.rms < 2.0 * error.max(0.002) && line.direction.x > 0.2);
+        self.beside.clear();
+        line.map_or(tracker, |line| WallTracker::of_line(&line, error))
+    }
+
+    /// Whether the wall ahead is as near as the robot can stop.
+    fn meets_wall(&self, ahead: f64) -> bool {
+        ahead < self.parameters.distance + 0.9 * self.parameters.lag * self.parameters.speed
+    }
+
+    fn begin_turning(&mut self) -> Twist {
+        self.state = State::Turning { since: self.turned, target: None };
+        self.swept.clear();
+        Twist::new(0.0, -self.parameters.turn_rate)
+    }
+
+    /// The curvature of the path beside a wall of some curvature.
+    fn path_curvature(&self, wall: f64) -> f64 {
+        wall / (1.0 + wall * self.parameters.distance).max(0.25)
+    }
+
+    /// The speed for an error of the distance (positive: too far from the wall), the wall's direction and the path's
+    /// curvature.
+    fn steer(&self, error: f64, angle: f64, curvature: f64) -> Twist {
+        let WallFollowerParameters { distance, speed, turn_rate, reach, .. } = self.parameters;
+        // Far from its line the robot approaches at an angle of at most a radian.
+        let pull = (error / reach).clamp(-1.5, 1.5);
+        let bend = curvature + (2.0 * math::sin(angle) + pull) / reach;
+        let slow = math::cos(angle).max(0.2) * (1.0 - 0.5 * (error.abs() / distance).min(1.0));
+        let speed = (speed * slow).min(1.6 * turn_rate / bend.abs().max(1e-9));
+        Twist::new(speed, (speed * bend).clamp(-1.6 * turn_rate, 1.6 * turn_rate))
+    }
+
+    /// The side sensor no longer sees the wall.
+    fn lose(&mut self, tracker: &WallTracker, pose: &Pose, ahead: f64) -> Twist {
+        // The last point of the wall is where the sensor was some readings ago.
+        let back = f64::from(STRAYS) * self.parameters.speed * self.parameters.period;
+        let corner = pose.to_world(tracker.point_at(self.sensors.left.x - back));
+        let along = normalize_angle(pose.heading + tracker.angle());
+        self.beside.clear();
+        self.state = State::Rounding { corner, along, since: self.driven };
+        self.round(pose, ahead, None, corner, along, self.driven)
+    }
+
+    /// Round the end of the wall, until the next one is beside the robot.
+    fn round(
+        &mut self,
+        pose: &Pose,
+        ahead: f64,
+        aside: Option<Point>,
+        corner: Point,
+        along: f64,
+        since: f64,
+    ) -> Twist {
+        let WallFollowerParameters { distance, speed, lag, range_error, .. } = self.parameters;
+        if self.meets_wall(ahead) {
+            return self.begin_turning();
+        }
+        if let Some(point) = aside.filter(|point| (point - corner).norm() < 2.5 * distance) {
+            self.beside.add(point);
+        }
+        if let Some(line) = self.new_wall(pose, corner) {
+            self.begin_following(WallTracker::of_line(&line, range_error));
+        } else if self.driven - since > 1.3 * TAU * distance {
+            self.state = State::Searching { heading: pose.heading, since: self.driven };
+        }
+        let away = corner - pose.position();
+        let beside = Pose::new(corner.x, corner.y, along);
+        // Before the corner the robot keeps to the wall that it knows, behind it to a circle.
+        let behind = beside.to_local(pose.position()).x;
+        let direction = if behind < 0.0 { along } else { math::atan2(away.y, away.x) - FRAC_PI_2 };
+        let gap = if behind < 0.0 { -beside.to_local(pose.position()).y } else { away.norm() };
+        let curvature = if behind + lag * speed > 0.0 { 1.0 / distance } else { 0.0 };
+        self.steer(gap - distance, angle_difference(direction, pose.heading), curvature)
+    }
+
+    /// The wall behind a corner, once the robot drives nearly along it.
+    fn new_wall(&self, pose: &Pose, corner: Point) -> Option<FittedLine> {
+        let WallFollowerParameters { distance, range_error, .. } = self.parameters;
+        let line = self.beside.last_line(NEW_WALL_POINTS, &[], pose)?;
+        // A wall that begins at the corner is known better with it.
+        let at_corner = line.distance_to(pose.to_local(corner)).abs() < AT_CORNER;
+        let line = if at_corner {
+            self.beside.last_line(NEW_WALL_POINTS, &[corner; CORNER_WEIGHT], pose)?
+        } else {
+            line
+        };
+        let gap = -line.distance_to(Point::origin());
+        let good = line.direction.x > 0.0
+            && line.rms < 2.0 * range_error.max(0.002)
+            && line.length > NEW_WALL_LENGTH
+            && line.angle().abs() < NEW_WALL_ANGLE
+            && (gap - distance).abs() < 0.5 * distance;
+        good.then_some(line)
+    }
+}

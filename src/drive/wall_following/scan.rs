@@ -1,0 +1,172 @@
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use super::{FollowsWalls, WallSide};
+use crate::geometry::{FittedLine, Point, Twist, math};
+use crate::io::error::require_positive;
+use crate::io::{Error, Lidar, LidarScan, Result};
+
+/// What [`LidarWallFollower`] goes by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LidarWallParameters {
+    /// On which side the wall is to be.
+    pub side: WallSide,
+    /// Metres between the wall and the robot's middle.
+    pub distance: f64,
+    /// Metres per second along the wall.
+    pub speed: f64,
+    /// The fastest turn in radians per second.
+    pub turn_rate: f64,
+    /// Metres along the wall in which an error of distance dies away: the two gains of the book's controller.
+    pub reach: f64,
+    /// The seconds by which the robot does later what it is told.
+    pub lag: f64,
+    /// Seconds from one step to the next.
+    pub period: f64,
+}
+
+impl Default for LidarWallParameters {
+    /// A wall to the left at 0.2 m, passed at 0.2 m/s.
+    fn default() -> Self {
+        Self {
+            side: WallSide::Left,
+            distance: 0.2,
+            speed: 0.2,
+            turn_rate: 2.5,
+            reach: 0.12,
+            lag: 0.25,
+            period: 0.05,
+        }
+    }
+}
+
+/// Follows a wall with a lidar: the direction and the length of the shortest beam steer (book, section 9.4).
+///
+/// The shortest of noisy beams is too short, and in a random direction; so the line through the points around it takes its
+/// place. A wall ahead counts as nearer by the way that the robot needs to stop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LidarWallFollower {
+    parameters: LidarWallParameters,
+    scan: LidarScan,
+    met: bool,
+    aligned: bool,
+}
+
+/// Radians to either side of the shortest beam whose points the line is laid through.
+const SECTOR: f64 = 0.3;
+/// Beams over which ranges are averaged to find the shortest.
+const WINDOW: usize = 7;
+/// The directions, from straight ahead towards the wall, in which it may be. Away from it they reach as far as the robot's
+/// width demands.
+const DIRECTIONS: [f64; 2] = [-0.35, 2.6];
+
+impl LidarWallFollower {
+    /// A follower that has not met a wall.
+    pub fn new(parameters: LidarWallParameters) -> Result<Self> {
+        require_positive("distance", parameters.distance)?;
+        require_positive("speed", parameters.speed)?;
+        require_positive("turn rate", parameters.turn_rate)?;
+        require_positive("reach", parameters.reach)?;
+        require_positive("lag", parameters.lag)?;
+        require_positive("control period", parameters.period)?;
+        Ok(Self { parameters, scan: LidarScan::default(), met: false, aligned: false })
+    }
+
+    /// The next speed. Fails for a scan that does not reach from ahead to the wall's side.
+    pub fn step(&mut self, scan: &LidarScan) -> Result<Twist> {
+        let LidarWallParameters { side, distance, speed, .. } = self.parameters;
+        let span = scan.angle_increment * scan.ranges.len() as f64;
+        if span.is_nan() || span < PI - 1e-6 || scan.ranges.len() < 60 {
+            let found = format!("{} beams over {span:.2} rad", scan.ranges.len());
+            return Err(Error::invalid_input(
+                "lidar scan",
+                found,
+                "at least 60 beams over half a turn or more",
+            ));
+        }
+        let towards = if side == WallSide::Left { 1.0 } else { -1.0 };
+        // In the mirror, if need be, the wall is to the left.
+        let points: Vec<Option<Point>> = hits(scan, towards);
+        let Some((gap, bearing)) = self.nearest(&points) else {
+            return Ok(Twist::new(speed, 0.0));
+        };
+        if !self.met {
+            if gap > 1.3 * distance {
+                return Ok(Twist::new(speed, 0.0));
+            }
+            self.met = true;
+        }
+        let twist = self.steer(gap - distance, bearing - FRAC_PI_2);
+        Ok(Twist::new(twist.linear, towards * twist.angular))
+    }
+
+    /// Distance and direction of the wall.
+    fn nearest(&self, points: &[Option<Point>]) -> Option<(f64, f64)> {
+        let LidarWallParameters { speed, lag, .. } = self.parameters;
+        let stop = lag * speed;
+        let direction = |point: &Point| math::atan2(point.y, point.x);
+        let candidates: Vec<Point> = points
+            .windows(WINDOW)
+            .filter_map(|window| {
+                let seen: Vec<&Point> = window.iter().flatten().collect();
+                let middle = *seen.get(seen.len() / 2)?;
+                let mean = seen.iter().map(|point| point.coords.norm()).sum::<f64>() / seen.len() as f64;
+                (seen.len() == WINDOW).then(|| Point::from(middle.coords * (mean / middle.coords.norm())))
+            })
+            .filter(|point| (DIRECTIONS[0]..=DIRECTIONS[1]).contains(&direction(point)))
+            .collect();
+        let cost = |point: &Point| point.coords.norm() - stop * math::cos(direction(point)).max(0.0);
+        let nearest = candidates.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
+        let middle = direction(nearest);
+        let around = points.iter().flatten().copied().filter(|point| {
+            (direction(point) - middle).abs() < SECTOR && point.coords.norm() < 1.5 * nearest.coords.norm()
+        });
+        let line = FittedLine::through(around)?;
+        let foot = line.foot(Point::origin());
+        // The foot of a line through few points may lie far off.
+        let foot = if (foot - nearest).norm() < 0.5 * nearest.coords.norm() { foot } else { *nearest };
+        let bearing = direction(&foot);
+        Some((foot.coords.norm() - stop * math::cos(bearing).max(0.0), bearing))
+    }
+
+    fn steer(&mut self, error: f64, angle: f64) -> Twist {
+        let LidarWallParameters { speed, turn_rate, reach, .. } = self.parameters;
+        self.aligned = angle.abs() < 0.3;
+        let pull = (error / reach).clamp(-1.2, 1.2);
+        let bend = (2.0 * math::sin(angle.clamp(-FRAC_PI_2, FRAC_PI_2)) + pull) / reach;
+        let slow = math::cos(angle).max(0.0);
+        let along = (speed * slow).min(turn_rate / bend.abs().max(1e-9));
+        // On the spot the robot turns as fast as it may, and slows down when it is nearly there.
+        let turn = if slow < 0.5 { (3.0 * angle).clamp(-turn_rate, turn_rate) } else { along * bend };
+        Twist::new(if slow < 0.5 { 0.0 } else { along }, turn)
+    }
+}
+
+/// The points of a scan in the robot's frame, or in that of its mirror image, counter-clockwise from the back.
+fn hits(scan: &LidarScan, towards: f64) -> Vec<Option<Point>> {
+    let point = |index: usize| {
+        let range = scan.ranges[index];
+        let angle = scan.mount.heading + scan.angle(index);
+        let place = scan.mount.position() + crate::geometry::direction(angle) * range;
+        range.is_finite().then(|| Point::new(place.x, towards * place.y))
+    };
+    let indices = 0..scan.ranges.len();
+    if towards > 0.0 { indices.map(point).collect() } else { indices.rev().map(point).collect() }
+}
+
+impl<R: Lidar + ?Sized> FollowsWalls<R> for LidarWallFollower {
+    fn look(&mut self, robot: &mut R, _seconds: f64) -> Result<Twist> {
+        let mut scan = std::mem::take(&mut self.scan);
+        let seen = robot.scan_into(&mut scan);
+        let twist = seen.and_then(|()| self.step(&scan));
+        self.scan = scan;
+        twist
+    }
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn is_beside_wall(&self) -> bool {
+        self.met && self.aligned
+    }
+}

@@ -1,0 +1,92 @@
+use super::run::observe;
+use super::{FollowsWalls, WallObservation};
+use crate::geometry::{Twist, units};
+use crate::io::{DistanceSensors, Drive, Result};
+
+/// The book's own wall follower (program 6.1): along a wall to the left it steers a little to the one side or the other,
+/// by whether the left range is below a limit, and turns right on the spot where the range ahead gets below it.
+///
+/// It is here to be compared with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TwoLevelWallFollower {
+    /// The limit in metres.
+    pub safe: f64,
+    /// Metres per second along the wall.
+    pub speed: f64,
+    /// Radians per second to either side.
+    pub bend: f64,
+    /// Radians per second on the spot.
+    pub turn_rate: f64,
+    /// Seconds from one step to the next.
+    pub period: f64,
+    turning: bool,
+    /// Whether a wall has been met.
+    met: bool,
+}
+
+impl Default for TwoLevelWallFollower {
+    /// The book's values.
+    fn default() -> Self {
+        Self {
+            safe: 0.25,
+            speed: 0.2,
+            bend: units::from_deg(3.0),
+            turn_rate: units::from_deg(100.0),
+            period: 0.05,
+            turning: false,
+            met: false,
+        }
+    }
+}
+
+impl TwoLevelWallFollower {
+    /// The book's program for a limit in metres and a speed in m/s of its own.
+    pub fn new(safe: f64, speed: f64) -> Self {
+        Self { safe, speed, ..Self::default() }
+    }
+
+    /// The next speed.
+    pub fn step(&mut self, observation: &WallObservation) -> Twist {
+        let WallObservation { front, left, .. } = *observation;
+        self.turning = if self.turning { front < 2.0 * left } else { front <= self.safe };
+        if self.turning {
+            self.met = true;
+            return Twist::new(0.0, -self.turn_rate);
+        }
+        Twist::new(self.speed, if left < self.safe { -self.bend } else { self.bend })
+    }
+}
+
+impl<R: Drive + DistanceSensors + ?Sized> FollowsWalls<R> for TwoLevelWallFollower {
+    fn look(&mut self, robot: &mut R, _seconds: f64) -> Result<Twist> {
+        let observation = observe(robot)?;
+        observation.check()?;
+        Ok(self.step(&observation))
+    }
+
+    fn period(&self) -> f64 {
+        self.period
+    }
+
+    fn is_beside_wall(&self) -> bool {
+        self.met && !self.turning
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Pose;
+
+    #[test]
+    fn it_does_what_the_book_prints() {
+        let mut follower = TwoLevelWallFollower::default();
+        let mut step =
+            |front, left| follower.step(&WallObservation { pose: Pose::default(), front, left, right: 9.0 });
+        assert!(step(1.0, 0.2).angular < 0.0 && step(1.0, 0.3).angular > 0.0);
+        // At a corner it turns until there is twice as much room ahead as beside it.
+        assert_eq!(step(0.24, 0.3).linear, 0.0);
+        assert_eq!(step(0.5, 0.3).linear, 0.0);
+        assert!(step(0.7, 0.3).linear > 0.0);
+    }
+}

@@ -1,0 +1,154 @@
+/// A colour as one number, `0xRRGGBB`.
+pub(super) type Packed = u32;
+
+/// A picture in the making: colours, and how near what they show is.
+#[derive(Debug, Default)]
+pub(super) struct Canvas {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) colours: Vec<Packed>,
+    /// The inverse of the distance along the line of sight; 0 behind everything.
+    pub(super) nearness: Vec<f32>,
+}
+
+/// The columns, from one to before the other, that a shape covers in a row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Span {
+    pub(super) left: f64,
+    pub(super) right: f64,
+}
+
+impl Span {
+    pub(super) const EMPTY: Self = Self { left: f64::INFINITY, right: f64::NEG_INFINITY };
+
+    /// The pixels whose middles are in the span.
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "part of loops compiled for several processors")]
+    fn pixels(self, width: usize) -> (usize, usize) {
+        (first_pixel(self.left, width), first_pixel(self.right, width))
+    }
+}
+
+/// The first of `count` pixels whose middle is at `edge` or behind it.
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "part of loops compiled for several processors")]
+pub(super) fn first_pixel(edge: f64, count: usize) -> usize {
+    // Conversion cuts towards zero and saturates; with the clamp before it, it rounds up.
+    let shifted = (edge - 0.5).clamp(0.0, count as f64);
+    let whole = shifted as usize;
+    whole + usize::from((whole as f64) < shifted)
+}
+
+/// A number that changes evenly over the picture: its value in the middle of pixel (0, 0), and its change from one
+/// column and one row to the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Slope {
+    pub(super) origin: f64,
+    pub(super) column: f64,
+    pub(super) row: f64,
+}
+
+impl Slope {
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "part of loops compiled for several processors")]
+    pub(super) fn at(&self, column: usize, row: usize) -> f64 {
+        self.origin + self.column * column as f64 + self.row * row as f64
+    }
+}
+
+impl Canvas {
+    /// Makes the canvas as large as asked for, with nothing on it but old colours.
+    pub(super) fn reset(&mut self, width: usize, height: usize) {
+        (self.width, self.height) = (width, height);
+        self.colours.resize(width * height, 0);
+        self.nearness.clear();
+        self.nearness.resize(width * height, 0.0);
+    }
+
+    /// Draws a flat shape in one colour where it is nearer than what is there. Its spans begin at a row.
+    pub(super) fn fill(&mut self, top: usize, spans: &[Span], nearness: &Slope, colour: Packed) {
+        fill(self, top, spans, nearness, colour);
+    }
+
+    /// Mixes a colour into what is there, wherever the shape is: what lies on the floor before anything stands on it.
+    pub(super) fn tint(&mut self, top: usize, spans: &[Span], colour: Packed, alpha: u8) {
+        for (row, span) in (top..).zip(spans) {
+            let (from, to) = span.pixels(self.width);
+            let start = row * self.width;
+            for below in self.colours[start..start + self.width].get_mut(from..to).unwrap_or_default() {
+                *below = mix(*below, colour, alpha);
+            }
+        }
+    }
+}
+
+/// A colour with another one laid over it.
+fn mix(below: Packed, above: Packed, alpha: u8) -> Packed {
+    let alpha = u32::from(alpha);
+    let channel = |shift: u32| {
+        let (a, b) = ((below >> shift) & 255, (above >> shift) & 255);
+        ((a * (255 - alpha) + b * alpha + 127) / 255) << shift
+    };
+    channel(16) | channel(8) | channel(0)
+}
+
+#[multiversion::multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl",
+    "x86_64+avx2+bmi1+bmi2",
+    "x86_64+ssse3+sse4.1",
+))]
+fn fill(canvas: &mut Canvas, top: usize, spans: &[Span], nearness: &Slope, colour: Packed) {
+    let width = canvas.width;
+    let step = nearness.column as f32;
+    for (row, span) in (top..).zip(spans) {
+        let (from, to) = span.pixels(width);
+        if from >= to {
+            continue;
+        }
+        let near = &mut canvas.nearness[row * width..][from..to];
+        let colours = &mut canvas.colours[row * width..][from..to];
+        let first = nearness.at(from, row) as f32;
+        for ((i, near), old) in (0_u32..).zip(near).zip(colours) {
+            let here = first + step * i as f32;
+            let in_front = here > *near;
+            *near = if in_front { here } else { *near };
+            *old = if in_front { colour } else { *old };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_span_covers_the_pixels_whose_middles_it_holds() {
+        let pixels = |left, right| Span { left, right }.pixels(10);
+        assert_eq!(pixels(0.0, 10.0), (0, 10));
+        assert_eq!(pixels(2.5, 3.5), (2, 3));
+        assert_eq!(pixels(2.6, 3.6), (3, 4));
+        assert_eq!(pixels(-1e30, 1e30), (0, 10));
+        assert_eq!(pixels(f64::INFINITY, f64::NEG_INFINITY), (10, 0));
+    }
+
+    #[test]
+    fn the_nearer_shape_stays_whatever_the_order() {
+        let level = |value| Slope { origin: value, column: 0.0, row: 0.0 };
+        let whole = [Span { left: 0.0, right: 4.0 }];
+        for order in [[(1.0, 5), (2.0, 7)], [(2.0, 7), (1.0, 5)]] {
+            let mut canvas = Canvas::default();
+            canvas.reset(4, 1);
+            for (near, colour) in order {
+                canvas.fill(0, &whole, &level(near), colour);
+            }
+            assert_eq!(canvas.colours, [7; 4]);
+        }
+    }
+
+    #[test]
+    fn colours_mix_by_their_alpha() {
+        assert_eq!(mix(0x10_20_30, 0xff_00_80, 0), 0x10_20_30);
+        assert_eq!(mix(0x10_20_30, 0xff_00_80, 255), 0xff_00_80);
+        assert_eq!(mix(0, 0xff_ff_ff, 51), 0x33_33_33);
+    }
+}

@@ -1,0 +1,133 @@
+use image::RgbImage;
+
+use super::film::Film;
+use super::studio::Studio;
+use super::view::View;
+use crate::geometry::{Pose, units};
+use crate::io::sim::{NoiseModel, TICKS_PER_SECOND};
+use crate::io::{Error, ErrorKind, Resolution, Result};
+use crate::random::Stream;
+use crate::world::CameraSpec;
+use crate::world::space::Space;
+
+/// A robot's camera on its pan-tilt head.
+#[derive(Debug)]
+pub(in crate::io::sim) struct CameraDevice {
+    spec: CameraSpec,
+    /// Metres between the world's floor and the robot's foot.
+    elevation: f64,
+    pub(in crate::io::sim) resolution: Resolution,
+    pan: Servo,
+    tilt: Servo,
+    film: Film,
+}
+
+/// Degrees per second at which a servo turns.
+const SERVO_RATE: f64 = 30.0;
+/// Pictures of a pinhole camera grow without end towards 180 degrees.
+const WIDEST: f64 = 170.0;
+
+/// When and under what light an image is taken.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::io::sim) struct Moment<'a> {
+    pub(in crate::io::sim) tick: u64,
+    pub(in crate::io::sim) light: f64,
+    pub(in crate::io::sim) noise: &'a NoiseModel,
+}
+
+/// A servo that turns evenly from where it was to where it was told to go.
+#[derive(Debug, Clone, Copy, Default)]
+struct Servo {
+    from: f64,
+    to: f64,
+    since: u64,
+}
+
+impl Servo {
+    fn angle(&self, tick: u64) -> f64 {
+        let ticks = tick.saturating_sub(self.since) as f64;
+        let most = units::from_deg(SERVO_RATE) * ticks / TICKS_PER_SECOND;
+        let missing = self.to - self.from;
+        if missing.abs() <= most { self.to } else { self.from + most.copysign(missing) }
+    }
+
+    fn turn_to(&mut self, angle: f64, tick: u64) {
+        *self = Self { from: self.angle(tick), to: angle, since: tick };
+    }
+}
+
+impl CameraDevice {
+    pub(in crate::io::sim) fn new(spec: CameraSpec, elevation: f64, stream: Stream) -> Self {
+        Self {
+            spec,
+            elevation,
+            resolution: Resolution::default(),
+            pan: Servo::default(),
+            tilt: Servo::default(),
+            film: Film::new(stream),
+        }
+    }
+
+    /// Turns the head: the first servo pans, the second one tilts. Servos count to the right and upwards.
+    pub(in crate::io::sim) fn set_servo(&mut self, servo: u8, position: f64, tick: u64) -> Result<()> {
+        let (head, angle) = match servo {
+            1 => (&mut self.pan, -position * self.spec.max_pan),
+            2 => (&mut self.tilt, position * self.spec.max_tilt),
+            _ => return Err(Error::unsupported("such servo")),
+        };
+        if !(-1.0..=1.0).contains(&position) {
+            return Err(Error::invalid_input("servo position", position, "-1 to 1"));
+        }
+        head.turn_to(angle, tick);
+        Ok(())
+    }
+
+    /// Takes an image for the robot of an index, which is at a pose.
+    pub(in crate::io::sim) fn take(
+        &mut self,
+        studio: &mut Studio,
+        space: &Space,
+        (index, pose): (usize, Pose),
+        moment: Moment<'_>,
+        image: &mut RgbImage,
+    ) -> Result<()> {
+        let view = self.view(&pose, moment.tick)?;
+        studio.scenery.draw(&mut studio.canvas, &view, space, index)?;
+        let time = moment.tick as f64 / TICKS_PER_SECOND;
+        self.film.develop(&studio.canvas, time, moment.light, moment.noise, &mut studio.darkroom, image);
+        Ok(())
+    }
+
+    fn view(&self, robot: &Pose, tick: u64) -> Result<View> {
+        let spec = &self.spec;
+        if !(spec.field_of_view > 0.0 && spec.field_of_view <= units::from_deg(WIDEST)) {
+            let found = units::to_deg(spec.field_of_view);
+            let message = format!(
+                "the simulator draws what cameras of at most {WIDEST} degrees see; this one's view is {found} degrees"
+            );
+            return Err(Error::new(ErrorKind::Unsupported, message));
+        }
+        let mount = Pose::new(spec.mount.x, spec.mount.y, spec.mount.yaw);
+        let place = robot.compose(&mount);
+        let eye = [place.x, place.y, self.elevation + spec.mount.z];
+        let heading = place.heading + self.pan.angle(tick);
+        let tilt = spec.tilt + self.tilt.angle(tick);
+        Ok(View::new(eye, heading, tilt, spec.field_of_view, self.resolution.dimensions()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_servo_takes_three_seconds_for_a_right_angle() {
+        let mut servo = Servo::default();
+        servo.turn_to(units::from_deg(90.0), 100);
+        for (tick, degrees) in [(100, 0.0), (200, 30.0), (399, 89.7), (400, 90.0), (5000, 90.0)] {
+            assert!((units::to_deg(servo.angle(tick)) - degrees).abs() < 1e-9, "{tick}");
+        }
+        servo.turn_to(0.0, 200);
+        assert!(servo.angle(250) > 0.0 && servo.angle(300) == 0.0);
+    }
+}

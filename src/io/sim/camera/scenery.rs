@@ -1,0 +1,187 @@
+use std::path::{Path, PathBuf};
+
+use super::ball::draw_ball;
+use super::canvas::Canvas;
+use super::face::Cutter;
+use super::ground::Ground;
+use super::poster::draw_poster;
+use super::solids::{Carpenter, Standing};
+use super::view::View;
+use crate::geometry::{Aabb, Point, Pose, Vector, direction};
+use crate::io::{Error, ErrorKind, Result};
+use crate::world::space::{SolidId, Space};
+use crate::world::{Billboard, Colour, Footprint, Marker, Object, RobotPlacement, Scene, Shape, Wall};
+
+/// All that a camera may see of a scene.
+#[derive(Debug)]
+pub(super) struct Scenery {
+    floor: Aabb,
+    /// The image on the floor, until it is loaded.
+    floor_image: Option<PathBuf>,
+    ground: Option<Ground>,
+    walls: Vec<([Point; 4], Standing)>,
+    markers: Vec<Marker>,
+    billboards: Vec<Billboard>,
+    things: Vec<Thing>,
+    robots: Vec<Thing>,
+    carpenter: Carpenter,
+    cutter: Cutter,
+}
+
+/// Something whose place the space knows.
+#[derive(Debug)]
+struct Thing {
+    solid: SolidId,
+    form: Form,
+    height: f64,
+    colour: Colour,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Form {
+    Ball(f64),
+    Cylinder(f64),
+    Cuboid(Aabb),
+}
+
+/// Robots are told apart by their colours: the n-th takes the n-th, in a circle.
+const ROBOTS: [Colour; 5] = [
+    Colour::from_hex(0x2f_6d_b5),
+    Colour::from_hex(0x2d_9b_6b),
+    Colour::from_hex(0x8a_4f_a3),
+    Colour::from_hex(0xb8_8a_1e),
+    Colour::from_hex(0x3a_9f_c4),
+];
+/// The lower part of a robot, with its wheels, and its share of the height.
+const CHASSIS: (Colour, f64) = (Colour::from_hex(0x2a_2a_2e), 0.4);
+/// Metres from a marker's middle to its rim.
+const MARKER: f64 = 0.010;
+
+impl Scenery {
+    /// What is seen of a scene whose objects and robots are solids of a space.
+    pub(super) fn new(scene: &Scene, objects: &[SolidId], robots: &[SolidId]) -> Self {
+        let world = &scene.world;
+        let robots = robots.iter().zip(&scene.robots).enumerate();
+        Self {
+            floor: world.floor,
+            floor_image: world.floor_texture.clone(),
+            ground: None,
+            walls: world.walls.iter().map(wall).collect(),
+            markers: world.markers.clone(),
+            billboards: world.billboards.clone(),
+            things: objects.iter().zip(&world.objects).map(|(&solid, object)| thing(solid, object)).collect(),
+            robots: robots.map(|(index, (&solid, placed))| robot(index, solid, placed)).collect(),
+            carpenter: Carpenter::default(),
+            cutter: Cutter::default(),
+        }
+    }
+
+    /// Draws what a camera sees that sits on a robot.
+    pub(super) fn draw(&mut self, canvas: &mut Canvas, view: &View, space: &Space, me: usize) -> Result<()> {
+        canvas.reset(view.width, view.height);
+        if self.ground.is_none() {
+            let image = self.floor_image.as_deref().map(load).transpose()?;
+            self.ground = Some(Ground::new(self.floor, image.as_ref()));
+        }
+        if let Some(ground) = &self.ground {
+            ground.draw(canvas, view);
+        }
+        for marker in &self.markers {
+            let Marker { position, colour, alpha } = *marker;
+            self.carpenter.spot(canvas, view, position, MARKER, colour, alpha);
+        }
+        for (corners, body) in &self.walls {
+            self.carpenter.prism(canvas, view, corners, *body);
+        }
+        for thing in &self.things {
+            thing.draw(&mut self.carpenter, canvas, view, space);
+        }
+        for (_, robot) in self.robots.iter().enumerate().filter(|&(index, _)| index != me) {
+            robot.draw_robot(&mut self.carpenter, canvas, view, space);
+        }
+        for board in &self.billboards {
+            draw_poster(&mut self.cutter, canvas, view, board);
+        }
+        Ok(())
+    }
+}
+
+impl Thing {
+    fn draw(&self, carpenter: &mut Carpenter, canvas: &mut Canvas, view: &View, space: &Space) {
+        let solid = space.solid(self.solid);
+        let whole = Standing { bottom: solid.bottom, top: solid.bottom + self.height, colour: self.colour };
+        self.draw_part(carpenter, canvas, view, &solid.pose, whole);
+    }
+
+    fn draw_robot(&self, carpenter: &mut Carpenter, canvas: &mut Canvas, view: &View, space: &Space) {
+        let solid = space.solid(self.solid);
+        let waist = solid.bottom + CHASSIS.1 * self.height;
+        let lower = Standing { bottom: solid.bottom, top: waist, colour: CHASSIS.0 };
+        let upper = Standing { bottom: waist, top: solid.bottom + self.height, colour: self.colour };
+        self.draw_part(carpenter, canvas, view, &solid.pose, lower);
+        self.draw_part(carpenter, canvas, view, &solid.pose, upper);
+    }
+
+    fn draw_part(
+        &self,
+        carpenter: &mut Carpenter,
+        canvas: &mut Canvas,
+        view: &View,
+        pose: &Pose,
+        body: Standing,
+    ) {
+        match self.form {
+            Form::Ball(radius) => {
+                draw_ball(canvas, view, [pose.x, pose.y, body.bottom + radius], radius, body.colour);
+            }
+            Form::Cylinder(radius) => carpenter.cylinder(canvas, view, pose.position(), radius, body),
+            Form::Cuboid(Aabb { min, max }) => {
+                let forward = direction(pose.heading);
+                let left = Vector::new(-forward.y, forward.x);
+                let corner = |x: f64, y: f64| pose.position() + forward * x + left * y;
+                let corners =
+                    [corner(min.x, min.y), corner(max.x, min.y), corner(max.x, max.y), corner(min.x, max.y)];
+                carpenter.prism(canvas, view, &corners, body);
+            }
+        }
+    }
+}
+
+fn wall(wall: &Wall) -> ([Point; 4], Standing) {
+    let (a, b) = (wall.line.a, wall.line.b);
+    let along = b - a;
+    let length = along.norm();
+    let along = if length > 0.0 { along / length } else { Vector::x() };
+    let half = Vector::new(-along.y, along.x) * (0.5 * wall.thickness);
+    let body = Standing { bottom: 0.0, top: wall.height, colour: wall.colour };
+    ([a - half, b - half, b + half, a + half], body)
+}
+
+fn thing(solid: SolidId, object: &Object) -> Thing {
+    let kind = &object.kind;
+    let form = match kind.shape {
+        Shape::Sphere { radius } => Form::Ball(radius),
+        Shape::Cylinder { radius, .. } => Form::Cylinder(radius),
+        Shape::Box { length, width, .. } => {
+            let corner = Point::new(0.5 * length, 0.5 * width);
+            Form::Cuboid(Aabb::new(-corner, corner))
+        }
+    };
+    Thing { solid, form, height: kind.shape.height(), colour: kind.colour }
+}
+
+fn robot(index: usize, solid: SolidId, placed: &RobotPlacement) -> Thing {
+    let form = match placed.spec.footprint {
+        Footprint::Disc { radius } => Form::Cylinder(radius),
+        Footprint::Rectangle(rectangle) => Form::Cuboid(rectangle),
+    };
+    Thing { solid, form, height: placed.spec.height, colour: ROBOTS[index % ROBOTS.len()] }
+}
+
+fn load(path: &Path) -> Result<image::RgbImage> {
+    let image = image::open(path).map_err(|error| {
+        let message = format!("the floor's image {}: {error}", path.display());
+        Error::new(ErrorKind::Other, message).with_source(error)
+    })?;
+    Ok(image.into_rgb8())
+}

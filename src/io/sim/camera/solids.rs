@@ -1,0 +1,149 @@
+use super::canvas::Canvas;
+use super::face::Cutter;
+use super::light::{lit, packed};
+use super::view::{Place, View};
+use crate::geometry::{Point, Vector, math};
+use crate::world::Colour;
+
+/// Between which heights something stands, and its colour.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Standing {
+    pub(super) bottom: f64,
+    pub(super) top: f64,
+    pub(super) colour: Colour,
+}
+
+/// Most facets on the side of a cylinder that the camera sees.
+const MAX_FACETS: usize = 32;
+
+/// Draws upright things with flat tops.
+#[derive(Debug, Default)]
+pub(super) struct Carpenter {
+    cutter: Cutter,
+    outline: Vec<Point>,
+    lid: Vec<Place>,
+}
+
+impl Carpenter {
+    /// An upright prism whose corners run counter-clockwise as seen from above.
+    pub(super) fn prism(&mut self, canvas: &mut Canvas, view: &View, corners: &[Point], body: Standing) {
+        if is_out_of_sight(view, corners, body) {
+            return;
+        }
+        self.outline.clear();
+        self.outline.extend_from_slice(corners);
+        let outline = std::mem::take(&mut self.outline);
+        for (i, &a) in outline.iter().enumerate() {
+            self.side(canvas, view, a, outline[(i + 1) % outline.len()], body);
+        }
+        self.outline = outline;
+        self.lid(canvas, view, body);
+    }
+
+    /// An upright cylinder. Its outline in the picture is exact at the sides: the facets begin and end where the lines
+    /// of sight touch it.
+    pub(super) fn cylinder(
+        &mut self,
+        canvas: &mut Canvas,
+        view: &View,
+        centre: Point,
+        radius: f64,
+        body: Standing,
+    ) {
+        let eye = Point::new(view.eye[0], view.eye[1]) - centre;
+        let distance = eye.norm();
+        let middle = [centre.x, centre.y, 0.5 * (body.bottom + body.top)];
+        let reach = math::hypot(radius, 0.5 * (body.top - body.bottom));
+        if view.misses(view.see(middle), reach) {
+            return;
+        }
+        // From above or below a cylinder, only its lid is seen.
+        let beside = distance > radius;
+        let half = if beside { math::acos(radius / distance) } else { std::f64::consts::FRAC_PI_2 };
+        let pixels = view.focal * radius / (distance - radius).max(radius);
+        let facets = ((2.5 * pixels.sqrt()) as usize + 3).min(MAX_FACETS);
+        let towards = if distance > 0.0 { eye / distance } else { Vector::x() };
+        self.outline.clear();
+        let (front, back) = (2.0 * half, std::f64::consts::TAU - 2.0 * half);
+        arc(&mut self.outline, centre, turned(towards, -half) * radius, front / facets as f64, facets);
+        arc(&mut self.outline, centre, turned(towards, half) * radius, back / facets as f64, facets);
+        if beside {
+            let outline = std::mem::take(&mut self.outline);
+            for pair in outline[..=facets].windows(2) {
+                self.side(canvas, view, pair[0], pair[1], body);
+            }
+            self.outline = outline;
+        }
+        self.lid(canvas, view, body);
+    }
+
+    /// A disc on the floor.
+    pub(super) fn spot(
+        &mut self,
+        canvas: &mut Canvas,
+        view: &View,
+        centre: Point,
+        radius: f64,
+        colour: Colour,
+        alpha: u8,
+    ) {
+        const CORNERS: usize = 24;
+        self.outline.clear();
+        let step = std::f64::consts::TAU / CORNERS as f64;
+        arc(&mut self.outline, centre, Vector::new(radius, 0.0), step, CORNERS);
+        self.lid.clear();
+        self.lid.extend(self.outline.iter().map(|p| [p.x, p.y, 0.0]));
+        self.cutter.tint(canvas, view, &self.lid, packed(colour), alpha);
+    }
+
+    fn side(&mut self, canvas: &mut Canvas, view: &View, a: Point, b: Point, body: Standing) {
+        let along = b - a;
+        let length = along.norm();
+        if length == 0.0 {
+            return;
+        }
+        let normal = [along.y / length, -along.x / length, 0.0];
+        let corners =
+            [[a.x, a.y, body.bottom], [b.x, b.y, body.bottom], [b.x, b.y, body.top], [a.x, a.y, body.top]];
+        self.cutter.draw(canvas, view, &corners, lit(body.colour, normal));
+    }
+
+    /// The top or the bottom of the present outline, whichever the camera can see.
+    fn lid(&mut self, canvas: &mut Canvas, view: &View, body: Standing) {
+        self.lid.clear();
+        let normal = if view.eye[2] > body.top {
+            self.lid.extend(self.outline.iter().map(|p| [p.x, p.y, body.top]));
+            [0.0, 0.0, 1.0]
+        } else if view.eye[2] < body.bottom {
+            self.lid.extend(self.outline.iter().rev().map(|p| [p.x, p.y, body.bottom]));
+            [0.0, 0.0, -1.0]
+        } else {
+            return;
+        };
+        self.cutter.draw(canvas, view, &self.lid, lit(body.colour, normal));
+    }
+}
+
+fn is_out_of_sight(view: &View, corners: &[Point], body: Standing) -> bool {
+    let [Some(first), Some(opposite)] = [corners.first(), corners.get(corners.len() / 2)] else {
+        return true;
+    };
+    let middle = nalgebra::center(first, opposite);
+    let level = corners.iter().map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
+    let radius = math::hypot(level, 0.5 * (body.top - body.bottom));
+    view.misses(view.see([middle.x, middle.y, 0.5 * (body.bottom + body.top)]), radius)
+}
+
+/// Points on a circle, from one counter-clockwise, `steps` of them.
+fn arc(points: &mut Vec<Point>, centre: Point, mut offset: Vector, step: f64, steps: usize) {
+    let (sin, cos) = math::sin_cos(step);
+    for _ in 0..steps {
+        points.push(centre + offset);
+        offset = Vector::new(cos * offset.x - sin * offset.y, sin * offset.x + cos * offset.y);
+    }
+}
+
+fn turned(vector: Vector, angle: f64) -> Vector {
+    let (sin, cos) = math::sin_cos(angle);
+    Vector::new(cos * vector.x - sin * vector.y, sin * vector.x + cos * vector.y)
+}

@@ -1,0 +1,24 @@
+use super::canvas::Canvas;
+use super::film::Darkroom;
+use super::scenery::Scenery;
+use crate::world::Scene;
+use crate::world::space::SolidId;
+
+/// What all cameras of a simulation share: the scene to be seen, and memory for one picture.
+#[derive(Debug)]
+pub(in crate::io::sim) struct Studio {
+    pub(super) scenery: Scenery,
+    pub(super) canvas: Canvas,
+    pub(super) darkroom: Darkroom,
+}
+
+impl Studio {
+    /// The studio of a scene whose objects and robots are these solids.
+    pub(in crate::io::sim) fn new(scene: &Scene, objects: &[SolidId], robots: &[SolidId]) -> Self {
+        Self {
+            scenery: Scenery::new(scene, objects, robots),
+            canvas: Canvas::default(),
+            darkroom: Darkroom::default(),
+        }
+    }
+}

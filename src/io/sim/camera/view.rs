@@ -1,0 +1,119 @@
+use crate::geometry::{Vector, direction, math};
+
+/// A place in three dimensions: metres along x, y and upwards.
+pub(super) type Place = [f64; 3];
+
+/// Nothing nearer than this many metres is drawn.
+pub(super) const NEAR: f64 = 0.002;
+
+/// A pinhole camera that does not roll: how places in the world fall onto the columns and rows of its picture.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct View {
+    pub(super) eye: Place,
+    /// The level unit vectors ahead and to the right.
+    pub(super) ahead: Vector,
+    pub(super) right: Vector,
+    /// Sine and cosine of the angle above the horizontal.
+    pub(super) sin: f64,
+    pub(super) cos: f64,
+    /// Pixels that one metre covers at a distance of one metre.
+    pub(super) focal: f64,
+    pub(super) width: usize,
+    pub(super) height: usize,
+}
+
+/// A place as the camera sees it: metres to the right, downwards, and ahead along the line of sight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Seen {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    pub(super) z: f64,
+}
+
+impl Seen {
+    pub(super) fn dot(self, other: Seen) -> f64 {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    pub(super) fn minus(self, other: Seen) -> Seen {
+        Seen { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
+    }
+
+    pub(super) fn cross(self, other: Seen) -> Seen {
+        Seen {
+            x: self.y * other.z - self.z * other.y,
+            y: self.z * other.x - self.x * other.z,
+            z: self.x * other.y - self.y * other.x,
+        }
+    }
+
+    pub(super) fn norm(self) -> f64 {
+        self.dot(self).sqrt()
+    }
+}
+
+impl View {
+    /// A camera at a place that looks along a heading and some radians above the horizontal.
+    pub(super) fn new(
+        eye: Place,
+        heading: f64,
+        tilt: f64,
+        field_of_view: f64,
+        (width, height): (u32, u32),
+    ) -> Self {
+        let ahead = direction(heading);
+        let (sin, cos) = math::sin_cos(tilt);
+        let focal = 0.5 * f64::from(width) / math::tan(0.5 * field_of_view);
+        Self {
+            eye,
+            ahead,
+            right: Vector::new(ahead.y, -ahead.x),
+            sin,
+            cos,
+            focal,
+            width: width as usize,
+            height: height as usize,
+        }
+    }
+
+    /// A direction of the world in the camera's frame.
+    pub(super) fn turned(&self, [x, y, up]: Place) -> Seen {
+        let level = Vector::new(x, y);
+        let (ahead, right) = (level.dot(&self.ahead), level.dot(&self.right));
+        Seen { x: right, y: ahead * self.sin - up * self.cos, z: ahead * self.cos + up * self.sin }
+    }
+
+    /// A place of the world in the camera's frame.
+    pub(super) fn see(&self, [x, y, z]: Place) -> Seen {
+        self.turned([x - self.eye[0], y - self.eye[1], z - self.eye[2]])
+    }
+
+    /// Column and row at which a place ahead of the camera appears; pixel (0, 0) reaches from 0 to 1.
+    pub(super) fn project(&self, seen: Seen) -> (f64, f64) {
+        let scale = self.focal / seen.z;
+        (0.5 * self.width as f64 + scale * seen.x, 0.5 * self.height as f64 + scale * seen.y)
+    }
+
+    /// How far to the right, for each metre ahead, the middle of a column is.
+    pub(super) fn ray_x(&self, column: f64) -> f64 {
+        (column + 0.5 - 0.5 * self.width as f64) / self.focal
+    }
+
+    /// How far down, for each metre ahead, the middle of a row is.
+    pub(super) fn ray_y(&self, row: f64) -> f64 {
+        (row + 0.5 - 0.5 * self.height as f64) / self.focal
+    }
+
+    /// Whether nothing of a ball can appear in the picture.
+    pub(super) fn misses(&self, centre: Seen, radius: f64) -> bool {
+        if centre.z + radius < NEAR {
+            return true;
+        }
+        let beyond = |aside: f64, pixels: usize| {
+            let edge = 0.5 * pixels as f64;
+            let slant = (edge * edge + self.focal * self.focal).sqrt();
+            aside.abs() * self.focal - centre.z * edge > radius * slant
+        };
+        beyond(centre.x, self.width) || beyond(centre.y, self.height)
+    }
+}

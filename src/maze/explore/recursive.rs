@@ -1,0 +1,61 @@
+use super::{Explorer, Step, Verdict};
+use crate::maze::{Cell, Direction, Maze, Unknown};
+
+/// Recursive exploration (book, section 9.5): from each cell into every open and unmarked neighbour, straight on first, then
+/// left, then right, and back again.
+///
+/// A cell is marked when the robot has been in it, and with early marking also as soon as all of its walls are known: the
+/// robot need not go there any more. The end of the exploration is the start.
+#[derive(Debug, Clone)]
+pub struct RecursiveExplorer {
+    /// Whether to mark cells that are known on all sides.
+    early: bool,
+    marked: Vec<bool>,
+    /// The cells on the way here from the start, each with the heading in which the robot came.
+    stack: Vec<(Cell, Direction)>,
+}
+
+impl RecursiveExplorer {
+    /// An exploration with early marking, as the book has it.
+    pub fn new() -> Self {
+        Self { early: true, marked: Vec::new(), stack: Vec::new() }
+    }
+
+    /// An exploration that goes into every cell that it can reach.
+    pub fn without_early_marking() -> Self {
+        Self { early: false, ..Self::new() }
+    }
+}
+
+impl Default for RecursiveExplorer {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Explorer for RecursiveExplorer {
+    fn next(&mut self, maze: &Maze, (cell, heading): (Cell, Direction)) -> Step {
+        self.marked.resize(maze.cell_count(), false);
+        self.marked[maze.index(cell)] = true;
+        if self.stack.last().is_none_or(|&(last, _)| last != cell) {
+            self.stack.push((cell, heading));
+        }
+        let Some(&(_, came)) = self.stack.last() else { return Step::Finished(Verdict::Explored) };
+        // What lies behind was left open or is the way back, except at the start.
+        for direction in [came, came.left(), came.right(), came.opposite()] {
+            let Some(next) = maze.passage(cell, direction, Unknown::Closed) else { continue };
+            let index = maze.index(next);
+            if self.early && maze.is_known(next) {
+                self.marked[index] = true;
+            }
+            if !self.marked[index] {
+                return Step::Go(next);
+            }
+        }
+        self.stack.pop();
+        match self.stack.last() {
+            Some(&(back, _)) => Step::Go(back),
+            None => Step::Finished(Verdict::Explored),
+        }
+    }
+}

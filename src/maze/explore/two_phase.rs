@@ -1,0 +1,136 @@
+use super::{Explorer, Step, Verdict};
+use crate::maze::{
+    Cell, Direction, Distances, FastPlanner, FloodFill, Maze, Passages, Preference, Route, Unknown, Wall,
+    shortest_route,
+};
+
+/// What has to be proved.
+#[derive(Debug, Clone)]
+pub enum Goals {
+    /// The route with the fewest steps.
+    Steps,
+    /// The route with the fewest steps, and the one that takes a robot the shortest time.
+    StepsAndTime(Box<FastPlanner>),
+}
+
+/// The search of modern mice, in two phases: to the goal by the shortest route that may exist, then only to such unknown
+/// walls as could make the best route better, and back to the start.
+///
+/// The best route is proved once it is as good with every unknown wall standing as with none. Until then the best route that
+/// may exist leads through unknown walls, and the robot looks at the nearest of these. Each look makes at least one of them
+/// known, so the search ends.
+#[derive(Debug, Clone)]
+pub struct TwoPhaseExplorer {
+    goals: Goals,
+    reached: bool,
+    verdict: Option<Verdict>,
+    flood: FloodFill,
+}
+
+impl TwoPhaseExplorer {
+    /// A search for a proof.
+    pub fn new(goals: Goals) -> Self {
+        Self { goals, reached: false, verdict: None, flood: FloodFill::default() }
+    }
+
+    /// What is proved so far.
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.verdict
+    }
+
+    /// The first phase: the next cell to look around in on the shortest way that may lead to the goal.
+    fn seek(&mut self, maze: &Maze, cell: Cell) -> Option<Step> {
+        if maze.is_goal(cell) {
+            self.reached = true;
+            return None;
+        }
+        let to_goal = self.distances(maze, maze.goals().collect());
+        if to_goal.get(cell).is_none() {
+            self.reached = true;
+            self.verdict = Some(Verdict::Unreachable);
+            return None;
+        }
+        Some(Step::Go(descend(maze, &to_goal, cell)))
+    }
+
+    /// Steps to some cells, with unknown walls taken for open.
+    fn distances(&mut self, maze: &Maze, cells: Vec<Cell>) -> Distances {
+        self.flood.run(&Passages::new(maze, Unknown::Open), cells).clone()
+    }
+
+    /// The routes that may exist and are better than the best that is sure; none when all is proved.
+    fn doubtful(&mut self, maze: &Maze) -> Option<Route> {
+        let route = |unknown| shortest_route(maze, unknown, Preference::Steps);
+        let steps = |route: &Option<Route>| route.as_ref().map(Route::steps);
+        let possible = route(Unknown::Open);
+        if steps(&possible) != steps(&route(Unknown::Closed)) {
+            return possible;
+        }
+        let Goals::StepsAndTime(planner) = &mut self.goals else { return None };
+        let possible = planner.plan(maze, Unknown::Open)?;
+        let sure = planner.plan(maze, Unknown::Closed);
+        let proved = sure.is_some_and(|sure| sure.time <= possible.time + TIE);
+        if proved { None } else { Some(possible.route) }
+    }
+
+    /// The second phase: the nearest cell from which an unknown wall of a doubtful route can be seen.
+    fn prove(&mut self, maze: &Maze, cell: Cell) -> Option<Step> {
+        let Some(route) = self.doubtful(maze) else {
+            let sure = shortest_route(maze, Unknown::Closed, Preference::Steps);
+            self.verdict = Some(if sure.is_some() { Verdict::Optimal } else { Verdict::Unreachable });
+            return None;
+        };
+        let mut flood = FloodFill::default();
+        let near = flood.run(&Passages::new(maze, Unknown::Closed), [cell]);
+        let nearest = vantages(maze, &route).filter_map(|cell| Some((near.get(cell)?, cell))).min();
+        // The first unknown wall of the route can always be reached.
+        nearest.map(|(_, cell)| Step::Go(cell))
+    }
+}
+
+/// Seconds by which two runs may differ and count as equally fast: what is rounded off in planning.
+const TIE: f64 = 5e-4;
+
+/// The cells on either side of the unknown walls on a route.
+fn vantages<'a>(maze: &'a Maze, route: &'a Route) -> impl Iterator<Item = Cell> + 'a {
+    let unknown = move |&(cell, side): &(Cell, Direction)| maze.wall(cell, side) == Wall::Unknown;
+    let walls = route.cells().zip(route.moves().iter().copied()).filter(unknown);
+    walls.flat_map(move |(cell, side)| [Some(cell), maze.neighbour(cell, side)]).flatten()
+}
+
+/// Follows distances downwards through walls that are known to be absent, up to the first cell with an unknown wall.
+fn descend(maze: &Maze, distances: &Distances, from: Cell) -> Cell {
+    let mut cell = from;
+    loop {
+        let here = distances.get(cell);
+        let nearer = |next: &Cell| distances.get(*next).is_some_and(|steps| here > Some(steps));
+        let sides = Direction::ALL.into_iter();
+        let next = sides.filter_map(|side| maze.passage(cell, side, Unknown::Closed)).find(nearer);
+        match next {
+            Some(next) => cell = next,
+            None => return cell,
+        }
+        if !maze.is_known(cell) || maze.is_goal(cell) {
+            return cell;
+        }
+    }
+}
+
+impl Explorer for TwoPhaseExplorer {
+    fn next(&mut self, maze: &Maze, (cell, _): (Cell, Direction)) -> Step {
+        if !self.reached
+            && let Some(step) = self.seek(maze, cell)
+        {
+            return step;
+        }
+        if self.verdict.is_none()
+            && let Some(step) = self.prove(maze, cell)
+        {
+            return step;
+        }
+        match self.verdict {
+            Some(verdict) if cell == maze.start() => Step::Finished(verdict),
+            _ => Step::Go(maze.start()),
+        }
+    }
+}

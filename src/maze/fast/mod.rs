@@ -1,0 +1,19 @@
+//! Fast runs: the time-optimal way through a known maze, and its speed profile (book, section 9.8).
+
+mod builder;
+mod limits;
+mod plan;
+mod planner;
+mod profile;
+mod search;
+mod shape;
+#[cfg(test)]
+mod tests;
+mod trajectory;
+mod turn;
+
+pub use limits::{LimitsError, RunLimits};
+pub use plan::{FastPlan, Piece};
+pub use planner::FastPlanner;
+pub use trajectory::{Trajectory, TrajectoryPoint};
+pub use turn::TurnKind;

@@ -1,0 +1,158 @@
+use super::limits::{LimitsError, Repertoire, RunLimits};
+use super::plan::{FastPlan, Piece};
+use super::profile;
+use super::shape::Shape;
+use crate::geometry::{Pose, Twist};
+use crate::maze::Scale;
+
+/// Where a robot shall be at a time, and how fast.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrajectoryPoint {
+    /// The pose.
+    pub pose: Pose,
+    /// The speed.
+    pub twist: Twist,
+}
+
+/// A fast run as a function of time. Position, heading and speed have no jumps, nor has the curvature.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trajectory {
+    segments: Vec<Segment>,
+    end: Pose,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Segment {
+    /// Seconds before it, and of it.
+    begin: f64,
+    time: f64,
+    start: Pose,
+    motion: Motion,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Motion {
+    /// Straight ahead with constant acceleration.
+    Straight { speed: f64, acceleration: f64 },
+    /// On the spot with constant angular acceleration.
+    Pivot { speed: f64, acceleration: f64 },
+    /// Along a curve at constant speed, to the left or mirrored.
+    Curve { shape: Shape, speed: f64, left: bool },
+}
+
+impl Motion {
+    /// The pose and the speed relative to where it began, after so many seconds.
+    fn at(&self, time: f64) -> (Pose, Twist) {
+        match self {
+            &Self::Straight { speed, acceleration } => {
+                let way = (speed + 0.5 * acceleration * time) * time;
+                (Pose::new(way, 0.0, 0.0), Twist::new(speed + acceleration * time, 0.0))
+            }
+            &Self::Pivot { speed, acceleration } => {
+                let angle = (speed + 0.5 * acceleration * time) * time;
+                (Pose::new(0.0, 0.0, angle), Twist::new(0.0, speed + acceleration * time))
+            }
+            Self::Curve { shape, speed, left } => {
+                let (way, side) = (speed * time, if *left { 1.0 } else { -1.0 });
+                let pose = shape.pose_at(way);
+                let twist = Twist::new(*speed, side * speed * shape.curvature_at(way));
+                (Pose::new(pose.x, side * pose.y, side * pose.heading), twist)
+            }
+        }
+    }
+}
+
+impl Trajectory {
+    /// The motion of a plan. Scale and limits must be those that it was made with.
+    pub fn new(plan: &FastPlan, scale: Scale, limits: RunLimits) -> Result<Self, LimitsError> {
+        let repertoire = Repertoire::new(scale, limits)?;
+        let mut trajectory = Self { segments: Vec::new(), end: plan.start };
+        for piece in &plan.pieces {
+            trajectory.append(piece, &repertoire);
+        }
+        Ok(trajectory)
+    }
+
+    fn append(&mut self, piece: &Piece, repertoire: &Repertoire) {
+        match *piece {
+            Piece::Pivot { angle } => self.append_pivot(angle, &repertoire.limits),
+            Piece::Straight { length, entry, exit, diagonal } => {
+                let top = repertoire.top_speed(diagonal);
+                self.append_straight(length, (entry, exit), top, repertoire.limits.acceleration);
+            }
+            Piece::Turn { kind, left } => {
+                let turn = repertoire.turn(kind);
+                let motion = Motion::Curve { shape: turn.shape.clone(), speed: turn.speed, left };
+                self.push(turn.time, motion);
+            }
+        }
+        self.straighten();
+    }
+
+    fn append_pivot(&mut self, angle: f64, limits: &RunLimits) {
+        let sign = angle.signum();
+        let phases = profile::phases(angle.abs(), 0.0, 0.0, limits.pivot_speed, limits.angular_acceleration);
+        for phase in phases {
+            let motion = Motion::Pivot { speed: sign * phase.speed, acceleration: sign * phase.acceleration };
+            self.push(phase.time, motion);
+        }
+    }
+
+    fn append_straight(&mut self, length: f64, (entry, exit): (f64, f64), top: f64, acceleration: f64) {
+        for phase in profile::phases(length, entry, exit, top, acceleration) {
+            let motion = Motion::Straight { speed: phase.speed, acceleration: phase.acceleration };
+            self.push(phase.time, motion);
+        }
+    }
+
+    fn push(&mut self, time: f64, motion: Motion) {
+        if time > 0.0 {
+            let (begin, start) = (self.duration(), self.end);
+            self.end = start.compose(&motion.at(time).0);
+            self.segments.push(Segment { begin, time, start, motion });
+        }
+    }
+
+    /// Rounds the heading at the end of a piece, which is always a multiple of 45 degrees from the start, so that errors do
+    /// not add up over a long run.
+    fn straighten(&mut self) {
+        let eighth = std::f64::consts::FRAC_PI_4;
+        self.end.heading = (self.end.heading / eighth).round() * eighth;
+    }
+
+    /// Seconds from beginning to end.
+    pub fn duration(&self) -> f64 {
+        self.segments.last().map_or(0.0, |last| last.begin + last.time)
+    }
+
+    /// Where it ends.
+    pub fn end(&self) -> Pose {
+        self.end
+    }
+
+    /// Where the robot shall be at a time; at rest before the beginning and after the end.
+    pub fn at(&self, time: f64) -> TrajectoryPoint {
+        let index = self.segments.partition_point(|segment| segment.begin + segment.time <= time);
+        let rest = |pose| TrajectoryPoint { pose, twist: Twist::STOP };
+        match self.segments.get(index) {
+            None => rest(self.end),
+            Some(segment) if time < segment.begin => rest(segment.start),
+            Some(segment) => {
+                let (pose, twist) = segment.motion.at(time - segment.begin);
+                TrajectoryPoint { pose: segment.start.compose(&pose), twist }
+            }
+        }
+    }
+
+    /// The length of the way in metres.
+    pub fn length(&self) -> f64 {
+        let lengths = self.segments.iter().map(|segment| match &segment.motion {
+            Motion::Straight { speed, acceleration } => {
+                (speed + 0.5 * acceleration * segment.time) * segment.time
+            }
+            Motion::Pivot { .. } => 0.0,
+            Motion::Curve { shape, .. } => shape.length,
+        });
+        lengths.sum()
+    }
+}

@@ -1,0 +1,122 @@
+//! Files of mazes: EyeSim's `.maz`, pictures with posts (the micromouse text format, kerikun11's `.maze`, mms's `map`),
+//! mms's `num`, and the old binary files.
+//!
+//! The format is told from the content, as the same names are used for several of them. What is wrong with a file but
+//! leaves no doubt about the rest is a [`Defect`] of what is read; what leaves doubt is an error.
+
+mod binary;
+mod letters;
+mod numbers;
+mod picture;
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+use super::{Defect, Maze, SizeError, defects};
+use crate::world::formats::{FormatError, Location};
+
+/// A maze as read from a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MazeFile {
+    /// The maze.
+    pub maze: Maze,
+    /// The form in which the file has it.
+    pub format: MazeFormat,
+    /// Metres from cell to cell, where the file states it.
+    pub cell: Option<f64>,
+    /// What is wrong with the file and with the maze; at most [`MazeFile::MAX_DEFECTS`].
+    pub defects: Vec<Defect>,
+}
+
+impl MazeFile {
+    /// Defects beyond this number are left out, so that a broken file does not fill the memory.
+    pub const MAX_DEFECTS: usize = 1000;
+}
+
+/// A form in which mazes are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum MazeFormat {
+    /// The micromouse text format: a picture with posts `o`.
+    Text,
+    /// kerikun11's `.maze`, with posts `+`, start, goals and unknown walls.
+    Maze,
+    /// mms's `map`: walls alone, with posts `+`.
+    Map,
+    /// mms's `num`: a line for each cell.
+    Num,
+    /// EyeSim's `.maz`: `_` and `|`, with letters in the cells.
+    EyeSim,
+    /// A byte for each cell, column by column.
+    Binary,
+}
+
+/// Reads a maze file from disk.
+pub fn load(path: impl AsRef<Path>) -> Result<MazeFile, FormatError> {
+    /// No text of a maze of 256 x 256 cells is half as long.
+    const LONGEST: u64 = 4 << 20;
+    let path = path.as_ref();
+    let name = path.display().to_string();
+    let error = |found: String, expected: &str| FormatError::new(&name, Location::START, found, expected);
+    let unreadable = |e: std::io::Error| match e.kind() {
+        std::io::ErrorKind::NotFound => error("no such file".into(), "a file that exists"),
+        kind => error(format!("a file that cannot be read ({kind})"), "a readable file"),
+    };
+    let metadata = std::fs::metadata(path).map_err(unreadable)?;
+    if !metadata.is_file() {
+        return Err(error("something that is no regular file".into(), "a file"));
+    }
+    if metadata.len() > LONGEST {
+        return Err(error(format!("{} bytes", metadata.len()), "a file of at most 4 MiB"));
+    }
+    parse(&std::fs::read(path).map_err(unreadable)?, &name)
+}
+
+/// Reads a maze of any format. `file` is the name that messages call it by.
+pub fn parse(bytes: &[u8], file: &str) -> Result<MazeFile, FormatError> {
+    let mut read = if binary::is_binary(bytes) { binary::read(bytes) } else { read_text(bytes, file)? };
+    read.defects.extend(defects(&read.maze));
+    read.defects.truncate(MazeFile::MAX_DEFECTS);
+    Ok(read)
+}
+
+fn read_text(bytes: &[u8], file: &str) -> Result<MazeFile, FormatError> {
+    if bytes.contains(&0) {
+        return Err(FormatError::new(file, Location::START, "bytes that are no text", "a maze"));
+    }
+    // What is no UTF-8 stands in remarks: a maze needs none but ASCII characters.
+    let text = String::from_utf8_lossy(bytes);
+    let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n").replace('\r', "\n");
+    let lines: Vec<&str> = text.split('\n').collect();
+    if let Some(top) = picture::find(&lines) {
+        picture::read(&lines, top, file)
+    } else if numbers::is_list(&lines) {
+        numbers::read(&lines, file)
+    } else {
+        letters::read(&text, file)
+    }
+}
+
+/// Writes a maze. What a format has no form for is left out: `map` and `num` know no start, goal or unknown walls, and
+/// only EyeSim's knows other headings than north. Unknown walls become none there.
+pub fn print(maze: &Maze, format: MazeFormat) -> Result<String, FormatError> {
+    match format {
+        MazeFormat::Text => Ok(picture::print(maze, 'o', true)),
+        MazeFormat::Maze => Ok(picture::print(maze, '+', true)),
+        MazeFormat::Map => Ok(picture::print(maze, '+', false)),
+        MazeFormat::Num => Ok(numbers::print(maze)),
+        MazeFormat::EyeSim => Ok(letters::print(maze, crate::world::formats::maz::Maze::DEFAULT_CELL)),
+        MazeFormat::Binary => {
+            let (found, expected) = ("a binary format", "a format of text");
+            Err(FormatError::new("maze", Location::START, found, expected))
+        }
+    }
+}
+
+/// The error for a maze of impossible size, at a line.
+fn size_error(error: SizeError, file: &str, line: usize) -> FormatError {
+    let text = error.to_string();
+    let (found, expected) = text.split_once("; expected ").unwrap_or((&text, "a smaller maze"));
+    FormatError::new(file, Location { line, column: 1 }, found, expected)
+}

@@ -1,0 +1,128 @@
+//! Flood fill: how many steps every cell is from the nearest of some cells (book, section 9.6).
+
+mod incremental;
+mod passages;
+mod queue;
+#[allow(clippy::inline_always, reason = "a function compiled for a processor takes in only what is inlined")]
+mod wave;
+
+#[cfg(test)]
+mod tests;
+
+pub use incremental::IncrementalFlood;
+pub use passages::Passages;
+
+use super::{Cell, Maze, Unknown};
+use passages::Grid;
+
+/// Steps from cells to the nearest source of a flood fill.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Distances {
+    width: usize,
+    steps: Vec<u32>,
+}
+
+/// The number of steps that stands for none.
+const UNREACHED: u32 = u32::MAX;
+
+impl Distances {
+    /// Steps from a cell to the nearest source; `None` where no way leads there, and outside of the maze.
+    #[inline]
+    pub fn get(&self, cell: Cell) -> Option<u32> {
+        let x = usize::from(cell.x);
+        if x >= self.width {
+            return None;
+        }
+        self.steps.get(usize::from(cell.y) * self.width + x).copied().filter(|&steps| steps != UNREACHED)
+    }
+
+    /// How many cells a way leads to, the sources included.
+    pub fn reached(&self) -> usize {
+        self.steps.iter().filter(|&&steps| steps != UNREACHED).count()
+    }
+
+    /// The most steps of any cell that a way leads to; `None` without a source.
+    pub fn farthest(&self) -> Option<u32> {
+        self.steps.iter().copied().filter(|&steps| steps != UNREACHED).max()
+    }
+
+    /// The steps of all cells, row by row from below; `u32::MAX` where no way leads.
+    pub fn as_slice(&self) -> &[u32] {
+        &self.steps
+    }
+
+    fn reset(&mut self, width: usize, cells: usize) {
+        self.width = width;
+        self.steps.clear();
+        self.steps.resize(cells, UNREACHED);
+    }
+}
+
+/// Flood fills one after the other in the same memory.
+///
+/// Mazes of up to 32 x 32 cells are filled by a wave of bits that takes all cells of one distance at once, compiled for
+/// several processors; the best is chosen at run time. Larger ones are filled from a queue without branches. Both take a
+/// time that grows with the number of cells, and of wide waves only with the number of steps.
+///
+/// ```
+/// use roverlab::maze::{Cell, Direction, FloodFill, Maze, Passages, Unknown, Wall};
+///
+/// let mut maze = Maze::open(3, 3)?;
+/// maze.set_wall(Cell::new(1, 1), Direction::South, Wall::Present);
+/// let passages = Passages::new(&maze, Unknown::Closed);
+/// let mut flood = FloodFill::default();
+/// let steps = flood.run(&passages, [Cell::new(1, 0)]);
+/// assert_eq!(steps.get(Cell::new(1, 1)), Some(3));
+/// # Ok::<(), roverlab::maze::SizeError>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct FloodFill {
+    distances: Distances,
+    queue: queue::Queue,
+}
+
+impl FloodFill {
+    /// Fills a maze from its sources; those outside of it do not count.
+    pub fn run(&mut self, passages: &Passages, sources: impl IntoIterator<Item = Cell>) -> &Distances {
+        let distances = &mut self.distances;
+        let inside = |cell: &Cell| passages.contains(*cell);
+        let sources = sources.into_iter().filter(inside);
+        if distances.width != passages.width || distances.steps.len() != passages.width * passages.height {
+            distances.reset(passages.width, passages.width * passages.height);
+        }
+        match &passages.grid {
+            Grid::Small(boards) => wave::fill_small(boards, sources, passages.width, &mut distances.steps),
+            Grid::Medium(boards) => {
+                wave::fill_medium(boards, sources, passages.width, &mut distances.steps);
+            }
+            Grid::Large(openings) => {
+                self.queue.fill(openings, sources, passages.width, &mut distances.steps);
+            }
+        }
+        distances
+    }
+
+    /// What the last run found.
+    pub fn distances(&self) -> &Distances {
+        &self.distances
+    }
+
+    /// What the last run found, without a copy.
+    pub fn into_distances(self) -> Distances {
+        self.distances
+    }
+}
+
+/// The steps of every cell to the goal of a maze.
+pub fn distances_to_goal(maze: &Maze, unknown: Unknown) -> Distances {
+    let mut flood = FloodFill::default();
+    flood.run(&Passages::new(maze, unknown), maze.goals());
+    flood.into_distances()
+}
+
+/// The steps of every cell from the start of a maze.
+pub fn distances_from_start(maze: &Maze, unknown: Unknown) -> Distances {
+    let mut flood = FloodFill::default();
+    flood.run(&Passages::new(maze, unknown), [maze.start()]);
+    flood.into_distances()
+}

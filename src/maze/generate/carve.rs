@@ -1,0 +1,54 @@
+use crate::maze::{Cell, Direction, Maze, SizeError, Wall};
+use crate::random::Stream;
+
+/// A maze in which exactly one way leads from every cell to every other: a depth-first walk that takes walls down where
+/// it comes to new cells.
+pub fn perfect(width: usize, height: usize, seed: u64) -> Result<Maze, SizeError> {
+    let mut maze = Maze::filled(width, height, Wall::Present)?;
+    let mut stream = Stream::new(seed).child("perfect maze", 0);
+    let mut met = vec![false; maze.cell_count()];
+    carve(&mut maze, &mut met, &mut stream, Cell::default());
+    Ok(maze)
+}
+
+/// A perfect maze of which a part of the inner walls, 0 to 1, has been taken down at random, so that many ways lead to
+/// most cells. A part outside of 0 to 1 counts as the nearer of the two.
+pub fn braided(width: usize, height: usize, part: f64, seed: u64) -> Result<Maze, SizeError> {
+    let mut maze = perfect(width, height, seed)?;
+    let mut stream = Stream::new(seed).child("braided maze", 0);
+    let mut walls = inner_walls(&maze);
+    stream.shuffle(&mut walls);
+    let count = (part.clamp(0.0, 1.0) * walls.len() as f64).round() as usize;
+    for &(cell, side) in &walls[..count] {
+        maze.set_wall(cell, side, Wall::Absent);
+    }
+    Ok(maze)
+}
+
+/// Walks on from a cell into cells that have not been met, and takes the walls down in between.
+pub(super) fn carve(maze: &mut Maze, met: &mut [bool], stream: &mut Stream, from: Cell) {
+    met[maze.index(from)] = true;
+    let mut way = vec![from];
+    while let Some(&cell) = way.last() {
+        let new = |side: &Direction| maze.neighbour(cell, *side).is_some_and(|next| !met[maze.index(next)]);
+        let sides: Vec<Direction> = Direction::ALL.into_iter().filter(new).collect();
+        let Some(&side) = sides.get(stream.below(sides.len())) else {
+            way.pop();
+            continue;
+        };
+        maze.set_wall(cell, side, Wall::Absent);
+        if let Some(next) = maze.neighbour(cell, side) {
+            met[maze.index(next)] = true;
+            way.push(next);
+        }
+    }
+}
+
+/// The walls between cells, each named once.
+pub(super) fn inner_walls(maze: &Maze) -> Vec<(Cell, Direction)> {
+    let sides = |cell| [Direction::North, Direction::East].map(|side| (cell, side));
+    let inner = |&(cell, side): &(Cell, Direction)| {
+        maze.wall(cell, side) == Wall::Present && maze.neighbour(cell, side).is_some()
+    };
+    maze.cells().flat_map(sides).filter(inner).collect()
+}

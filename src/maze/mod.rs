@@ -1,0 +1,44 @@
+//! Mazes (chapter 9): models and files, flood fill and shortest routes.
+//!
+//! A [`Maze`] is what a robot knows of a maze: its walls are present, absent or unknown. [`files`] reads and writes all
+//! formats that people use for them. [`FloodFill`] counts steps, [`shortest_route`] finds the way with the fewest steps
+//! or turns.
+//!
+//! ```
+//! use roverlab::maze::{Preference, Unknown, files, shortest_route};
+//!
+//! let text = "\
+//! o---o---o---o
+//! |     G |   |
+//! o   o---o   o
+//! | S         |
+//! o---o---o---o
+//! ";
+//! let file = files::parse(text.as_bytes(), "small.txt")?;
+//! assert!(file.defects.is_empty());
+//! let route = shortest_route(&file.maze, Unknown::Closed, Preference::Steps).expect("a way to the goal");
+//! assert_eq!((route.steps(), route.turns()), (2, 1));
+//! # Ok::<(), roverlab::world::formats::FormatError>(())
+//! ```
+
+mod bits;
+mod compass;
+mod defect;
+mod explore;
+mod fast;
+pub mod files;
+mod flood;
+#[cfg(any(test, feature = "proptest"))]
+pub mod generate;
+mod model;
+mod route;
+mod scale;
+
+pub use compass::{Cell, Direction};
+pub use defect::{Defect, defects};
+pub use explore::{Explorer, Goals, RecursiveExplorer, Step, TwoPhaseExplorer, Verdict};
+pub use fast::{FastPlan, FastPlanner, LimitsError, Piece, RunLimits, Trajectory, TrajectoryPoint, TurnKind};
+pub use flood::{Distances, FloodFill, IncrementalFlood, Passages, distances_from_start, distances_to_goal};
+pub use model::{Maze, SizeError, Unknown, Wall};
+pub use route::{Preference, Route, shortest_route, shortest_route_between};
+pub use scale::Scale;

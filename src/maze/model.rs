@@ -1,0 +1,349 @@
+use super::bits::BitGrid;
+use super::{Cell, Direction};
+
+/// What is known about a place where a wall may stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Wall {
+    /// There is none.
+    Absent,
+    /// There is one.
+    Present,
+    /// Nobody has looked yet.
+    Unknown,
+}
+
+/// What to take unknown walls for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Unknown {
+    /// For passages: what a route may cost at best.
+    Open,
+    /// For walls: what is sure.
+    Closed,
+}
+
+/// What is wrong with the size of a maze.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("a maze of {width} by {height} cells; expected 1 to {max} cells either way", max = Maze::MAX_SIDE)]
+pub struct SizeError {
+    width: usize,
+    height: usize,
+}
+
+/// A rectangle of cells with walls between them, a start and a goal.
+///
+/// Every wall is present, absent or unknown, and so are those around the whole. One bit tells each of the two things, and
+/// rows lie in words of their own. No route leaves the rectangle, even where its outer wall is open.
+///
+/// ```
+/// use roverlab::maze::{Cell, Direction, Maze, Wall};
+///
+/// let mut maze = Maze::open(3, 2)?;
+/// maze.set_wall(Cell::new(0, 0), Direction::East, Wall::Present);
+/// assert_eq!(maze.wall(Cell::new(1, 0), Direction::West), Wall::Present);
+/// # Ok::<(), roverlab::maze::SizeError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Maze {
+    width: u16,
+    height: u16,
+    /// Walls to the left of cells, and those of the right edge.
+    vertical: Layer,
+    /// Walls below cells, and those of the upper edge.
+    horizontal: Layer,
+    goals: BitGrid,
+    start: Cell,
+    heading: Direction,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+struct Layer {
+    present: BitGrid,
+    /// Neither present nor absent.
+    unknown: BitGrid,
+}
+
+impl Layer {
+    fn new(columns: usize, rows: usize) -> Self {
+        Self { present: BitGrid::new(columns, rows), unknown: BitGrid::new(columns, rows) }
+    }
+
+    fn get(&self, (column, row): (usize, usize)) -> Wall {
+        if self.unknown.get(column, row) {
+            Wall::Unknown
+        } else if self.present.get(column, row) {
+            Wall::Present
+        } else {
+            Wall::Absent
+        }
+    }
+
+    fn set(&mut self, (column, row): (usize, usize), wall: Wall) {
+        self.unknown.set(column, row, wall == Wall::Unknown);
+        self.present.set(column, row, wall == Wall::Present);
+    }
+}
+
+impl Maze {
+    /// The most cells in a row or a column.
+    pub const MAX_SIDE: usize = 256;
+
+    /// A maze with walls all round in which nothing else is known, as a robot finds it. The start is the lower left cell,
+    /// facing north, and the goal is the centre.
+    pub fn unexplored(width: usize, height: usize) -> Result<Self, SizeError> {
+        Self::filled(width, height, Wall::Unknown)
+    }
+
+    /// A maze with walls all round and none within.
+    pub fn open(width: usize, height: usize) -> Result<Self, SizeError> {
+        Self::filled(width, height, Wall::Absent)
+    }
+
+    /// A maze of walls all round, and of one state within.
+    pub fn filled(width: usize, height: usize, within: Wall) -> Result<Self, SizeError> {
+        let sides = 1..=Self::MAX_SIDE;
+        if !(sides.contains(&width) && sides.contains(&height)) {
+            return Err(SizeError { width, height });
+        }
+        let mut maze = Self {
+            width: width as u16,
+            height: height as u16,
+            vertical: Layer::new(width + 1, height),
+            horizontal: Layer::new(width, height + 1),
+            goals: BitGrid::new(width, height),
+            start: Cell::default(),
+            heading: Direction::North,
+        };
+        for row in 0..=height {
+            for column in 0..=width {
+                let wall = |edge: bool| if edge { Wall::Present } else { within };
+                if row < height {
+                    maze.vertical.set((column, row), wall(column == 0 || column == width));
+                }
+                if column < width {
+                    maze.horizontal.set((column, row), wall(row == 0 || row == height));
+                }
+            }
+        }
+        maze.set_goals(maze.centre());
+        Ok(maze)
+    }
+
+    /// Cells from left to right.
+    #[inline]
+    pub fn width(&self) -> usize {
+        self.width.into()
+    }
+
+    /// Cells from bottom to top.
+    #[inline]
+    pub fn height(&self) -> usize {
+        self.height.into()
+    }
+
+    /// All cells, row by row from below.
+    pub fn cells(&self) -> impl Iterator<Item = Cell> + use<> {
+        let width = self.width;
+        (0..self.height).flat_map(move |y| (0..width).map(move |x| Cell::new(x, y)))
+    }
+
+    /// How many cells there are.
+    pub fn cell_count(&self) -> usize {
+        self.width() * self.height()
+    }
+
+    /// A cell's place in the order of [`cells`](Self::cells).
+    #[inline]
+    pub fn index(&self, cell: Cell) -> usize {
+        usize::from(cell.y) * self.width() + usize::from(cell.x)
+    }
+
+    /// The cell of a place in the order of [`cells`](Self::cells).
+    #[inline]
+    pub fn cell_at(&self, index: usize) -> Cell {
+        Cell::new((index % self.width()) as u16, (index / self.width()) as u16)
+    }
+
+    /// Whether a cell belongs to the maze.
+    #[inline]
+    pub fn contains(&self, cell: Cell) -> bool {
+        cell.x < self.width && cell.y < self.height
+    }
+
+    /// The next cell in a direction, whatever is between; `None` beyond the edge.
+    #[inline]
+    pub fn neighbour(&self, cell: Cell, direction: Direction) -> Option<Cell> {
+        let (dx, dy) = direction.step();
+        let x = u16::try_from(i32::from(cell.x) + dx).ok()?;
+        let y = u16::try_from(i32::from(cell.y) + dy).ok()?;
+        Some(Cell { x, y }).filter(|&cell| self.contains(cell))
+    }
+
+    /// What is known about a wall of a cell. Outside of the maze there is nothing.
+    #[inline]
+    pub fn wall(&self, cell: Cell, direction: Direction) -> Wall {
+        if !self.contains(cell) {
+            return Wall::Absent;
+        }
+        let (layer, place) = self.place(cell, direction);
+        layer.get(place)
+    }
+
+    /// Enters what is known about a wall of a cell, which is its neighbour's wall too. Outside of the maze nothing
+    /// happens.
+    pub fn set_wall(&mut self, cell: Cell, direction: Direction, wall: Wall) {
+        if self.contains(cell) {
+            let place = self.place(cell, direction).1;
+            let vertical = matches!(direction, Direction::East | Direction::West);
+            if vertical { &mut self.vertical } else { &mut self.horizontal }.set(place, wall);
+        }
+    }
+
+    fn place(&self, cell: Cell, direction: Direction) -> (&Layer, (usize, usize)) {
+        let (x, y) = (usize::from(cell.x), usize::from(cell.y));
+        match direction {
+            Direction::North => (&self.horizontal, (x, y + 1)),
+            Direction::South => (&self.horizontal, (x, y)),
+            Direction::East => (&self.vertical, (x + 1, y)),
+            Direction::West => (&self.vertical, (x, y)),
+        }
+    }
+
+    /// The neighbour that can be entered from a cell, with unknown walls taken as said.
+    #[inline]
+    pub fn passage(&self, cell: Cell, direction: Direction, unknown: Unknown) -> Option<Cell> {
+        let open = match self.wall(cell, direction) {
+            Wall::Absent => true,
+            Wall::Present => false,
+            Wall::Unknown => unknown == Unknown::Open,
+        };
+        self.neighbour(cell, direction).filter(|_| open)
+    }
+
+    /// Whether all four walls of a cell are known.
+    pub fn is_known(&self, cell: Cell) -> bool {
+        Direction::ALL.iter().all(|&direction| self.wall(cell, direction) != Wall::Unknown)
+    }
+
+    /// How many walls are unknown.
+    pub fn unknown_walls(&self) -> usize {
+        self.vertical.unknown.count() + self.horizontal.unknown.count()
+    }
+
+    /// How many walls there are, a cell long each.
+    pub fn wall_count(&self) -> usize {
+        self.vertical.present.count() + self.horizontal.present.count()
+    }
+
+    /// The cell that a robot starts in.
+    #[inline]
+    pub fn start(&self) -> Cell {
+        self.start
+    }
+
+    /// The direction that a robot faces at the start.
+    #[inline]
+    pub fn heading(&self) -> Direction {
+        self.heading
+    }
+
+    /// Moves the start. Outside of the maze nothing happens.
+    pub fn set_start(&mut self, cell: Cell, heading: Direction) {
+        if self.contains(cell) {
+            (self.start, self.heading) = (cell, heading);
+        }
+    }
+
+    /// The cells of the goal, row by row from below.
+    pub fn goals(&self) -> impl Iterator<Item = Cell> + '_ {
+        self.goals.ones().map(|(x, y)| Cell::new(x as u16, y as u16))
+    }
+
+    /// Whether a cell belongs to the goal.
+    #[inline]
+    pub fn is_goal(&self, cell: Cell) -> bool {
+        self.contains(cell) && self.goals.get(cell.x.into(), cell.y.into())
+    }
+
+    /// Makes the goal these cells and no others. Those outside of the maze are left out.
+    pub fn set_goals(&mut self, cells: impl IntoIterator<Item = Cell>) {
+        self.goals.clear();
+        for cell in cells {
+            if self.contains(cell) {
+                self.goals.set(cell.x.into(), cell.y.into(), true);
+            }
+        }
+    }
+
+    /// The goal of a maze that names none: its four middle cells if both sides are even, and else the cell at the half of
+    /// either side.
+    pub fn centre(&self) -> Vec<Cell> {
+        let (x, y) = (self.width / 2, self.height / 2);
+        if self.width.is_multiple_of(2) && self.height.is_multiple_of(2) {
+            return vec![Cell::new(x - 1, y - 1), Cell::new(x, y - 1), Cell::new(x - 1, y), Cell::new(x, y)];
+        }
+        vec![Cell::new(x, y)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_checked() {
+        assert!(Maze::open(256, 1).is_ok());
+        for (width, height) in [(0, 1), (1, 0), (257, 4), (4, 257)] {
+            let error = Maze::open(width, height).unwrap_err();
+            let text = format!("a maze of {width} by {height} cells; expected 1 to 256 cells either way");
+            assert_eq!(error.to_string(), text);
+        }
+    }
+
+    #[test]
+    fn both_sides_of_a_wall_agree() {
+        for (width, height) in [(1, 1), (5, 3), (70, 66), (256, 256)] {
+            let mut maze = Maze::unexplored(width, height).unwrap();
+            let middle = Cell::new(width as u16 / 2, height as u16 / 2);
+            for direction in Direction::ALL {
+                for wall in [Wall::Absent, Wall::Unknown, Wall::Present] {
+                    maze.set_wall(middle, direction, wall);
+                    assert_eq!(maze.wall(middle, direction), wall);
+                    if let Some(other) = maze.neighbour(middle, direction) {
+                        assert_eq!(maze.wall(other, direction.opposite()), wall);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn unknown_walls_are_counted() {
+        let maze = Maze::unexplored(16, 16).unwrap();
+        assert_eq!((maze.unknown_walls(), maze.wall_count()), (2 * 16 * 15, 64));
+        assert!(!maze.is_known(Cell::new(0, 0)));
+        assert!(Maze::open(2, 2).unwrap().is_known(Cell::new(0, 0)));
+    }
+
+    #[test]
+    fn the_centre_has_four_cells_or_one() {
+        let centre = |w, h| Maze::open(w, h).unwrap().centre();
+        assert_eq!(centre(16, 16).len(), 4);
+        assert_eq!(centre(16, 16)[0], Cell::new(7, 7));
+        assert_eq!(centre(2, 3), [Cell::new(1, 1)]);
+        assert_eq!(centre(1, 1), [Cell::new(0, 0)]);
+        assert_eq!(centre(9, 9), [Cell::new(4, 4)]);
+    }
+
+    #[test]
+    fn what_is_outside_is_nothing() {
+        let mut maze = Maze::open(2, 2).unwrap();
+        let before = maze.clone();
+        let outside = Cell::new(2, 0);
+        maze.set_wall(outside, Direction::North, Wall::Present);
+        maze.set_start(outside, Direction::East);
+        assert_eq!(maze, before);
+        assert_eq!(maze.wall(outside, Direction::West), Wall::Absent);
+        assert!(!maze.is_goal(outside));
+        assert_eq!(maze.neighbour(Cell::new(0, 0), Direction::West), None);
+    }
+}

@@ -1,0 +1,201 @@
+//! Shortest paths by cells and by turns (book, section 9.7).
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use super::{Cell, Direction, Maze, Unknown};
+
+/// Which of all routes is the best.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Preference {
+    /// The fewest steps, and of those routes one with the fewest turns.
+    Steps,
+    /// The fewest turns, and of those routes one with the fewest steps.
+    Turns,
+    /// The smallest sum of steps and turns, and of those routes one with the fewest steps.
+    StepsAndTurns,
+}
+
+impl Preference {
+    /// What a step and a turn cost. No route has as many of either as the larger weight is worth.
+    const fn weights(self) -> (u64, u64) {
+        const MANY: u64 = 1 << 24;
+        match self {
+            Self::Steps => (MANY, 1),
+            Self::Turns => (1, MANY),
+            Self::StepsAndTurns => (MANY + 1, MANY),
+        }
+    }
+}
+
+/// A way from cell to cell.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Route {
+    start: Cell,
+    heading: Direction,
+    moves: Vec<Direction>,
+}
+
+impl Route {
+    /// The route that moves lead along, for a robot that faces `heading` at first.
+    pub fn new(start: Cell, heading: Direction, moves: Vec<Direction>) -> Self {
+        Self { start, heading, moves }
+    }
+
+    /// Where it begins.
+    pub fn start(&self) -> Cell {
+        self.start
+    }
+
+    /// The direction that the robot faces at first.
+    pub fn heading(&self) -> Direction {
+        self.heading
+    }
+
+    /// The direction of each step.
+    pub fn moves(&self) -> &[Direction] {
+        &self.moves
+    }
+
+    /// How many steps it has.
+    pub fn steps(&self) -> usize {
+        self.moves.len()
+    }
+
+    /// How often it changes its direction; a first step that is not straight ahead counts.
+    pub fn turns(&self) -> usize {
+        let before = std::iter::once(&self.heading).chain(&self.moves);
+        before.zip(&self.moves).filter(|(before, now)| before != now).count()
+    }
+
+    /// All cells that it visits, the first and the last included.
+    pub fn cells(&self) -> impl Iterator<Item = Cell> + '_ {
+        let mut cell = self.start;
+        std::iter::once(cell).chain(self.moves.iter().map(move |direction| {
+            let (dx, dy) = direction.step();
+            cell = Cell::new((i32::from(cell.x) + dx) as u16, (i32::from(cell.y) + dy) as u16);
+            cell
+        }))
+    }
+
+    /// The last cell.
+    pub fn end(&self) -> Cell {
+        self.cells().last().unwrap_or(self.start)
+    }
+}
+
+/// The best route from the start of a maze to its goal; `None` if none leads there.
+///
+/// # Complexity
+///
+/// Dijkstra's algorithm over cells and headings: O(n log n) for n cells.
+pub fn shortest_route(maze: &Maze, unknown: Unknown, preference: Preference) -> Option<Route> {
+    shortest_route_between(maze, unknown, preference, (maze.start(), maze.heading()), |cell| {
+        maze.is_goal(cell)
+    })
+}
+
+/// The best route from a cell and a heading to the nearest cell that is a goal; `None` if none leads to one.
+pub fn shortest_route_between(
+    maze: &Maze,
+    unknown: Unknown,
+    preference: Preference,
+    (start, heading): (Cell, Direction),
+    goal: impl Fn(Cell) -> bool,
+) -> Option<Route> {
+    let (step, turn) = preference.weights();
+    let state = |cell: Cell, heading: Direction| 4 * maze.index(cell) + heading as usize;
+    let mut costs = vec![u64::MAX; 4 * maze.cell_count()];
+    let mut before = vec![Direction::North; costs.len()];
+    let first = state(start, heading);
+    costs[first] = 0;
+    let mut open = BinaryHeap::from([Reverse((0, first))]);
+    while let Some(Reverse((cost, here))) = open.pop() {
+        if cost > costs[here] {
+            continue;
+        }
+        let (cell, facing) = (maze.cell_at(here / 4), Direction::ALL[here % 4]);
+        if goal(cell) {
+            return Some(trace(
+                maze,
+                &before,
+                (start, heading),
+                (cell, facing),
+                costs[here] / step.max(turn),
+            ));
+        }
+        for direction in Direction::ALL {
+            let Some(next) = maze.passage(cell, direction, unknown) else { continue };
+            let cost = cost + step + if direction == facing { 0 } else { turn };
+            let there = state(next, direction);
+            if cost < costs[there] {
+                (costs[there], before[there]) = (cost, facing);
+                open.push(Reverse((cost, there)));
+            }
+        }
+    }
+    None
+}
+
+/// The route that led to a state, back from its end.
+fn trace(
+    maze: &Maze,
+    before: &[Direction],
+    start: (Cell, Direction),
+    (mut cell, mut facing): (Cell, Direction),
+    capacity: u64,
+) -> Route {
+    let mut moves = Vec::with_capacity(capacity as usize);
+    while (cell, facing) != start {
+        moves.push(facing);
+        let previous = before[4 * maze.index(cell) + facing as usize];
+        let Some(back) = maze.neighbour(cell, facing.opposite()) else { break };
+        (cell, facing) = (back, previous);
+    }
+    moves.reverse();
+    Route::new(start.0, start.1, moves)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::maze::Wall;
+
+    #[test]
+    fn an_empty_maze_needs_one_turn() {
+        let maze = Maze::open(16, 16).unwrap();
+        let route = shortest_route(&maze, Unknown::Closed, Preference::Steps).unwrap();
+        assert_eq!((route.steps(), route.turns(), route.end()), (14, 1, Cell::new(7, 7)));
+    }
+
+    #[test]
+    fn a_start_in_the_goal_is_a_route_of_no_steps() {
+        let maze = Maze::open(1, 1).unwrap();
+        let route = shortest_route(&maze, Unknown::Closed, Preference::Turns).unwrap();
+        assert_eq!((route.steps(), route.turns()), (0, 0));
+    }
+
+    #[test]
+    fn a_closed_goal_has_no_route_and_an_unknown_one_may_have() {
+        let maze = Maze::unexplored(4, 4).unwrap();
+        assert_eq!(shortest_route(&maze, Unknown::Closed, Preference::Steps), None);
+        assert_eq!(shortest_route(&maze, Unknown::Open, Preference::Steps).unwrap().steps(), 2);
+    }
+
+    #[test]
+    fn preferences_differ_where_they_should() {
+        // A straight detour beside a short staircase.
+        let mut maze = Maze::open(6, 6).unwrap();
+        maze.set_goals([Cell::new(2, 2)]);
+        maze.set_wall(Cell::new(0, 1), Direction::North, Wall::Present);
+        maze.set_wall(Cell::new(1, 0), Direction::East, Wall::Present);
+        maze.set_wall(Cell::new(0, 0), Direction::East, Wall::Present);
+        let route = |preference| shortest_route(&maze, Unknown::Closed, preference).unwrap();
+        let (short, straight) = (route(Preference::Steps), route(Preference::Turns));
+        assert_eq!(short.steps(), 4);
+        assert!(straight.turns() <= short.turns());
+        let both = route(Preference::StepsAndTurns);
+        assert!(both.steps() + both.turns() <= short.steps() + short.turns());
+        assert!(both.steps() + both.turns() <= straight.steps() + straight.turns());
+    }
+}

@@ -1,0 +1,206 @@
+use std::f64::consts::PI;
+
+use super::dispatch::vectorised;
+use super::{Error, GrayView};
+use crate::geometry::math;
+
+/// How histograms of oriented gradients are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct HogParameters {
+    /// Pixels on each side of a cell.
+    pub cell: usize,
+    /// Cells on each side of a block.
+    pub block: usize,
+    /// Directions that are told apart in half a turn.
+    pub bins: usize,
+}
+
+impl Default for HogParameters {
+    /// Those of the paper: cells of 8 x 8 pixels, blocks of 2 x 2 cells, nine directions.
+    fn default() -> Self {
+        Self { cell: 8, block: 2, bins: 9 }
+    }
+}
+
+/// Histograms of oriented gradients (N. Dalal and B. Triggs, "Histograms of oriented gradients for human detection",
+/// CVPR 2005), which describe shapes to a classifier. It keeps its memory from one image to the next.
+///
+/// 1. The gradient of a pixel is `dx = e - w`, `dy = s - n`, the image continued by its outermost pixels. Its magnitude
+///    is `8 sqrt(dx² + dy²)`, rounded to the nearest whole number.
+/// 2. Directions are those of lines: a gradient that points up, or straight to the left, counts as its opposite. It
+///    falls into the last bin `k` for which `c dy >= s dx`, where `c` and `s` are 16384 times the cosine and the sine of
+///    `k pi / bins`, rounded to the nearest.
+/// 3. The magnitudes of a cell's pixels are added up bin by bin. Pixels beyond the last whole cell do not count.
+/// 4. The histograms of a block's cells, row by row, are divided by `sqrt(|v|² + 1)`, no number is left above 0.2, and
+///    they are divided by their length again, if they have one. Blocks follow each other cell by cell, row by row.
+#[derive(Debug, Clone)]
+pub struct Hog {
+    parameters: HogParameters,
+    /// Cosine and sine of the directions between the bins, without the first.
+    borders: Vec<[i16; 2]>,
+    magnitudes: Vec<u16>,
+    bins: Vec<u8>,
+    cells: Vec<u32>,
+    descriptor: Vec<f32>,
+}
+
+impl Hog {
+    /// A describer that has yet to allocate its memory. Fails unless cells have 2 to 64 pixels on each side, blocks 1
+    /// to 8 cells, and there are 2 to 36 bins.
+    pub fn new(parameters: HogParameters) -> Result<Self, Error> {
+        let HogParameters { cell, block, bins } = parameters;
+        for (parameter, found, range, expected) in [
+            ("cell of the histograms", cell, 2..=64, "2 to 64"),
+            ("block of the histograms", block, 1..=8, "1 to 8"),
+            ("number of directions", bins, 2..=36, "2 to 36"),
+        ] {
+            if !range.contains(&found) {
+                return Err(Error::Parameter { parameter, found: found as f64, expected });
+            }
+        }
+        let border = |bin: usize| {
+            let (sin, cos) = math::sin_cos(bin as f64 * PI / bins as f64);
+            [cos, sin].map(|part| (16_384.0 * part).round() as i16)
+        };
+        Ok(Self {
+            parameters,
+            borders: (1..bins).map(border).collect(),
+            magnitudes: Vec::new(),
+            bins: Vec::new(),
+            cells: Vec::new(),
+            descriptor: Vec::new(),
+        })
+    }
+
+    /// Blocks across and down in an image of a size.
+    pub fn blocks(&self, (width, height): (usize, usize)) -> (usize, usize) {
+        let HogParameters { cell, block, .. } = self.parameters;
+        let along = |pixels: usize| (pixels / cell + 1).saturating_sub(block);
+        (along(width), along(height))
+    }
+
+    /// Describes an image: `bins` numbers for each cell of each block. Fails if not one block fits the image.
+    pub fn describe(&mut self, input: GrayView<'_>) -> Result<&[f32], Error> {
+        let blocks = self.blocks(input.size());
+        if blocks.0 == 0 || blocks.1 == 0 {
+            let side = self.parameters.cell * self.parameters.block;
+            return Err(Error::Size { what: "image", found: input.size(), expected: (side, side) });
+        }
+        self.fill_cells(input);
+        self.fill_descriptor(input.width() / self.parameters.cell, blocks);
+        Ok(&self.descriptor)
+    }
+
+    fn fill_cells(&mut self, input: GrayView<'_>) {
+        let HogParameters { cell, bins, .. } = self.parameters;
+        let (across, down) = (input.width() / cell, input.height() / cell);
+        self.cells.clear();
+        self.cells.resize(across * down * bins, 0);
+        self.magnitudes.resize(input.width(), 0);
+        self.bins.resize(input.width(), 0);
+        for y in 0..down * cell {
+            let above = input.row(y.saturating_sub(1));
+            let below = input.row((y + 1).min(input.height() - 1));
+            orient(above, input.row(y), below, &self.borders, &mut self.magnitudes, &mut self.bins);
+            let row = &mut self.cells[y / cell * across * bins..][..across * bins];
+            let pixels = self.magnitudes.chunks_exact(cell).zip(self.bins.chunks_exact(cell));
+            for (histogram, (magnitudes, places)) in row.chunks_exact_mut(bins).zip(pixels) {
+                for (&magnitude, &place) in magnitudes.iter().zip(places) {
+                    histogram[usize::from(place)] += u32::from(magnitude);
+                }
+            }
+        }
+    }
+
+    fn fill_descriptor(&mut self, across: usize, blocks: (usize, usize)) {
+        let HogParameters { block, bins, .. } = self.parameters;
+        self.descriptor.clear();
+        self.descriptor.reserve(blocks.0 * blocks.1 * block * block * bins);
+        for y in 0..blocks.1 {
+            for x in 0..blocks.0 {
+                let start = self.descriptor.len();
+                for row in 0..block {
+                    let cells = &self.cells[((y + row) * across + x) * bins..][..block * bins];
+                    self.descriptor.extend(cells.iter().map(|&sum| sum as f32));
+                }
+                normalise(&mut self.descriptor[start..]);
+            }
+        }
+    }
+}
+
+/// The length of a vector, its squares added up in order.
+fn squared_length(vector: &[f32]) -> f32 {
+    vector.iter().fold(0.0, |sum, value| sum + value * value)
+}
+
+fn normalise(vector: &mut [f32]) {
+    let length = (squared_length(vector) + 1.0).sqrt();
+    for value in &mut *vector {
+        *value = (*value / length).min(0.2);
+    }
+    let length = squared_length(vector).sqrt();
+    if length > 0.0 {
+        for value in vector {
+            *value /= length;
+        }
+    }
+}
+
+/// Magnitudes and bins of a row.
+#[inline(always)]
+pub(super) fn orient_portable(
+    above: &[u8],
+    row: &[u8],
+    below: &[u8],
+    borders: &[[i16; 2]],
+    magnitudes: &mut [u16],
+    bins: &mut [u8],
+) {
+    const PIECE: usize = 64;
+    let width = row.len();
+    let (mut dxs, mut dys) = ([0_i16; PIECE], [0_i16; PIECE]);
+    for start in (0..width).step_by(PIECE) {
+        let n = PIECE.min(width - start);
+        let (dxs, dys) = (&mut dxs[..n], &mut dys[..n]);
+        let at = |x: usize| i16::from(row[x]);
+        for (i, dx) in dxs.iter_mut().enumerate() {
+            let x = start + i;
+            *dx = at((x + 1).min(width - 1)) - at(x.saturating_sub(1));
+        }
+        let (above, below) = (&above[start..][..n], &below[start..][..n]);
+        for ((dy, &n), &s) in dys.iter_mut().zip(above).zip(below) {
+            *dy = i16::from(s) - i16::from(n);
+        }
+        let magnitudes = &mut magnitudes[start..][..n];
+        for ((magnitude, &dx), &dy) in magnitudes.iter_mut().zip(&*dxs).zip(&*dys) {
+            let (dx, dy) = (i32::from(dx), i32::from(dy));
+            *magnitude = (8.0 * ((dx * dx + dy * dy) as f32).sqrt() + 0.5) as u16;
+        }
+        for (dx, dy) in dxs.iter_mut().zip(dys.iter_mut()) {
+            let turn = (*dy < 0) | ((*dy == 0) & (*dx < 0));
+            (*dx, *dy) = if turn { (-*dx, -*dy) } else { (*dx, *dy) };
+        }
+        let bins = &mut bins[start..][..n];
+        bins.fill(0);
+        for &[cos, sin] in borders {
+            for ((bin, &dx), &dy) in bins.iter_mut().zip(&*dxs).zip(&*dys) {
+                let (right, down) = (i32::from(sin) * i32::from(dx), i32::from(cos) * i32::from(dy));
+                *bin += u8::from(down >= right);
+            }
+        }
+    }
+}
+
+vectorised! {
+    fn orient(
+        above: &[u8],
+        row: &[u8],
+        below: &[u8],
+        borders: &[[i16; 2]],
+        magnitudes: &mut [u16],
+        bins: &mut [u8],
+    ) {
+        orient_portable(above, row, below, borders, magnitudes, bins);
+    }
+}

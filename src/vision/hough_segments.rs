@@ -1,0 +1,254 @@
+use std::f64::consts::PI;
+
+use super::dispatch::vectorised;
+use super::{Error, GrayView};
+use crate::geometry::math;
+use crate::random::Stream;
+
+/// A straight line between two pixels, both included.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct LineSegment {
+    /// Column and row of one end.
+    pub from: (usize, usize),
+    /// Column and row of the other end.
+    pub to: (usize, usize),
+}
+
+/// What makes a line for [`HoughSegments`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct SegmentParameters {
+    /// Votes that start the search for a line.
+    pub threshold: u32,
+    /// Pixels that a line must reach across or down.
+    pub min_length: usize,
+    /// Pixels that may be missing between two of a line.
+    pub max_gap: usize,
+    /// The seed of the order in which pixels vote.
+    pub seed: u64,
+}
+
+impl Default for SegmentParameters {
+    fn default() -> Self {
+        Self { threshold: 50, min_length: 30, max_gap: 5, seed: 1 }
+    }
+}
+
+/// Finds straight lines with their ends by the votes of pixels in random order (J. Matas, C. Galambos and J. Kittler,
+/// "Robust detection of lines using the progressive probabilistic Hough transform", Computer Vision and Image
+/// Understanding 78, 2000). It keeps its memory from one image to the next.
+///
+/// One pixel after the other, drawn at random, votes for the lines through it. When the line with most of its votes
+/// has enough, pixels are followed along it to both sides from the one that voted last, over gaps that are not too
+/// wide, and leave the vote; if they reach far enough, they are a line, and their votes are taken back.
+#[derive(Debug, Clone)]
+pub struct HoughSegments {
+    directions: Vec<[f32; 2]>,
+    votes: Vec<u32>,
+    /// The edges that are left.
+    mask: Vec<u8>,
+    /// Which of them have voted.
+    voted: Vec<bool>,
+    points: Vec<(u32, u32)>,
+    places: Vec<u32>,
+    size: (usize, usize),
+}
+
+/// Fixed-point fractions of a pixel in a walk along a line.
+const FRACTION: u32 = 16;
+
+impl HoughSegments {
+    /// Lines at so many angles in half a turn.
+    pub fn new(angles: usize) -> Result<Self, Error> {
+        if !(1..=3600).contains(&angles) {
+            let found = angles as f64;
+            return Err(Error::Parameter { parameter: "angles", found, expected: "1 to 3600" });
+        }
+        let direction = |angle: usize| {
+            let (sin, cos) = math::sin_cos(PI * angle as f64 / angles as f64);
+            [cos as f32, sin as f32]
+        };
+        Ok(Self {
+            directions: (0..angles).map(direction).collect(),
+            votes: Vec::new(),
+            mask: Vec::new(),
+            voted: Vec::new(),
+            points: Vec::new(),
+            places: Vec::new(),
+            size: (0, 0),
+        })
+    }
+
+    /// The lines of an image of edges, all pixels that are not 0, in the order in which they are found.
+    pub fn find(&mut self, edges: GrayView<'_>, parameters: SegmentParameters) -> Vec<LineSegment> {
+        self.gather(edges);
+        let mut stream = Stream::new(parameters.seed);
+        let mut lines = Vec::new();
+        for left in (1..=self.points.len()).rev() {
+            let drawn = stream.below(left);
+            self.points.swap(drawn, left - 1);
+            let (x, y) = self.points[left - 1];
+            let (x, y) = (x as usize, y as usize);
+            if self.mask[y * self.size.0 + x] == 0 {
+                continue;
+            }
+            let (count, angle) = self.vote(x, y);
+            if count < parameters.threshold {
+                continue;
+            }
+            lines.extend(self.follow((x, y), angle, parameters));
+        }
+        lines
+    }
+
+    fn gather(&mut self, edges: GrayView<'_>) {
+        let (width, height) = edges.size();
+        self.size = (width, height);
+        self.mask.clear();
+        self.points.clear();
+        for y in 0..height {
+            let row = edges.row(y);
+            self.mask.extend_from_slice(row);
+            for (piece, start) in row.chunks(32).zip((0..).step_by(32)) {
+                if piece.iter().all(|&edge| edge == 0) {
+                    continue;
+                }
+                let set = piece.iter().enumerate().filter(|(_, edge)| **edge != 0);
+                self.points.extend(set.map(|(x, _)| ((start + x) as u32, y as u32)));
+            }
+        }
+        self.voted.clear();
+        self.voted.resize(width * height, false);
+        self.votes.clear();
+        self.votes.resize(self.stride() * self.directions.len(), 0);
+        self.places.resize(self.directions.len(), 0);
+    }
+
+    /// Places for the votes of an angle: distances from minus to plus the largest.
+    fn stride(&self) -> usize {
+        2 * (self.size.0 + self.size.1) + 1
+    }
+
+    /// Lets a pixel vote. Returns the most votes that one of its lines has, and that line's angle.
+    fn vote(&mut self, x: usize, y: usize) -> (u32, usize) {
+        self.voted[y * self.size.0 + x] = true;
+        self.reckon(x, y);
+        let (mut most, mut best) = (0, 0);
+        for (angle, &place) in self.places.iter().enumerate() {
+            let count = &mut self.votes[place as usize];
+            *count += 1;
+            if *count > most {
+                (most, best) = (*count, angle);
+            }
+        }
+        (most, best)
+    }
+
+    fn take_back(&mut self, x: usize, y: usize) {
+        self.reckon(x, y);
+        for &place in &self.places {
+            self.votes[place as usize] -= 1;
+        }
+    }
+
+    /// Where in the votes a pixel's lines are.
+    fn reckon(&mut self, x: usize, y: usize) {
+        let (stride, middle) = (self.stride() as u32, (self.size.0 + self.size.1) as u32);
+        places_of([x as f32, y as f32], &self.directions, stride, middle, &mut self.places);
+    }
+
+    /// Follows the pixels of a line to both sides and takes them out of the image. Returns the line if it is long.
+    fn follow(
+        &mut self,
+        start: (usize, usize),
+        angle: usize,
+        parameters: SegmentParameters,
+    ) -> Option<LineSegment> {
+        let [cos, sin] = self.directions[angle].map(f64::from);
+        let walk = Walk::new(start, (-sin, cos));
+        let ends = [1, -1].map(|side| self.last_on(&walk, side, parameters.max_gap));
+        let [from, to] = ends.map(|steps| walk.pixel(steps));
+        let reach = (from.0.abs_diff(to.0)).max(from.1.abs_diff(to.1)) as usize;
+        let is_long = reach >= parameters.min_length;
+        for step in ends[1]..=ends[0] {
+            let (x, y) = walk.pixel(step);
+            let (x, y) = (x as usize, y as usize);
+            let place = y * self.size.0 + x;
+            if self.mask[place] == 0 {
+                continue;
+            }
+            if is_long && self.voted[place] {
+                self.take_back(x, y);
+            }
+            self.mask[place] = 0;
+        }
+        let pixel = |(x, y): (i64, i64)| (x as usize, y as usize);
+        is_long.then(|| LineSegment { from: pixel(from), to: pixel(to) })
+    }
+
+    /// The last step to one side at which there is a pixel of the line.
+    fn last_on(&self, walk: &Walk, side: i64, max_gap: usize) -> i64 {
+        let (mut step, mut last, mut gap) = (0, 0, 0);
+        loop {
+            step += side;
+            let (x, y) = walk.pixel(step);
+            if x < 0 || y < 0 || x >= self.size.0 as i64 || y >= self.size.1 as i64 {
+                return last;
+            }
+            if self.mask[y as usize * self.size.0 + x as usize] != 0 {
+                (last, gap) = (step, 0);
+            } else {
+                gap += 1;
+                if gap > max_gap {
+                    return last;
+                }
+            }
+        }
+    }
+}
+
+/// A walk along a line, one pixel at a time along its longer side.
+struct Walk {
+    x: i64,
+    y: i64,
+    /// Fixed-point change of either for a step.
+    dx: i64,
+    dy: i64,
+}
+
+impl Walk {
+    fn new((x, y): (usize, usize), direction: (f64, f64)) -> Self {
+        let one = f64::from(1_u32 << FRACTION);
+        let longer = direction.0.abs().max(direction.1.abs());
+        let step = |part: f64| (part / longer * one).round() as i64;
+        let half = 1_i64 << (FRACTION - 1);
+        let middle = |place: usize| ((place as i64) << FRACTION) + half;
+        Self { x: middle(x), y: middle(y), dx: step(direction.0), dy: step(direction.1) }
+    }
+
+    fn pixel(&self, step: i64) -> (i64, i64) {
+        ((self.x + step * self.dx) >> FRACTION, (self.y + step * self.dy) >> FRACTION)
+    }
+}
+
+/// Adding one and a half times 2^23 to a float rounds it to a whole number, which then stands in its lowest bits.
+const ROUNDING: f32 = 12_582_912.0;
+
+#[inline(always)]
+fn places_of_portable(
+    [x, y]: [f32; 2],
+    directions: &[[f32; 2]],
+    stride: u32,
+    middle: u32,
+    places: &mut [u32],
+) {
+    let base = ROUNDING.to_bits().wrapping_sub(middle);
+    for ((place, [cos, sin]), angle) in places.iter_mut().zip(directions).zip(0_u32..) {
+        *place = (x * cos + y * sin + ROUNDING).to_bits().wrapping_sub(base) + angle * stride;
+    }
+}
+
+vectorised! {
+    fn places_of(point: [f32; 2], directions: &[[f32; 2]], stride: u32, middle: u32, places: &mut [u32]) {
+        places_of_portable(point, directions, stride, middle, places);
+    }
+}

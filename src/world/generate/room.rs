@@ -1,0 +1,345 @@
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use super::contour::{Contour, Piece};
+use crate::geometry::{Aabb, Point, Pose, Vector, direction, math, units};
+use crate::random::Stream;
+use crate::world::World;
+
+/// What [`super::room`] draws.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RoomOptions {
+    /// Metres from a room's middle to its corners, the least and the greatest.
+    pub reach: (f64, f64),
+    /// The least and the greatest angle of a corner, in radians, measured inside.
+    pub corners: (f64, f64),
+    /// The least radius of a curved wall in metres.
+    pub least_radius: f64,
+    /// The distance from the wall, in metres, that a robot has to be able to keep everywhere.
+    pub distance: f64,
+}
+
+impl Default for RoomOptions {
+    /// Rooms of some 5 m, corners of 60 to 300 degrees, curves down to a radius of 0.5 m, for a distance of 0.2 m.
+    fn default() -> Self {
+        Self {
+            reach: (1.1, 2.8),
+            corners: (units::from_deg(60.0), units::from_deg(300.0)),
+            least_radius: 0.5,
+            distance: 0.2,
+        }
+    }
+}
+
+/// What is wrong with the options of a room.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("room options: {parameter} is {value}; expected {expected}")]
+pub struct RoomOptionsError {
+    parameter: &'static str,
+    value: f64,
+    expected: &'static str,
+}
+
+impl RoomOptions {
+    /// Fails with the name of the option that is out of range.
+    pub fn validate(&self) -> Result<(), RoomOptionsError> {
+        let check = |parameter, value: f64, good: bool, expected| {
+            if good { Ok(()) } else { Err(RoomOptionsError { parameter, value, expected }) }
+        };
+        let distance = self.distance;
+        check("distance", distance, (0.05..=1.0).contains(&distance), "0.05 to 1 m")?;
+        let (least, most) = self.reach;
+        check("least reach", least, least >= 4.0 * distance, "at least four distances")?;
+        check("greatest reach", most, most >= least && most <= 100.0, "the least reach to 100 m")?;
+        let (sharpest, widest) = self.corners;
+        check("least corner", sharpest, (0.5..FRAC_PI_2).contains(&sharpest), "0.5 to 1.57 rad")?;
+        check("greatest corner", widest, (3.0 * FRAC_PI_2..5.8).contains(&widest), "4.71 to 5.8 rad")?;
+        let radius = self.least_radius;
+        check("least radius", radius, radius >= 1.5 * distance && radius <= 10.0, "1.5 distances to 10 m")
+    }
+}
+
+/// Something out of the ordinary along a room's wall.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum RoomFeature {
+    /// A corner that is rounded.
+    Rounding,
+    /// A part of a circle that is larger than the room there: the wall recedes.
+    Bay,
+    /// A part of a circle that stands into the room.
+    Bulge,
+    /// An open door with a chamber behind it.
+    Door,
+    /// A closed door, which lies somewhat back in the wall.
+    ClosedDoor,
+}
+
+/// A room with one wall all round.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Room {
+    /// The walls. The start is the room's.
+    pub world: World,
+    /// Somewhere in the room, with any heading.
+    pub start: Pose,
+    /// The corners and their angles inside, in radians.
+    pub corners: Vec<(Point, f64)>,
+    /// What else there is.
+    pub features: Vec<RoomFeature>,
+}
+
+/// Draws a room whose wall can be followed at a distance all the way round: corners, curves, and doors, open ones with a
+/// chamber behind them.
+///
+/// ```
+/// use roverlab::random::Stream;
+/// use roverlab::world::generate::{RoomOptions, room};
+/// let room = room(&mut Stream::new(1), &RoomOptions::default())?;
+/// assert!(room.corners.len() >= 3 && room.world.start == Some(room.start));
+/// # Ok::<(), roverlab::world::generate::RoomOptionsError>(())
+/// ```
+///
+/// # Errors
+///
+/// If the options do not pass [`RoomOptions::validate`].
+pub fn room(stream: &mut Stream, options: &RoomOptions) -> Result<Room, RoomOptionsError> {
+    const TRIES: usize = 5000;
+    options.validate()?;
+    for _ in 0..TRIES {
+        if let Some(room) = try_room(stream, options) {
+            return Ok(room);
+        }
+    }
+    let side = 2.0 * options.reach.0;
+    let square = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)].map(|(x, y)| Point::new(x, y));
+    let contour = Contour::of_corners(&square);
+    let start = Pose::new(0.5 * side, 0.5 * side, 0.0);
+    Ok(finish(&contour, start, Vec::new()))
+}
+
+fn try_room(stream: &mut Stream, options: &RoomOptions) -> Option<Room> {
+    let corners = base(stream, options);
+    let plain = Contour::of_corners(&corners);
+    if !plain.angles_within(options.corners) {
+        return None;
+    }
+    let (contour, features) = decorated(stream, options, &corners);
+    if !contour.angles_within(options.corners) || !contour.can_be_followed(options.distance) {
+        return None;
+    }
+    let bounds = contour.bounds();
+    let start = (0..50).find_map(|_| {
+        let point = Point::new(
+            stream.between(bounds.min.x, bounds.max.x),
+            stream.between(bounds.min.y, bounds.max.y),
+        );
+        (contour.holds(point) && contour.distance_to(point) > 1.5 * options.distance).then_some(point)
+    })?;
+    let start = Pose::new(start.x, start.y, stream.between(-PI, PI));
+    Some(finish(&contour, start, features))
+}
+
+/// The corners of a room without anything special, counter-clockwise.
+fn base(stream: &mut Stream, options: &RoomOptions) -> Vec<Point> {
+    let (least, most) = options.reach;
+    if stream.chance(0.25) {
+        // A rectangle with a notch.
+        let (w, h) = (stream.between(2.0 * least, 2.0 * most), stream.between(2.0 * least, 2.0 * most));
+        let (x, y) = (stream.between(0.3, 0.65) * w, stream.between(0.3, 0.65) * h);
+        return [(0.0, 0.0), (w, 0.0), (w, y), (x, y), (x, h), (0.0, h)]
+            .map(|(x, y)| Point::new(x, y))
+            .into();
+    }
+    let n = 4 + stream.below(6);
+    let turn = stream.between(0.0, TAU);
+    (0..n)
+        .map(|i| {
+            let angle = turn + TAU * (i as f64 + stream.between(-0.3, 0.3)) / n as f64;
+            Point::origin() + direction(angle) * stream.between(least, most)
+        })
+        .collect()
+}
+
+/// The wall with curves and doors along the sides and at the corners.
+fn decorated(stream: &mut Stream, options: &RoomOptions, corners: &[Point]) -> (Contour, Vec<RoomFeature>) {
+    let n = corners.len();
+    let mut features = Vec::new();
+    let rounded: Vec<Option<(Piece, Point, Point)>> = (0..n)
+        .map(|i| {
+            let [before, corner, after] = [corners[(i + n - 1) % n], corners[i], corners[(i + 1) % n]];
+            stream.chance(0.2).then(|| rounding(stream, options, before, corner, after)).flatten()
+        })
+        .collect();
+    features.extend(rounded.iter().flatten().map(|_| RoomFeature::Rounding));
+    let mut contour = Contour::default();
+    for i in 0..n {
+        let j = (i + 1) % n;
+        let from = match &rounded[i] {
+            Some((piece, _, end)) => {
+                contour.add(piece.clone());
+                *end
+            }
+            None => corners[i],
+        };
+        let to = rounded[j].as_ref().map_or(corners[j], |(_, start, _)| *start);
+        features.extend(side(stream, options, &mut contour, from, to));
+    }
+    (contour, features)
+}
+
+/// The arc that rounds a corner, from its first point to its last.
+fn rounding(
+    stream: &mut Stream,
+    options: &RoomOptions,
+    before: Point,
+    corner: Point,
+    after: Point,
+) -> Option<(Piece, Point, Point)> {
+    let (into, out) = (corner - before, after - corner);
+    let (u, v) = (into / into.norm(), out / out.norm());
+    let turn = math::atan2(crate::geometry::cross(u, v), u.dot(&v));
+    let radius = options.least_radius + stream.between(0.0, 0.7);
+    let tangent = radius * math::tan(0.5 * turn.abs());
+    if turn.abs() < 0.3 || tangent > 0.4 * into.norm().min(out.norm()) {
+        return None;
+    }
+    let (start, end) = (corner - u * tangent, corner + v * tangent);
+    let left = Vector::new(-u.y, u.x) * radius.copysign(turn);
+    Some((Piece::arc(start, start + left, turn), start, end))
+}
+
+/// One side of the room, perhaps with something special in its middle.
+fn side(
+    stream: &mut Stream,
+    options: &RoomOptions,
+    contour: &mut Contour,
+    from: Point,
+    to: Point,
+) -> Option<RoomFeature> {
+    let length = (to - from).norm();
+    let along = (to - from) / length.max(1e-9);
+    // The room lies to the left of the line.
+    let inward = Vector::new(-along.y, along.x);
+    let margin = 2.5 * options.distance;
+    let room = length - 2.0 * margin;
+    let mut through = |points: &[(f64, f64)]| {
+        let corners: Vec<Point> = points.iter().map(|&(x, y)| from + along * x + inward * y).collect();
+        contour.lines(from, &corners, to);
+    };
+    match stream.below(7) {
+        0 | 1 => {
+            let radius = options.least_radius + stream.between(0.0, 0.8);
+            let half = stream.between(0.6, 1.45);
+            let chord = 2.0 * radius * math::sin(half);
+            if chord > room {
+                through(&[]);
+                return None;
+            }
+            let begin = margin + stream.uniform() * (room - chord);
+            let bulge = stream.chance(0.5);
+            let depth = radius * math::cos(half) * if bulge { -1.0 } else { 1.0 };
+            let middle = from + along * (begin + 0.5 * chord) + inward * depth;
+            let turn = if bulge { -2.0 * half } else { 2.0 * half };
+            let (a, b) = (from + along * begin, from + along * (begin + chord));
+            contour.lines(from, &[], a);
+            contour.add(Piece::arc(a, middle, turn));
+            contour.lines(b, &[], to);
+            Some(if bulge { RoomFeature::Bulge } else { RoomFeature::Bay })
+        }
+        2 | 3 => {
+            let width = 2.0 * options.distance + stream.between(0.25, 0.6);
+            if width > room {
+                through(&[]);
+                return None;
+            }
+            let x = margin + stream.uniform() * (room - width);
+            if stream.chance(0.4) {
+                let depth = stream.between(0.02, 0.05);
+                through(&[(x, 0.0), (x, -depth), (x + width, -depth), (x + width, 0.0)]);
+                return Some(RoomFeature::ClosedDoor);
+            }
+            let thickness = stream.between(0.1, 0.25);
+            let [left, right] = [0, 1].map(|_| 3.0 * options.distance + stream.between(0.0, 0.5));
+            let depth = thickness + 4.0 * options.distance + stream.between(0.0, 0.6);
+            through(&[
+                (x, 0.0),
+                (x, -thickness),
+                (x - left, -thickness),
+                (x - left, -depth),
+                (x + width + right, -depth),
+                (x + width + right, -thickness),
+                (x + width, -thickness),
+                (x + width, 0.0),
+            ]);
+            Some(RoomFeature::Door)
+        }
+        _ => {
+            through(&[]);
+            None
+        }
+    }
+}
+
+fn finish(contour: &Contour, start: Pose, features: Vec<RoomFeature>) -> Room {
+    const MARGIN: f64 = 0.2;
+    let bounds = contour.bounds().inflated(MARGIN);
+    let shift = Point::origin() - bounds.min;
+    let size = bounds.size();
+    let start = Pose::new(start.x + shift.x, start.y + shift.y, start.heading);
+    let world = World {
+        floor: Aabb::new(Point::origin(), Point::origin() + size),
+        walls: contour.walls(shift),
+        start: Some(start),
+        ..World::empty(size.x, size.y)
+    };
+    let corners = contour.corners().into_iter().map(|(point, angle)| (point + shift, angle)).collect();
+    Room { world, start, corners, features }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::nav::Reachability;
+
+    #[test]
+    fn rooms_have_all_features_and_corners_of_all_angles() {
+        let options = RoomOptions::default();
+        let rooms: Vec<Room> = (0..60).map(|seed| room(&mut Stream::new(seed), &options).unwrap()).collect();
+        let mut features: Vec<RoomFeature> = rooms.iter().flat_map(|room| room.features.clone()).collect();
+        features.sort_unstable();
+        features.dedup();
+        assert_eq!(features.len(), 5, "{features:?}");
+        let angles: Vec<f64> = rooms.iter().flat_map(|room| &room.corners).map(|&(_, angle)| angle).collect();
+        let (least, most) = options.corners;
+        assert!(angles.iter().all(|angle| (least..=most).contains(angle)));
+        for range in [60.0..90.0, 100.0..170.0, 190.0..260.0, 275.0..300.0] {
+            assert!(angles.iter().any(|&angle| range.contains(&units::to_deg(angle))), "{range:?}");
+        }
+    }
+
+    #[test]
+    fn starts_are_free_and_equal_seeds_give_equal_rooms() {
+        for seed in 0..20 {
+            let room = room(&mut Stream::new(seed), &RoomOptions::default()).unwrap();
+            let free = Reachability::new(&room.world, 0.1, 0.02).unwrap();
+            assert!(free.is_free(room.start.position()), "{seed}");
+            // There is no way out.
+            assert!(!free.connected(room.start.position(), Point::new(-0.1, -0.1)), "{seed}");
+            assert_eq!(super::room(&mut Stream::new(seed), &RoomOptions::default()).unwrap(), room);
+        }
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        let good = RoomOptions::default();
+        for bad in [
+            RoomOptions { reach: (0.1, 2.0), ..good.clone() },
+            RoomOptions { reach: (2.0, 1.0), ..good.clone() },
+            RoomOptions { corners: (0.1, 5.0), ..good.clone() },
+            RoomOptions { least_radius: f64::NAN, ..good.clone() },
+            RoomOptions { distance: 0.0, ..good.clone() },
+        ] {
+            let error = room(&mut Stream::new(1), &bad).unwrap_err();
+            assert!(error.to_string().contains("expected"), "{error}");
+        }
+    }
+}

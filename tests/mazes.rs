@@ -1,0 +1,112 @@
+//! The example `micromouse` as a whole, and published mazes with known answers.
+//!
+//! The published mazes are no part of the project: their tests run when the environment variable `ROVERLAB_DATA` names the
+//! folder that holds `micromouse/`.
+
+mod common {
+    pub(crate) use crate::shared::*;
+}
+#[path = "../examples/driving/mod.rs"]
+mod driving;
+#[path = "../examples/micromouse/mod.rs"]
+mod micromouse;
+#[path = "../examples/common/mod.rs"]
+mod shared;
+
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use roverlab::maze::files::{self, MazeFormat};
+use roverlab::maze::{Preference, Unknown, distances_from_start, distances_to_goal, shortest_route};
+use serde_json::Value;
+
+fn run(options: &[&str]) -> (u8, Value, String) {
+    let words = ["micromouse", "--json"].iter().chain(options).map(OsString::from);
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    let status = common::run("micromouse", words, &mut out, &mut err, micromouse::work);
+    (status, serde_json::from_slice(&out).unwrap_or(Value::Null), String::from_utf8(err).unwrap())
+}
+
+fn published() -> Option<PathBuf> {
+    std::env::var_os("ROVERLAB_DATA").map(|folder| Path::new(&folder).join("micromouse"))
+}
+
+#[test]
+fn the_examples_own_maze_is_planned() {
+    let (status, report, err) = run(&["--plan"]);
+    assert_eq!((status, err.as_str()), (0, ""), "{report}");
+    assert_eq!(report["outcome"], "planned");
+    assert_eq!((&report["width"], &report["height"]), (&8.into(), &8.into()));
+    assert_eq!(report["defects"].as_array().map(Vec::len), Some(0));
+    let steps = report["shortest_steps"].as_i64().unwrap();
+    assert_eq!(report["route"].as_str().unwrap().len() as i64, steps);
+    assert!(report["fewest_turns"].as_i64() <= report["min_turns"].as_i64());
+}
+
+#[test]
+fn a_file_that_is_missing_is_named() {
+    let (status, report, err) = run(&["--plan", "--maze", "no/such.maze"]);
+    assert_eq!((status, report), (2, Value::Null));
+    assert_eq!(err, "no/such.maze:1:1: found no such file; expected a file that exists\n");
+}
+
+#[test]
+fn published_mazes_have_the_known_answers() {
+    let Some(folder) = published() else { return };
+    let table = fs::read_to_string(folder.join("shortest.csv")).unwrap();
+    let mut lines = table.lines().map(fields);
+    let names = lines.next().unwrap();
+    let mut counts = [0; 6];
+    for row in lines {
+        let column = |name: &str| row[names.iter().position(|other| other == name).unwrap()].as_str();
+        let number = |name: &str| column(name).parse::<i64>().unwrap();
+        let path = folder.join(column("file"));
+        let file = files::load(&path).unwrap_or_else(|error| panic!("{error}"));
+        let maze = &file.maze;
+        counts[file.format as usize] += 1;
+        assert_eq!((maze.width() as i64, maze.height() as i64), (number("width"), number("height")));
+        assert_eq!(format!("{} {}", maze.start().x, maze.start().y), column("start_xy"), "{row:?}");
+        let goals: Vec<String> = maze.goals().map(|goal| goal.to_string()).collect();
+        let mut expected: Vec<&str> = column("goals_xy").split(' ').collect();
+        expected
+            .sort_by_key(|goal| goal.split(',').rev().map(|n| n.parse::<u16>().unwrap()).collect::<Vec<_>>());
+        assert_eq!(goals, expected, "{row:?}");
+        let from_start = distances_from_start(maze, Unknown::Closed);
+        assert_eq!(from_start.reached() as i64, number("cells_reachable"), "{row:?}");
+        let walls = maze.wall_count() + maze.unknown_walls();
+        assert_eq!(walls as i64, number("walls_total"), "{row:?}");
+        let to_goal = distances_to_goal(maze, Unknown::Closed).get(maze.start());
+        assert_eq!(to_goal.map_or(-1, i64::from), number("shortest_steps"), "{row:?}");
+        for (preference, steps, turns) in [
+            (Preference::Steps, "shortest_steps", "min_turns_among_shortest"),
+            (Preference::Turns, "fewest_turn_route_steps", "fewest_turns"),
+            (Preference::StepsAndTurns, "min_steps_plus_turns_steps", "min_steps_plus_turns_turns"),
+        ] {
+            let route = shortest_route(maze, Unknown::Closed, preference);
+            let found = route.map_or((-1, -1), |route| (route.steps() as i64, route.turns() as i64));
+            assert_eq!(found, (number(steps), number(turns)), "{preference:?} of {row:?}");
+        }
+        let reachable = number("shortest_steps") >= 0;
+        let said = file.defects.iter().any(|defect| defect.message == "the goal cannot be reached");
+        assert_eq!(said, !reachable, "{row:?}");
+    }
+    let [_, maze, map, num, ..] = counts;
+    println!("{maze} .maze, {map} map, {num} num");
+    assert_eq!([maze, map, num], [80, 4, 41], "{counts:?}");
+    assert_eq!(MazeFormat::Maze as usize, 1);
+}
+
+/// The fields of a line of a table, of which some are in quotes.
+fn fields(line: &str) -> Vec<String> {
+    let mut fields = vec![String::new()];
+    let mut quoted = false;
+    for c in line.chars() {
+        match c {
+            '"' => quoted = !quoted,
+            ',' if !quoted => fields.push(String::new()),
+            _ => fields.last_mut().unwrap().push(c),
+        }
+    }
+    fields
+}
