@@ -12,12 +12,18 @@ mod distbug;
 mod driving;
 #[path = "../examples/omni/mod.rs"]
 mod omni;
+#[path = "../examples/common/programs.rs"]
+mod programs;
+#[path = "../examples/replay/mod.rs"]
+mod replay;
 
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use common::{CommonArgs, Failure, Report};
+use roverlab::io::log::recover;
+use roverlab::world::{LidarSpec, RobotSpec, formats};
 use serde_json::Value;
 
 /// Runs an example with `--json`. Returns its status and its report, and what it said on standard error.
@@ -97,4 +103,164 @@ fn another_behaviour_is_found_at_the_first_call_that_differs() {
     assert!(err.contains("found the call set_speed(") && err.contains("expected set_speed("), "{err}");
     let (status, _, err) = run("distbug", distbug::work, &["--replay", name]);
     assert!(status == 2 && err.contains("`a_to_b`") && err.contains("expected one of `distbug`"), "{err}");
+}
+
+fn manage(words: &[&str]) -> (u8, Value, String) {
+    let words = ["replay", "--json"].iter().chain(words).map(OsString::from);
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    let status = replay::run(words, &mut out, &mut err);
+    (status, serde_json::from_slice(&out).unwrap_or(Value::Null), String::from_utf8(err).unwrap())
+}
+
+/// Runs every example that can be recorded, and checks its recording with `replay check`.
+#[test]
+fn every_program_checks() {
+    for program in programs::PROGRAMS {
+        for noise in ["0", "1", "2"] {
+            let log = file(&format!("check-{}-{noise}.mcap", program.name));
+            let words = [program.name, "--json", "--noise", noise, "--time-limit", "6", "--record"];
+            let words = words.iter().map(OsString::from).chain([log.clone().into()]).collect();
+            let (mut out, mut err) = (Vec::new(), Vec::new());
+            (program.run)(words, &mut out, &mut err);
+            assert!(log.is_file(), "{}: {}", program.name, String::from_utf8_lossy(&err));
+            let (status, report, err) = manage(&["check", log.to_str().unwrap()]);
+            assert_eq!((status, report["outcome"].as_str()), (0, Some("same")), "{report} {err}");
+            fs::remove_file(log).unwrap();
+        }
+    }
+}
+
+#[test]
+fn a_recording_holds_its_world() {
+    let folder = file("world-of-a-recording");
+    fs::create_dir_all(&folder).unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+    write(
+        "yard.wld",
+        "floor 3000 3000\n0 0 3000 0\n3000 0 3000 3000\n3000 3000 0 3000\n0 3000 0 0\n1500 800 1500 2000\n",
+    );
+    write("yard.sim", "world yard.wld\nS4 500 1500 0\nmarker 2500 1500 0 255 0\ncan 1000 2500 0\n");
+    let log = file("yard.mcap");
+    let (world, name) = (folder.join("yard.sim"), log.to_str().unwrap());
+    let first = run("distbug", distbug::work, &["--world", world.to_str().unwrap(), "--record", name]);
+    assert_eq!((first.0, first.1["outcome"].as_str()), (0, Some("reached")), "{}", first.1);
+    fs::remove_dir_all(&folder).unwrap();
+    assert_eq!(run("distbug", distbug::work, &["--replay", name]), first);
+    assert_eq!(manage(&["check", name]).0, 0);
+
+    let (status, info, _) = manage(&["info", name]);
+    assert_eq!((status, info["program"].as_str()), (0, Some("distbug")));
+    assert_eq!(info["options"], serde_json::json!(["--world=world.sim"]));
+    let text = String::from_utf8_lossy(&fs::read(&log).unwrap()).into_owned();
+    assert!(!text.contains("world-of-a-recording"), "the recording names a folder");
+}
+
+#[test]
+fn what_is_exported_shows_the_run() {
+    let log = file("exported.mcap");
+    let name = log.to_str().unwrap();
+    assert_eq!(run("a_to_b", a_to_b::work, &["--record", name]).0, 0);
+    let (table, picture) = (file("exported.csv"), file("exported.svg"));
+    let words = ["export", name, "--csv", table.to_str().unwrap(), "--picture", picture.to_str().unwrap()];
+    let (status, report, err) = manage(&words);
+    assert_eq!((status, err.as_str()), (0, ""), "{report}");
+    let text = fs::read_to_string(table).unwrap();
+    assert_eq!(text.lines().count() as u64, 1 + report["rows"].as_u64().unwrap());
+    assert!(text.contains(",calls,set_speed,") && text.contains(",truth,robot,0,"), "{text}");
+    let svg = fs::read_to_string(picture).unwrap();
+    assert!(svg.contains("Recording of a_to_b") && svg.contains("true path") && svg.contains("odometry"));
+}
+
+#[test]
+fn files_that_cannot_be_replayed_are_named() {
+    let text = file("no-recording.mcap");
+    fs::write(&text, "floor 3000 3000\n").unwrap();
+    let name = text.to_str().unwrap();
+    for words in [["check", name], ["info", name], ["check", "no/such/file"]] {
+        let (status, _, err) = manage(&words);
+        assert!(status == 2 && err.contains("expected") && err.lines().count() == 1, "{words:?}: {err}");
+    }
+    let (status, _, err) = run("a_to_b", a_to_b::work, &["--replay", name]);
+    assert!(status == 2 && err.contains("found no MCAP file"), "{err}");
+    let log = file("cut-off.mcap");
+    let name = log.to_str().unwrap();
+    run("a_to_b", a_to_b::work, &["--record", name]);
+    let bytes = fs::read(&log).unwrap();
+    fs::write(&log, &bytes[..bytes.len() / 2]).unwrap();
+    let (status, _, err) = manage(&["check", name]);
+    assert!(status == 2 && err.contains("`recover`"), "{err}");
+    let out = file("saved.mcap");
+    let (status, report, _) = manage(&["recover", name, out.to_str().unwrap()]);
+    assert!(status == 0 && report["chunks"].as_u64() > Some(1), "{report}");
+    // What is saved replays as far as it goes.
+    let (status, report, _) = manage(&["check", out.to_str().unwrap()]);
+    assert_eq!((status, report["outcome"].as_str()), (1, Some("different")));
+    assert!(report["difference"]["found"].as_str().unwrap().contains("the recording has ended"), "{report}");
+}
+
+/// A small recording that was made once, perhaps on another machine. After a change that is meant to change runs, it is
+/// made anew by `REGENERATE=1 cargo test --test recordings`.
+#[test]
+fn a_recording_of_another_machine_checks() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/logs");
+    let log = data.join("distbug.mcap");
+    let name = log.to_str().unwrap();
+    if std::env::var_os("REGENERATE").is_some() {
+        // Few beams, so that the file is small.
+        let lidar = RobotSpec::s4().lidar.map(|lidar| LidarSpec { points: 60, ..lidar });
+        let robot = file("coarse.robi");
+        fs::write(&robot, formats::robi::print(&RobotSpec { lidar, ..RobotSpec::s4() })).unwrap();
+        let options =
+            ["--robot", robot.to_str().unwrap(), "--seed", "3", "--time-limit", "8", "--record", name];
+        run("distbug", distbug::work, &options);
+    }
+    let (status, report, err) = manage(&["check", name]);
+    assert_eq!((status, report["outcome"].as_str()), (0, Some("same")), "{report} {err}");
+}
+
+/// Where the process to be killed records.
+const VICTIM: &str = "ROVERLAB_KILLED_RECORDING";
+
+/// Records for the test that kills it.
+#[test]
+fn a_process_to_be_killed() {
+    if let Some(log) = std::env::var_os(VICTIM) {
+        run("distbug", distbug::work, &["--seed", "2", "--record", log.to_str().unwrap()]);
+    }
+}
+
+/// Kills recording processes at random times; `ROVERLAB_KILLS` says how many. What is on disk is the beginning of the
+/// whole recording, and all of its complete chunks can be saved.
+#[test]
+fn a_killed_process_loses_its_last_chunk_at_most() {
+    let kills = std::env::var("ROVERLAB_KILLS").ok().and_then(|kills| kills.parse().ok()).unwrap_or(4);
+    let log = file("killed.mcap");
+    let start = || {
+        let _ = fs::remove_file(&log);
+        let mut command = std::process::Command::new(std::env::current_exe().unwrap());
+        command.args(["--exact", "a_process_to_be_killed"]).env(VICTIM, &log);
+        command.stdout(std::process::Stdio::null()).spawn().unwrap()
+    };
+    let watch = common::Stopwatch::start();
+    assert!(start().wait().unwrap().success());
+    let duration = watch.seconds();
+    let whole = fs::read(&log).unwrap();
+    let mut times = roverlab::random::Stream::new(1);
+    let mut cut = 0;
+    for _ in 0..kills {
+        let mut child = start();
+        std::thread::sleep(std::time::Duration::from_secs_f64(times.between(0.0, duration)));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let Ok(part) = fs::read(&log) else { continue };
+        assert!(whole.starts_with(&part), "the file is not the beginning of the whole recording");
+        if let Ok(saved) = recover(&part) {
+            cut += usize::from(part.len() < whole.len());
+            // All that is lost is what is behind the last complete chunk.
+            let again = recover(&saved.bytes).unwrap();
+            assert_eq!((again.chunks, again.lost), (saved.chunks, 0));
+            assert!(saved.lost < 2 << 20, "{} bytes are lost", saved.lost);
+        }
+    }
+    println!("{cut} of {kills} recordings were cut off");
 }

@@ -6,12 +6,15 @@ use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, Command, CommandFactory};
 use roverlab::io::log::Log;
 
+use super::files::recorded_name;
 use super::origin::Facts;
 use super::{CommonArgs, Failure};
 
-/// Options that do not affect a run, or are the names of files.
-const NOT_RECORDED: [&str; 8] =
-    ["record", "replay", "picture", "json", "realtime", "world", "robot", "robios"];
+/// Options that do not affect a run.
+const NOT_RECORDED: [&str; 6] = ["record", "replay", "picture", "json", "realtime", "robios"];
+
+/// Options that name files which a run reads.
+const FILES: [&str; 2] = ["world", "robot"];
 
 /// Why a command line is not one to run.
 pub(crate) enum Refusal {
@@ -87,6 +90,8 @@ fn options(command: &Command, matches: &ArgMatches) -> Vec<String> {
         }
         let values =
             matches.get_raw(id).into_iter().flatten().map(|value| value.to_string_lossy().into_owned());
+        let is_file = FILES.contains(&id);
+        let values = values.map(|value| if is_file { recorded_name(id, Path::new(&value)) } else { value });
         options.extend(values.map(|value| match &name {
             Some(name) => format!("{name}={value}"),
             None => value,

@@ -43,14 +43,17 @@
 //! first one drives, and give each thread a truth of its own, `stage.truth(index)`. What goes wrong with a recording
 //! reaches the report by itself. Runs that nobody records, as those of a campaign, use `Stage::simulated`.
 //!
-//! The command line of a recorded run is in the recording, but for what does not affect the run and for the names of
-//! files. `--replay` reads it from there, so an option may not depend on anything but the command line.
+//! The command line of a recorded run is in the recording, but for what does not affect the run; `--replay` reads it
+//! from there. In place of the names of files are those that the files have in the recording, so an example reads the
+//! file of an option of its own by `common.read("option", path)`, and the option stands in the list `FILES` of
+//! `command_line`; `common.trip` does so for `--world` and `--robot`.
 
 #![allow(dead_code, unused_imports, reason = "every example uses its own part of this")]
 
 mod args;
 mod command_line;
 mod failure;
+mod files;
 mod origin;
 mod report;
 mod run;

@@ -1,6 +1,6 @@
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use roverlab::io::log::Log;
+use roverlab::io::log::{Attachment, Log};
 
 /// What a run is: the program and the options that affect it, and the recording that it replays.
 ///
@@ -9,6 +9,7 @@ use roverlab::io::log::Log;
 pub(crate) struct Origin {
     facts: Arc<OnceLock<Facts>>,
     trouble: Arc<Mutex<Vec<String>>>,
+    files: Arc<Mutex<Vec<Attachment>>>,
 }
 
 /// What is known about a run from its command line.
@@ -30,6 +31,19 @@ impl Origin {
 
     pub(crate) fn facts(&self) -> Facts {
         self.facts.get().cloned().unwrap_or_default()
+    }
+
+    /// Takes in a file that belongs to the run.
+    pub(crate) fn attach(&self, file: Attachment) {
+        let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+        if !files.contains(&file) {
+            files.push(file);
+        }
+    }
+
+    /// The files that belong to the run.
+    pub(crate) fn files(&self) -> Vec<Attachment> {
+        self.files.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Notes what went wrong with a recording. The run goes on, but the program reports it and fails.

@@ -2,11 +2,11 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-use roverlab::io::log::{Header, LogError, LogWriter, Player, Witness};
+use roverlab::io::log::{Attachment, Header, LogError, LogWriter, Player, Witness};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::wrappers::{Fault, Faulty};
 use roverlab::io::{self, Key, RobotIo};
-use roverlab::world::Scene;
+use roverlab::world::{Scene, formats};
 
 use super::{CommonArgs, Failure, Origin};
 
@@ -49,18 +49,42 @@ impl CommonArgs {
         stage.origin = self.origin.clone();
         if let Some(file) = &self.record {
             let header = facts.log.as_ref().map_or_else(
-                || Header { seed: Some(self.seed), ..Header::new(&facts.program, &facts.options) },
+                || Header {
+                    seed: Some(self.seed),
+                    attachments: texts(scene).into_iter().chain(self.origin.files()).collect(),
+                    ..Header::new(&facts.program, &facts.options)
+                },
                 |log| log.header().clone(),
             );
-            stage.writer = Some(create(file, &header).map_err(|error| {
+            let writer = create(file, &header).map_err(|error| {
                 Failure::input(format!(
                     "--record {}: {error}; expected a file that can be written",
                     file.display()
                 ))
-            })?);
+            })?;
+            writer.show(scene);
+            stage.writer = Some(writer);
         }
         Ok(stage)
     }
+}
+
+/// World and robots as text.
+fn texts(scene: &Scene) -> Vec<Attachment> {
+    let text = |name: String, text: String| Attachment {
+        name,
+        media_type: "text/plain".into(),
+        data: text.into_bytes(),
+    };
+    let mut files = vec![text("scene.wld".into(), formats::wld::print(&scene.world))];
+    let script = formats::sim::SimFile::for_scene(scene, "scene.wld");
+    files.push(text("scene.sim".into(), formats::sim::print(&script)));
+    for (index, robot) in scene.robots.iter().enumerate() {
+        if !scene.robots[..index].iter().any(|other| other.spec == robot.spec) {
+            files.push(text(format!("scene.robot{}.robi", index + 1), formats::robi::print(&robot.spec)));
+        }
+    }
+    files
 }
 
 fn create(file: &Path, header: &Header) -> std::io::Result<LogWriter<BufWriter<File>>> {

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use roverlab::geometry::{Aabb, Point, Pose, units};
-use roverlab::world::formats::{self, FormatError, Parsed};
+use roverlab::world::formats::{FormatError, Parsed};
 use roverlab::world::space::{Solid, Space, Span};
 use roverlab::world::{Object, RobotPlacement, RobotSpec, Scene, Shape};
 
@@ -61,12 +61,12 @@ impl CommonArgs {
     /// The same for an example that takes a heading at the goal, which is in `self.goal`.
     pub(crate) fn trip_to_pose(&self, own: impl FnOnce() -> Scene) -> Result<Trip, Failure> {
         let mut scene = match &self.world {
-            Some(file) => Self::parsed(formats::load_scene(file))?,
+            Some(file) => Self::parsed(self.load_scene("world", file))?,
             None => own(),
         };
         let mut robot = self.driver(&scene)?;
         if let Some(file) = &self.robot {
-            robot.spec = Arc::new(Self::parsed(formats::load_robot(file))?);
+            robot.spec = Arc::new(Self::parsed(self.load_robot("robot", file))?);
         }
         match scene.robots.first_mut() {
             Some(first) => *first = robot,

@@ -15,32 +15,47 @@
 //! | `/robot1/camera` | `foxglove.RawImage` | camera images |
 //! | `/robot1/odometry` | `foxglove.PoseInFrame` | where odometry takes the robot to be |
 //! | `/robot1/transforms` | `foxglove.FrameTransform` | the same for the viewer's frames |
+//! | `/scene` | `foxglove.SceneUpdate` | walls, objects and marks |
 //! | `/robot1/truth` | `roverlab.Call` | what a simulator was asked about the truth |
 //!
 //! Robots are numbered from 1 in topics. A metadata record named `roverlab` holds the [`Header`].
 
 mod call;
+mod determinism;
+mod difference;
+mod entry;
 mod error;
 mod header;
 
+mod open_loop;
 mod parts;
 mod player;
 mod port;
 mod reader;
 mod recorder;
 mod recording;
+mod recover;
 mod replay;
+mod scene;
 mod schema;
 mod truth;
 mod values;
 mod wire;
 mod writer;
 
+pub use determinism::{Indeterminate, check_determinism};
+pub use difference::Difference;
+pub use entry::Entry;
 pub use error::LogError;
 pub use header::{Attachment, Header, SCHEMA_VERSION};
+pub use open_loop::{Command, OpenLoop, OpenLoopReport};
 pub use player::Player;
 pub use recorder::Recorder;
 pub use recording::Log;
+pub use recover::{Recovery, recover};
 pub use replay::Replay;
 pub use truth::{RecordedTruth, ReplayTruth, Witness};
 pub use writer::LogWriter;
+
+#[cfg(test)]
+mod tests;

@@ -5,7 +5,7 @@ use super::call;
 use super::schema::Schema;
 use super::values::{Put, Values};
 use super::wire::Fields;
-use super::writer::{Channel, LogWriter, Nanoseconds, frame};
+use super::writer::{Channel, LogWriter, Nanoseconds, frame, odometry_frame};
 use crate::geometry::Pose;
 use crate::io::{Error, LidarScan, Result};
 
@@ -16,6 +16,8 @@ pub(super) const LIDAR: Channel = ("lidar", Schema::LaserScan);
 pub(super) const CAMERA: Channel = ("camera", Schema::RawImage);
 pub(super) const ODOMETRY: Channel = ("odometry", Schema::PoseInFrame);
 pub(super) const TRANSFORMS: Channel = ("transforms", Schema::FrameTransform);
+/// What stands in the world.
+pub(super) const SCENE: Channel = ("/scene", Schema::SceneUpdate);
 
 /// A robot's way into a recording: it makes messages of calls and of what they show.
 pub(super) struct Port<W: Write> {
@@ -51,7 +53,7 @@ impl<W: Write> Port<W> {
             writer,
             track,
             frame: frame(track),
-            odometry_frame: format!("{}/odometry", frame(track)),
+            odometry_frame: odometry_frame(track),
             time: None,
             arguments: Values::default(),
             result: Values::default(),
@@ -129,7 +131,7 @@ pub(super) fn laser_scan(out: &mut Fields<'_>, frames: &Frames<'_>, scan: &Lidar
     let gaps = scan.ranges.len().saturating_sub(1) as f64;
     out.time(1, frames.time);
     out.text(2, frames.robot);
-    out.message(3, |pose| write_pose(pose, &scan.mount));
+    out.message(3, |pose| write_pose(pose, &scan.mount, 0.0));
     out.double(4, scan.angle_min);
     out.double(5, scan.angle_min + scan.angle_increment * gaps);
     out.doubles(6, &scan.ranges);
@@ -150,20 +152,25 @@ pub(super) fn raw_image(out: &mut Fields<'_>, frames: &Frames<'_>, (width, heigh
 pub(super) fn pose_in_frame(out: &mut Fields<'_>, frames: &Frames<'_>, pose: &Pose) {
     out.time(1, frames.time);
     out.text(2, frames.odometry);
-    out.message(3, |message| write_pose(message, pose));
+    out.message(3, |message| write_pose(message, pose, 0.0));
 }
 
 /// A `foxglove.FrameTransform` from odometry's frame to the robot's.
 pub(super) fn frame_transform(out: &mut Fields<'_>, frames: &Frames<'_>, pose: &Pose) {
-    out.time(1, frames.time);
-    out.text(2, frames.odometry);
-    out.text(3, frames.robot);
+    transform(out, frames.time, frames.odometry, frames.robot, pose);
+}
+
+/// A `foxglove.FrameTransform`.
+pub(super) fn transform(out: &mut Fields<'_>, time: Nanoseconds, parent: &str, child: &str, pose: &Pose) {
+    out.time(1, time);
+    out.text(2, parent);
+    out.text(3, child);
     out.vector(4, pose.x, pose.y, 0.0);
     out.heading(5, pose.heading);
 }
 
-/// A `foxglove.Pose`.
-pub(super) fn write_pose(out: &mut Fields<'_>, pose: &Pose) {
-    out.vector(1, pose.x, pose.y, 0.0);
+/// A `foxglove.Pose` at a height.
+pub(super) fn write_pose(out: &mut Fields<'_>, pose: &Pose, height: f64) {
+    out.vector(1, pose.x, pose.y, height);
     out.heading(2, pose.heading);
 }

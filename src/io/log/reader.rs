@@ -54,7 +54,8 @@ pub(super) fn records(bytes: &[u8], start: usize) -> impl Iterator<Item = Option
     })
 }
 
-fn record_at(bytes: &[u8], start: usize) -> Option<Framed<'_>> {
+/// The record that begins at a place, if it is there as a whole.
+pub(super) fn record_at(bytes: &[u8], start: usize) -> Option<Framed<'_>> {
     let head = bytes.get(start..start + FRAME)?;
     let length = u64::from_le_bytes(head[1..].try_into().ok()?);
     let body = start + FRAME;
@@ -139,6 +140,11 @@ fn check_end(bytes: &[u8], start: usize, footer: &Framed<'_>) -> Result<(), LogE
         rest if rest.len() < MAGIC.len() && MAGIC.starts_with(rest) => Err(truncated(bytes)),
         _ => Err(LogError::damaged("other bytes than the end mark of an MCAP file at its end")),
     }
+}
+
+/// Whether a chunk has a checksum that tells whether it is intact.
+pub(super) fn has_checksum(chunk: &Framed<'_>) -> bool {
+    chunk.body.get(24..28).is_some_and(|crc| crc != [0; 4])
 }
 
 /// What a chunk holds: its messages and what declares them. Fails if it is not as it was written.

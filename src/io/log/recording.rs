@@ -6,9 +6,13 @@ use std::sync::Arc;
 use mcap::records::{Record, op};
 
 use super::header::METADATA;
+use super::player::seconds;
 use super::reader::{self, Framed};
+use super::scene::WORLD;
+use super::wire::{self, Field};
 use super::writer::Nanoseconds;
 use super::{Attachment, Header, LogError, SCHEMA_VERSION};
+use crate::geometry::{Pose, math};
 
 /// A recording in memory, checked.
 ///
@@ -23,6 +27,19 @@ struct Contents {
     header: Header,
     /// What each robot recorded, in the order in which it did.
     tracks: Vec<Vec<Event>>,
+    facts: Facts,
+}
+
+/// What is to be said about a recording as a whole.
+#[derive(Debug, Clone, Default)]
+struct Facts {
+    /// How many messages there are on each topic.
+    topics: BTreeMap<String, u64>,
+    chunks: usize,
+    /// The times of the first and the last message.
+    span: Option<(Nanoseconds, Nanoseconds)>,
+    /// Where each robot starts in the world.
+    starts: BTreeMap<usize, Pose>,
 }
 
 /// What a message of a robot is to a replay.
@@ -34,6 +51,8 @@ pub(super) enum Kind {
     Truth,
     /// The ranges or the pixels that the next call answers with.
     Bulk,
+    /// Where odometry begins, the first of a topic's transforms.
+    Start,
 }
 
 /// A message of a robot and where it is in the file.
@@ -57,8 +76,8 @@ impl Log {
     /// Reads a recording from the bytes of its file. Takes time in proportion to them, and a few bytes of memory for
     /// each message besides.
     pub fn read(bytes: Vec<u8>) -> Result<Self, LogError> {
-        let (header, tracks) = Contents::read(&bytes)?;
-        Ok(Self { contents: Arc::new(Contents { bytes, header, tracks }) })
+        let (header, tracks, facts) = Contents::read(&bytes)?;
+        Ok(Self { contents: Arc::new(Contents { bytes, header, tracks, facts }) })
     }
 
     /// What the recording says about its run.
@@ -69,6 +88,26 @@ impl Log {
     /// How many robots were recorded.
     pub fn robots(&self) -> usize {
         self.contents.tracks.len()
+    }
+
+    /// How many messages there are on each topic.
+    pub fn topics(&self) -> &BTreeMap<String, u64> {
+        &self.contents.facts.topics
+    }
+
+    /// How many chunks the file has.
+    pub fn chunks(&self) -> usize {
+        self.contents.facts.chunks
+    }
+
+    /// The times of the first and the last message, in seconds; `None` if there is none.
+    pub fn span(&self) -> Option<(f64, f64)> {
+        self.contents.facts.span.map(|(first, last)| (seconds(first), seconds(last)))
+    }
+
+    /// Where a robot starts in the world, if the recording says so.
+    pub fn start(&self, robot: usize) -> Option<Pose> {
+        self.contents.facts.starts.get(&robot).copied()
     }
 
     /// The bytes of the file.
@@ -87,7 +126,7 @@ impl Log {
 }
 
 impl Contents {
-    fn read(bytes: &[u8]) -> Result<(Header, Vec<Vec<Event>>), LogError> {
+    fn read(bytes: &[u8]) -> Result<(Header, Vec<Vec<Event>>, Facts), LogError> {
         let records = reader::whole(bytes)?;
         let mut reading = Reading {
             bytes,
@@ -95,6 +134,9 @@ impl Contents {
             headers: Vec::new(),
             attachments: Vec::new(),
             channels: BTreeMap::new(),
+            topics: BTreeMap::new(),
+            messages: BTreeMap::new(),
+            facts: Facts::default(),
             tracks: Vec::new(),
         };
         // The header decides whether the rest can be understood.
@@ -103,11 +145,14 @@ impl Contents {
         }
         let header = reading.header()?;
         for record in records.iter().filter(|record| record.opcode == op::CHUNK) {
+            reading.facts.chunks += 1;
             for inner in reader::chunk(record)? {
                 reading.add(&inner)?;
             }
         }
-        Ok((header, reading.tracks))
+        let topics = std::mem::take(&mut reading.messages).into_iter();
+        reading.facts.topics = topics.map(|(id, count)| (reading.topic(id), count)).collect();
+        Ok((header, reading.tracks, reading.facts))
     }
 }
 
@@ -119,6 +164,10 @@ struct Reading<'a> {
     attachments: Vec<Attachment>,
     /// What is known about the channels that a replay needs: their robots, and what their messages are.
     channels: BTreeMap<u16, (usize, Kind)>,
+    topics: BTreeMap<u16, String>,
+    /// How many messages each channel has.
+    messages: BTreeMap<u16, u64>,
+    facts: Facts,
     tracks: Vec<Vec<Event>>,
 }
 
@@ -139,6 +188,7 @@ impl Reading<'_> {
                 data: data.into_owned(),
             }),
             Record::Channel(channel) => {
+                self.topics.insert(channel.id, channel.topic.clone());
                 if let Some(known) = channel_of(&channel.topic) {
                     self.channels.insert(channel.id, known);
                 }
@@ -151,7 +201,17 @@ impl Reading<'_> {
     fn add_message(&mut self, record: &Framed<'_>) -> Result<(), LogError> {
         let message = reader::message(record.body)
             .ok_or_else(|| LogError::damaged(format!("the message at byte {} is too short", record.start)))?;
+        let (id, time) = (message.header.channel_id, message.header.log_time);
+        *self.messages.entry(id).or_insert(0) += 1;
+        let (first, last) = self.facts.span.unwrap_or((time, time));
+        self.facts.span = Some((first.min(time), last.max(time)));
         let Some(&(robot, kind)) = self.channels.get(&message.header.channel_id) else { return Ok(()) };
+        if kind == Kind::Start {
+            if let Some(start) = start_of(message.data) {
+                self.facts.starts.entry(robot).or_insert(start);
+            }
+            return Ok(());
+        }
         if self.tracks.len() <= robot {
             self.tracks.resize(robot + 1, Vec::new());
         }
@@ -160,6 +220,10 @@ impl Reading<'_> {
         let place = start..start + message.data.len();
         self.tracks[robot].push(Event { kind, time: message.header.log_time, place });
         Ok(())
+    }
+
+    fn topic(&self, id: u16) -> String {
+        self.topics.get(&id).cloned().unwrap_or_else(|| format!("channel {id}"))
     }
 
     /// The one header of a recording that this version understands.
@@ -188,7 +252,23 @@ fn channel_of(topic: &str) -> Option<(usize, Kind)> {
         "calls" => Kind::Call,
         "truth" => Kind::Truth,
         "lidar" | "camera" => Kind::Bulk,
+        "transforms" => Kind::Start,
         _ => return None,
     };
     Some((robot, kind))
+}
+
+/// Where odometry begins, if a transform says so.
+fn start_of(transform: &[u8]) -> Option<Pose> {
+    let number = |field: u32, part: u32| {
+        wire::Reading::new(wire::bytes_of(transform, field)?).find_map(|(number, value)| match value {
+            Field::Fixed64(bits) if number == part => Some(f64::from_bits(bits)),
+            _ => None,
+        })
+    };
+    if wire::bytes_of(transform, 2)? != WORLD.as_bytes() {
+        return None;
+    }
+    let heading = 2.0 * math::atan2(number(5, 3)?, number(5, 4)?);
+    Some(Pose::new(number(4, 1)?, number(4, 2)?, heading))
 }

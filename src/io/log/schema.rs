@@ -10,6 +10,7 @@ pub(super) enum Schema {
     PoseInFrame,
     FrameTransform,
     RawImage,
+    SceneUpdate,
 }
 
 impl Schema {
@@ -20,6 +21,7 @@ impl Schema {
             Self::PoseInFrame => "foxglove.PoseInFrame",
             Self::FrameTransform => "foxglove.FrameTransform",
             Self::RawImage => "foxglove.RawImage",
+            Self::SceneUpdate => "foxglove.SceneUpdate",
         }
     }
 

@@ -9,9 +9,12 @@ use mcap::write::NoSeek;
 use mcap::{McapError, WriteOptions, Writer};
 
 use super::header::METADATA;
-use super::port::Port;
+use super::port::{Port, SCENE, TRANSFORMS, transform};
+use super::scene::{WORLD, scene_update};
 use super::schema::Schema;
+use super::wire::Fields;
 use super::{Header, RecordedTruth, Recorder, Witness};
+use crate::world::Scene;
 
 /// A channel of a recording: the part of its topic behind the robot's name, and what it carries.
 pub(super) type Channel = (&'static str, Schema);
@@ -105,16 +108,17 @@ struct Message {
 const CHUNK_BYTES: usize = 1 << 20;
 const SECOND: u64 = 1_000_000_000;
 
+/// How recordings are written: without compression, to sinks that cannot seek, and with chunks that end where the
+/// writer says so.
+pub(super) fn write_options() -> WriteOptions {
+    WriteOptions::new().compression(None).disable_seeking(true).chunk_size(None).profile("")
+}
+
 impl<W: Write> LogWriter<W> {
     /// Begins a recording with its header.
     pub fn new(sink: W, header: &Header) -> io::Result<Self> {
-        let options = WriteOptions::new()
-            .compression(None)
-            .disable_seeking(true)
-            .chunk_size(None)
-            .profile("")
-            .library(concat!("roverlab ", env!("CARGO_PKG_VERSION")));
-        let mut file = options.create(NoSeek::new(sink)).map_err(as_io)?;
+        // The version is in the header, which a replay copies.
+        let mut file = write_options().library("roverlab").create(NoSeek::new(sink)).map_err(as_io)?;
         let metadata = Metadata { name: METADATA.into(), metadata: header.metadata() };
         file.write_metadata(&metadata).map_err(as_io)?;
         for attachment in &header.attachments {
@@ -144,6 +148,19 @@ impl<W: Write> LogWriter<W> {
     pub fn recorder<R>(&self, robot: R, index: usize) -> Recorder<R, W> {
         self.lock().track(index).open = true;
         Recorder::new(robot, Port::new(self.clone(), index))
+    }
+
+    /// Writes what stands in a scene, and where its robots start, for viewers. It belongs at the beginning.
+    pub fn show(&self, scene: &Scene) {
+        let mut message = Vec::new();
+        scene_update(&mut Fields(&mut message), scene);
+        self.push(0, Some(0), SCENE, &message);
+        for (index, robot) in scene.robots.iter().enumerate() {
+            message.clear();
+            let child = odometry_frame(index);
+            transform(&mut Fields(&mut message), 0, WORLD, &child, &robot.pose);
+            self.push(index, Some(0), TRANSFORMS, &message);
+        }
     }
 
     /// Records what a witness says who watches a robot, by the robot's index.
@@ -271,6 +288,11 @@ fn full_topic(track: usize, topic: &str) -> String {
 /// The name of a robot's own frame.
 pub(super) fn frame(track: usize) -> String {
     format!("robot{}", track + 1)
+}
+
+/// The name of the frame in which a robot's odometry is.
+pub(super) fn odometry_frame(track: usize) -> String {
+    format!("{}/odometry", frame(track))
 }
 
 fn as_io(error: McapError) -> io::Error {

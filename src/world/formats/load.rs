@@ -18,38 +18,61 @@ use crate::world::{ObjectKind, RobotSpec, Scene, World};
 /// # Ok::<(), roverlab::world::formats::FormatError>(())
 /// ```
 pub fn load_scene(path: impl AsRef<Path>) -> Result<Parsed<Scene>, FormatError> {
-    let mut files = DiskFiles::new();
-    read_file(path.as_ref(), |text, file| match kind(file) {
-        Kind::Script => sim::parse(text, file, &mut files),
+    let path = path.as_ref();
+    parse_scene(read_file(path)?, &path.display().to_string(), &mut DiskFiles::new())
+}
+
+/// Reads a scene from the bytes of its file, whose name says what kind it is, and from the files that it names.
+pub fn parse_scene(
+    bytes: Vec<u8>,
+    file: &str,
+    files: &mut dyn FileSource,
+) -> Result<Parsed<Scene>, FormatError> {
+    decoded(bytes, file, |text, file| match kind(file) {
+        Kind::Script => sim::parse(text, file, files),
         Kind::Other => {
             let expected = "a file that ends in .sim, .wld, .maz, .yaml or .yml";
             Err(FormatError::new(file, Location::START, shown(file), expected))
         }
-        _ => Ok(parse_world(text, file, &mut files, file, Location::START)?.map(Scene::new)),
+        _ => Ok(parse_world(text, file, files, file, Location::START)?.map(Scene::new)),
     })
 }
 
 /// Reads a robot's description, `.robi`, from disk.
 pub fn load_robot(path: impl AsRef<Path>) -> Result<Parsed<RobotSpec>, FormatError> {
-    read_file(path.as_ref(), robi::parse)
+    let path = path.as_ref();
+    parse_robot(read_file(path)?, &path.display().to_string())
+}
+
+/// Reads a robot's description from the bytes of its file.
+pub fn parse_robot(bytes: Vec<u8>, file: &str) -> Result<Parsed<RobotSpec>, FormatError> {
+    decoded(bytes, file, robi::parse)
 }
 
 /// Reads an object's description, `.esObj`, from disk.
 pub fn load_object(path: impl AsRef<Path>) -> Result<Parsed<ObjectKind>, FormatError> {
-    read_file(path.as_ref(), esobj::parse)
+    let path = path.as_ref();
+    decoded(read_file(path)?, &path.display().to_string(), esobj::parse)
 }
 
-/// Reads a file and hands its text and its name to a reader.
-fn read_file<T>(
-    path: &Path,
+/// The bytes of a file on disk, for the functions that read formats from bytes. Fails as those do for a file that
+/// does not exist, cannot be read or is too long.
+pub fn read_file(path: impl AsRef<Path>) -> Result<Vec<u8>, FormatError> {
+    let path = path.as_ref();
+    let file = path.display().to_string();
+    read_limited(path, MAX_TEXT_BYTES)
+        .map_err(|error| unreadable(&error, &file, &file, Location::START, MAX_TEXT_BYTES))
+}
+
+/// Hands the text of a file and its name to a reader.
+fn decoded<T>(
+    bytes: Vec<u8>,
+    file: &str,
     read: impl FnOnce(&str, &str) -> Result<Parsed<T>, FormatError>,
 ) -> Result<Parsed<T>, FormatError> {
-    let file = path.display().to_string();
-    let bytes = read_limited(path, MAX_TEXT_BYTES)
-        .map_err(|error| unreadable(&error, &file, &file, Location::START, MAX_TEXT_BYTES))?;
-    let mut notes = Notes::new(&file);
+    let mut notes = Notes::new(file);
     let text = decode(bytes, &mut notes)?;
-    let parsed = read(&text, &file)?;
+    let parsed = read(&text, file)?;
     notes.extend(parsed.warnings);
     Ok(notes.finish(parsed.value))
 }

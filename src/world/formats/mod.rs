@@ -20,7 +20,7 @@ pub mod wld;
 mod yaml;
 
 pub use error::{FormatError, Location, Parsed, Warning};
-pub use load::{load_object, load_robot, load_scene};
+pub use load::{load_object, load_robot, load_scene, parse_robot, parse_scene, read_file};
 pub use source::{DiskFiles, FileSource, MemoryFiles, SourceFile};
 
 use load::stem;

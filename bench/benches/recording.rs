@@ -1,0 +1,128 @@
+//! What recording costs: a run of `DistBug` with and without it, and camera images on their way into memory.
+
+use std::hint::black_box;
+use std::io::{self, Write};
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use image::RgbImage;
+use roverlab::geometry::Point;
+use roverlab::io::log::{Header, Log, LogWriter, Player};
+use roverlab::io::sim::{SimOptions, Simulation};
+use roverlab::io::{Camera, Clock, Drive, Lidar, Resolution, Result};
+use roverlab::nav::{DistBug, DistBugOutcome, DistBugParameters};
+use roverlab::random::Stream;
+use roverlab::world::generate::{CourseOptions, obstacle_course};
+use roverlab::world::{RobotSpec, Scene};
+
+/// A course on which the goal is reached, and the goal as the robot sees it.
+fn course() -> (Scene, Point) {
+    let options = CourseOptions::default();
+    let courses = (1..).map(|seed| obstacle_course(&mut Stream::new(seed), &options).expect("a course"));
+    let course = courses.into_iter().find(|course| course.reachable).expect("a course with a way");
+    let goal = course.start.to_local(course.goal);
+    (Scene::with_robot(course.world, RobotSpec::s4(), course.start), goal)
+}
+
+fn simulation(scene: &Scene) -> Simulation {
+    let options = SimOptions { time_limit: Some(3600.0), ..SimOptions::with_noise(1.0, 1) };
+    Simulation::new(scene, options).expect("a simulation")
+}
+
+fn drive(robot: &mut (impl Clock + Drive + Lidar), goal: Point) -> DistBugOutcome {
+    let mut bug = DistBug::new(goal, DistBugParameters::default()).expect("a goal");
+    bug.run(robot, 3600.0, |_, _| {}).expect("a robot that works")
+}
+
+fn record(scene: &Scene, goal: Point, memory: Vec<u8>) -> Vec<u8> {
+    let writer = LogWriter::new(memory, &Header::new("bench", [""; 0])).expect("a recording");
+    let mut robot = writer.recorder(simulation(scene).robot(0).expect("a robot"), 0);
+    drive(&mut robot, goal);
+    drop(robot);
+    writer.finish().expect("memory")
+}
+
+/// The same run plain, recorded into memory, and replayed.
+fn distbug(c: &mut Criterion) {
+    let (scene, goal) = course();
+    let plain = || drive(&mut simulation(&scene).robot(0).expect("a robot"), goal);
+    let log = Log::read(record(&scene, goal, Vec::new())).expect("a recording");
+    let replay = || drive(&mut Player::new(&log).robot(0).expect("a robot"), goal);
+    assert_eq!((plain(), replay()), (DistBugOutcome::Reached, DistBugOutcome::Reached));
+    let mut memory = log.bytes().to_vec();
+    let mut group = c.benchmark_group("DistBug to its goal");
+    group.sample_size(20);
+    group.bench_function("plain", |b| b.iter(plain));
+    group.bench_function("recorded into memory", |b| {
+        b.iter(|| {
+            let mut again = std::mem::take(&mut memory);
+            again.clear();
+            memory = record(&scene, goal, again);
+        });
+    });
+    group.bench_function("replayed", |b| b.iter(replay));
+    group.finish();
+}
+
+/// A camera that has its image at hand.
+struct Eye;
+
+impl Clock for Eye {
+    fn now(&mut self) -> Result<f64> {
+        Ok(0.0)
+    }
+
+    fn wait(&mut self, _seconds: f64) -> Result<()> {
+        Ok(())
+    }
+}
+
+impl Camera for Eye {
+    fn set_resolution(&mut self, _resolution: Resolution) -> Result<()> {
+        Ok(())
+    }
+
+    fn resolution(&mut self) -> Result<Resolution> {
+        Ok(Resolution::Vga)
+    }
+
+    fn image_into(&mut self, _image: &mut RgbImage) -> Result<()> {
+        Ok(())
+    }
+}
+
+/// Memory that is written over and over.
+struct Ring {
+    memory: Vec<u8>,
+    at: usize,
+}
+
+impl Write for Ring {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let room = &mut self.memory[self.at..];
+        let length = bytes.len().min(room.len());
+        room[..length].copy_from_slice(&bytes[..length]);
+        self.at = (self.at + length) % self.memory.len();
+        Ok(length)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        black_box(&self.memory);
+        Ok(())
+    }
+}
+
+/// Camera images of 640 x 480 pixels into memory.
+fn camera(c: &mut Criterion) {
+    let (width, height) = Resolution::Vga.dimensions();
+    let mut image = RgbImage::from_fn(width, height, |x, y| image::Rgb([x as u8, y as u8, (x * y) as u8]));
+    let ring = Ring { memory: vec![0; 64 << 20], at: 0 };
+    let writer = LogWriter::new(ring, &Header::new("bench", [""; 0])).expect("a recording");
+    let mut robot = writer.recorder(Eye, 0);
+    let mut group = c.benchmark_group("camera image into memory");
+    group.throughput(Throughput::Bytes(image.as_raw().len() as u64));
+    group.bench_function("640 x 480", |b| b.iter(|| robot.image_into(&mut image).expect("an image")));
+    group.finish();
+}
+
+criterion_group!(benches, distbug, camera);
+criterion_main!(benches);

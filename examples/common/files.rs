@@ -1,0 +1,80 @@
+use std::io;
+use std::path::Path;
+
+use roverlab::io::log::{Attachment, Log};
+use roverlab::world::formats::{self, DiskFiles, FileSource, FormatError, Parsed, SourceFile};
+use roverlab::world::{RobotSpec, Scene};
+
+use super::CommonArgs;
+
+/// The name that a file of an option has in recordings: that of the option, with the file's ending.
+pub(crate) fn recorded_name(option: &str, path: &Path) -> String {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    let plain = !ending.is_empty() && ending.chars().all(|c| c.is_ascii_alphanumeric());
+    if plain { format!("{option}.{}", ending.to_ascii_lowercase()) } else { option.to_owned() }
+}
+
+impl CommonArgs {
+    /// The bytes of the file that an option names: from the recording that is replayed, or else from disk; they go
+    /// into the recording that is made. The option must be one of those that `command_line` lists as files.
+    pub(crate) fn read(&self, option: &str, path: &Path) -> Result<Vec<u8>, FormatError> {
+        let name = recorded_name(option, path);
+        let replayed = path.to_str() == Some(&name);
+        let log = self.origin.facts().log.filter(|_| replayed);
+        if let Some(file) = log.as_ref().and_then(|log| log.header().attachment(&name)) {
+            return Ok(file.data.clone());
+        }
+        let bytes = formats::read_file(path)?;
+        self.origin.attach(attachment(&name, &bytes));
+        Ok(bytes)
+    }
+
+    /// The scene in the file of an option, as [`read`](Self::read) finds it, with the files that it names.
+    pub(crate) fn load_scene(&self, option: &str, path: &Path) -> Result<Parsed<Scene>, FormatError> {
+        let bytes = self.read(option, path)?;
+        let name = recorded_name(option, path);
+        let log = self.origin.facts().log.filter(|log| log.header().attachment(&name).is_some());
+        let log = log.filter(|_| path.to_str() == Some(&name));
+        let mut files = Companions { main: name, log, disk: DiskFiles::new(), found: Vec::new() };
+        let scene = formats::parse_scene(bytes, &path.display().to_string(), &mut files);
+        files.found.into_iter().for_each(|file| self.origin.attach(file));
+        scene
+    }
+
+    /// The robot in the file of an option.
+    pub(crate) fn load_robot(&self, option: &str, path: &Path) -> Result<Parsed<RobotSpec>, FormatError> {
+        formats::parse_robot(self.read(option, path)?, &path.display().to_string())
+    }
+}
+
+fn attachment(name: &str, bytes: &[u8]) -> Attachment {
+    let media_type = match name.rsplit('.').next() {
+        Some("png") => "image/png",
+        Some("pgm") => "image/x-portable-graymap",
+        Some("bmp") => "image/bmp",
+        _ => "text/plain",
+    };
+    Attachment { name: name.into(), media_type: media_type.into(), data: bytes.to_vec() }
+}
+
+/// The files that a file names: those of a recording in the order in which they were read, or those on disk.
+struct Companions {
+    main: String,
+    log: Option<Log>,
+    disk: DiskFiles,
+    found: Vec<Attachment>,
+}
+
+impl FileSource for Companions {
+    fn read(&mut self, reference: &str, referrer: &str, limit: u64) -> io::Result<SourceFile> {
+        let name = format!("{} {:03} {reference}", self.main, self.found.len() + 1);
+        if let Some(log) = &self.log {
+            let file = log.header().attachment(&name).ok_or(io::ErrorKind::NotFound)?;
+            self.found.push(file.clone());
+            return Ok(SourceFile { name: reference.into(), bytes: file.data.clone() });
+        }
+        let file = self.disk.read(reference, referrer, limit)?;
+        self.found.push(attachment(&name, &file.bytes));
+        Ok(file)
+    }
+}

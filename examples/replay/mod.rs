@@ -1,0 +1,84 @@
+//! What the example `replay` is made of.
+
+#![allow(dead_code, reason = "tests use a part of this")]
+
+mod args;
+mod check;
+mod export;
+mod info;
+
+use std::ffi::OsString;
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+use roverlab::io::log::{Log, recover};
+use serde_json::{Value, json};
+
+use crate::common::{Failure, Printed, run_printing};
+pub(crate) use args::{Args, Command};
+
+/// The program.
+pub(crate) fn main() -> ExitCode {
+    ExitCode::from(run(std::env::args_os(), &mut io::stdout(), &mut io::stderr()))
+}
+
+/// The program with its command line and its outputs. Returns the exit status.
+pub(crate) fn run(
+    command_line: impl IntoIterator<Item = OsString>,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+) -> u8 {
+    run_printing(command_line, out, err, work)
+}
+
+/// What a command found out: its report, and whether it is good.
+struct Found {
+    fields: Value,
+    text: String,
+    good: bool,
+}
+
+fn work(args: &Args) -> Result<Printed, Failure> {
+    let found = match &args.command {
+        Command::Check { file } => check::check(file),
+        Command::Recover { file, out } => recovered(file, out),
+        Command::Info { file } => info::info(&read(file)?),
+        Command::Export { file, csv, picture } => {
+            export::export(&read(file)?, csv.as_deref(), picture.as_deref())
+        }
+    }?;
+    let text = if args.json { found.fields.to_string() } else { found.text };
+    Ok(Printed { text, message: None, status: u8::from(!found.good) })
+}
+
+fn bytes(file: &Path) -> Result<Vec<u8>, Failure> {
+    fs::read(file)
+        .map_err(|error| Failure::input(format!("{}: {error}; expected a recording", file.display())))
+}
+
+fn read(file: &Path) -> Result<Log, Failure> {
+    Log::read(bytes(file)?).map_err(|error| Failure::input(format!("{}: {error}", file.display())))
+}
+
+fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let refused =
+        |error| Failure::run(format!("{}: {error}; expected a file that can be written", file.display()));
+    fs::write(file, bytes).map_err(refused)
+}
+
+fn recovered(file: &Path, out: &Path) -> Result<Found, Failure> {
+    let saved =
+        recover(&bytes(file)?).map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
+    write(out, &saved.bytes)?;
+    let (chunks, messages, lost) = (saved.chunks, saved.messages, saved.lost);
+    Ok(Found {
+        fields: json!({
+            "example": "replay", "command": "recover", "outcome": "recovered",
+            "chunks": chunks, "messages": messages, "lost_bytes": lost,
+        }),
+        text: format!("recovered {chunks} chunks with {messages} messages; {lost} bytes are lost"),
+        good: true,
+    })
+}

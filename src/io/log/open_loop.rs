@@ -1,0 +1,352 @@
+use std::collections::BTreeMap;
+
+use image::RgbImage;
+
+use super::call::{self, Call};
+use super::parts::{ScanHead, Size};
+use super::player::seconds;
+use super::recording::Kind;
+use super::values::{self, Put, Take, Values};
+use super::writer::nanoseconds;
+use super::{Log, LogError, wire};
+use crate::geometry::{Pose, Twist};
+use crate::io::{
+    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
+    Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution,
+    Result, Servos, Viewport,
+};
+use crate::world::Colour;
+
+/// A robot made of a recording that answers by time, whatever the program does: for trying another algorithm on
+/// recorded inputs.
+///
+/// Its clock is its own: waiting moves it, and each call takes a little time. A sensor reads what the recorded one read
+/// last at that time, or what it read first if that was later; a sensor that was never read is an error. Commands are
+/// written down and have no effect; [`report`](OpenLoop::report) compares them with the recorded ones. Behind the end
+/// of the recording every call fails with [`EndOfLog`](ErrorKind::EndOfLog).
+#[derive(Debug, Clone)]
+pub struct OpenLoop {
+    log: Log,
+    robot: usize,
+    /// The clock, and when the recording ends, in nanoseconds.
+    time: u64,
+    end: u64,
+    /// The recorded answers to each question: where they are, in the order of their time.
+    answers: BTreeMap<String, Vec<Answer>>,
+    recorded: Vec<Command>,
+    commands: Vec<Command>,
+}
+
+/// A recorded answer: its event and the one that holds its bulk.
+#[derive(Debug, Clone, Copy)]
+struct Answer {
+    time: u64,
+    event: usize,
+    bulk: Option<usize>,
+}
+
+/// A command that a program gave.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Command {
+    /// Seconds of the robot's time.
+    pub time: f64,
+    /// The call: `set_speed`, say.
+    pub method: String,
+    /// Its numbers: metres, radians, seconds.
+    pub numbers: Vec<f64>,
+    /// All of its arguments in words.
+    pub arguments: String,
+}
+
+/// How a program's commands compare with the recorded ones.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OpenLoopReport {
+    /// How many commands were recorded, and how many the program gave.
+    pub recorded: usize,
+    /// How many commands the program gave.
+    pub given: usize,
+    /// How many commands at the beginning are the same to the bit, whatever their time.
+    pub same: usize,
+    /// The first two commands that differ, as recorded and as given; one may be missing.
+    pub first_difference: Option<(Option<Command>, Option<Command>)>,
+    /// The largest difference of a number between commands of the same kind at the same place in the order, by method.
+    pub largest: BTreeMap<String, f64>,
+}
+
+/// Nanoseconds that a call takes, as in the simulator.
+const CALL: u64 = 100_000;
+
+/// Calls that are questions; all others are commands.
+const QUESTIONS: [&str; 18] = [
+    "speed",
+    "pose",
+    "remaining",
+    "is_done",
+    "is_stalled",
+    "distance",
+    "scan_into",
+    "cursor",
+    "display_size",
+    "pixel",
+    "screenshot",
+    "read_touch",
+    "radio_id",
+    "radio_peers",
+    "encoder",
+    "resolution",
+    "image_into",
+    "wait_done",
+];
+
+/// Questions whose answers are there once: a key press that was read is gone.
+const EVENTS: [&str; 3] = ["read_key", "wait_key", "receive"];
+
+impl OpenLoop {
+    /// A robot of a recording, by its index, at the time of its first call.
+    pub fn new(log: &Log, robot: usize) -> std::result::Result<Self, LogError> {
+        if robot >= log.robots() {
+            return Err(LogError::NoRobot { index: robot, robots: log.robots() });
+        }
+        let mut new = Self {
+            log: log.clone(),
+            robot,
+            time: 0,
+            end: 0,
+            answers: BTreeMap::new(),
+            recorded: Vec::new(),
+            commands: Vec::new(),
+        };
+        new.index();
+        Ok(new)
+    }
+
+    /// Puts the clock to a time of the recording, in seconds.
+    pub fn seek(&mut self, time: f64) {
+        self.time = nanoseconds(time);
+    }
+
+    /// How the commands so far compare with those that were recorded.
+    pub fn report(&self) -> OpenLoopReport {
+        let alike = |a: &Command, b: &Command| {
+            let bits = |command: &Command| command.numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+            a.method == b.method && a.arguments == b.arguments && bits(a) == bits(b)
+        };
+        let pairs = || self.recorded.iter().zip(&self.commands);
+        let same = pairs().take_while(|(a, b)| alike(a, b)).count();
+        let next = (self.recorded.get(same).cloned(), self.commands.get(same).cloned());
+        let mut largest = BTreeMap::new();
+        for (a, b) in pairs().filter(|(a, b)| a.method == b.method) {
+            let numbers = a.numbers.iter().zip(&b.numbers).map(|(a, b)| (a - b).abs());
+            let entry = largest.entry(a.method.clone()).or_insert(0.0_f64);
+            *entry = numbers.fold(*entry, f64::max);
+        }
+        OpenLoopReport {
+            recorded: self.recorded.len(),
+            given: self.commands.len(),
+            same,
+            first_difference: (next.0.is_some() || next.1.is_some()).then_some(next),
+            largest,
+        }
+    }
+
+    /// The commands that the program has given.
+    pub fn commands(&self) -> &[Command] {
+        &self.commands
+    }
+
+    fn index(&mut self) {
+        let log = self.log.clone();
+        let mut bulk = None;
+        let mut first = None;
+        for index in 0.. {
+            let Some(event) = log.event(self.robot, index) else { break };
+            match event.kind {
+                Kind::Truth | Kind::Start => {}
+                Kind::Bulk => bulk = Some(index),
+                Kind::Call => {
+                    let bulk = bulk.take();
+                    first = first.or(Some(event.time));
+                    self.end = self.end.max(event.time);
+                    let Some(call) = Call::read(log.data(event)) else { continue };
+                    let nothing =
+                        call.result.as_ref().is_ok_and(|result| result.integers.first() == Some(&0));
+                    if nothing && matches!(call.method, "read_key" | "receive") {
+                        // That nothing came is no event.
+                    } else if is_command(call.method) {
+                        self.recorded.push(command(event.time, call.method, &call.arguments));
+                    } else {
+                        let question = call::shown(call.method, &call.arguments);
+                        let answer = Answer { time: event.time, event: index, bulk };
+                        self.answers.entry(question).or_default().push(answer);
+                    }
+                }
+            }
+        }
+        self.time = first.unwrap_or(0);
+    }
+
+    /// Lets a call's time pass; fails behind the end of the recording.
+    fn pass(&mut self, method: &str) -> Result<()> {
+        if self.time > self.end {
+            let message = format!("the recording has ended before the call {method}");
+            return Err(Error::new(ErrorKind::EndOfLog, message));
+        }
+        self.time = self.time.saturating_add(CALL);
+        Ok(())
+    }
+
+    /// Writes a command down.
+    fn obey(&mut self, method: &str, arguments: &Values) -> Result<()> {
+        let time = self.time;
+        self.pass(method)?;
+        self.commands.push(command(time, method, arguments));
+        Ok(())
+    }
+
+    /// What a sensor read at this time.
+    fn ask<T>(
+        &mut self,
+        method: &str,
+        arguments: &Values,
+        take: impl FnOnce(&Values, &[u8]) -> Option<T>,
+    ) -> Result<T> {
+        let now = self.time;
+        self.pass(method)?;
+        let question = call::shown(method, arguments);
+        let unread =
+            || Error::new(ErrorKind::Unsupported, format!("the recording has no answer to {question}"));
+        let happens = EVENTS.contains(&method);
+        let answer =
+            if happens { self.next_event(&question, now, method) } else { self.reading(&question, now) };
+        let Some(answer) = answer else {
+            // No key was pressed yet, no message came.
+            return if happens {
+                take(&Values::of(&None::<Key>), &[]).ok_or_else(unread)
+            } else {
+                Err(unread())
+            };
+        };
+        if matches!(method, "wait_done" | "wait_key") {
+            self.time = self.time.max(answer.time);
+        }
+        let log = self.log.clone();
+        let data = |index: Option<usize>| {
+            index.and_then(|index| log.event(self.robot, index)).map_or(&[][..], |event| log.data(event))
+        };
+        let call = Call::read(data(Some(answer.event))).ok_or_else(unread)?;
+        match call.result {
+            Ok(result) => take(&result, data(answer.bulk)).ok_or_else(unread),
+            Err(failure) => Err(failure.error()),
+        }
+    }
+
+    /// The last answer up to a time; the first one if all are later.
+    fn reading(&self, question: &str, now: u64) -> Option<Answer> {
+        let answers = self.answers.get(question)?;
+        let later = answers.partition_point(|answer| answer.time <= now);
+        answers.get(later.saturating_sub(1)).copied()
+    }
+
+    /// The oldest event that nobody has seen, if it has happened by now or the program waits for it.
+    fn next_event(&mut self, question: &str, now: u64, method: &str) -> Option<Answer> {
+        let events = self.answers.get_mut(question)?;
+        events.first().filter(|event| event.time <= now || method == "wait_key")?;
+        Some(events.remove(0))
+    }
+
+    fn plain<T: Take>(&mut self, method: &str, arguments: &Values) -> Result<T> {
+        if is_command(method) {
+            self.obey(method, arguments)?;
+            return Values::default()
+                .take()
+                .ok_or_else(|| Error::new(ErrorKind::Other, "a command has no answer"));
+        }
+        self.ask(method, arguments, |result, _| result.take())
+    }
+}
+
+fn is_command(method: &str) -> bool {
+    !QUESTIONS.contains(&method) && !EVENTS.contains(&method) && !matches!(method, "now" | "wait")
+}
+
+fn command(time: u64, method: &str, arguments: &Values) -> Command {
+    Command {
+        time: seconds(time),
+        method: method.into(),
+        numbers: arguments.numbers.clone(),
+        arguments: arguments.shown(),
+    }
+}
+
+impl Clock for OpenLoop {
+    fn now(&mut self) -> Result<f64> {
+        let now = seconds(self.time);
+        self.pass("now")?;
+        Ok(now)
+    }
+
+    fn wait(&mut self, seconds: f64) -> Result<()> {
+        crate::io::error::require_finite("waiting time", seconds)?;
+        self.pass("wait")?;
+        self.time = self.time.saturating_add(nanoseconds(seconds.max(0.0)));
+        Ok(())
+    }
+
+    fn peek_time(&mut self) -> Result<f64> {
+        Ok(seconds(self.time))
+    }
+}
+
+impl Lidar for OpenLoop {
+    fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()> {
+        self.ask("scan_into", &Values::default(), |head, bulk| {
+            let head: ScanHead = head.take()?;
+            head.fill(scan, wire::doubles(wire::bytes_of(bulk, 6).unwrap_or_default())?);
+            Some(())
+        })
+    }
+
+    fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
+        self.obey("configure_lidar", &Values::of(&settings))
+    }
+}
+
+impl Camera for OpenLoop {
+    fn set_resolution(&mut self, resolution: Resolution) -> Result<()> {
+        self.obey("set_resolution", &Values::of(&resolution))
+    }
+
+    fn resolution(&mut self) -> Result<Resolution> {
+        self.plain("resolution", &Values::default())
+    }
+
+    fn image_into(&mut self, image: &mut RgbImage) -> Result<()> {
+        self.ask("image_into", &Values::default(), |size, bulk| {
+            let Size(width, height) = size.take()?;
+            *image = values::image(width, height, wire::bytes_of(bulk, 6).unwrap_or_default().to_vec())?;
+            Some(())
+        })
+    }
+}
+
+macro_rules! by_time {
+    ($capability:ident { $( fn $name:ident($($arg:ident: $type:ty),*) -> $result:ty; )* }) => {
+        impl $capability for OpenLoop {
+            $( fn $name(&mut self $(, $arg: $type)*) -> Result<$result> {
+                #[allow(unused_mut, reason = "some calls have no arguments")]
+                let mut arguments = Values::default();
+                $( $arg.put(&mut arguments); )*
+                self.plain(stringify!($name), &arguments)
+            } )*
+        }
+    };
+}
+
+signatures! { Drive => by_time!() }
+signatures! { DistanceSensors => by_time!() }
+signatures! { Display => by_time!() }
+signatures! { Keys => by_time!() }
+signatures! { Radio => by_time!() }
+signatures! { Motors => by_time!() }
+signatures! { Servos => by_time!() }
+signatures! { Encoders => by_time!() }

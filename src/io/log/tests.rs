@@ -1,0 +1,419 @@
+//! Recordings as wholes: what is written is read, and what is damaged is found out.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use image::{Rgb, RgbImage};
+use proptest::prelude::*;
+
+use super::*;
+use crate::geometry::{Pose, Twist};
+use crate::io::sim::{SimOptions, Simulation};
+use crate::io::wrappers::{Fault, Faulty};
+use crate::io::{
+    Camera, Clock, Display, DistanceSensors, Drive, ErrorKind, LidarScan, MockRobot, Psd, Resolution, Result,
+    RobotIo,
+};
+use crate::world::{LidarSpec, RobotSpec, Scene, World};
+
+fn header() -> Header {
+    Header { seed: Some(7), ..Header::new("test", ["--noise=1", "--seed=7"]) }
+}
+
+fn scene() -> Scene {
+    // Few beams, so that the files are small.
+    let lidar = RobotSpec::s4().lidar.map(|lidar| LidarSpec { points: 12, ..lidar });
+    let spec = RobotSpec { lidar, ..RobotSpec::s4() };
+    Scene::with_robot(World::walled(2.0, 2.0), spec, Pose::new(1.0, 1.0, 0.3))
+}
+
+/// Some of everything.
+fn tour(robot: &mut (impl RobotIo + ?Sized), seconds: f64) -> Result<()> {
+    robot.print("hello, \"world\"\n")?;
+    robot.set_speed(Twist::new(0.2, 0.4))?;
+    let mut scan = LidarScan::default();
+    while robot.now()? < seconds {
+        robot.scan_into(&mut scan)?;
+        robot.pose()?;
+        robot.read_key()?;
+        robot.encoder(1)?;
+        robot.wait(0.1)?;
+    }
+    let _ = robot.distance(Psd(77));
+    let id = robot.radio_id()?;
+    robot.send(id, b"x\0y")?;
+    robot.receive()?;
+    robot.turn(0.5, 1.0)?;
+    robot.wait_done()
+}
+
+fn recorded(seconds: f64) -> Vec<u8> {
+    let simulation = Simulation::new(&scene(), SimOptions::with_noise(1.0, 7)).unwrap();
+    let writer = LogWriter::new(Vec::new(), &header()).unwrap();
+    writer.show(&scene());
+    let mut robot = writer.recorder(simulation.robot(0).unwrap(), 0);
+    let mut truth = writer.witness(simulation.truth(), 0);
+    tour(&mut robot, seconds).unwrap();
+    drop(robot);
+    truth.robot(0).unwrap();
+    writer.finish().unwrap()
+}
+
+fn replayed(
+    log: &Log,
+    run: impl FnOnce(&mut Recorder<Replay, Vec<u8>>) -> Result<()>,
+) -> (Result<()>, Vec<u8>) {
+    let player = Player::new(log);
+    let writer = LogWriter::new(Vec::new(), log.header()).unwrap();
+    writer.show(&scene());
+    let mut robot = writer.recorder(player.robot(0).unwrap(), 0);
+    let mut truth = writer.witness(player.truth(0).unwrap(), 0);
+    let result = run(&mut robot);
+    drop(robot);
+    let _ = truth.robot(0);
+    (result, writer.finish().unwrap())
+}
+
+#[test]
+fn a_replay_records_the_same_bytes() {
+    let bytes = recorded(2.5);
+    assert!(bytes == recorded(2.5));
+    let log = Log::read(bytes.clone()).unwrap();
+    assert_eq!((log.header(), log.robots()), (&header(), 1));
+    assert!(log.chunks() >= 3, "a chunk for each second: {}", log.chunks());
+    let (result, again) = replayed(&log, |robot| tour(robot, 2.5));
+    result.unwrap();
+    assert!(again == bytes, "{}", Difference::between(&log, &Log::read(again).unwrap()).unwrap());
+}
+
+#[test]
+fn recording_leaves_the_run_as_it_is() {
+    let simulation = Simulation::new(&scene(), SimOptions::with_noise(1.0, 7)).unwrap();
+    let mut robot = simulation.robot(0).unwrap();
+    tour(&mut robot, 2.5).unwrap();
+    drop(robot);
+    let log = Log::read(recorded(2.5)).unwrap();
+    let player = Player::new(&log);
+    let mut truth = player.truth(0).unwrap();
+    tour(&mut player.robot(0).unwrap(), 2.5).unwrap();
+    assert_eq!(truth.robot(0).unwrap(), simulation.truth().robot(0).unwrap());
+    assert_eq!(player.rest(), None);
+}
+
+#[test]
+fn the_first_call_that_differs_is_named() {
+    let log = Log::read(recorded(1.0)).unwrap();
+    let (result, again) = replayed(&log, |robot| {
+        robot.print("hello, \"world\"\n")?;
+        robot.set_speed(Twist::new(0.2, 0.400_000_000_000_000_1))
+    });
+    let error = result.unwrap_err();
+    let expected = "at 0.0001 s: found the call set_speed(0.2, 0.4000000000000001); expected set_speed(0.2, 0.4), \
+                    as recorded";
+    assert_eq!((error.kind(), error.to_string().as_str()), (ErrorKind::Diverged, expected));
+    let difference = Difference::between(&log, &Log::read(again).unwrap()).unwrap();
+    assert_eq!((difference.robot, difference.time), (Some(0), 0.0001));
+
+    let mut robot = Replay::new(&log, 0).unwrap();
+    let error = robot.pose().unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "at 0 s: found the call pose(); expected print(\"hello, \\\"world\\\"\\n\"), as recorded"
+    );
+    assert_eq!(robot.print("hello, \"world\"\n").unwrap_err().kind(), ErrorKind::Diverged);
+}
+
+#[test]
+fn a_call_behind_the_end_says_so() {
+    let log = Log::read(recorded(1.0)).unwrap();
+    let mut robot = Replay::new(&log, 0).unwrap();
+    tour(&mut robot, 1.0).unwrap();
+    let error = robot.wait(1.0).unwrap_err();
+    assert_eq!(
+        (error.kind(), error.to_string().as_str()),
+        (ErrorKind::EndOfLog, "the recording has ended before the call wait(1.0)")
+    );
+}
+
+#[test]
+fn a_program_that_ends_early_leaves_a_rest() {
+    let log = Log::read(recorded(1.0)).unwrap();
+    let player = Player::new(&log);
+    player.robot(0).unwrap().print("hello, \"world\"\n").unwrap();
+    assert_eq!(player.rest(), Some((0.0001, "set_speed(0.2, 0.4)".into())));
+}
+
+#[test]
+fn files_that_are_no_recordings_are_named() {
+    let bytes = recorded(1.0);
+    let named = |bytes: &[u8]| Log::read(bytes.to_vec()).unwrap_err();
+    assert!(matches!(named(b""), LogError::NoMcap));
+    assert!(matches!(named(b"PK\x03\x04 something else"), LogError::NoMcap));
+    assert!(matches!(named(&bytes[..5]), LogError::Truncated { at: 5 }));
+    assert!(matches!(named(&bytes[..bytes.len() - 3]), LogError::Truncated { .. }));
+    assert!(matches!(named(&[&bytes[..], b"!"].concat()), LogError::Damaged { .. }));
+    assert!(matches!(
+        Replay::new(&Log::read(bytes).unwrap(), 3),
+        Err(LogError::NoRobot { index: 3, robots: 1 })
+    ));
+
+    let foreign = mcap::Writer::new(io::Cursor::new(Vec::new())).and_then(|mut file| {
+        file.finish()?;
+        Ok(file.into_inner().into_inner())
+    });
+    assert!(
+        matches!(named(&foreign.unwrap()), LogError::Foreign { library } if library.starts_with("mcap-rust"))
+    );
+}
+
+/// A file with some metadata records of ours.
+fn with_metadata(records: &[&[(&str, &str)]]) -> Vec<u8> {
+    let mut file = mcap::Writer::new(io::Cursor::new(Vec::new())).unwrap();
+    for fields in records {
+        let metadata = fields.iter().map(|&(name, value)| (name.to_owned(), value.to_owned()));
+        let metadata: BTreeMap<_, _> = metadata.collect();
+        file.write_metadata(&mcap::records::Metadata { name: "roverlab".into(), metadata }).unwrap();
+    }
+    file.finish().unwrap();
+    file.into_inner().into_inner()
+}
+
+#[test]
+fn several_runs_and_newer_schemas_are_named() {
+    let named = |records: &[&[(&str, &str)]]| Log::read(with_metadata(records)).unwrap_err();
+    assert!(matches!(named(&[&[("schema", "2")]]), LogError::Newer { found: 2, supported: 1 }));
+    assert!(matches!(named(&[&[("schema", "1")], &[("schema", "1")]]), LogError::SeveralRuns { runs: 2 }));
+    assert!(matches!(named(&[&[("version", "1")]]), LogError::Damaged { .. }));
+    assert!(Log::read(with_metadata(&[&[("schema", "1")]])).is_ok());
+}
+
+#[test]
+fn every_cut_gives_back_all_complete_chunks() {
+    let bytes = recorded(1.3);
+    // Where each chunk's record ends.
+    let records = super::reader::records(&bytes, mcap::MAGIC.len()).map_while(|record| record);
+    let ends: Vec<usize> = records
+        .filter(|record| record.opcode == mcap::records::op::CHUNK)
+        .map(|record| record.end())
+        .collect();
+    assert!(ends.len() >= 2, "{ends:?}");
+    for cut in 0..bytes.len() {
+        let part = &bytes[..cut];
+        assert!(Log::read(part.to_vec()).is_err(), "cut at {cut}");
+        let complete = ends.iter().filter(|&&end| end <= cut).count();
+        match recover(part) {
+            Ok(saved) => {
+                assert_eq!(saved.chunks, complete, "cut at {cut}");
+                let log = Log::read(saved.bytes);
+                assert!(complete == 0 || log.is_ok(), "cut at {cut}: {log:?}");
+            }
+            Err(_) => assert_eq!(complete, 0, "cut at {cut}"),
+        }
+    }
+    let whole = recover(&bytes).unwrap();
+    assert!(whole.bytes == bytes && whole.lost == 0);
+}
+
+#[test]
+fn every_flipped_bit_is_found_out_or_harmless() {
+    let bytes = recorded(0.2);
+    let log = Log::read(bytes.clone()).unwrap();
+    let mut found_out = 0;
+    for place in 0..bytes.len() {
+        // One bit of each byte, another one from byte to byte.
+        let mut broken = bytes.clone();
+        broken[place] ^= 1 << (place % 8);
+        match Log::read(broken.clone()) {
+            Err(_) => found_out += 1,
+            Ok(other) => {
+                let events = |log: &Log| log.entries(0).collect::<Vec<_>>();
+                assert_eq!((other.header(), events(&other)), (log.header(), events(&log)), "byte {place}");
+            }
+        }
+        let _ = recover(&broken);
+    }
+    assert!(found_out > bytes.len() * 99 / 100, "{found_out} of {}", bytes.len());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn no_bytes_break_the_reader(mut tail: Vec<u8>, at in 0..4000_usize, length in 0..4000_usize) {
+        let bytes = recorded(0.1);
+        let (start, end) = (at.min(bytes.len()), (at + length).min(bytes.len()));
+        let mut broken = bytes[..start].to_vec();
+        broken.append(&mut tail);
+        broken.extend_from_slice(&bytes[end..]);
+        let _ = Log::read(broken.clone());
+        if let Ok(saved) = recover(&broken) {
+            prop_assert!(saved.lost <= broken.len());
+        }
+    }
+}
+
+/// Takes so many bytes and then no more.
+struct FullDisk(usize);
+
+impl Write for FullDisk {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0 = self.0.checked_sub(bytes.len()).ok_or(io::ErrorKind::StorageFull)?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_full_disk_does_not_disturb_the_run() {
+    let writer = LogWriter::new(FullDisk(10_000), &header()).unwrap();
+    let simulation = Simulation::new(&scene(), SimOptions::with_noise(1.0, 7)).unwrap();
+    let mut robot = writer.recorder(simulation.robot(0).unwrap(), 0);
+    tour(&mut robot, 3.0).unwrap();
+    assert_eq!(writer.finish().map(|_| ()).unwrap_err().kind(), io::ErrorKind::StorageFull);
+    robot.now().unwrap();
+    assert!(LogWriter::new(FullDisk(10), &header()).is_err());
+}
+
+#[test]
+fn errors_of_the_robot_are_replayed() {
+    let fault: Fault = "link@0.5".parse().unwrap();
+    let run = |robot: &mut dyn RobotIo| tour(robot, 1.0).unwrap_err();
+    let simulation = Simulation::new(&scene(), SimOptions::ideal()).unwrap();
+    let writer = LogWriter::new(Vec::new(), &header()).unwrap();
+    let mut robot = writer.recorder(Faulty::new(simulation.robot(0).unwrap(), vec![fault]), 0);
+    let first = run(&mut robot);
+    drop(robot);
+    let log = Log::read(writer.finish().unwrap()).unwrap();
+    let second = run(&mut Replay::new(&log, 0).unwrap());
+    assert_eq!((first.kind(), first.to_string()), (second.kind(), second.to_string()));
+}
+
+/// A robot with a camera alone.
+struct Eye(u8, Resolution);
+
+impl Clock for Eye {
+    fn now(&mut self) -> Result<f64> {
+        Ok(f64::from(self.0))
+    }
+
+    fn wait(&mut self, _seconds: f64) -> Result<()> {
+        Ok(())
+    }
+}
+
+impl Camera for Eye {
+    fn set_resolution(&mut self, resolution: Resolution) -> Result<()> {
+        self.1 = resolution;
+        Ok(())
+    }
+
+    fn resolution(&mut self) -> Result<Resolution> {
+        Ok(self.1)
+    }
+
+    fn image_into(&mut self, image: &mut RgbImage) -> Result<()> {
+        let (width, height) = self.1.dimensions();
+        self.0 += 1;
+        *image = RgbImage::from_fn(width, height, |x, y| Rgb([x as u8, y as u8, self.0]));
+        Ok(())
+    }
+}
+
+#[test]
+fn images_are_replayed() {
+    let writer = LogWriter::new(Vec::new(), &header()).unwrap();
+    let mut eye = writer.recorder(Eye(0, Resolution::Qqvga), 0);
+    let look = |robot: &mut dyn Camera| -> Vec<RgbImage> {
+        let first = robot.image().unwrap();
+        robot.set_resolution(Resolution::Qvga).unwrap();
+        vec![first, robot.image().unwrap(), robot.image().unwrap()]
+    };
+    let seen = look(&mut eye);
+    let log = Log::read(writer.finish().unwrap()).unwrap();
+    assert_eq!(look(&mut Replay::new(&log, 0).unwrap()), seen);
+    assert_eq!(log.topics()["/robot1/camera"], 3);
+}
+
+#[test]
+fn robots_in_threads_are_merged_by_their_time() {
+    let record = |reverse: bool| {
+        let mut scene = scene();
+        scene
+            .robots
+            .push(crate::world::RobotPlacement::new(scene.robots[0].spec.clone(), Pose::new(0.5, 0.5, 0.0)));
+        let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 3)).unwrap();
+        let writer = LogWriter::new(Vec::new(), &header()).unwrap();
+        let robots = [0, 1].map(|index| writer.recorder(simulation.robot(index).unwrap(), index));
+        std::thread::scope(|scope| {
+            let mut robots: Vec<_> = robots.into_iter().collect();
+            if reverse {
+                robots.reverse();
+            }
+            for mut robot in robots {
+                scope.spawn(move || tour(&mut robot, 1.5).unwrap());
+            }
+        });
+        writer.finish().unwrap()
+    };
+    let first = record(false);
+    for reverse in [true, false, true] {
+        assert!(record(reverse) == first);
+    }
+    let log = Log::read(first).unwrap();
+    let counts = [0, 1].map(|robot| log.entries(robot).count());
+    assert!(log.robots() == 2 && counts.iter().all(|&count| count > 50), "{counts:?}");
+}
+
+#[test]
+fn what_depends_on_more_than_the_robot_is_indeterminate() {
+    let mut speed = 0.1;
+    let result = check_determinism(&scene(), &SimOptions::default(), [4], |robot| {
+        speed += 0.01;
+        robot.set_speed(Twist::new(speed, 0.0))
+    });
+    let Err(Indeterminate::Runs { seed: 4, difference }) = result else { panic!("{result:?}") };
+    assert_eq!(
+        difference.to_string(),
+        "robot 1 at 0 s: found set_speed(0.12, 0.0) -> (); expected set_speed(0.11, 0.0) -> ()"
+    );
+    check_determinism(&scene(), &SimOptions::default(), 1..=2, |robot| tour(robot, 1.0)).unwrap();
+}
+
+#[test]
+fn the_open_loop_answers_by_time() {
+    let log = Log::read(recorded(2.0)).unwrap();
+    // The same program gives the same commands.
+    let mut robot = OpenLoop::new(&log, 0).unwrap();
+    tour(&mut robot, 2.0).unwrap();
+    let report = robot.report();
+    assert_eq!((report.same, report.first_difference), (report.recorded, None));
+    // Another one sees the same readings at the same time.
+    let mut robot = OpenLoop::new(&log, 0).unwrap();
+    robot.seek(1.0);
+    robot.set_speed(Twist::new(0.3, 0.4)).unwrap();
+    let pose = robot.pose().unwrap();
+    let entries: Vec<Entry> = log.entries(0).filter(|entry| entry.method == "pose").collect();
+    let last = entries.iter().rfind(|entry| entry.time <= robot.commands()[0].time + 1e-3).unwrap();
+    assert_eq!([pose.x, pose.y, pose.heading][..], last.numbers[..]);
+    let report = robot.report();
+    assert_eq!((report.same, report.given), (0, 1));
+    robot.wait(100.0).unwrap();
+    assert_eq!(robot.pose().unwrap_err().kind(), ErrorKind::EndOfLog);
+    assert_eq!(
+        OpenLoop::new(&log, 0).unwrap().distance(Psd::LEFT).unwrap_err().kind(),
+        ErrorKind::Unsupported
+    );
+}
+
+#[test]
+fn a_mock_robot_without_a_clock_that_moves_is_recorded() {
+    let writer = LogWriter::new(Vec::new(), &header()).unwrap();
+    let mut robot = writer.recorder(MockRobot::new().with_distance(Psd::FRONT, [0.5, 0.25]), 0);
+    assert_eq!(robot.distance(Psd::FRONT).unwrap(), 0.5);
+    let _inner: MockRobot = robot.into_inner();
+    let log = Log::read(writer.finish().unwrap()).unwrap();
+    assert_eq!(log.entries(0).map(|entry| entry.numbers).collect::<Vec<_>>(), [[0.5]]);
+}
