@@ -41,7 +41,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) bugs: Vec<BugKind>,
 
-    /// Families of courses: local_minima, complex_terrain, semi_convex, unreachable [default: all].
+    /// Families of courses: local-minima, complex-terrain, semi-convex, unreachable [default: all].
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) families: Vec<CourseFamily>,
 

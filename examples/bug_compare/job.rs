@@ -51,7 +51,12 @@ fn check(args: &Args) -> Result<(), Failure> {
     if let Some((option, _)) = alone.iter().find(|(_, given)| *given && common.world.is_none()) {
         return Err(Failure::input(format!("{option}: found no --world; expected both, or neither")));
     }
-    let never = [("--fault", !common.fault.is_empty()), ("--realtime", common.realtime)];
+    let never = [
+        ("--fault", !common.fault.is_empty()),
+        ("--realtime", common.realtime),
+        ("--record", common.record.is_some()),
+        ("--replay", common.replay.is_some()),
+    ];
     if let Some((option, _)) = never.iter().find(|(_, given)| *given) {
         return Err(Failure::input(format!(
             "{option}: found it for a comparison of many runs; expected a command line without it, or the example \

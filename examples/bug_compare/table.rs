@@ -74,7 +74,7 @@ pub(super) fn text(rows: &[Row<'_>]) -> String {
             "correct", "contacts", "path m", "95 %", "ratio", "95 %", "hits"
         )
         .expect("writing to a string does not fail");
-        of_family.iter().for_each(|row| text.push_str(&line(row)));
+        text.extend(of_family.iter().map(|row| line(row)));
         text.push('\n');
     }
     text.push_str(
