@@ -44,13 +44,13 @@
 //! | 1 Robots and simulation | EyeSim's files: `.sim`, `.wld`, `.maz`, `.robi`, `.esObj` | [`world::formats`] |
 //! | 2 Sensors and programs | what a robot can be asked: distance sensors, camera, keys, display, radio | [`io`] |
 //! | 3 Driving | the v-omega drive, encoders; from A to B, path followers, PID | [`io`], [`drive`] |
-//! | 4 Lidar | scans, and taking their noise out | [`io`], [`nav`] |
+//! | 4 Lidar | scans, what they show, and taking their noise out; localisation in a known world | [`io`], [`nav`] |
 //! | 5 Swarms | any number of robots in one world | [`io::sim`] |
 //! | 6 Wall following | walls of any shape, by distance sensors, PID or lidar | [`drive`] |
 //! | 7 Alternative drives | cars and wheels with rollers: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
 //! | 9 Mazes | models and files, flood fill, shortest routes | [`maze`] |
 //! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`world::formats`] |
-//! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search; MovingAI maps | [`nav::grid`], [`world`] |
+//! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search, any-angle paths, quadtrees | [`nav::grid`], [`world`] |
 //! | 12 Evolution | genetic algorithms, evolution strategy with covariance adaptation | [`evolve`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
 //!

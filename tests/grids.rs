@@ -10,7 +10,9 @@ use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use roverlab::nav::grid::{GridPlanner, GridSearch, JumpPointSearch, PreparedJumps};
+use roverlab::nav::grid::{
+    AnyAngle, GridPlanner, GridSearch, JumpPointSearch, PreparedJumps, Quadtree, QuadtreePlanner,
+};
 use roverlab::world::formats::movingai;
 use serde_json::Value;
 
@@ -39,6 +41,17 @@ fn own_maps_are_answered_as_their_scenarios_say() {
                 assert!(report[field].is_number(), "{field} in {report}");
             }
         }
+    }
+}
+
+/// Ways in any direction are never longer than octile ones, and those through a quadtree hardly are.
+#[test]
+fn other_planners_find_short_ways() {
+    for (algorithm, most) in [("any_angle", 1.0), ("quadtree", 1.02)] {
+        let (status, report, _) = run(&["--algorithm", algorithm]);
+        assert_eq!((status, report["outcome"].as_str()), (0, Some("solved")), "{report}");
+        assert!(report["worst_ratio"].as_f64().unwrap() <= most + 1e-9, "{report}");
+        assert!(report["mean_ratio"].as_f64().unwrap() < 0.98, "{report}");
     }
 }
 
@@ -79,11 +92,12 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Some queries of every published scenario file, by all octile planners.
+/// Some queries of every published scenario file: as long as published by all octile planners, at most as long in any
+/// direction, and little longer than that through a quadtree.
 #[test]
 fn published_lengths_are_met() {
     let Some(folder) = published() else { return };
-    let mut compared = 0;
+    let (mut compared, mut ratios) = (0, Vec::new());
     for scen in files(&folder.join("scen")).iter().flat_map(|kind| files(kind)) {
         let queries = movingai::load_scenarios(&scen).unwrap().value;
         let kind = scen.parent().unwrap().file_name().unwrap();
@@ -96,7 +110,14 @@ fn published_lengths_are_met() {
             Box::new(JumpPointSearch::new(&grid)),
             Box::new(PreparedJumps::new(&grid)),
         ];
+        let mut any_angle = AnyAngle::new(&grid);
+        let mut quadtree = QuadtreePlanner::new(&Quadtree::new(&grid));
         for query in queries.iter().step_by(queries.len() / 10 + 1) {
+            let shortest = any_angle.plan(query.start, query.goal).unwrap().cost;
+            assert!(shortest <= query.optimal + 0.006, "{}: {query:?}: {shortest}", map.display());
+            let short = quadtree.plan(query.start, query.goal).unwrap().cost;
+            assert!(short >= shortest - 1e-9, "{}: {query:?}: {short}", map.display());
+            ratios.extend((shortest > 0.0).then(|| short / shortest));
             for planner in &mut planners {
                 let path = planner.plan(query.start, query.goal).unwrap();
                 let tolerance = (2e-5 * query.optimal).max(0.006);
@@ -111,4 +132,8 @@ fn published_lengths_are_met() {
         }
     }
     assert!(compared >= 100, "only {compared} queries");
+    ratios.sort_by(f64::total_cmp);
+    let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+    let most = ratios[ratios.len() * 99 / 100];
+    assert!(mean <= 1.05 && most <= 1.15, "mean {mean}, 99 % below {most}");
 }

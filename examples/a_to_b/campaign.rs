@@ -146,6 +146,10 @@ fn add_run(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
         noise: row.kind.noise(),
         ideal_encoders: row.kind == Kind::Ideal,
         time_limit: 120.0,
+        light: 1.0,
+        keys: Vec::new(),
+        pushing: false,
+        others: Vec::new(),
         common: None,
     };
     let mut options = options(&args, &trip, Some(heading), &conditions);

@@ -2,6 +2,7 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
+use roverlab::geometry::Point;
 use roverlab::io::log::{Attachment, Header, LogError, LogWriter, Player, Witness};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::wrappers::{Fault, Faulty};
@@ -134,6 +135,14 @@ impl Stage {
             Some(writer) => Box::new(writer.witness(witness, index)),
             None => Box::new(witness),
         }
+    }
+
+    /// Where the scene's objects are now; a recording does not tell.
+    pub(crate) fn objects(&self) -> Option<Vec<Point>> {
+        let Play::Simulation(simulation) = &self.play else { return None };
+        let truth = simulation.truth();
+        let poses = (0..).map_while(|index| truth.object(index).ok());
+        Some(poses.map(|pose| pose.position()).collect())
     }
 
     /// Schedules a key press, in seconds since the start. A replayed robot's keys are in the recording.

@@ -60,6 +60,14 @@ impl CommonArgs {
 
     /// The same for an example that takes a heading at the goal, which is in `self.goal`.
     pub(crate) fn trip_to_pose(&self, own: impl FnOnce() -> Scene) -> Result<Trip, Failure> {
+        let scene = self.placed(own)?;
+        let goal = self.destination(&scene)?;
+        Ok(Trip { scene, goal })
+    }
+
+    /// The scene that the options describe, for an example without a goal: `--world`, or `own` without it, with the
+    /// robot and the start that the options give, or else the world.
+    pub(crate) fn placed(&self, own: impl FnOnce() -> Scene) -> Result<Scene, Failure> {
         let mut scene = match &self.world {
             Some(file) => Self::parsed(self.load_scene("world", file))?,
             None => own(),
@@ -72,10 +80,8 @@ impl CommonArgs {
             Some(first) => *first = robot,
             None => scene.robots.push(robot),
         }
-        let goal = self.destination(&scene)?;
-        let trip = Trip { scene, goal };
-        self.check_places(&trip)?;
-        Ok(trip)
+        self.check_start(&scene)?;
+        Ok(scene)
     }
 
     /// The world's name in messages.
@@ -124,18 +130,18 @@ impl CommonArgs {
         )
     }
 
-    fn check_places(&self, trip: &Trip) -> Result<(), Failure> {
-        let start = trip.start();
+    fn check_start(&self, scene: &Scene) -> Result<(), Failure> {
+        let start = scene.robots[0].pose;
         let from = if self.start.is_some() { "--start".into() } else { self.world_name() };
         let place = in_mm(start.position());
-        if !trip.scene.world.bounds().contains(start.position()) {
+        if !scene.world.bounds().contains(start.position()) {
             return Err(Failure::input(format!(
                 "{from}: found a start at {place} mm, outside of the world; expected one {}",
-                within(&trip.scene.world.bounds())
+                within(&scene.world.bounds())
             )));
         }
-        if clearance(&trip.scene) <= TOUCHING {
-            let radius = units::to_mm(trip.spec().footprint.bounding_radius());
+        if clearance(scene) <= TOUCHING {
+            let radius = units::to_mm(scene.robots[0].spec.footprint.bounding_radius());
             return Err(Failure::input(format!(
                 "{from}: found a start at {place} mm, in a wall, an object or another robot; expected free floor \
                  around it for a robot of {radius:.0} mm radius"

@@ -4,10 +4,10 @@
 
 use std::path::{Path, PathBuf};
 
-use roverlab::geometry::{Point, Pose};
-use roverlab::io;
+use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::log::Witness;
 use roverlab::io::sim::{NoiseModel, RobotTruth, SimOptions};
+use roverlab::io::{self, Drive, Key};
 use roverlab::kinematics::OdometryErrors;
 use roverlab::picture::{Picture, SaveError};
 use roverlab::world::{DriveSpec, RobotSpec, Scene};
@@ -19,6 +19,14 @@ use crate::common::{CommonArgs, Driven, Failure, Outcome, Pacer, Report, Stage, 
 pub(crate) struct Conditions {
     pub(crate) seed: u64,
     pub(crate) noise: f64,
+    /// Brightness of the light that cameras see by.
+    pub(crate) light: f64,
+    /// Key presses and when, in seconds.
+    pub(crate) keys: Vec<(f64, Key)>,
+    /// Whether robots push what is loose and light.
+    pub(crate) pushing: bool,
+    /// Speeds that other robots keep, by their indices.
+    pub(crate) others: Vec<(usize, Twist)>,
     pub(crate) ideal_encoders: bool,
     /// Simulated seconds.
     pub(crate) time_limit: f64,
@@ -40,6 +48,8 @@ pub(crate) struct Run<T> {
     pub(crate) sim_time: f64,
     pub(crate) true_path: Vec<Pose>,
     pub(crate) odometry_path: Vec<Point>,
+    /// Where the scene's objects are at the end; none if they may have been pushed and a recording does not tell.
+    pub(crate) objects: Vec<Point>,
 }
 
 impl Conditions {
@@ -49,6 +59,10 @@ impl Conditions {
         Ok(Self {
             seed: common.seed,
             noise: common.noise,
+            light: 1.0,
+            keys: Vec::new(),
+            pushing: false,
+            others: Vec::new(),
             ideal_encoders: false,
             time_limit: common.time_limit.unwrap_or(time_limit),
             common: Some(common.clone()),
@@ -88,13 +102,22 @@ impl Conditions {
         let options = SimOptions {
             time_limit: Some(self.time_limit + RESERVE),
             ideal_encoders: self.ideal_encoders,
+            light: self.light,
+            pushing: self.pushing,
             ..SimOptions::with_noise(self.noise, self.seed)
         };
         let stage = match &self.common {
             Some(common) => common.stage(scene, options)?,
             None => Stage::simulated(scene, options, Vec::new())?,
         };
+        for &(time, key) in &self.keys {
+            stage.press_key(0, time, key).map_err(Failure::input)?;
+        }
         let start = scene.robots[0].pose;
+        for &(other, twist) in &self.others {
+            // A robot whose program ends keeps its speed.
+            stage.robot(other)?.set_speed(twist).map_err(Failure::run)?;
+        }
         let mut robot = stage.robot(0)?;
         let mut truth = stage.truth(0)?;
         let (mut true_path, mut odometry_path) = (vec![start], vec![start.position()]);
@@ -108,7 +131,10 @@ impl Conditions {
         });
         // The robot lets go of the world, so that what is true stays as it is.
         drop(robot);
-        finish(result, &mut truth, start, true_path, odometry_path)
+        let known = || scene.world.objects.iter().map(|object| object.pose.position()).collect();
+        let objects = stage.objects().unwrap_or_else(|| if self.pushing { Vec::new() } else { known() });
+        let run = finish(result, &mut truth, start, true_path, odometry_path)?;
+        Ok(Run { objects, ..run })
     }
 }
 
@@ -127,6 +153,7 @@ fn finish<T>(
         truth: end,
         true_path,
         odometry_path,
+        objects: Vec::new(),
     })
 }
 

@@ -1,4 +1,6 @@
-use roverlab::nav::grid::{GridPlanner, GridSearch, JumpPointSearch, PreparedJumps};
+use roverlab::nav::grid::{
+    AnyAngle, GridPlanner, GridSearch, JumpPointSearch, PreparedJumps, Quadtree, QuadtreePlanner,
+};
 use roverlab::world::BitGrid;
 use roverlab::world::formats::movingai::{self, Query};
 
@@ -71,6 +73,12 @@ fn planner(algorithm: Algorithm, grid: &BitGrid) -> Box<dyn GridPlanner> {
         Algorithm::Astar => Box::new(GridSearch::astar(grid)),
         Algorithm::Jps => Box::new(JumpPointSearch::new(grid)),
         Algorithm::JpsPlus => Box::new(PreparedJumps::new(grid)),
+        Algorithm::AnyAngle => {
+            let mut planner = AnyAngle::new(grid);
+            planner.prepare();
+            Box::new(planner)
+        }
+        Algorithm::Quadtree => Box::new(QuadtreePlanner::new(&Quadtree::new(grid))),
     }
 }
 

@@ -67,6 +67,10 @@ pub(crate) enum Algorithm {
     Jps,
     /// Jump point search with all jumps prepared.
     JpsPlus,
+    /// The shortest paths in any direction.
+    AnyAngle,
+    /// Paths through a quadtree's free squares, pulled straight.
+    Quadtree,
 }
 
 impl Algorithm {
@@ -77,6 +81,8 @@ impl Algorithm {
             Self::Astar => "astar",
             Self::Jps => "jps",
             Self::JpsPlus => "jps_plus",
+            Self::AnyAngle => "any_angle",
+            Self::Quadtree => "quadtree",
         }
     }
 

@@ -10,6 +10,7 @@
 //! - [`CarToB`]: the same for a car, within its turning circle (chapter 7);
 //! - [`OmniTracker`]: along any path with any heading on wheels with rollers (chapter 7);
 //! - [`LandmarkFilter`]: odometry corrected by what a lidar sees of known landmarks;
+//! - [`RandomDrive`]: straight on, and a random turn where something is ahead (chapter 3);
 //! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6); [`PidWallFollower`],
 //!   [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`] beside it;
 //! - [`Pid`] and [`RelayTuner`]: a PID controller and how to find its gains.
@@ -24,6 +25,7 @@ mod landmark;
 mod omni;
 mod path;
 mod pid;
+mod random_drive;
 mod relay;
 mod spline;
 mod wall_following;
@@ -36,6 +38,7 @@ pub use landmark::{Landmark, LandmarkFilter};
 pub use omni::{OmniDriver, OmniParameters, OmniReference, OmniTracker};
 pub use path::{Path, PathPoint, Waypoint};
 pub use pid::{Pid, PidParameters};
+pub use random_drive::{RandomDrive, RandomDriveParameters};
 pub use relay::{RelayTuner, UltimateGain};
 pub use spline::Hermite;
 pub use wall_following::{

@@ -4,6 +4,8 @@
 mod boundary;
 mod bug;
 pub mod grid;
+mod lidar;
+mod localisation;
 mod reachability;
 mod scan_filter;
 mod scan_matcher;
@@ -16,6 +18,11 @@ pub use bug::{
     Class1, DistBug, DistBugEvent, DistBugObservation, DistBugOutcome, DistBugParameters, DistBugPhase,
     Guarantee, LeaveBug, OneBug, PathBound, Rev1, Rev2, TangentBug, UnknownBug, run_bug,
 };
+pub use lidar::{
+    ExtractionParameters, Extremum, ExtremumKind, ScanCorner, ScanFeatures, ScanObject, ScanWall,
+    extract_features, local_extrema, plot_scan,
+};
+pub use localisation::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
 pub use reachability::Reachability;
 pub use scan_filter::ScanFilter;
 pub use scan_matcher::ScanMatcher;

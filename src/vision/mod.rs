@@ -16,6 +16,8 @@
 //! # }
 //! ```
 //!
+//! [`tracking`] and [`motion`] have the robots that use them.
+//!
 //! The functions in `_into` write into memory of the caller's and allocate nothing. The loops are plain Rust that the
 //! compiler vectorises for several generations of processors; the best one that the processor has is chosen at run
 //! time, and all give the same bits.
@@ -45,6 +47,7 @@ mod hsv;
 mod hue;
 mod hue_match;
 mod laplace;
+pub mod motion;
 #[cfg(feature = "rayon")]
 mod parallel;
 mod planes;
@@ -52,6 +55,7 @@ mod projection;
 mod sobel;
 #[cfg(test)]
 mod tests;
+pub mod tracking;
 mod view;
 
 pub use border::Border;

@@ -219,6 +219,36 @@ impl BitGrid {
         Self { width: self.height, height: self.width, stride, words }
     }
 
+    /// The grid with free and blocked cells exchanged.
+    pub(crate) fn inverted(&self) -> Self {
+        let mut grid = self.clone();
+        let beyond = self.width % 64;
+        for row in grid.words.chunks_mut(self.stride.max(1)) {
+            for word in row.iter_mut() {
+                *word = !*word;
+            }
+            if let Some(last) = row.last_mut().filter(|_| beyond > 0) {
+                *last &= (1 << beyond) - 1;
+            }
+        }
+        grid
+    }
+
+    /// The grid of half the size whose cells are free if all four cells in their places are.
+    pub(crate) fn quartered(&self) -> Self {
+        let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
+        let stride = width.div_ceil(64);
+        let mut words = vec![0; stride * height];
+        for row in 0..self.height / 2 {
+            let (upper, lower) = (self.row(2 * row), self.row(2 * row + 1));
+            for (index, (a, b)) in upper.iter().zip(lower).enumerate() {
+                let both = a & b;
+                words[row * stride + index / 2] |= every_second(both & both >> 1) << (32 * (index % 2));
+            }
+        }
+        Self { width, height, stride, words }
+    }
+
     #[inline]
     fn word(&self, cell: GridCell) -> usize {
         cell.row * self.stride + cell.column / 64
@@ -248,6 +278,21 @@ pub(crate) fn ones(words: &[u64]) -> impl Iterator<Item = usize> + '_ {
             })
         })
     })
+}
+
+/// The bits at even positions, moved together.
+fn every_second(mut word: u64) -> u64 {
+    word &= 0x5555_5555_5555_5555;
+    for (shift, mask) in [
+        (1, 0x3333_3333_3333_3333),
+        (2, 0x0f0f_0f0f_0f0f_0f0f),
+        (4, 0x00ff_00ff_00ff_00ff),
+        (8, 0x0000_ffff_0000_ffff),
+        (16, 0x0000_0000_ffff_ffff),
+    ] {
+        word = (word | word >> shift) & mask;
+    }
+    word
 }
 
 /// Exchanges rows and columns of 64 x 64 bits, by halves, quarters, and so on.
@@ -320,6 +365,21 @@ mod tests {
             prop_assert!(grid.free_cells().all(|c| turned.is_free(GridCell::new(c.row, c.column))));
             prop_assert_eq!(turned.count_free(), grid.count_free());
             prop_assert_eq!(turned.transposed(), grid);
+        }
+
+        #[test]
+        fn quarters_are_free_if_all_their_cells_are(width in 0..300usize, height in 0..9usize, seed in any::<u64>()) {
+            let mut stream = crate::random::Stream::new(seed);
+            let grid = BitGrid::from_fn(width, height, |_, _| stream.chance(0.8)).unwrap();
+            let quartered = grid.quartered();
+            prop_assert_eq!((quartered.width(), quartered.height()), (width.div_ceil(2), height.div_ceil(2)));
+            for (x, y) in (0..=height / 2).flat_map(|y| (0..=width / 2).map(move |x| (x, y))) {
+                let cells = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| GridCell::new(2 * x + dx, 2 * y + dy));
+                prop_assert_eq!(quartered.is_free(GridCell::new(x, y)), cells.iter().all(|&c| grid.is_free(c)));
+            }
+            let inverted = grid.inverted();
+            prop_assert_eq!(inverted.count_free(), width * height - grid.count_free());
+            prop_assert!(grid.free_cells().all(|cell| !inverted.is_free(cell)));
         }
 
         #[test]

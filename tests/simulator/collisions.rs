@@ -357,3 +357,41 @@ fn random_drives_do_touch_things() {
     let contacts = drive_about(&crowd(1), 1, 1.0, 20.0).unwrap();
     assert!(contacts > 10, "{contacts}");
 }
+
+/// An S4 before a movable box of some mass, 0.5 m of floor, and a wall.
+fn before_a_box(mass: f64, fixed: bool) -> Scene {
+    let mut scene = before_a_wall(0.8);
+    let shape = Shape::Box { length: 0.1, width: 0.3, height: 0.1 };
+    let kind = ObjectKind { mass, fixed, ..ObjectKind::new("box", shape, roverlab::world::Colour::RED) };
+    scene.world.objects.push(Object::new(Arc::new(kind), Pose::new(0.45, 1.5, 0.0)));
+    scene
+}
+
+#[test]
+fn a_robot_pushes_what_is_light_and_loose_until_a_wall_stops_it() {
+    for (mass, fixed, pushing, far) in [
+        (0.4, false, true, true),
+        (0.4, false, false, false),
+        (0.4, true, true, false),
+        (0.6, false, true, false),
+    ] {
+        let options = SimOptions { pushing, ..SimOptions::ideal() };
+        let (mut robot, truth) = start(&before_a_box(mass, fixed), options);
+        robot.set_speed(Twist::new(0.2, 0.0)).unwrap();
+        robot.wait(1.5).unwrap();
+        let contacts = truth.robot(0).unwrap().contacts;
+        robot.wait(6.0).unwrap();
+        let place = truth.object(0).unwrap();
+        if far {
+            // The box is at the wall, the robot at the box, and only that is a contact.
+            assert!((place.x - 0.95).abs() < 1e-3 && (place.y - 1.5).abs() < 1e-9, "{place:?}");
+            assert!((truth.pose(0).unwrap().x - 0.84).abs() < 1e-3);
+            assert_eq!((contacts, truth.robot(0).unwrap().contacts), (0, 1));
+        } else {
+            assert_eq!(place, Pose::new(0.45, 1.5, 0.0));
+            assert_eq!(contacts, 1);
+        }
+    }
+    let (_, truth) = start(&before_a_box(1.0, false), SimOptions::ideal());
+    assert!(truth.object(1).is_err());
+}

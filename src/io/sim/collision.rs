@@ -91,7 +91,18 @@ impl Engine {
         let (outline, span, me) = (body.outline, body.span, Some(body.solid));
         body.wall_budget = self.space.walls_clearance(&outline, &wished.pose(), span, LOOK_AHEAD);
         body.solid_budget = self.space.solids_clearance(&outline, &wished.pose(), span, LOOK_AHEAD, me);
-        let nearest = body.wall_budget.min(body.solid_budget);
+        let mut nearest = body.wall_budget.min(body.solid_budget);
+        if nearest <= 0.0 && self.options.pushing && self.push(index, &wished.pose()) {
+            let body = &mut self.bodies[index];
+            body.solid_budget = self.space.solids_clearance(&outline, &wished.pose(), span, LOOK_AHEAD, me);
+            nearest = body.wall_budget.min(body.solid_budget);
+            // What was pushed lies at the rim and is no contact; its neighbours are looked at again soon.
+            body.solid_budget = 0.0;
+            if nearest > 0.0 {
+                return;
+            }
+        }
+        let body = &mut self.bodies[index];
         if nearest > TOUCH_MARGIN {
             body.touch.touching = false;
         } else if nearest <= 0.0 {
@@ -134,7 +145,7 @@ impl Engine {
     }
 
     /// How deep a robot at a pose would be in something. Leaves the contacts in `self.contacts`.
-    fn depth_at(&mut self, index: usize, pose: &Pose) -> f64 {
+    pub(super) fn depth_at(&mut self, index: usize, pose: &Pose) -> f64 {
         let body = &self.bodies[index];
         self.space.contacts(&body.outline, pose, body.span, Some(body.solid), &mut self.contacts);
         self.contacts.iter().map(|contact| contact.depth).fold(0.0, f64::max)

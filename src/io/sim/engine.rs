@@ -3,6 +3,7 @@ use image::RgbImage;
 use super::body::Body;
 use super::camera::{CameraDevice, Moment, Studio};
 use super::options::ticks_in;
+use super::pushing::{Movable, movables};
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
 use crate::geometry::{Pose, Twist};
 use crate::io::error::{require_finite, require_positive};
@@ -22,6 +23,7 @@ pub(super) struct Engine {
     pub(super) tick: u64,
     motions: Vec<PlanarMotion>,
     pub(super) contacts: Vec<Contact>,
+    pub(super) movables: Vec<Movable>,
     outbox: Vec<Letter>,
     studio: Box<Studio>,
     trail_ticks: Option<u64>,
@@ -67,6 +69,7 @@ impl Engine {
             tick: 0,
             motions,
             contacts: Vec::new(),
+            movables: movables(&scene.world, &objects),
             outbox: Vec::new(),
             studio,
             trail_ticks,

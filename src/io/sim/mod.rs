@@ -37,6 +37,7 @@ mod mechanics;
 mod noise;
 mod omni;
 mod options;
+mod pushing;
 mod robot;
 mod robot_traits;
 mod shared;

@@ -8,6 +8,9 @@ pub struct SimOptions {
     pub seed: u64,
     /// Drive and sensor errors.
     pub noise: NoiseModel,
+    /// Whether robots push what is not fixed and weighs no more than they do, instead of standing before it. Pushed
+    /// things slide without turning, stop at once, and are no contacts; against walls and other things they stay.
+    pub pushing: bool,
     /// How bright the light is that cameras see by, as a factor; 1 is a well lit room.
     pub light: f64,
     /// Whether encoders measure exactly instead of counting whole ticks.
@@ -32,6 +35,7 @@ impl Default for SimOptions {
             seed: 1,
             noise: NoiseModel::real(),
             light: 1.0,
+            pushing: false,
             ideal_encoders: false,
             call_duration: 1e-4,
             time_limit: None,

@@ -49,6 +49,18 @@ impl Truth {
         robot_truth(&self.shared.lock().engine, robot)
     }
 
+    /// An object's pose in the world, by its index in the scene: robots may have pushed it.
+    pub fn object(&self, object: usize) -> Result<Pose> {
+        let state = self.shared.lock();
+        let engine = &state.engine;
+        let objects = engine.space.solids() - engine.bodies.len();
+        let found = engine.movables.get(object).map(|movable| engine.space.solid(movable.solid).pose);
+        found.ok_or_else(|| {
+            let expected = format!("an index below {objects}, the number of objects");
+            Error::invalid_input("object", object, &expected)
+        })
+    }
+
     /// Puts a robot somewhere else, as a hand would. Its odometry does not notice.
     pub fn set_pose(&self, robot: usize, pose: Pose) -> Result<()> {
         let mut state = self.shared.lock();

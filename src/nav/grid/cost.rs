@@ -22,3 +22,15 @@ pub(super) fn octile(dx: u32, dy: u32) -> u64 {
 pub(super) fn length(straight: u64, diagonal: u64) -> f64 {
     straight as f64 + diagonal as f64 * SQRT_2
 }
+
+/// A length in cells as a whole number, rounded down.
+#[inline]
+pub(super) fn fixed(length: f64) -> u64 {
+    (length * STRAIGHT as f64) as u64
+}
+
+/// A whole number above that of a length that may be infinite.
+#[inline]
+pub(super) fn limit(length: f64) -> u64 {
+    if length.is_finite() { fixed(length) + 1 } else { u64::MAX }
+}

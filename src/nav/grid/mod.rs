@@ -8,19 +8,28 @@
 //! | [`GridSearch`] | shortest octile, by Dijkstra's algorithm or A\* | nothing |
 //! | [`JumpPointSearch`] | shortest octile | a few operations for each 64 cells |
 //! | [`PreparedJumps`] | shortest octile | all jumps |
+//! | [`AnyAngle`] | shortest of all, in any direction | what corners see, at first need or all at once |
+//! | [`LazyThetaStar`] | short, in any direction | nothing |
+//! | [`QuadtreePlanner`] | short, in any direction | a [`Quadtree`], and which of its leaves are neighbours |
 //!
 //! *Octile* paths go from cell to cell, along edges and along diagonals whose both side cells are free.
 
+mod any_angle;
 mod components;
 mod cost;
 mod jump;
 mod path;
+mod quadtree;
 mod queue;
 mod steps;
 #[cfg(test)]
 mod tests;
 
+pub use any_angle::{AnyAngle, LazyThetaStar};
 pub use components::Components;
 pub use jump::{JumpPointSearch, PreparedJumps};
 pub use path::{End, GridPath, GridPlanner, PlanError, SearchStatistics};
+pub use quadtree::{
+    Edges, Leaf, LeafGraph, LeafLink, Quadtree, QuadtreeError, QuadtreePlanner, segment_meets_box,
+};
 pub use steps::{GridSearch, GridStep};

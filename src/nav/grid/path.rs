@@ -116,6 +116,12 @@ impl GridPath {
         }
         Self { points, cost: cost::length(straight, diagonal), statistics }
     }
+
+    /// The path along straight lines between points.
+    pub(super) fn along(points: Vec<Point>, statistics: SearchStatistics) -> Self {
+        let cost = points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+        Self { points, cost, statistics }
+    }
 }
 
 fn towards(from: usize, to: usize) -> usize {

@@ -49,14 +49,18 @@ impl BucketQueue {
         self.left += 1;
     }
 
-    /// A node of the cheapest bucket, with its cost so far.
+    /// A node of the cheapest bucket, with its cost so far; `None` if no bucket is left that could hold an estimate below
+    /// `limit`.
     #[inline]
-    pub(super) fn pop(&mut self) -> Option<(u32, u64)> {
+    pub(super) fn pop_below(&mut self, limit: u64) -> Option<(u32, u64)> {
         if self.left == 0 {
             return None;
         }
         while self.heads[self.current] == NONE {
             self.current += 1;
+        }
+        if self.base + ((self.current as u64) << Self::SHIFT) >= limit {
+            return None;
         }
         let index = self.heads[self.current];
         let entry = self.entries[index as usize];
@@ -83,10 +87,19 @@ mod tests {
             for (node, &cost) in costs.iter().enumerate() {
                 queue.push(cost, node as u32, cost);
             }
-            let out: Vec<_> = std::iter::from_fn(|| queue.pop()).collect();
+            let out: Vec<_> = std::iter::from_fn(|| queue.pop_below(u64::MAX)).collect();
             prop_assert_eq!(out.len(), costs.len());
             prop_assert!(out.iter().all(|&(node, cost)| costs[node as usize] == cost));
             prop_assert!(out.windows(2).all(|pair| pair[0].1 >> BucketQueue::SHIFT <= pair[1].1 >> BucketQueue::SHIFT));
+            // What is below a limit comes out, and little else does.
+            queue.start(0);
+            for &cost in &costs {
+                queue.push(cost, 0, cost);
+            }
+            let (limit, bucket) = (1 << 19, 1 << BucketQueue::SHIFT);
+            let out: Vec<_> = std::iter::from_fn(|| queue.pop_below(limit)).collect();
+            prop_assert!(out.iter().all(|&(_, cost)| cost < limit + bucket));
+            prop_assert!(out.len() >= costs.iter().filter(|&&cost| cost < limit).count());
         }
     }
 }

@@ -140,12 +140,12 @@ impl GridSearch {
         self.queue.start(first);
         self.queue.push(first, start as u32, 0);
         let mut best = u64::MAX;
-        while let Some((node, cost)) = self.queue.pop() {
+        while let Some((node, cost)) = self.queue.pop_below(best) {
             let node = node as usize;
-            if self.labels[node].cost() != cost || cost >= best {
+            let (x, y) = (node % stride, node / stride);
+            if self.labels[node].cost() != cost || cost + estimate(x, y) >= best {
                 continue;
             }
-            let (x, y) = (node % stride, node / stride);
             statistics.expanded += 1;
             trace(self.step(x, y, cost, estimate(x, y)));
             let (straight, diagonal) = self.steps(node);

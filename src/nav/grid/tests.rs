@@ -180,5 +180,6 @@ fn a_star_looks_at_less_than_dijkstra_and_jumps_at_less_than_both() {
     let path = astar.plan_traced(start, goal, |step| steps.push(step)).unwrap();
     assert_eq!((steps.len(), steps[0].cell), (path.statistics.expanded, start));
     // The queue is in order to within a bucket.
-    assert!(steps.iter().all(|step| step.cost + step.estimate <= path.cost + 0.5));
+    let most = steps.iter().map(|step| step.cost + step.estimate).fold(0.0, f64::max);
+    assert!(most <= path.cost + 0.5, "{most} for {}", path.cost);
 }

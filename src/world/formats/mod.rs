@@ -4,6 +4,7 @@
 //! column, what stands there and what was expected. Files are in millimetres and degrees; values are in SI units.
 
 mod args;
+pub mod bitmap;
 mod error;
 pub mod esobj;
 mod lexer;

@@ -287,7 +287,7 @@ impl Header<'_> {
 /// Bytes that decoding an image may take.
 const MAX_DECODED_BYTES: u64 = 128 << 20;
 
-fn decode_image(source: &SourceFile) -> Result<DynamicImage, FormatError> {
+pub(super) fn decode_image(source: &SourceFile) -> Result<DynamicImage, FormatError> {
     let error =
         |found: String, expected: &str| FormatError::new(&source.name, Location::START, found, expected);
     let mut reader = ImageReader::new(Cursor::new(&source.bytes));

@@ -54,6 +54,8 @@ const ROBOTS: [Colour; 5] = [
 ];
 /// The lower part of a robot, with its wheels, and its share of the height.
 const CHASSIS: (Colour, f64) = (Colour::from_hex(0x2a_2a_2e), 0.4);
+/// Between which shares of its height a robot's front is.
+const FRONT: (f64, f64) = (0.5, 0.92);
 /// Metres from a marker's middle to its rim.
 const MARKER: f64 = 0.010;
 
@@ -120,6 +122,20 @@ impl Thing {
         let upper = Standing { bottom: waist, top: solid.bottom + self.height, colour: self.colour };
         self.draw_part(carpenter, canvas, view, &solid.pose, lower);
         self.draw_part(carpenter, canvas, view, &solid.pose, upper);
+        // A white front, so that one sees which way it looks, and that it turns.
+        let front = Self { form: Form::Cuboid(self.front()), ..*self };
+        let (low, high) = (solid.bottom + FRONT.0 * self.height, solid.bottom + FRONT.1 * self.height);
+        let plate = Standing { bottom: low, top: high, colour: Colour::from_hex(0xf2_f2_f2) };
+        front.draw_part(carpenter, canvas, view, &solid.pose, plate);
+    }
+
+    /// A box in the middle of a robot's front that stands out a little.
+    fn front(&self) -> Aabb {
+        let (reach, half) = match self.form {
+            Form::Ball(radius) | Form::Cylinder(radius) => (radius, 0.45 * radius),
+            Form::Cuboid(Aabb { min, max }) => (max.x, 0.22 * (max.y - min.y)),
+        };
+        Aabb::new(Point::new(0.5 * reach, -half), Point::new(1.03 * reach, half))
     }
 
     fn draw_part(

@@ -77,19 +77,16 @@ impl Search {
                 &mut statistics,
             );
         });
-        while let Some((node, cost)) = self.queue.pop() {
+        while let Some((node, cost)) = self.queue.pop_below(best) {
             let label = self.labels[node as usize];
-            if label.cost != cost || cost >= best {
+            let (x, y) = (label.x as usize, label.y as usize);
+            if label.cost != cost || cost + estimate(x, y) >= best {
                 continue;
             }
             statistics.expanded += 1;
-            let (x, y) = (label.x as usize, label.y as usize);
             if planes.sees(x, y, &goal) {
                 // Nothing else that comes from here can be shorter.
-                let total = cost + estimate(x, y);
-                if total < best {
-                    (best, last) = (total, node);
-                }
+                (best, last) = (cost + estimate(x, y), node);
                 continue;
             }
             let at = Landing { x, y, direction: label.query as usize & 7 };

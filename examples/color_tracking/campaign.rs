@@ -1,0 +1,60 @@
+use roverlab::random::Stream;
+
+use super::drive::{Ended, nearest};
+use super::job::{one, wanted};
+use super::{Args, Job, scene};
+use crate::common::{Failure, Outcome, Report};
+use crate::driving::Conditions;
+
+/// How the scenes of a campaign went.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Tally {
+    pub(crate) scenes: u64,
+    pub(crate) reached: u64,
+    /// Seeds of the others.
+    pub(crate) wrong: Vec<u64>,
+}
+
+/// Metres between the middles of robot and object that count as reached, and from home that count as home.
+const REACHED: f64 = 0.2;
+const HOME: f64 = 0.2;
+
+/// Drives in many scenes.
+pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
+    let tally = tally(args)?;
+    let share = tally.reached as f64 / tally.scenes.max(1) as f64;
+    let outcome = if share >= 0.99 { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
+    Ok(Report::new(outcome)
+        .field("job", args.job.name())
+        .field("method", args.method.name())
+        .field("scenes", tally.scenes)
+        .field("reached", tally.reached)
+        .field("wrong", tally.wrong))
+}
+
+pub(crate) fn tally(args: &Args) -> Result<Tally, Failure> {
+    let mut tally = Tally { scenes: args.scenes, ..Tally::default() };
+    for seed in args.common.seed..args.common.seed.saturating_add(args.scenes) {
+        if good(args, seed)? { tally.reached += 1 } else { tally.wrong.push(seed) }
+    }
+    Ok(tally)
+}
+
+/// Whether the robot does its job in a scene, without touching anything.
+fn good(args: &Args, seed: u64) -> Result<bool, Failure> {
+    let scene = scene::drawn(seed);
+    let light = Stream::new(seed).child("light", 0).between(0.3, 1.5);
+    let home = args.job == Job::Home;
+    let conditions =
+        Conditions { seed, light, pushing: home, common: None, ..Conditions::new(&args.common, 300.0)? };
+    let run = one(args, &scene, &conditions, &mut |_| {})?;
+    let Ok((Some(hue), ended)) = run.ending else { return Ok(false) };
+    let objects = wanted(&scene, hue, args.tolerance)?;
+    let places = || objects.iter().filter_map(|&index| run.objects.get(index).copied());
+    let (goal, near, distance) = if home {
+        (Ended::Home, HOME, nearest(places(), scene.robots[0].pose.position()))
+    } else {
+        (Ended::Reached, REACHED, nearest(places(), run.truth.pose.position()))
+    };
+    Ok(ended == goal && run.truth.contacts == 0 && distance.is_some_and(|distance| distance <= near))
+}

@@ -1,0 +1,99 @@
+use image::RgbImage;
+use roverlab::geometry::Point;
+use roverlab::io::{self, Camera, Clock, Display, Drive, ErrorKind, Lidar, Picture, Pixel, Viewport};
+use roverlab::vision::tracking::{
+    CameraGeometry, ColourFinder, ColourOutcome, ColourTracker, FindMethod, HomeParameters, PushHome,
+    PushOutcome, Sighting, TrackerParameters, teach_hue,
+};
+use roverlab::world::Colour;
+
+use super::Job;
+
+/// How the robot looks and drives.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Options {
+    pub(crate) job: Job,
+    pub(crate) method: FindMethod,
+    pub(crate) tolerance: u8,
+    pub(crate) camera: CameraGeometry,
+    pub(crate) radius: f64,
+    /// Seconds.
+    pub(crate) time_limit: f64,
+}
+
+/// How a run ended, as the robot takes it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Ended {
+    Reached,
+    Home,
+    TimedOut,
+    Blocked,
+}
+
+/// The hue of what is held before the camera.
+pub(crate) fn teach(robot: &mut (impl Camera + Display + io::Keys)) -> io::Result<Option<u8>> {
+    robot.set_menu(["TEACH", "", "", ""])?;
+    robot.wait_key()?;
+    let image = robot.image()?;
+    robot.draw_image(Picture::Rgb(&image), Viewport::default())?;
+    teach_hue(&image, ColourFinder::LIMITS).map_err(|error| failure(&error))
+}
+
+fn failure(error: &roverlab::vision::Error) -> io::Error {
+    io::Error::new(ErrorKind::Other, error.to_string())
+}
+
+/// Drives by a hue. `watch` is called after each step.
+pub(crate) fn drive<R: Camera + Clock + Display + Drive + Lidar + ?Sized>(
+    robot: &mut R,
+    hue: u8,
+    options: &Options,
+    mut watch: impl FnMut(),
+) -> io::Result<Ended> {
+    let finder = ColourFinder::new(hue, options.tolerance, options.method, options.camera)
+        .map_err(|error| failure(&error))?;
+    match options.job {
+        Job::Reach => {
+            let parameters = TrackerParameters { radius: options.radius, ..TrackerParameters::default() };
+            let mut tracker = ColourTracker::new(finder, parameters);
+            let outcome = tracker.run(robot, options.time_limit, |robot, tracker, image| {
+                watch();
+                show(robot, image, tracker.sighting())
+            })?;
+            Ok(match outcome {
+                ColourOutcome::Reached => Ended::Reached,
+                ColourOutcome::TimedOut => Ended::TimedOut,
+                ColourOutcome::Blocked => Ended::Blocked,
+            })
+        }
+        Job::Home => {
+            let defaults = HomeParameters::default();
+            let tracker = TrackerParameters { radius: options.radius, ..defaults.tracker };
+            let home = robot.pose()?.position();
+            let mut push = PushHome::new(finder, home, HomeParameters { tracker, ..defaults });
+            let outcome = push.run(robot, options.time_limit, |_, _, _| {
+                watch();
+                Ok(())
+            })?;
+            Ok(match outcome {
+                PushOutcome::Home => Ended::Home,
+                PushOutcome::TimedOut => Ended::TimedOut,
+                PushOutcome::Blocked => Ended::Blocked,
+            })
+        }
+    }
+}
+
+/// The image on the display, with a line at the column of the object.
+fn show<R: Display + ?Sized>(robot: &mut R, image: &RgbImage, seen: Option<Sighting>) -> io::Result<()> {
+    robot.draw_image(Picture::Rgb(image), Viewport::default())?;
+    let Some(seen) = seen else { return Ok(()) };
+    let column = (seen.column * 320.0 / f64::from(image.width().max(1))) as i32;
+    let at = |row: i32| -> Pixel { (column, row) };
+    robot.draw_line(at(0), at(239), Colour::GREEN)
+}
+
+/// The place of the object nearest to another one: that of the colour, where several have it.
+pub(crate) fn nearest(places: impl IntoIterator<Item = Point>, to: Point) -> Option<f64> {
+    places.into_iter().map(|place| (place - to).norm()).reduce(f64::min)
+}

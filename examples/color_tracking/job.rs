@@ -1,0 +1,135 @@
+use roverlab::geometry::Point;
+use roverlab::io::Key;
+use roverlab::picture::{Mark, Picture};
+use roverlab::vision::tracking::{CameraGeometry, ColourFinder};
+use roverlab::vision::{HueRange, HueScale, hue};
+use roverlab::world::{Colour, Footprint, Object, Scene};
+
+use super::drive::{Ended, Options, drive, nearest, teach};
+use super::{Args, Job, campaign, scene};
+use crate::common::{Failure, Outcome, Report, millimetres};
+use crate::driving::{Conditions, Run, drawn, paced};
+
+/// The hue that is taught, if none is given: a red card's.
+const CARD: Colour = Colour::new(200, 24, 24);
+/// Simulated seconds for the job.
+const TIME_LIMIT: f64 = 300.0;
+
+/// What came of a run: the hue, and how it ended.
+pub(crate) type Ending = (Option<u8>, Ended);
+
+/// The work of the example.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    if args.campaign {
+        return campaign(args);
+    }
+    let common = &args.common;
+    common.check_picture()?;
+    let scene = common.placed(|| scene::drawn(common.seed))?;
+    let conditions = Conditions {
+        light: args.light,
+        pushing: args.job == Job::Home,
+        ..Conditions::new(common, TIME_LIMIT)?
+    };
+    let run = one(args, &scene, &conditions, &mut paced(common))?;
+    let (file, trouble) = drawn(common, "color_tracking.svg", || picture(&scene, &run));
+    let report =
+        report(args, &scene, &run)?.field("time_limit_s", conditions.time_limit).field("picture", file);
+    Ok(Report { trouble, ..report })
+}
+
+/// Teaches the robot the card's hue unless one is given, then lets it drive.
+pub(crate) fn one(
+    args: &Args,
+    scene: &Scene,
+    conditions: &Conditions,
+    watch: &mut dyn FnMut(f64),
+) -> Result<Run<Ending>, Failure> {
+    let spec = &scene.robots[0].spec;
+    let (Some(camera), Some(_)) = (&spec.camera, &spec.lidar) else {
+        return Err(Failure::input(format!(
+            "found robot {} without a camera or a lidar; expected one with both",
+            spec.name
+        )));
+    };
+    let options = Options {
+        job: args.job,
+        method: args.method.method(),
+        tolerance: args.tolerance,
+        camera: CameraGeometry::from(camera),
+        radius: match spec.footprint {
+            Footprint::Disc { radius } => radius,
+            other => other.bounding_radius(),
+        },
+        time_limit: conditions.time_limit,
+    };
+    let taught = match args.hue {
+        Some(hue) => Some(hue),
+        None => taught(scene, conditions)?,
+    };
+    let Some(hue) = taught else {
+        return Err(Failure::run("the light is too dim to teach a hue; expected --light of at least 0.1"));
+    };
+    conditions.run(scene, watch, |robot, step| Ok((taught, drive(robot, hue, &options, step)?)))
+}
+
+/// The hue of a card that is held before the camera at a key press.
+fn taught(scene: &Scene, conditions: &Conditions) -> Result<Option<u8>, Failure> {
+    let mut lesson = scene.clone();
+    lesson.world.billboards.push(scene::card(scene.robots[0].pose, CARD));
+    let conditions = Conditions { keys: vec![(0.5, Key::Key1)], common: None, ..conditions.clone() };
+    let run = conditions.run(&lesson, |_| {}, |robot, _| teach(robot))?;
+    run.ending.map_err(Failure::run)
+}
+
+/// The objects whose colour the robot looks for, by their index.
+pub(crate) fn wanted(scene: &Scene, hue_wanted: u8, tolerance: u8) -> Result<Vec<usize>, Failure> {
+    let range = HueRange::around(hue_wanted, tolerance, HueScale::Robios).map_err(Failure::input)?;
+    let is_it = |object: &Object| {
+        let Colour { red, green, blue } = object.kind.colour;
+        range.contains(hue([red, green, blue], HueScale::Robios, ColourFinder::LIMITS))
+    };
+    let objects = scene.world.objects.iter().enumerate();
+    Ok(objects.filter(|(_, object)| is_it(object)).map(|(index, _)| index).collect())
+}
+
+fn report(args: &Args, scene: &Scene, run: &Run<Ending>) -> Result<Report, Failure> {
+    let report = run.report(|&(_, ended)| match ended {
+        Ended::Reached => Outcome::verdict("reached"),
+        Ended::Home => Outcome::verdict("home"),
+        Ended::Blocked => Outcome::failure("blocked"),
+        Ended::TimedOut => Outcome::failure("timed_out"),
+    });
+    let taught = run.ending.as_ref().ok().and_then(|ending| ending.0);
+    let objects = wanted(scene, taught.unwrap_or(42), args.tolerance)?;
+    let places: Vec<Point> = objects.iter().filter_map(|&index| run.objects.get(index).copied()).collect();
+    let home = scene.robots[0].pose.position();
+    let distance = nearest(places.iter().copied(), run.truth.pose.position());
+    let home = nearest(places, home).filter(|_| args.job == Job::Home);
+    Ok(report
+        .field("job", args.job.name())
+        .field("method", args.method.name())
+        .field("light", args.light)
+        .field("hue", taught)
+        .field("distance_mm", distance.map(millimetres))
+        .field("home_mm", home.map(millimetres)))
+}
+
+fn picture(scene: &Scene, run: &Run<Ending>) -> Picture {
+    // Things stand where they were pushed to.
+    let mut world = scene.world.clone();
+    for (object, place) in world.objects.iter_mut().zip(&run.objects) {
+        (object.pose.x, object.pose.y) = (place.x, place.y);
+    }
+    let mut picture = Picture::new(&world);
+    let start = scene.robots[0].pose;
+    picture.title("Driving by colour");
+    picture.true_path(run.positions());
+    picture.odometry_path(run.odometry_path.iter().copied());
+    picture.robot(run.truth.pose, &scene.robots[0].spec.footprint);
+    picture.mark(Mark::Start, start.position());
+    for &point in &run.truth.contact_places {
+        picture.mark(Mark::Contact, point);
+    }
+    picture
+}

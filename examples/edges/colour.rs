@@ -1,0 +1,39 @@
+//! Kernels on colours.
+
+use image::{GrayImage, RgbImage};
+use roverlab::vision::{Error, HueScale, hsi_into, hsv_into, hue_into, hue_match_into};
+
+use super::parameters::Parameters;
+
+/// Hue, saturation and intensity by the book's formulas, or hue, saturation and value as `OpenCV` has them.
+pub(crate) fn hsi(input: &RgbImage, p: &Parameters) -> Result<RgbImage, Error> {
+    let mut output = RgbImage::new(input.width(), input.height());
+    match p.scale {
+        HueScale::Robios => hsi_into(input.try_into()?, (&mut output).try_into()?)?,
+        HueScale::OpenCv => hsv_into(input.try_into()?, (&mut output).try_into()?)?,
+    }
+    Ok(output)
+}
+
+/// One of the three.
+pub(crate) fn channel(input: &RgbImage, p: &Parameters, channel: usize) -> Result<GrayImage, Error> {
+    let whole = hsi(input, p)?;
+    let bytes = whole.pixels().map(|pixel| pixel.0[channel]).collect();
+    Ok(GrayImage::from_raw(input.width(), input.height(), bytes).unwrap_or_default())
+}
+
+pub(crate) fn hue(input: &RgbImage, p: &Parameters, exact: bool) -> Result<GrayImage, Error> {
+    if exact {
+        return channel(input, p, 0);
+    }
+    let mut output = GrayImage::new(input.width(), input.height());
+    hue_into(input.try_into()?, (&mut output).try_into()?, p.scale, p.limits)?;
+    Ok(output)
+}
+
+/// White where the hue is right.
+pub(crate) fn matches(input: &RgbImage, p: &Parameters) -> Result<GrayImage, Error> {
+    let mut output = GrayImage::new(input.width(), input.height());
+    hue_match_into(input.try_into()?, (&mut output).try_into()?, p.range, p.scale, p.limits)?;
+    Ok(output)
+}

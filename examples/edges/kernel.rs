@@ -1,0 +1,250 @@
+use image::{DynamicImage, GrayImage, RgbImage};
+use roverlab::vision::{
+    Canny, Error, Hog, HogParameters, HoughLines, HoughSegments, SegmentParameters, absolute_difference_into,
+    gaussian_into, gray_into, gray_to_rgb_into, laplace_into, laplace_saturated_into, overlay_gray_into,
+    overlay_into, projections_into, sobel_l1_into, sobel_l2_into, threshold_into,
+};
+use serde_json::{Value, json};
+
+use super::parameters::{Parameters, gaussian};
+use super::{Args, colour, marks};
+
+/// A kernel by its name on the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum Kernel {
+    /// Colour to shades of gray.
+    Gray,
+    /// Shades of gray to colour.
+    GrayToRgb,
+    /// The Laplace operator's absolute value.
+    Laplace,
+    /// The Laplace operator where it is positive.
+    LaplaceSaturated,
+    /// The Sobel gradient's magnitude, |dx| + |dy|.
+    SobelL1,
+    /// The Sobel gradient's Euclidean magnitude.
+    SobelL2,
+    /// Canny's edges.
+    Canny,
+    /// A Gaussian of 3 x 3 pixels.
+    Gaussian3,
+    /// A Gaussian of 5 x 5 pixels.
+    Gaussian5,
+    /// A Gaussian of 7 x 7 pixels.
+    Gaussian7,
+    /// White above a threshold.
+    Threshold,
+    /// Laplace edges in red over the gray image; with --second, that image over the first.
+    Overlay,
+    /// The hue of every pixel.
+    Hue,
+    /// The saturation of every pixel.
+    Saturation,
+    /// The intensity of every pixel (by `OpenCV`: the value).
+    Intensity,
+    /// Hue, saturation and intensity (or value) in the place of red, green and blue.
+    Hsi,
+    /// White where the hue is right.
+    HueMatch,
+    /// Sums of the columns and rows of the hue match.
+    Projections,
+    /// The absolute difference to --second.
+    Difference,
+    /// Connected pixels of the hue match.
+    Blobs,
+    /// Straight lines of Canny's edges.
+    Hough,
+    /// Straight lines with their ends.
+    HoughProbabilistic,
+    /// Histograms of oriented gradients.
+    Hog,
+}
+
+impl Kernel {
+    /// Its name on the command line.
+    pub(crate) fn name(self) -> String {
+        use clap::ValueEnum as _;
+        self.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
+    }
+
+    pub(crate) fn uses_canny(self) -> bool {
+        matches!(self, Self::Canny | Self::Hough | Self::HoughProbabilistic)
+    }
+
+    pub(crate) fn needs_second(self) -> bool {
+        self == Self::Difference
+    }
+}
+
+/// What a kernel makes of an image: another image, and what else there is to say.
+#[derive(Debug, Clone)]
+pub(crate) struct Processed {
+    pub(crate) image: DynamicImage,
+    pub(crate) fields: Vec<(&'static str, Value)>,
+}
+
+impl From<GrayImage> for Processed {
+    fn from(image: GrayImage) -> Self {
+        Self { image: image.into(), fields: Vec::new() }
+    }
+}
+
+impl From<RgbImage> for Processed {
+    fn from(image: RgbImage) -> Self {
+        Self { image: image.into(), fields: Vec::new() }
+    }
+}
+
+/// A kernel with its options, ready to run.
+#[derive(Debug)]
+pub(crate) struct Runner {
+    pub(crate) kernel: Kernel,
+    args: Args,
+    parameters: Parameters,
+    canny: Canny,
+}
+
+impl Runner {
+    pub(crate) fn new(args: &Args) -> Result<Self, Error> {
+        let parameters = Parameters::new(args)?;
+        Ok(Self { kernel: args.kernel, args: args.clone(), parameters, canny: Canny::new() })
+    }
+
+    /// Runs the kernel.
+    pub(crate) fn run(&mut self, input: &RgbImage, second: Option<&RgbImage>) -> Result<Processed, Error> {
+        let p = self.parameters;
+        Ok(match self.kernel {
+            Kernel::Gray => self.gray(input)?.into(),
+            Kernel::GrayToRgb => {
+                let gray = self.gray(input)?;
+                let mut output = RgbImage::new(gray.width(), gray.height());
+                gray_to_rgb_into((&gray).try_into()?, (&mut output).try_into()?)?;
+                output.into()
+            }
+            Kernel::Laplace => self.on_gray(input, |a, b| laplace_into(a, b, p.border))?.into(),
+            Kernel::LaplaceSaturated => {
+                self.on_gray(input, |a, b| laplace_saturated_into(a, b, p.border))?.into()
+            }
+            Kernel::SobelL1 => self.on_gray(input, |a, b| sobel_l1_into(a, b, p.sobel, p.border))?.into(),
+            Kernel::SobelL2 => self.on_gray(input, |a, b| sobel_l2_into(a, b, p.sobel, p.border))?.into(),
+            Kernel::Canny => self.edges(input)?.into(),
+            Kernel::Gaussian3 => self.gaussian(input, 3)?.into(),
+            Kernel::Gaussian5 => self.gaussian(input, 5)?.into(),
+            Kernel::Gaussian7 => self.gaussian(input, 7)?.into(),
+            Kernel::Threshold => {
+                let threshold = self.threshold(128).min(255) as u8;
+                self.on_gray(input, |a, b| threshold_into(a, b, threshold))?.into()
+            }
+            Kernel::Overlay => self.overlay(input, second)?.into(),
+            Kernel::Hue => colour::hue(input, &p, self.args.exact)?.into(),
+            Kernel::Saturation => colour::channel(input, &p, 1)?.into(),
+            Kernel::Intensity => colour::channel(input, &p, 2)?.into(),
+            Kernel::Hsi => colour::hsi(input, &p)?.into(),
+            Kernel::HueMatch => colour::matches(input, &p)?.into(),
+            Kernel::Projections => projections(colour::matches(input, &p)?)?,
+            Kernel::Difference => self.difference(input, second)?.into(),
+            Kernel::Blobs => {
+                let mask = if self.args.binary { self.gray(input)? } else { colour::matches(input, &p)? };
+                marks::blobs(input, &mask, self.args.min_area)?
+            }
+            Kernel::Hough => {
+                let edges = self.edges_or_input(input)?;
+                let mut hough = HoughLines::new(self.args.rho, self.args.angles.into())?;
+                let lines = hough.find((&edges).try_into()?, self.threshold(100));
+                marks::lines(&edges, &lines)
+            }
+            Kernel::HoughProbabilistic => {
+                let edges = self.edges_or_input(input)?;
+                let parameters = SegmentParameters {
+                    threshold: self.threshold(50),
+                    min_length: self.args.min_length,
+                    max_gap: self.args.max_gap,
+                    seed: self.args.common.seed,
+                };
+                let found =
+                    HoughSegments::new(self.args.angles.into())?.find((&edges).try_into()?, parameters);
+                marks::segments(&edges, &found)
+            }
+            Kernel::Hog => marks::hog(&self.gray(input)?, &mut Hog::new(HogParameters::default())?)?,
+        })
+    }
+
+    fn threshold(&self, default: u32) -> u32 {
+        self.args.threshold.unwrap_or(default)
+    }
+
+    /// The image in shades of gray, smoothed if the options ask for it.
+    fn gray(&self, input: &RgbImage) -> Result<GrayImage, Error> {
+        let mut gray = GrayImage::new(input.width(), input.height());
+        gray_into(input.try_into()?, (&mut gray).try_into()?, self.parameters.weights)?;
+        let Some(kernel) = self.parameters.smooth else { return Ok(gray) };
+        let mut smooth = GrayImage::new(input.width(), input.height());
+        gaussian_into((&gray).try_into()?, (&mut smooth).try_into()?, kernel)?;
+        Ok(smooth)
+    }
+
+    fn on_gray(
+        &self,
+        input: &RgbImage,
+        kernel: impl FnOnce(
+            roverlab::vision::GrayView<'_>,
+            roverlab::vision::GrayViewMut<'_>,
+        ) -> Result<(), Error>,
+    ) -> Result<GrayImage, Error> {
+        let gray = self.gray(input)?;
+        let mut output = GrayImage::new(gray.width(), gray.height());
+        kernel((&gray).try_into()?, (&mut output).try_into()?)?;
+        Ok(output)
+    }
+
+    fn gaussian(&self, input: &RgbImage, size: usize) -> Result<GrayImage, Error> {
+        let kernel = gaussian(size, self.args.sigma)?;
+        self.on_gray(input, |a, b| gaussian_into(a, b, kernel))
+    }
+
+    fn edges(&mut self, input: &RgbImage) -> Result<GrayImage, Error> {
+        let gray = self.gray(input)?;
+        let mut output = GrayImage::new(gray.width(), gray.height());
+        let thresholds = self.parameters.thresholds;
+        self.canny.find_into((&gray).try_into()?, (&mut output).try_into()?, thresholds)?;
+        Ok(output)
+    }
+
+    fn edges_or_input(&mut self, input: &RgbImage) -> Result<GrayImage, Error> {
+        if self.args.binary { self.gray(input) } else { self.edges(input) }
+    }
+
+    fn overlay(&self, input: &RgbImage, second: Option<&RgbImage>) -> Result<RgbImage, Error> {
+        let mut output = RgbImage::new(input.width(), input.height());
+        if let Some(top) = second {
+            overlay_into(input.try_into()?, top.try_into()?, (&mut output).try_into()?)?;
+            return Ok(output);
+        }
+        let border = self.parameters.border;
+        let laplace = self.on_gray(input, |a, b| laplace_into(a, b, border))?;
+        let mut edges = GrayImage::new(input.width(), input.height());
+        let threshold = self.threshold(50).min(255) as u8;
+        threshold_into((&laplace).try_into()?, (&mut edges).try_into()?, threshold)?;
+        let gray = self.gray(input)?;
+        let red = roverlab::world::Colour::RED;
+        overlay_gray_into((&gray).try_into()?, (&edges).try_into()?, red, (&mut output).try_into()?)?;
+        Ok(output)
+    }
+
+    fn difference(&self, input: &RgbImage, second: Option<&RgbImage>) -> Result<GrayImage, Error> {
+        let first = self.gray(input)?;
+        let second = second.map_or(Ok(first.clone()), |second| self.gray(second))?;
+        let mut output = GrayImage::new(first.width(), first.height());
+        absolute_difference_into((&first).try_into()?, (&second).try_into()?, (&mut output).try_into()?)?;
+        Ok(output)
+    }
+}
+
+fn projections(mask: GrayImage) -> Result<Processed, Error> {
+    let (mut columns, mut rows) = (vec![0; mask.width() as usize], vec![0; mask.height() as usize]);
+    projections_into((&mask).try_into()?, &mut columns, &mut rows)?;
+    // Counts of matching pixels, as the book draws them.
+    let counts = |sums: Vec<u32>| json!(sums.into_iter().map(|sum| sum / 255).collect::<Vec<u32>>());
+    Ok(Processed { image: mask.into(), fields: vec![("columns", counts(columns)), ("rows", counts(rows))] })
+}

@@ -1,0 +1,68 @@
+//! A kernel on what the robot sees, shown on its display.
+
+use image::{DynamicImage, RgbImage};
+use roverlab::geometry::Twist;
+use roverlab::io::{self, Camera, Clock, Display, Drive, Picture, Resolution, Viewport};
+
+use super::kernel::{Kernel, Runner};
+use super::{Args, file};
+use crate::common::{Failure, Outcome, Report};
+use crate::driving::{Conditions, paced};
+
+/// Seconds between two images.
+const PERIOD: f64 = 0.1;
+
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    if args.kernel.needs_second() || args.second.is_some() {
+        return Err(Failure::input("--second: found no --input; expected an image file to compare with"));
+    }
+    let common = &args.common;
+    let scene = common.placed(crate::room::scene)?;
+    let conditions = Conditions::new(common, f64::from(args.repeat) * PERIOD + 1.0)?;
+    let mut runner = Runner::new(args).map_err(Failure::input)?;
+    let run =
+        conditions.run(&scene, paced(common), |robot, step| show(robot, &mut runner, args.repeat, step))?;
+    let mut report = run.report(|_| Outcome::verdict("shown"));
+    if let Ok(shown) = &run.ending
+        && let Some(output) = &args.output
+    {
+        file::save(&DynamicImage::from(shown.clone()), output)?;
+    }
+    let (width, height) = run.ending.as_ref().map_or((0, 0), RgbImage::dimensions);
+    report = report
+        .field("kernel", args.kernel.name())
+        .field("definition", args.definition.name())
+        .field("width", width)
+        .field("height", height)
+        .field("output", args.output.clone())
+        .field("frames", args.repeat);
+    Ok(report)
+}
+
+/// Turns on the spot and shows images. Returns the display at the end.
+fn show(
+    robot: &mut (impl Camera + Clock + Display + Drive),
+    runner: &mut Runner,
+    images: u32,
+    step: &mut dyn FnMut(),
+) -> io::Result<RgbImage> {
+    robot.set_resolution(Resolution::Qvga)?;
+    robot.set_speed(Twist::new(0.0, 0.4))?;
+    let mut seen = RgbImage::default();
+    for _ in 0..images {
+        robot.image_into(&mut seen)?;
+        let processed = runner
+            .run(&seen, None)
+            .map_err(|error| io::Error::new(io::ErrorKind::Other, error.to_string()).with_source(error))?;
+        match &processed.image {
+            DynamicImage::ImageLuma8(gray) if runner.kernel != Kernel::Hog => {
+                robot.draw_image(Picture::Gray(gray), Viewport::default())?;
+            }
+            other => robot.draw_image(Picture::Rgb(&other.to_rgb8()), Viewport::default())?,
+        }
+        robot.wait(PERIOD)?;
+        step();
+    }
+    robot.set_speed(Twist::STOP)?;
+    robot.screenshot()
+}

@@ -1,0 +1,22 @@
+//! The example `edges`, in parts that the tests run too.
+
+mod args;
+mod colour;
+mod file;
+mod kernel;
+mod live;
+mod marks;
+mod parameters;
+
+pub(crate) use args::{Args, Definition};
+pub(crate) use kernel::{Kernel, Processed};
+
+use crate::common::{Failure, Report};
+
+/// The work of the example.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    match &args.input {
+        Some(input) => file::work(args, input),
+        None => live::work(args),
+    }
+}

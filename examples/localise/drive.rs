@@ -1,0 +1,76 @@
+use roverlab::drive::{RandomDrive, RandomDriveParameters};
+use roverlab::geometry::Twist;
+use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar, LidarScan};
+use roverlab::nav::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
+use roverlab::random::Stream;
+
+/// What the robot knows and is told.
+#[derive(Debug, Clone)]
+pub(crate) struct Options {
+    pub(crate) map: LocalisationMap,
+    pub(crate) localiser: LocaliserParameters,
+    pub(crate) random: RandomDriveParameters,
+    pub(crate) seed: u64,
+    /// Simulated seconds for which it drives as long as there are several places.
+    pub(crate) patience: f64,
+}
+
+/// What the robot has found out.
+#[derive(Debug, Clone)]
+pub(crate) struct Finding {
+    pub(crate) localisation: Localisation,
+    pub(crate) hypotheses: Vec<Hypothesis>,
+    /// Scans that were taken into account.
+    pub(crate) scans: u32,
+    /// The last scan.
+    pub(crate) scan: LidarScan,
+}
+
+/// Scans in a row with one place after which the robot is content.
+const CONTENT: u32 = 12;
+/// Steps of driving from one scan that is matched to the next.
+const EVERY: u32 = 4;
+/// Seconds in which the robot comes to rest.
+const REST: f64 = 1.0;
+
+/// Drives about until one place explains all scans, or patience is over. `watch` is called after each step.
+pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
+    robot: &mut R,
+    options: &Options,
+    mut watch: impl FnMut(),
+) -> io::Result<Finding> {
+    let mut localiser = Localiser::new(options.map.clone(), options.localiser)?;
+    let mut wander = RandomDrive::new(options.random, Stream::new(options.seed).child("random drive", 0))?;
+    let (mut scan, mut points) = (LidarScan::default(), Vec::new());
+    let (mut content, mut scans) = (0, 0);
+    let start = robot.now()?;
+    for step in 0_u32.. {
+        RandomDrive::look(robot, &mut scan, &mut points)?;
+        let odometry = robot.pose()?;
+        if step % EVERY == 0 {
+            localiser.update(odometry, &scan)?;
+            scans += 1;
+            let one = matches!(localiser.localisation(), Localisation::One(_));
+            content = if one { content + 1 } else { 0 };
+        }
+        if content >= CONTENT || robot.now()? - start > options.patience {
+            break;
+        }
+        let twist = wander.step(odometry, &points)?;
+        robot.set_speed(twist)?;
+        robot.wait(options.random.period)?;
+        watch();
+    }
+    // The last scan is taken at rest, so that its place is the robot's.
+    robot.set_speed(Twist::STOP)?;
+    robot.wait(REST)?;
+    robot.scan_into(&mut scan)?;
+    localiser.update(robot.pose()?, &scan)?;
+    watch();
+    Ok(Finding {
+        localisation: localiser.localisation(),
+        hypotheses: localiser.hypotheses().to_vec(),
+        scans: scans + 1,
+        scan,
+    })
+}

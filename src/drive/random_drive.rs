@@ -1,0 +1,255 @@
+use std::f64::consts::{FRAC_PI_4, PI};
+
+use crate::geometry::{Point, Pose, Twist, angle_difference, math, normalize_angle};
+use crate::io::error::require_positive;
+use crate::io::{Clock, DistanceSensors, Drive, Error, ErrorKind, Lidar, LidarScan, Psd, Result};
+use crate::random::Stream;
+
+/// What [`RandomDrive`] goes by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RandomDriveParameters {
+    /// Metres per second straight on.
+    pub speed: f64,
+    /// Radians per second on the spot.
+    pub turn_rate: f64,
+    /// Metres between the robot's outline and what is ahead at which it turns away.
+    pub safe: f64,
+    /// The radius of the circle about the robot's middle that holds it, in metres.
+    pub radius: f64,
+    /// Metres that are kept free beside it.
+    pub margin: f64,
+    /// The seconds by which the robot does later what it is told.
+    pub lag: f64,
+    /// Seconds from one step to the next.
+    pub period: f64,
+}
+
+impl Default for RandomDriveParameters {
+    /// The book's speed; an S4 that turns away where it has 150 mm left.
+    fn default() -> Self {
+        Self { speed: 0.2, turn_rate: 1.5, safe: 0.15, radius: 0.06, margin: 0.04, lag: 0.2, period: 0.05 }
+    }
+}
+
+impl RandomDriveParameters {
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<()> {
+        require_positive("speed", self.speed)?;
+        require_positive("turn rate", self.turn_rate)?;
+        require_positive("safe distance", self.safe)?;
+        require_positive("radius", self.radius)?;
+        require_positive("margin", self.margin)?;
+        require_positive("lag", self.lag)?;
+        require_positive("control period", self.period)
+    }
+}
+
+/// Drives straight on until something is ahead, turns by a random angle, and so on (book, section 3.1).
+///
+/// The robot only ever moves forwards into what it sees to be free, as wide as it is, and slows down before it stops. So
+/// several of them can share a world without touching each other: whoever sees another one ahead stops for it.
+///
+/// ```
+/// use roverlab::drive::{RandomDrive, RandomDriveParameters};
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::random::Stream;
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// # fn main() -> roverlab::io::Result<()> {
+/// let scene = Scene::with_robot(World::walled(1.5, 1.5), RobotSpec::s4(), Pose::new(0.7, 0.7, 0.3));
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let mut drive = RandomDrive::new(RandomDriveParameters::default(), Stream::new(1))?;
+/// drive.run(&mut simulation.robot(0)?, 60.0, |_| {})?;
+/// let truth = simulation.truth().robot(0)?;
+/// assert!(truth.contacts == 0 && truth.path_length > 3.0);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone)]
+pub struct RandomDrive {
+    parameters: RandomDriveParameters,
+    stream: Stream,
+    /// The heading of the turn that is running.
+    turning_to: Option<f64>,
+    turns: u32,
+}
+
+/// Directions that are drawn at a turn; the first with enough room is taken, or the one with the most.
+const DRAWN: usize = 12;
+/// Metres of free way that are enough room.
+const ROOM: f64 = 0.4;
+/// Radians by which a heading may be missed.
+const ALIGNED: f64 = 0.05;
+/// Seconds in which the rest of the way ahead is driven.
+const BRAKING: f64 = 0.6;
+
+impl RandomDrive {
+    /// A robot about to drive, with random numbers of its own.
+    pub fn new(parameters: RandomDriveParameters, stream: Stream) -> Result<Self> {
+        parameters.validate()?;
+        Ok(Self { parameters, stream, turning_to: None, turns: 0 })
+    }
+
+    /// How often it has turned.
+    pub fn turns(&self) -> u32 {
+        self.turns
+    }
+
+    /// The next speed, for a pose by odometry and what is seen, as points in the robot's frame.
+    pub fn step(&mut self, pose: Pose, points: &[Point]) -> Result<Twist> {
+        if !pose.is_finite() {
+            return Err(Error::invalid_input("observed pose", format!("{pose:?}"), "finite numbers"));
+        }
+        let RandomDriveParameters { speed, turn_rate, safe, .. } = self.parameters;
+        if let Some(heading) = self.turning_to {
+            let rest = angle_difference(heading, pose.heading);
+            if rest.abs() > ALIGNED {
+                return Ok(Twist::new(0.0, (3.0 * rest).clamp(-turn_rate, turn_rate)));
+            }
+            self.turning_to = None;
+        }
+        let free = self.free_way(points, 0.0);
+        if free > safe {
+            return Ok(Twist::new(speed.min((free - 0.5 * safe) / BRAKING), 0.0));
+        }
+        let turn = self.draw_turn(points);
+        self.turning_to = Some(normalize_angle(pose.heading + turn));
+        self.turns += 1;
+        Ok(Twist::STOP)
+    }
+
+    /// A turn towards free floor, if there is any.
+    fn draw_turn(&mut self, points: &[Point]) -> f64 {
+        let mut best = (PI, f64::NEG_INFINITY);
+        for _ in 0..DRAWN {
+            let angle = self.stream.between(FRAC_PI_4, PI);
+            let turn = if self.stream.chance(0.5) { angle } else { -angle };
+            let room = self.free_way(points, turn);
+            if room > ROOM {
+                return turn;
+            }
+            if room > best.1 {
+                best = (turn, room);
+            }
+        }
+        best.0
+    }
+
+    /// Metres that the robot can drive in a direction until its outline is at a point.
+    fn free_way(&self, points: &[Point], direction: f64) -> f64 {
+        let half = self.parameters.radius + self.parameters.margin;
+        let (sin, cos) = math::sin_cos(direction);
+        let mut free = f64::INFINITY;
+        for point in points {
+            let (along, aside) = (cos * point.x + sin * point.y, cos * point.y - sin * point.x);
+            if along > 0.0 && aside.abs() < half {
+                let nose = (half * half - aside * aside).sqrt() - self.parameters.margin;
+                free = free.min(along - nose.max(0.0));
+            }
+        }
+        free
+    }
+
+    /// Drives for so many seconds by the lidar, or by the distance sensors of a robot without one. `watch` is called after
+    /// each step with the time.
+    pub fn run<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
+        &mut self,
+        robot: &mut R,
+        seconds: f64,
+        mut watch: impl FnMut(f64),
+    ) -> Result<()> {
+        let start = robot.now()?;
+        let mut scan = LidarScan::default();
+        let mut points = Vec::new();
+        loop {
+            let now = robot.now()?;
+            if now - start >= seconds {
+                return robot.set_speed(Twist::STOP);
+            }
+            Self::look(robot, &mut scan, &mut points)?;
+            let twist = self.step(robot.pose()?, &points)?;
+            robot.set_speed(twist)?;
+            robot.wait(self.parameters.period)?;
+            watch(robot.now()?);
+        }
+    }
+
+    /// What a robot sees, as points in its frame.
+    pub fn look<R: DistanceSensors + Lidar + ?Sized>(
+        robot: &mut R,
+        scan: &mut LidarScan,
+        points: &mut Vec<Point>,
+    ) -> Result<()> {
+        points.clear();
+        match robot.scan_into(scan) {
+            Ok(()) => points.extend(scan.points()),
+            Err(error) if error.kind() == ErrorKind::Unsupported => {
+                let sensors = super::WallSensors::default();
+                for (psd, mount) in
+                    [(Psd::FRONT, sensors.front), (Psd::LEFT, sensors.left), (Psd::RIGHT, sensors.right)]
+                {
+                    let range = robot.distance(psd)?;
+                    if range.is_finite() {
+                        points.push(mount.position() + crate::geometry::direction(mount.heading) * range);
+                    }
+                }
+            }
+            Err(error) => return Err(error),
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn drive() -> RandomDrive {
+        RandomDrive::new(RandomDriveParameters::default(), Stream::new(3)).unwrap()
+    }
+
+    proptest! {
+        #[test]
+        fn it_never_drives_at_something_near(x in 0.0..0.2f64, y in -0.08..0.08f64, others in prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64), 0..30)) {
+            let mut points: Vec<Point> = others.into_iter().map(|(x, y)| Point::new(x, y)).collect();
+            points.push(Point::new(x, y));
+            let twist = drive().step(Pose::default(), &points).unwrap();
+            prop_assert!(twist.linear == 0.0);
+        }
+
+        #[test]
+        fn the_way_is_free_as_far_as_it_says(
+            points in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64), 1..20), direction in -3.0..3.0f64,
+        ) {
+            let points: Vec<Point> = points.into_iter().map(|(x, y)| Point::new(x, y)).collect();
+            let drive = drive();
+            let free = drive.free_way(&points, direction).min(1.5);
+            let radius = drive.parameters.radius;
+            for share in [0.0, 0.3, 0.6, 0.9] {
+                let place = Point::origin() + crate::geometry::direction(direction) * (share * (free - radius).max(0.0));
+                for point in &points {
+                    let ahead = (point - place).dot(&crate::geometry::direction(direction)) > 0.0;
+                    let behind_start = (point - Point::origin()).dot(&crate::geometry::direction(direction)) <= 0.0;
+                    prop_assert!(behind_start || !ahead || (point - place).norm() > radius - 1e-9 || free < radius);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn it_turns_to_where_there_is_room() {
+        // A wall ahead and on the left: the room is to the right or behind.
+        let wall = |i: i32| Point::new(0.15, 0.05 * f64::from(i));
+        let left = |i: i32| Point::new(0.05 * f64::from(i), 0.15);
+        let points: Vec<Point> = (-8..8).map(wall).chain((-8..4).map(left)).collect();
+        let mut drive = drive();
+        for _ in 0..50 {
+            let turn = drive.draw_turn(&points);
+            assert!(drive.free_way(&points, turn) > ROOM, "{turn}");
+        }
+        assert!(drive.step(Pose::new(f64::NAN, 0.0, 0.0), &points).is_err());
+        let parameters = RandomDriveParameters { safe: 0.0, ..RandomDriveParameters::default() };
+        assert!(RandomDrive::new(parameters, Stream::new(1)).is_err());
+    }
+}

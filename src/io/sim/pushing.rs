@@ -1,0 +1,65 @@
+//! Things that robots push.
+
+use super::engine::Engine;
+use crate::geometry::{Pose, Vector};
+use crate::world::World;
+use crate::world::space::{Contact, SolidId};
+
+/// An object and what it takes to push it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Movable {
+    pub(super) solid: SolidId,
+    /// Kilograms; infinite for what is fixed.
+    mass: f64,
+}
+
+/// What a push goes beyond the rim of the robot, in metres: nothing lies within another thing after it.
+const CLEAR: f64 = 1e-6;
+/// The deepest that a thing may come to lie in another one by a push.
+const TOLERANCE: f64 = 1e-5;
+
+pub(super) fn movables(world: &World, solids: &[SolidId]) -> Vec<Movable> {
+    let movable = |(&solid, object): (&SolidId, &crate::world::Object)| {
+        let mass = if object.kind.fixed { f64::INFINITY } else { object.kind.mass };
+        Movable { solid, mass }
+    };
+    solids.iter().zip(&world.objects).map(movable).collect()
+}
+
+impl Engine {
+    /// Pushes what a robot at a pose would be in, as far as it can be pushed. Returns whether anything moved.
+    pub(super) fn push(&mut self, index: usize, pose: &Pose) -> bool {
+        self.depth_at(index, pose);
+        let strength = self.bodies[index].spec.mass;
+        let contacts = std::mem::take(&mut self.contacts);
+        let mut moved = false;
+        for contact in &contacts {
+            let Some(solid) = contact.with else { continue };
+            let light = self.movables.get(solid.index()).is_some_and(|movable| movable.mass <= strength);
+            if light {
+                moved |= self.shift(solid, -contact.normal * (contact.depth + CLEAR), index);
+            }
+        }
+        self.contacts = contacts;
+        moved
+    }
+
+    /// Moves a thing unless that takes it into a wall, another thing, or a robot other than the one that pushes.
+    fn shift(&mut self, solid: SolidId, way: Vector, pusher: usize) -> bool {
+        let thing = *self.space.solid(solid);
+        let place = thing.pose.position() + way;
+        let there = Pose::new(place.x, place.y, thing.pose.heading);
+        let mut contacts: Vec<Contact> = Vec::new();
+        self.space.contacts(&thing.outline, &there, thing.span(), Some(solid), &mut contacts);
+        let me = self.bodies[pusher].solid;
+        let blocked = contacts.iter().any(|contact| contact.with != Some(me) && contact.depth > TOLERANCE);
+        if !blocked {
+            self.space.set_pose(solid, there);
+            // It may have come near to robots that did not look for it.
+            for body in &mut self.bodies {
+                body.solid_budget = body.solid_budget.min(0.0);
+            }
+        }
+        !blocked
+    }
+}

@@ -1,0 +1,125 @@
+//! The parts of edges that free leaves share.
+
+use super::tree::{Leaf, Quadtree};
+use crate::world::{BitGrid, GridCell};
+
+/// The part of an edge that two leaves share.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Portal {
+    /// The leaf on the left or above, and the one on the right or below.
+    pub(super) leaves: [u32; 2],
+    /// Its ends, in cells, from lower to higher coordinates.
+    pub(super) ends: [(i32, i32); 2],
+}
+
+/// The free leaves of a quadtree and the portals between them.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Portals {
+    pub(super) leaves: Vec<Leaf>,
+    pub(super) all: Vec<Portal>,
+    /// Where the portals of each leaf begin in the list after it, and the end.
+    first: Vec<u32>,
+    of_leaf: Vec<u32>,
+    /// The first cells of leaves, row by row, and how many come before each word: for finding a leaf's number.
+    corners: Option<BitGrid>,
+    before: Vec<u32>,
+    /// The numbers of the leaves in the order of their first cells.
+    order: Vec<u32>,
+}
+
+impl Portals {
+    pub(super) fn new(tree: &Quadtree) -> Self {
+        let mut this = Self { leaves: tree.free_leaves(), ..Self::default() };
+        this.number(tree);
+        for leaf in 0..this.leaves.len() as u32 {
+            this.connect(tree, leaf);
+        }
+        let mut counts = vec![0; this.leaves.len() + 1];
+        for portal in &this.all {
+            portal.leaves.iter().for_each(|&leaf| counts[leaf as usize + 1] += 1);
+        }
+        for leaf in 0..this.leaves.len() {
+            counts[leaf + 1] += counts[leaf];
+        }
+        this.first.clone_from(&counts);
+        this.of_leaf = vec![0; 2 * this.all.len()];
+        for (number, portal) in this.all.iter().enumerate() {
+            for &leaf in &portal.leaves {
+                this.of_leaf[counts[leaf as usize] as usize] = number as u32;
+                counts[leaf as usize] += 1;
+            }
+        }
+        this
+    }
+
+    fn number(&mut self, tree: &Quadtree) {
+        let Ok(mut corners) = BitGrid::blocked(tree.width(), tree.height()) else { return };
+        for leaf in &self.leaves {
+            corners.set_free(GridCell::new(leaf.column, leaf.row), true);
+        }
+        let mut count = 0;
+        for row in 0..corners.height() {
+            for word in corners.row(row) {
+                self.before.push(count);
+                count += word.count_ones();
+            }
+        }
+        self.order = vec![0; self.leaves.len()];
+        self.corners = Some(corners);
+        for number in 0..self.leaves.len() {
+            let rank = self.rank(self.leaves[number]);
+            self.order[rank] = number as u32;
+        }
+    }
+
+    /// The place of a leaf among all of them in the order of their first cells.
+    fn rank(&self, leaf: Leaf) -> usize {
+        let Some(corners) = &self.corners else { return 0 };
+        let words = corners.row(leaf.row);
+        let below = words[leaf.column / 64] & ((1 << (leaf.column % 64)) - 1);
+        (self.before[leaf.row * words.len() + leaf.column / 64] + below.count_ones()) as usize
+    }
+
+    /// The number of a free leaf.
+    pub(super) fn number_of(&self, leaf: Leaf) -> u32 {
+        self.order[self.rank(leaf)]
+    }
+
+    /// The portals of a leaf.
+    pub(super) fn of(&self, leaf: u32) -> &[u32] {
+        &self.of_leaf[self.first[leaf as usize] as usize..self.first[leaf as usize + 1] as usize]
+    }
+
+    /// Adds the portals on the right of a leaf and below it.
+    fn connect(&mut self, tree: &Quadtree, number: u32) {
+        let leaf = self.leaves[number as usize];
+        let (end_column, end_row) = (leaf.column + leaf.size, leaf.row + leaf.size);
+        let mut row = leaf.row;
+        while row < end_row {
+            let Some(next) = tree.leaf_at(GridCell::new(end_column, row)) else {
+                row += 1;
+                continue;
+            };
+            let end = end_row.min(next.row + next.size);
+            let x = end_column as i32;
+            self.add(number, next, [(x, row as i32), (x, end as i32)]);
+            row = end;
+        }
+        let mut column = leaf.column;
+        while column < end_column {
+            let Some(next) = tree.leaf_at(GridCell::new(column, end_row)) else {
+                column += 1;
+                continue;
+            };
+            let end = end_column.min(next.column + next.size);
+            let y = end_row as i32;
+            self.add(number, next, [(column as i32, y), (end as i32, y)]);
+            column = end;
+        }
+    }
+
+    fn add(&mut self, leaf: u32, next: Leaf, ends: [(i32, i32); 2]) {
+        let leaves = [leaf, self.number_of(next)];
+        self.all.push(Portal { leaves, ends });
+    }
+}

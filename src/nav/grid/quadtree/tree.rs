@@ -1,0 +1,268 @@
+use crate::world::{BitGrid, GridCell};
+
+/// The decomposition of a grid into squares that are free or blocked, by quarters.
+///
+/// A square whose side is a power of two is a *leaf* if all of its cells are free, or all are blocked, and that of the
+/// square that it is a quarter of does not hold. Maps of any size do: the root is the smallest power of two that holds
+/// the map, squares that reach beyond the map are divided further, and leaves lie within it. With a minimum leaf,
+/// squares of that size are not divided, and count as blocked if any of their cells is.
+///
+/// There are no nodes and no pointers: for each size one bit tells of each square whether it is free, another one whether it
+/// is blocked. They are found bottom-up, four squares of one size making one of the next, 64 at a time, which takes less
+/// than two operations a cell; a changed cell changes one square of each size.
+///
+/// ```
+/// use roverlab::nav::grid::{Leaf, Quadtree};
+/// use roverlab::world::{BitGrid, GridCell};
+/// let grid = BitGrid::from_text("....\n....\n..#.\n....")?;
+/// let tree = Quadtree::new(&grid);
+/// let free = tree.free_leaves();
+/// assert_eq!(free[0], Leaf { column: 0, row: 0, size: 2 });
+/// assert_eq!((free.len(), tree.blocked_leaves().len()), (6, 1));
+/// assert_eq!(tree.leaf_at(GridCell::new(1, 3)), Some(Leaf { column: 0, row: 2, size: 2 }));
+/// # Ok::<(), roverlab::world::BitGridError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Quadtree {
+    width: usize,
+    height: usize,
+    /// The size of the smallest leaves is two to this power.
+    smallest: usize,
+    /// The squares of each size that are free; the first ones are cells.
+    free: Vec<BitGrid>,
+    blocked: Vec<BitGrid>,
+}
+
+/// A square of cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Leaf {
+    /// Its first column.
+    pub column: usize,
+    /// Its first row.
+    pub row: usize,
+    /// Cells along its side.
+    pub size: usize,
+}
+
+impl Leaf {
+    /// Whether a cell lies in it.
+    pub fn contains(&self, cell: GridCell) -> bool {
+        cell.column.wrapping_sub(self.column) < self.size && cell.row.wrapping_sub(self.row) < self.size
+    }
+
+    /// Its middle, in cells.
+    pub fn centre(&self) -> crate::geometry::Point {
+        let half = 0.5 * self.size as f64;
+        crate::geometry::Point::new(self.column as f64 + half, self.row as f64 + half)
+    }
+}
+
+/// Why there is no quadtree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the minimum leaf is {0} cells wide; expected a power of two up to 1048576")]
+pub struct QuadtreeError(usize);
+
+impl Quadtree {
+    /// Divides a grid down to its cells.
+    pub fn new(grid: &BitGrid) -> Self {
+        Self::build(grid, 0)
+    }
+
+    /// Divides a grid, but not into squares smaller than `minimum` cells, a power of two. At the far borders of maps whose
+    /// size is no multiple of it, squares may still be smaller.
+    pub fn with_minimum_leaf(grid: &BitGrid, minimum: usize) -> Result<Self, QuadtreeError> {
+        if !minimum.is_power_of_two() || minimum > 1 << 20 {
+            return Err(QuadtreeError(minimum));
+        }
+        Ok(Self::build(grid, minimum.trailing_zeros() as usize))
+    }
+
+    fn build(grid: &BitGrid, smallest: usize) -> Self {
+        let (width, height) = (grid.width(), grid.height());
+        let mut tree =
+            Self { width, height, smallest, free: vec![grid.clone()], blocked: vec![grid.inverted()] };
+        while tree.free.last().is_some_and(|level| level.width().max(level.height()) > 1) {
+            let top = tree.free.len() - 1;
+            let level = tree.free[top].quartered();
+            tree.free.push(level);
+            let level = tree.blocked[top].quartered();
+            tree.blocked.push(level);
+        }
+        tree
+    }
+
+    /// Cells in a row of the map.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows of the map.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// The free leaves, in the order of the book's program: the first quarter, the one beside it along the row, the one below
+    /// it, the last one; each of them likewise.
+    pub fn free_leaves(&self) -> Vec<Leaf> {
+        let mut leaves = Vec::new();
+        self.visit(|leaf, free| {
+            if free {
+                leaves.push(leaf);
+            }
+        });
+        leaves
+    }
+
+    /// The blocked leaves, in the same order.
+    pub fn blocked_leaves(&self) -> Vec<Leaf> {
+        let mut leaves = Vec::new();
+        self.visit(|leaf, free| {
+            if !free {
+                leaves.push(leaf);
+            }
+        });
+        leaves
+    }
+
+    /// Calls `found` with all leaves, and whether they are free, in the order of [`Quadtree::free_leaves`].
+    pub fn visit(&self, mut found: impl FnMut(Leaf, bool)) {
+        if self.width > 0 && self.height > 0 {
+            self.divide(self.free.len() - 1, 0, 0, &mut found);
+        }
+    }
+
+    /// Squares of each size are numbered by their columns and rows among those of that size.
+    fn divide(&self, level: usize, x: usize, y: usize, found: &mut impl FnMut(Leaf, bool)) {
+        let square = GridCell::new(x, y);
+        let leaf = Leaf { column: x << level, row: y << level, size: 1 << level };
+        if leaf.column >= self.width || leaf.row >= self.height {
+            return;
+        }
+        if self.free[level].is_free(square) {
+            return found(leaf, true);
+        }
+        if self.is_solid(level, x, y) {
+            return found(leaf, false);
+        }
+        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            self.divide(level - 1, 2 * x + dx, 2 * y + dy, found);
+        }
+    }
+
+    /// The free leaf that a cell lies in, if there is one. Takes time in proportion to the number of sizes.
+    pub fn leaf_at(&self, cell: GridCell) -> Option<Leaf> {
+        let square = |level: usize| GridCell::new(cell.column >> level, cell.row >> level);
+        let free = |level: usize| self.free[level].is_free(square(level));
+        let level = (0..self.free.len()).take_while(|&level| free(level)).last()?;
+        let leaf = square_at(cell, level);
+        (level >= self.smallest_at(cell)).then_some(leaf)
+    }
+
+    /// The blocked leaf that a cell lies in, if there is one.
+    pub fn blocked_leaf_at(&self, cell: GridCell) -> Option<Leaf> {
+        if cell.column >= self.width || cell.row >= self.height || self.leaf_at(cell).is_some() {
+            return None;
+        }
+        let square = |level: usize| GridCell::new(cell.column >> level, cell.row >> level);
+        let blocked = |level: usize| self.blocked[level].is_free(square(level));
+        let level = (0..self.free.len()).take_while(|&level| blocked(level)).last().unwrap_or(0);
+        Some(square_at(cell, level.max(self.smallest_at(cell))))
+    }
+
+    /// The smallest size that leaves around a cell have: less than the minimum at the far borders alone.
+    fn smallest_at(&self, cell: GridCell) -> usize {
+        let is_whole = |level: &usize| self.is_whole(square_at(cell, *level));
+        (0..=self.smallest).rev().find(is_whole).unwrap_or(0)
+    }
+
+    fn is_whole(&self, leaf: Leaf) -> bool {
+        leaf.column + leaf.size <= self.width && leaf.row + leaf.size <= self.height
+    }
+
+    /// The free leaves that share a part of an edge with a leaf: on the right, below, on the left, above.
+    pub fn neighbours(&self, leaf: Leaf) -> Vec<Leaf> {
+        let mut found = Vec::new();
+        let (end_column, end_row) = (leaf.column + leaf.size, leaf.row + leaf.size);
+        let mut side = |at: &dyn Fn(usize) -> GridCell| {
+            let mut along = 0;
+            while along < leaf.size {
+                let cell = at(along);
+                let next = self.leaf_at(cell);
+                along += next.map_or(1, |next| {
+                    // A larger neighbour covers the side, a smaller one its own size of it.
+                    let within = if cell.column == at(along + 1).column {
+                        next.row + next.size - cell.row
+                    } else {
+                        next.column + next.size - cell.column
+                    };
+                    found.push(next);
+                    within
+                });
+            }
+        };
+        side(&|i| GridCell::new(end_column, leaf.row + i));
+        side(&|i| GridCell::new(leaf.column + i, end_row));
+        if leaf.column > 0 {
+            side(&|i| GridCell::new(leaf.column - 1, leaf.row + i));
+        }
+        if leaf.row > 0 {
+            side(&|i| GridCell::new(leaf.column + i, leaf.row - 1));
+        }
+        found
+    }
+
+    /// Makes a cell free or blocked. Changes one square of each size at most. Outside the map nothing happens.
+    pub fn set_free(&mut self, cell: GridCell, free: bool) {
+        if cell.column >= self.width || cell.row >= self.height {
+            return;
+        }
+        self.free[0].set_free(cell, free);
+        self.blocked[0].set_free(cell, !free);
+        for level in 1..self.free.len() {
+            let square = GridCell::new(cell.column >> level, cell.row >> level);
+            for squares in [&mut self.free, &mut self.blocked] {
+                let quarters = [(0, 0), (1, 0), (0, 1), (1, 1)];
+                let set = quarters.iter().all(|(dx, dy)| {
+                    squares[level - 1].is_free(GridCell::new(2 * square.column + dx, 2 * square.row + dy))
+                });
+                squares[level].set_free(square, set);
+            }
+        }
+    }
+
+    /// Whether all cells of a square are free; not if it reaches beyond the map.
+    pub(super) fn is_clear(&self, level: usize, x: usize, y: usize) -> bool {
+        self.free[level].is_free(GridCell::new(x, y))
+    }
+
+    /// Whether a square that is not free is a blocked leaf, or part of one.
+    pub(super) fn is_solid(&self, level: usize, x: usize, y: usize) -> bool {
+        let leaf = square_at(GridCell::new(x << level, y << level), level);
+        self.blocked[level].is_free(GridCell::new(x, y)) || (level <= self.smallest && self.is_whole(leaf))
+    }
+
+    pub(super) fn levels(&self) -> usize {
+        self.free.len()
+    }
+
+    /// The cells that lie in free leaves.
+    pub(super) fn grid(&self) -> BitGrid {
+        if self.smallest == 0 {
+            return self.free[0].clone();
+        }
+        let mut grid = self.free[0].clone();
+        for leaf in self.blocked_leaves() {
+            for row in leaf.row..(leaf.row + leaf.size).min(self.height) {
+                for column in leaf.column..(leaf.column + leaf.size).min(self.width) {
+                    grid.set_free(GridCell::new(column, row), false);
+                }
+            }
+        }
+        grid
+    }
+}
+
+/// The square of some size around a cell.
+fn square_at(cell: GridCell, level: usize) -> Leaf {
+    Leaf { column: cell.column >> level << level, row: cell.row >> level << level, size: 1 << level }
+}

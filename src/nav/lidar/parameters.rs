@@ -1,0 +1,49 @@
+use crate::io::error::require_positive;
+use crate::io::{Error, Result};
+
+/// What [`extract_features`](super::extract_features) goes by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExtractionParameters {
+    /// The standard deviation of a range reading, in metres.
+    pub range_error: f64,
+    /// The shortest wall, in metres.
+    pub least_wall: f64,
+    /// The fewest points of a wall.
+    pub least_points: usize,
+    /// The largest width of an object, in metres: what stands alone and is wider is a wall.
+    pub largest_object: f64,
+    /// How near to the crossing of their lines, in metres, two walls have to come for a corner.
+    pub corner_gap: f64,
+}
+
+impl Default for ExtractionParameters {
+    /// For the lidar of the real robot.
+    fn default() -> Self {
+        Self { range_error: 0.01, least_wall: 0.12, least_points: 6, largest_object: 0.35, corner_gap: 0.15 }
+    }
+}
+
+impl ExtractionParameters {
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<()> {
+        require_positive("shortest wall", self.least_wall)?;
+        require_positive("largest object", self.largest_object)?;
+        require_positive("corner gap", self.corner_gap)?;
+        if !(self.range_error >= 0.0 && self.range_error.is_finite()) {
+            return Err(Error::invalid_input(
+                "range error",
+                self.range_error,
+                "a finite number of at least 0",
+            ));
+        }
+        if self.least_points < 3 {
+            return Err(Error::invalid_input("fewest points of a wall", self.least_points, "at least 3"));
+        }
+        Ok(())
+    }
+
+    /// How far a point may lie off its wall, in metres.
+    pub(super) fn tolerance(&self) -> f64 {
+        (3.2 * self.range_error).max(0.01)
+    }
+}

@@ -1,0 +1,101 @@
+use std::f64::consts::{PI, TAU};
+
+use super::{ExtremumKind, local_extrema};
+use crate::geometry::{normalize_angle, units};
+use crate::io::{Display, DisplayOption, Fill, LidarScan, Result};
+use crate::world::Colour;
+
+/// The height of the plot in pixels, as in the book: what is left below is for text and the soft keys.
+const BASE: i32 = 250;
+/// Pixels for a scan all round.
+const WIDTH: i32 = 360;
+/// Beams that are averaged before peaks and dips are looked for, and how far they have to stand out, in metres.
+const WINDOW: usize = 5;
+const PROMINENCE: f64 = 0.08;
+
+/// Draws a scan on the display as the book does (programs 4.1 and 4.2): a blue line for every beam, from the back over the
+/// left, the front at column 180 and the right to the back again; a red line straight ahead and green ones to the sides.
+/// Circles mark peaks (magenta) and dips (orange), the corners of the room and what stands before it.
+///
+/// The longest line stands for `range` metres; without it, for the longest range of the scan. A beam without a return is a
+/// gray line over the whole height.
+pub fn plot_scan(display: &mut (impl Display + ?Sized), scan: &LidarScan, range: Option<f64>) -> Result<()> {
+    let longest = scan.ranges.iter().copied().filter(|range| range.is_finite()).fold(0.0, f64::max);
+    let full = range.unwrap_or(longest).max(1e-3);
+    let height = |range: f64| (f64::from(BASE) * (range / full).min(1.0)).round() as i32;
+    display.set_display_option(DisplayOption::AutoRefresh, false)?;
+    display.clear_display()?;
+    for column in 0..WIDTH {
+        let bearing = PI - TAU * f64::from(column) / f64::from(WIDTH);
+        let Some(beam) = scan.beam_at(normalize_angle(bearing - scan.mount.heading)) else { continue };
+        let range = scan.ranges[beam];
+        let (length, colour) = if range.is_finite() {
+            (height(range), Colour::BLUE)
+        } else {
+            (BASE, Colour::from_hex(0xb0_b0_b0))
+        };
+        display.draw_line((column, BASE - length), (column, BASE), colour)?;
+    }
+    for (column, colour) in [(180, Colour::RED), (90, Colour::GREEN), (270, Colour::GREEN)] {
+        display.draw_line((column, 0), (column, BASE), colour)?;
+    }
+    for extremum in local_extrema(scan, WINDOW, PROMINENCE) {
+        let at = (column_of(extremum.angle + scan.mount.heading), BASE - height(extremum.range));
+        let colour = match extremum.kind {
+            ExtremumKind::Peak => Colour::from_hex(0xff_00_ff),
+            ExtremumKind::Dip => Colour::from_hex(0xff_a5_00),
+        };
+        display.draw_circle(at, 9, colour, Fill::Solid)?;
+    }
+    display.set_cursor(19, 0)?;
+    display.print(&format!("-180    -90      0      +90    +180   full {:.0} mm", units::to_mm(full)))?;
+    display.refresh()?;
+    display.set_display_option(DisplayOption::AutoRefresh, true)
+}
+
+/// The column of a direction in radians counter-clockwise from straight ahead.
+fn column_of(bearing: f64) -> i32 {
+    let turns = (PI - normalize_angle(bearing)) / TAU;
+    ((turns * f64::from(WIDTH)).round() as i32).rem_euclid(WIDTH)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Pose;
+    use crate::io::Lidar;
+    use crate::io::sim::{Lcd, SimOptions, Simulation};
+    use crate::world::{RobotSpec, Scene, World};
+
+    #[test]
+    fn lines_are_as_long_as_ranges() {
+        // A wall 1 m ahead, 2 m to the left, 0.5 m to the right, 1.5 m behind.
+        let scene = Scene::with_robot(World::walled(2.5, 2.5), RobotSpec::s4(), Pose::new(1.5, 0.5, 0.0));
+        let simulation = Simulation::new(&scene, SimOptions::ideal()).unwrap();
+        let scan = simulation.robot(0).unwrap().scan().unwrap();
+        let mut lcd = Lcd::new();
+        plot_scan(&mut lcd, &scan, Some(2.5)).unwrap();
+        let blue = |column: i32, height: i32| {
+            lcd.frame().get_pixel(column as u32, (BASE - height) as u32).0 == [0, 0, 255]
+        };
+        // 100 pixels for a metre; beside the coloured lines.
+        assert!(blue(181, 90) && !blue(181, 105), "ahead");
+        assert!(blue(92, 190) && !blue(92, 205), "left");
+        assert!(blue(268, 45) && !blue(268, 60), "right");
+        assert!(blue(1, 140) && !blue(1, 155), "behind");
+        assert_eq!(lcd.frame().get_pixel(180, 5).0, [255, 0, 0]);
+    }
+
+    #[test]
+    fn directions_have_columns() {
+        assert_eq!([0.0, 0.5 * PI, -0.5 * PI].map(column_of), [180, 90, 270]);
+        assert!([PI, -PI].iter().all(|&back| column_of(back) % 360 == 0));
+    }
+
+    #[test]
+    fn an_empty_scan_is_an_empty_plot() {
+        let mut lcd = Lcd::new();
+        plot_scan(&mut lcd, &LidarScan::default(), None).unwrap();
+        assert_eq!(lcd.frame().get_pixel(181, 200).0, lcd.frame().get_pixel(470, 200).0);
+    }
+}

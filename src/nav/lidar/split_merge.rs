@@ -1,0 +1,90 @@
+use super::ExtractionParameters;
+use super::clusters::Hit;
+use crate::geometry::{FittedLine, Point, angle_difference};
+
+/// A range of a cluster's hits with the line through them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Part {
+    pub(super) first: usize,
+    /// One behind the last.
+    pub(super) end: usize,
+    pub(super) line: FittedLine,
+}
+
+/// Hits that are averaged before their distances from a line are compared, so that one noisy hit splits no wall.
+const SMOOTHING: usize = 3;
+/// Walls whose directions differ by less than this, in radians, may be one.
+const ALIKE: f64 = 0.12;
+
+/// Straight parts of a cluster by splitting and merging (T. Pavlidis and S. L. Horowitz, "Segmentation of plane curves",
+/// 1974; V. Nguyen and others compared it to be the fastest and best for scans, 2007).
+///
+/// A part is split at its farthest point from the line between its ends as long as that is farther than ranges err;
+/// neighbours that one line fits are merged.
+pub(super) fn straight_parts(hits: &[Hit], parameters: &ExtractionParameters) -> Vec<Part> {
+    let mut parts = Vec::new();
+    split(hits, 0, hits.len(), parameters, &mut parts);
+    merge(hits, parameters, &mut parts);
+    parts.retain(|part| {
+        part.end - part.first >= parameters.least_points && part.line.length >= parameters.least_wall
+    });
+    parts
+}
+
+fn fit(hits: &[Hit], first: usize, end: usize) -> Option<FittedLine> {
+    FittedLine::through(hits[first..end].iter().map(|hit| hit.point))
+}
+
+fn split(hits: &[Hit], first: usize, end: usize, parameters: &ExtractionParameters, parts: &mut Vec<Part>) {
+    // By a stack of its own: a scan may have any number of beams.
+    let mut stack = vec![(first, end)];
+    while let Some((first, end)) = stack.pop() {
+        if end - first < 3 {
+            continue;
+        }
+        match farthest(hits, first, end) {
+            Some((at, distance)) if distance > parameters.tolerance() => {
+                stack.push((at, end));
+                stack.push((first, at + 1));
+            }
+            _ => parts.extend(fit(hits, first, end).map(|line| Part { first, end, line })),
+        }
+    }
+}
+
+/// The hit between the ends that lies farthest from the line between them, and how far.
+fn farthest(hits: &[Hit], first: usize, end: usize) -> Option<(usize, f64)> {
+    let mean = |range: std::ops::Range<usize>| -> Point {
+        let count = range.len().max(1) as f64;
+        let sum: nalgebra::Vector2<f64> = hits[range].iter().map(|hit| hit.point.coords).sum();
+        Point::from(sum / count)
+    };
+    let few = SMOOTHING.min(end - first);
+    let (a, b) = (mean(first..first + few), mean(end - few..end));
+    let chord = FittedLine::through([a, b].into_iter())?;
+    let half = SMOOTHING / 2;
+    (first + 1..end - 1)
+        .map(|at| {
+            let around = at.saturating_sub(half).max(first)..(at + half + 1).min(end);
+            (at, chord.distance_to(mean(around)).abs())
+        })
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+fn merge(hits: &[Hit], parameters: &ExtractionParameters, parts: &mut Vec<Part>) {
+    let mut merged: Vec<Part> = Vec::with_capacity(parts.len());
+    for &part in &*parts {
+        let joint = merged.last().and_then(|last| {
+            let alike = angle_difference(last.line.angle(), part.line.angle()).abs() < ALIKE;
+            let short = last.line.length.min(part.line.length) < parameters.least_wall;
+            let line = fit(hits, last.first, part.end)?;
+            let fits = line.rms < 1.25 * parameters.range_error + 0.002;
+            ((alike || short) && fits).then_some(Part { first: last.first, end: part.end, line })
+        });
+        match (joint, merged.last_mut()) {
+            (Some(joint), Some(last)) => *last = joint,
+            _ => merged.push(part),
+        }
+    }
+    *parts = merged;
+}

@@ -1,0 +1,201 @@
+use nalgebra::{Matrix3, Vector3};
+
+use super::LocaliserParameters;
+use super::map::LocalisationMap;
+use crate::geometry::{Pose, Vector, angle_difference, direction, math, normalize_angle};
+use crate::io::LidarScan;
+use crate::world::space::Scanner;
+
+/// A place where the robot may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hypothesis {
+    /// The pose in the world.
+    pub pose: Pose,
+    /// Its covariance: metres along x and y, radians.
+    pub covariance: Matrix3<f64>,
+    /// How probable it is among all hypotheses.
+    pub probability: f64,
+    /// The logarithm of its weight.
+    pub(super) log_weight: f64,
+    /// The share of beams that are as expected.
+    pub explained: f64,
+}
+
+/// Memory for one expected scan.
+#[derive(Debug, Clone)]
+pub(super) struct Bench {
+    pub(super) scanner: Scanner,
+    pub(super) expected: Vec<f64>,
+}
+
+/// What a scan says about a pose near the one where it was expected.
+#[derive(Debug, Clone, Copy)]
+struct Evidence {
+    information: Matrix3<f64>,
+    residual: Vector3<f64>,
+    log_likelihood: f64,
+    explained: f64,
+}
+
+/// The flattest angle of a beam to a wall, as a sine, for which it says where the wall is.
+const GRAZING: f64 = 0.2;
+/// Beams are not independent of each other: so many count as one.
+const BEAMS_AS_ONE: f64 = 4.0;
+/// The least error of an expected range in metres.
+const LEAST_ERROR: f64 = 0.01;
+/// The share of beams that may measure anything.
+const OUTLIERS: f64 = 0.1;
+/// What likelihoods are raised to, since an error of the pose is in all beams.
+const TEMPER: f64 = 0.1;
+
+impl Hypothesis {
+    pub(super) fn new(pose: Pose, spread: f64) -> Self {
+        let variance = spread * spread;
+        Self {
+            pose,
+            covariance: Matrix3::from_diagonal(&Vector3::new(variance, variance, variance)),
+            probability: 1.0,
+            log_weight: 0.0,
+            explained: 0.0,
+        }
+    }
+
+    /// Moves on with the robot, by its motion in its own frame.
+    pub(super) fn predict(&mut self, motion: &Pose, parameters: &LocaliserParameters) {
+        let before = self.pose;
+        self.pose = before.compose(motion);
+        let (dx, dy) = (self.pose.x - before.x, self.pose.y - before.y);
+        let mut carried = Matrix3::identity();
+        carried[(0, 2)] = -dy;
+        carried[(1, 2)] = dx;
+        let distance = math::hypot(motion.x, motion.y);
+        let along = parameters.odometry_error.0 * distance + 1e-5;
+        let turn = parameters.odometry_error.1 * motion.heading.abs() + 0.02 * distance + 1e-5;
+        let added = Vector3::new(along * along, along * along, turn * turn);
+        self.covariance = carried * self.covariance * carried.transpose() + Matrix3::from_diagonal(&added);
+    }
+
+    /// Moves to where a scan fits best, near where odometry says, in so many steps.
+    pub(super) fn match_scan(
+        &mut self,
+        map: &LocalisationMap,
+        scan: &LidarScan,
+        bench: &mut Bench,
+        parameters: &LocaliserParameters,
+        steps: usize,
+    ) -> f64 {
+        let predicted = self.pose;
+        let Some(known) = self.covariance.try_inverse() else { return f64::NEG_INFINITY };
+        let mut information = known;
+        // What is far off at first is let go of step by step.
+        let mut gate = 0.25;
+        for _ in 0..steps {
+            let found = evidence(map, scan, bench, &self.pose, parameters, gate);
+            information = known + found.information;
+            let strayed = Vector3::new(
+                predicted.x - self.pose.x,
+                predicted.y - self.pose.y,
+                angle_difference(predicted.heading, self.pose.heading),
+            );
+            let Some(solver) = information.cholesky() else { break };
+            let step = solver.solve(&(known * strayed + found.residual));
+            self.pose = Pose::new(
+                self.pose.x + step.x.clamp(-0.1, 0.1),
+                self.pose.y + step.y.clamp(-0.1, 0.1),
+                normalize_angle(self.pose.heading + step.z.clamp(-0.1, 0.1)),
+            );
+            gate = (0.6 * gate).max(0.06);
+        }
+        if let Some(covariance) = information.try_inverse() {
+            self.covariance = covariance;
+        }
+        let found = evidence(map, scan, bench, &self.pose, parameters, gate);
+        self.explained = found.explained;
+        found.log_likelihood
+    }
+}
+
+/// Compares a scan with what is expected at a robot's pose.
+fn evidence(
+    map: &LocalisationMap,
+    scan: &LidarScan,
+    bench: &mut Bench,
+    pose: &Pose,
+    parameters: &LocaliserParameters,
+    gate: f64,
+) -> Evidence {
+    let lidar = pose.compose(&scan.mount);
+    map.expect(&mut bench.scanner, &lidar, &mut bench.expected);
+    let expected = &bench.expected;
+    let beams = scan.ranges.len();
+    let sigma = parameters.range_error.max(LEAST_ERROR);
+    let blurred = 2.0 * sigma;
+    let mut found = Evidence {
+        information: Matrix3::zeros(),
+        residual: Vector3::zeros(),
+        log_likelihood: 0.0,
+        explained: 0.0,
+    };
+    let density = 1.0 / scan.range_max.max(1.0);
+    let peak = (1.0 - OUTLIERS) / (blurred * std::f64::consts::TAU.sqrt());
+    for beam in 0..beams {
+        let (range, other) = (scan.ranges[beam], expected[beam]);
+        let off = if range.is_finite() && other.is_finite() {
+            range - other
+        } else if range.is_finite() == other.is_finite() {
+            0.0
+        } else {
+            f64::INFINITY
+        };
+        let scaled = off / blurred;
+        let likely = if scaled.abs() < 8.0 { peak * math::exp(-0.5 * scaled * scaled) } else { 0.0 };
+        found.log_likelihood += math::ln(likely + OUTLIERS * density);
+        found.explained += f64::from(u8::from(off.abs() < 4.0 * sigma + 0.01));
+        if !range.is_finite() || !other.is_finite() || off.abs() > gate {
+            continue;
+        }
+        let ray = direction(lidar.heading + scan.angle(beam));
+        let Some(normal) = normal(scan, expected, beam, &lidar) else { continue };
+        let facing = normal.dot(&ray);
+        if facing.abs() < GRAZING {
+            continue;
+        }
+        // The measured point lies so far behind the expected surface.
+        let behind = off * facing;
+        let arm = lidar.position() + ray * range - pose.position();
+        let swing = normal.y * arm.x - normal.x * arm.y;
+        let by_pose = Vector3::new(normal.x, normal.y, swing);
+        let error = sigma * facing.abs();
+        let weight = 1.0 / (error * error * BEAMS_AS_ONE);
+        found.information += by_pose * by_pose.transpose() * weight;
+        found.residual -= by_pose * (behind * weight);
+    }
+    found.log_likelihood *= TEMPER;
+    found.explained /= beams.max(1) as f64;
+    found
+}
+
+/// The normal of the expected surface that a beam meets, by the beams beside it; `None` at edges and corners.
+fn normal(scan: &LidarScan, expected: &[f64], beam: usize, lidar: &Pose) -> Option<Vector> {
+    let beams = expected.len();
+    let hit = |beam: usize| {
+        let range = expected[beam];
+        range.is_finite().then(|| direction(lidar.heading + scan.angle(beam)) * range)
+    };
+    let (before, after) = ((beam + beams - 1) % beams, (beam + 1) % beams);
+    if beam == 0 || beam + 1 == beams {
+        let whole = (scan.angle_increment.abs() * beams as f64 - std::f64::consts::TAU).abs() < 1e-6;
+        if !whole {
+            return None;
+        }
+    }
+    let (a, b, c) = (hit(before)?, hit(beam)?, hit(after)?);
+    let along = c - a;
+    let length = along.norm();
+    if length < 1e-9 {
+        return None;
+    }
+    let normal = Vector::new(-along.y, along.x) / length;
+    // The three lie on one straight surface.
+    ((b - a).dot(&normal).abs() < 0.05 * length + 0.001).then_some(normal)
+}

@@ -1,0 +1,14 @@
+//! Where a robot is in a world that it knows (book, section 4.3): by matching scans while it drives.
+
+mod hypothesis;
+mod localiser;
+mod map;
+mod parameters;
+mod search;
+#[cfg(test)]
+mod tests;
+
+pub use hypothesis::Hypothesis;
+pub use localiser::{Localisation, Localiser};
+pub use map::LocalisationMap;
+pub use parameters::LocaliserParameters;

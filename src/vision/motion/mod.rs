@@ -1,0 +1,12 @@
+//! Seeing motion (book, section 11.5): where in the image something moves, for a robot that stands, and for one that
+//! turns (section 11.6).
+
+mod detector;
+#[cfg(test)]
+mod tests;
+mod turning;
+mod watch;
+
+pub use detector::{Motion, MotionDetector, MotionParameters};
+pub use turning::TurnCompensator;
+pub use watch::{MotionWatch, WatchParameters};

@@ -1,0 +1,201 @@
+//! The examples `camera`, `edges`, `color_tracking` and `motion` as wholes.
+
+#[path = "../examples/camera/mod.rs"]
+mod camera;
+#[path = "../examples/color_tracking/mod.rs"]
+mod color_tracking;
+#[path = "../examples/common/mod.rs"]
+mod common;
+#[path = "../examples/driving/mod.rs"]
+mod driving;
+#[path = "../examples/edges/mod.rs"]
+mod edges;
+#[path = "../examples/motion/mod.rs"]
+mod motion;
+#[path = "../examples/room/mod.rs"]
+mod room;
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use clap::{Parser, ValueEnum};
+use common::{CommonArgs, Failure, Report};
+use image::RgbImage;
+use serde_json::Value;
+
+/// Runs an example with `--json`. Returns its status and its report, and what it said on standard error.
+fn run<A: Parser + AsRef<CommonArgs>>(
+    name: &'static str,
+    work: fn(&A) -> Result<Report, Failure>,
+    options: &[&str],
+) -> (u8, Value, String) {
+    let first = [name, "--json"];
+    let words = first.iter().chain(options).map(OsString::from);
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    let status = common::run(name, words, &mut out, &mut err, work);
+    let err = String::from_utf8(err).unwrap();
+    (status, serde_json::from_slice(&out).unwrap_or(Value::Null), err)
+}
+
+fn assert_outcome((status, report, err): &(u8, Value, String), outcome: &str) {
+    assert_eq!((*status, report["outcome"].as_str()), (0, Some(outcome)), "{report} {err}");
+}
+
+fn temporary(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+/// An image of coloured squares with noise.
+fn squares(name: &str) -> PathBuf {
+    let file = temporary(name);
+    let image = RgbImage::from_fn(96, 64, |x, y| {
+        let noise = (x * 31 + y * 17) % 7;
+        match (x / 16 + y / 16) % 3 {
+            0 => image::Rgb([200 + noise as u8, 20, 30]),
+            1 => image::Rgb([40, 60 + noise as u8, 190]),
+            _ => image::Rgb([120, 124 + noise as u8, 120]),
+        }
+    });
+    image.save(&file).unwrap();
+    file
+}
+
+#[test]
+fn the_camera_looks_around_its_room() {
+    let output = temporary("seen.png");
+    let ended = run("camera", camera::work, &["--output", text(&output), "--resolution", "vga"]);
+    assert_outcome(&ended, "seen");
+    assert_eq!(image::open(&output).unwrap().into_rgb8().dimensions(), (640, 480));
+    let bright = |options: &[&str]| {
+        let ended = run("camera", camera::work, options);
+        assert_outcome(&ended, "seen");
+        ended.1["mean_brightness"].as_f64().unwrap()
+    };
+    let whole = bright(&["--noise", "0"]);
+    assert!((bright(&["--noise", "0", "--light", "0.5"]) - 0.5 * whole).abs() < 1.0);
+    assert_ne!(whole, bright(&["--noise", "0", "--pan", "30", "--tilt", "-10"]));
+    let (status, _, err) = run("camera", camera::work, &["--pan", "120"]);
+    assert!(status == 2 && err.contains("at most 90 degrees"), "{err}");
+}
+
+#[test]
+fn every_kernel_works_on_a_file() {
+    let (input, output) = (squares("squares.png"), temporary("filtered.png"));
+    let second = squares("squares2.png");
+    for kernel in edges::Kernel::value_variants() {
+        for definition in ["book", "opencv"] {
+            let name = kernel.name();
+            let options = [
+                "--input",
+                text(&input),
+                "--second",
+                text(&second),
+                "--kernel",
+                &name,
+                "--definition",
+                definition,
+                "--output",
+                text(&output),
+                "--repeat",
+                "1",
+            ];
+            let ended = run("edges", edges::work, &options);
+            assert_outcome(&ended, "filtered");
+            assert_eq!((ended.1["width"].as_u64(), ended.1["height"].as_u64()), (Some(96), Some(64)));
+            let written = image::open(&output).unwrap();
+            assert!(written.width() > 0, "{name}");
+        }
+    }
+}
+
+#[test]
+fn definitions_differ_where_they_should() {
+    let input = squares("squares3.png");
+    let mean = |kernel: &str, definition: &str| {
+        let options =
+            ["--input", text(&input), "--kernel", kernel, "--definition", definition, "--repeat", "1"];
+        run("edges", edges::work, &options).1["mean"].as_f64().unwrap()
+    };
+    for kernel in ["gray", "sobel_l1", "hue", "saturation"] {
+        assert_ne!(mean(kernel, "book"), mean(kernel, "opencv"), "{kernel}");
+    }
+}
+
+#[test]
+fn wrong_images_are_refused_by_name() {
+    let file = temporary("no_image.png");
+    std::fs::write(&file, b"\x89PNG\r\n\x1a\nthat was all").unwrap();
+    for (options, message) in [
+        (vec!["--input", text(&file)], "no_image.png"),
+        (vec!["--input", "no/such/file.png"], "no/such/file.png"),
+        (vec!["--input", text(&file), "--kernel", "nose"], "nose"),
+        (vec!["--kernel", "difference"], "--second"),
+        (vec!["--smooth", "4"], "0, 3, 5 or 7"),
+    ] {
+        let (status, _, err) = run("edges", edges::work, &options);
+        assert!(status == 2 && err.contains(message) && err.lines().count() == 1, "{err}");
+    }
+    let truncated = temporary("truncated.ppm");
+    std::fs::write(&truncated, b"P6\n10 10\n255\nabc").unwrap();
+    let (status, _, err) = run("edges", edges::work, &["--input", text(&truncated)]);
+    assert!(status == 2 && err.contains("truncated.ppm"), "{err}");
+}
+
+#[test]
+fn edges_live_on_the_display() {
+    let output = temporary("display.png");
+    for kernel in ["laplace", "canny", "overlay"] {
+        let options = ["--kernel", kernel, "--repeat", "5", "--output", text(&output)];
+        let ended = run("edges", edges::work, &options);
+        assert_outcome(&ended, "shown");
+        assert_eq!(ended.1["frames"], 5);
+        assert!(image::open(&output).unwrap().into_rgb8().iter().any(|&byte| byte > 100));
+    }
+}
+
+#[test]
+fn the_taught_colour_is_reached_and_brought_home() {
+    for options in [&["--seed", "1"][..], &["--seed", "2", "--method", "histogram", "--light", "0.4"]] {
+        let ended = run("color_tracking", color_tracking::work, options);
+        assert_outcome(&ended, "reached");
+        assert!(ended.1["distance_mm"].as_f64().unwrap() < 200.0, "{}", ended.1);
+        assert_eq!(ended.1["collisions"], 0);
+    }
+    let ended = run("color_tracking", color_tracking::work, &["--job", "home", "--seed", "4"]);
+    assert_outcome(&ended, "home");
+    assert!(ended.1["home_mm"].as_f64().unwrap() < 200.0, "{}", ended.1);
+}
+
+#[test]
+fn a_few_scenes_of_the_colour_campaign() {
+    let ended = run("color_tracking", color_tracking::work, &["--campaign", "--scenes", "6"]);
+    assert_outcome(&ended, "passed");
+    assert_eq!((ended.1["scenes"].as_u64(), ended.1["reached"].as_u64()), (Some(6), Some(6)));
+}
+
+#[test]
+fn motion_is_seen_where_it_is() {
+    let moving = run("motion", motion::work, &["--time-limit", "4"]);
+    assert_outcome(&moving, "watched");
+    assert!(moving.1["alarms"].as_u64().unwrap() > 10, "{}", moving.1);
+    let still = run("motion", motion::work, &["--time-limit", "4", "--still"]);
+    assert_outcome(&still, "watched");
+    assert_eq!(
+        (still.1["alarms"].as_u64(), still.1["turned_deg"].as_f64()),
+        (Some(0), Some(0.0)),
+        "{}",
+        still.1
+    );
+}
+
+#[test]
+fn a_short_motion_campaign_passes() {
+    let ended = run("motion", motion::work, &["--campaign", "--pairs", "200"]);
+    assert_outcome(&ended, "passed");
+    let book = ended.1["book"]["detected"].as_f64().unwrap();
+    assert!(book < ended.1["detected"].as_f64().unwrap(), "{}", ended.1);
+}
