@@ -43,9 +43,9 @@
 //! | 1 Robots and simulation | simulated worlds and robots | [`io::sim`] |
 //! | 1 Robots and simulation | EyeSim's files: `.sim`, `.wld`, `.maz`, `.robi`, `.esObj` | [`world::formats`] |
 //! | 2 Sensors and programs | what a robot can be asked: distance sensors, camera, keys, display, radio | [`io`] |
-//! | 3 Driving | the v-omega drive, encoders; from A to B, path followers, PID | [`io`], [`drive`] |
+//! | 3 Driving | the v-omega drive, encoders; random drive, coverage, from A to B, path followers, PID | [`io`], [`drive`] |
 //! | 4 Lidar | scans, what they show, and taking their noise out; localisation in a known world | [`io`], [`nav`] |
-//! | 5 Swarms | any number of robots in one world | [`io::sim`] |
+//! | 5 Swarms | any number of robots in one world; followers, chains, formations | [`io::sim`], [`drive`] |
 //! | 6 Wall following | walls of any shape, by distance sensors, PID or lidar | [`drive`] |
 //! | 7 Alternative drives | cars and wheels with rollers: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
 //! | 9 Mazes | models and files, flood fill, shortest routes | [`maze`] |

@@ -11,6 +11,9 @@
 //! - [`OmniTracker`]: along any path with any heading on wheels with rollers (chapter 7);
 //! - [`LandmarkFilter`]: odometry corrected by what a lidar sees of known landmarks;
 //! - [`RandomDrive`]: straight on, and a random turn where something is ahead (chapter 3);
+//! - [`CoveragePlan`], [`Tour`] and [`CoverageMap`]: over the whole floor in lanes (chapters 3 and 6);
+//! - [`Follower`], [`Formation`] and [`Cruise`]: robots behind a robot, by what they see or by radio, and the one that leads
+//!   (chapter 5);
 //! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6); [`PidWallFollower`],
 //!   [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`] beside it;
 //! - [`Pid`] and [`RelayTuner`]: a PID controller and how to find its gains.
@@ -19,8 +22,12 @@ mod a_to_b;
 mod a_to_b_run;
 mod car;
 mod chase;
+mod coverage;
+mod cruise;
 mod dubins;
+mod follow_me;
 mod follower;
+mod formation;
 mod landmark;
 mod omni;
 mod path;
@@ -29,11 +36,16 @@ mod random_drive;
 mod relay;
 mod spline;
 mod wall_following;
+mod way;
 
 pub use a_to_b::{AToB, AToBCommand, AToBObservation, AToBOutcome, AToBParameters, Goal, Method};
 pub use car::{CarCommand, CarDriver, CarOutcome, CarParameters, CarToB};
 pub use chase::{Chase, ChaseParameters};
+pub use coverage::{CoverageMap, CoverageParameters, CoveragePlan, Tour, TourParameters};
+pub use cruise::{Cruise, CruiseParameters};
+pub use follow_me::{FollowMeObservation, FollowMeParameters, Follower, robots_in};
 pub use follower::{FollowerParameters, PathFollower, Steering};
+pub use formation::Formation;
 pub use landmark::{Landmark, LandmarkFilter};
 pub use omni::{OmniDriver, OmniParameters, OmniReference, OmniTracker};
 pub use path::{Path, PathPoint, Waypoint};

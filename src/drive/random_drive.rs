@@ -1,6 +1,7 @@
 use std::f64::consts::{FRAC_PI_4, PI};
 
-use crate::geometry::{Point, Pose, Twist, angle_difference, math, normalize_angle};
+use super::way::Way;
+use crate::geometry::{Point, Pose, Twist, angle_difference, normalize_angle};
 use crate::io::error::require_positive;
 use crate::io::{Clock, DistanceSensors, Drive, Error, ErrorKind, Lidar, LidarScan, Psd, Result};
 use crate::random::Stream;
@@ -137,17 +138,7 @@ impl RandomDrive {
 
     /// Metres that the robot can drive in a direction until its outline is at a point.
     fn free_way(&self, points: &[Point], direction: f64) -> f64 {
-        let half = self.parameters.radius + self.parameters.margin;
-        let (sin, cos) = math::sin_cos(direction);
-        let mut free = f64::INFINITY;
-        for point in points {
-            let (along, aside) = (cos * point.x + sin * point.y, cos * point.y - sin * point.x);
-            if along > 0.0 && aside.abs() < half {
-                let nose = (half * half - aside * aside).sqrt() - self.parameters.margin;
-                free = free.min(along - nose.max(0.0));
-            }
-        }
-        free
+        Way { radius: self.parameters.radius, margin: self.parameters.margin }.free(points, direction)
     }
 
     /// Drives for so many seconds by the lidar, or by the distance sensors of a robot without one. `watch` is called after

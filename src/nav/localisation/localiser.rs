@@ -119,6 +119,21 @@ impl Localiser {
         })
     }
 
+    /// Begins with a place that is known to within a few centimetres and degrees, instead of looking everywhere.
+    pub fn start_at(&mut self, pose: Pose) {
+        /// Metres and radians.
+        const SPREAD: f64 = 0.03;
+        self.hypotheses = vec![Hypothesis::new(pose, SPREAD)];
+        (self.odometry, self.viewed, self.unexplained) = (None, None, 0);
+    }
+
+    /// Where the robot most probably is by now, by odometry since the last scan.
+    pub fn place(&self, odometry: Pose) -> Option<Pose> {
+        let best = self.hypotheses.first()?;
+        let last = self.odometry.unwrap_or(odometry);
+        Some(best.pose.compose(&last.inverse().compose(&odometry)))
+    }
+
     /// All places where the robot may be, the most probable one first.
     pub fn hypotheses(&self) -> &[Hypothesis] {
         &self.hypotheses

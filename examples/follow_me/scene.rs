@@ -1,0 +1,130 @@
+use std::sync::Arc;
+
+use roverlab::geometry::{Point, Pose, units};
+use roverlab::random::Stream;
+use roverlab::world::{
+    LidarSpec, Mount, Object, ObjectKind, PsdSpec, RobotPlacement, RobotSpec, Scene, World,
+};
+
+/// How the followers know where to go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Mode {
+    /// A level lidar sees the leader, among all else.
+    Lidar,
+    /// A raised lidar sees the leader alone, which is higher than the followers; eight distance sensors see the rest.
+    Raised,
+    /// Each follows the one before it by a level lidar.
+    Chain,
+    /// The leader sends where it is.
+    Radio,
+}
+
+impl Mode {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Lidar => "lidar",
+            Self::Raised => "raised",
+            Self::Chain => "chain",
+            Self::Radio => "radio",
+        }
+    }
+
+    /// What suits a number of followers.
+    pub(crate) fn for_followers(followers: usize) -> Self {
+        match followers {
+            0 | 1 => Self::Lidar,
+            2..=5 => Self::Raised,
+            _ => Self::Chain,
+        }
+    }
+}
+
+/// The book's `LidarBot`: an S4 with a lidar above the other followers and four more distance sensors (programs 5.8 and 5.9).
+pub(crate) fn lidarbot() -> RobotSpec {
+    let s4 = RobotSpec::s4();
+    let ray = |id: u8, name: &str, y: f64, yaw: f64| PsdSpec {
+        id,
+        name: name.into(),
+        mount: Mount { x: 0.045, y, z: 0.030, yaw: units::from_deg(yaw) },
+        max_range: PsdSpec::DEFAULT_MAX_RANGE,
+    };
+    let more = [
+        ray(5, "PSD_FL", 0.03, 45.0),
+        ray(6, "PSD_FR", -0.03, -45.0),
+        ray(7, "PSD_FFL", 0.015, 25.0),
+        ray(8, "PSD_FFR", -0.015, -25.0),
+    ];
+    RobotSpec {
+        name: "LidarBot".into(),
+        lidar: Some(LidarSpec {
+            mount: Mount { z: 0.100, ..Mount::default() },
+            field_of_view: std::f64::consts::PI,
+            points: 180,
+            ..LidarSpec::default()
+        }),
+        psds: s4.psds.iter().cloned().chain(more).collect(),
+        ..s4
+    }
+}
+
+/// A hall with a LabBot that leads, and followers behind it; obstacles in the leader's path if asked for. With the leader's
+/// waypoints.
+pub(crate) fn hall(mode: Mode, followers: usize, obstacles: usize, seed: u64) -> (Scene, Vec<Point>) {
+    let length = 6.0 + 0.36 * if mode == Mode::Chain { followers as f64 } else { 2.0 };
+    let (width, depth) = (length.max(7.0), 5.5);
+    let mut stream = Stream::new(seed).child("hall", 0);
+    let mut world = World::walled(width, depth);
+    let waypoints = waypoints(&mut stream, width, depth);
+    let start = Pose::new(if mode == Mode::Chain { width - 3.0 } else { 2.4 }, 1.2, 0.0);
+    add_obstacles(&mut world, &mut stream, obstacles, &waypoints, start.position());
+    let mut scene = Scene::new(world);
+    scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::labbot()), start));
+    let spec = Arc::new(if mode == Mode::Raised { lidarbot() } else { RobotSpec::s4() });
+    for follower in 1..=followers {
+        let place = start.to_world(place(mode, follower));
+        let heading = stream.between(-0.2, 0.2);
+        scene.robots.push(RobotPlacement::new(Arc::clone(&spec), Pose::new(place.x, place.y, heading)));
+    }
+    (scene, waypoints)
+}
+
+/// Where a follower stands at first, in the leader's frame: one behind the other, or in rows of three and two as in the book.
+fn place(mode: Mode, follower: usize) -> Point {
+    match mode {
+        Mode::Lidar => Point::new(-0.5 * follower as f64, 0.0),
+        Mode::Chain => Point::new(-0.36 * follower as f64 - 0.05, 0.0),
+        Mode::Raised | Mode::Radio => {
+            let (row, seat) = ((follower - 1) / 5, (follower - 1) % 5);
+            let (back, aside) = [(0.6, 0.0), (0.6, 0.35), (0.6, -0.35), (1.05, 0.2), (1.05, -0.2)][seat];
+            Point::new(-back - 0.9 * row as f64, aside)
+        }
+    }
+}
+
+/// A way round the hall that is another one for each seed.
+fn waypoints(stream: &mut Stream, width: f64, depth: f64) -> Vec<Point> {
+    let mut about =
+        |x: f64, y: f64| Point::new(x + stream.between(-0.25, 0.25), y + stream.between(-0.25, 0.25));
+    vec![
+        about(width - 1.3, 1.3),
+        about(width - 1.3, depth - 1.3),
+        about(0.5 * width, depth - 1.6),
+        about(1.3, depth - 1.3),
+        about(1.3, 1.5),
+        about(0.5 * width, 1.6),
+    ]
+}
+
+/// Cans on the leader's way, not too near to its start.
+fn add_obstacles(world: &mut World, stream: &mut Stream, count: usize, waypoints: &[Point], start: Point) {
+    let Some(can) = ObjectKind::predefined("can") else { return };
+    let can = Arc::new(ObjectKind { fixed: true, ..can });
+    for k in 0..count {
+        let leg = k % waypoints.len();
+        let (a, b) = (waypoints[leg], waypoints[(leg + 1) % waypoints.len()]);
+        let place = a + (b - a) * stream.between(0.35, 0.65);
+        if (place - start).norm() > 1.2 {
+            world.objects.push(Object::new(Arc::clone(&can), Pose::new(place.x, place.y, 0.0)));
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! What the example `random_drive` is made of.
+
+use std::cell::Cell;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use roverlab::drive::{CoverageMap, CoverageParameters, RandomDrive, RandomDriveParameters};
+use roverlab::geometry::{Point, Pose, units};
+use roverlab::io::sim::{Fleet, SimOptions};
+use roverlab::io::{Drive, LidarScan};
+use roverlab::picture::{Mark, Picture, Style};
+use roverlab::random::Stream;
+use roverlab::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
+
+use crate::common::{CommonArgs, Failure, GoalOption, Outcome, Report, Trip, rounded};
+use crate::driving::{Conditions, drawn, paced};
+
+/// The command line of the example `random_drive`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    name = "random_drive",
+    about = "Drives straight on, turns by a random angle where something is ahead, and so on; one robot or several",
+    after_help = "\
+Without --world, the robots drive in a room with two crates and a can. With a .sim, all of its robots drive, and --robots is
+not looked at. Several robots are driven in one thread, which is not recorded: --record, --replay and --fault are for one.
+
+JSON fields:
+  robots                      how many drive
+  turns                       how often they have turned, all together
+  coverage_percent            share of the floor that the robots' bodies have passed over, of what the first one could reach
+                              15 mm away from everything
+  time_limit_s, picture
+Collisions are those of all robots; pose, odometry and path length are the first one's.
+Outcomes: driven, collided, failed."
+)]
+pub(crate) struct Args {
+    /// How many robots drive.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=6), allow_hyphen_values = true)]
+    pub(crate) robots: u8,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// Simulated seconds of a run.
+const SECONDS: f64 = 120.0;
+/// Seconds between points of the paths of several robots.
+const STEP: f64 = 0.1;
+
+/// What became of the robots.
+struct Outing {
+    paths: Vec<Vec<Pose>>,
+    turns: u32,
+    contacts: u64,
+    contact_places: Vec<Point>,
+    report: Report,
+}
+
+/// The work of the example.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    let common = &args.common;
+    common.check_picture()?;
+    let trip = trip(args)?;
+    let seconds = common.time_limit.unwrap_or(SECONDS);
+    let outing = if trip.scene.robots.len() == 1 {
+        alone(args, &trip.scene, seconds)?
+    } else {
+        together(args, &trip.scene, seconds)?
+    };
+    let share = covered(&trip.scene, &outing.paths);
+    let (file, trouble) = drawn(common, "random_drive.svg", || picture(args, &trip.scene, &outing, share));
+    let Outing { report, turns, contacts, paths, .. } = outing;
+    Ok(Report { collisions: Some(contacts), trouble, ..report }
+        .field("robots", paths.len())
+        .field("turns", turns)
+        .field("coverage_percent", share.map(|share| rounded(100.0 * share)))
+        .field("time_limit_s", seconds)
+        .field("picture", file))
+}
+
+fn trip(args: &Args) -> Result<Trip, Failure> {
+    let mut common = args.common.clone();
+    if common.goal.is_some() {
+        return Err(Failure::input("--goal: the robots have none; expected a command line without --goal"));
+    }
+    // The shared reading of the options asks for a goal.
+    common.goal = Some(GoalOption { position: Point::origin(), heading: None });
+    common.trip(|| scene(usize::from(args.robots)))
+}
+
+/// A room with two crates and a can, and robots in it, larger and smaller ones, as in the book.
+fn scene(robots: usize) -> Scene {
+    let mut world = World::walled(3.0, 2.4);
+    for (name, x, y) in [("crate", 1.1, 0.7), ("crate", 2.2, 1.7), ("can", 1.6, 1.5)] {
+        let kind = ObjectKind::predefined(name).map(|kind| Arc::new(ObjectKind { fixed: true, ..kind }));
+        world.objects.extend(kind.map(|kind| Object::new(kind, Pose::new(x, y, 0.4))));
+    }
+    let mut scene = Scene::new(world);
+    let places = [
+        (0.4, 0.4, 0.0),
+        (0.7, 1.2, 45.0),
+        (2.5, 0.5, 90.0),
+        (0.5, 2.0, 0.0),
+        (2.6, 2.1, 180.0),
+        (1.8, 0.4, 0.0),
+    ];
+    for (number, (x, y, heading)) in places.into_iter().take(robots).enumerate() {
+        let spec = if number % 2 == 1 { RobotSpec::labbot() } else { RobotSpec::s4() };
+        let pose = Pose::new(x, y, units::from_deg(heading));
+        scene.robots.push(RobotPlacement::new(Arc::new(spec), pose));
+    }
+    scene
+}
+
+fn behaviour(scene: &Scene, robot: usize, seed: u64) -> Result<RandomDrive, Failure> {
+    let radius = scene.robots[robot].spec.footprint.bounding_radius();
+    let parameters = RandomDriveParameters { radius, ..RandomDriveParameters::default() };
+    let stream = Stream::new(seed).child("random drive", robot as u64);
+    RandomDrive::new(parameters, stream).map_err(Failure::input)
+}
+
+/// One robot, which can be recorded.
+fn alone(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
+    let conditions = Conditions::new(&args.common, seconds)?;
+    let mut drive = behaviour(scene, 0, args.common.seed)?;
+    let run = conditions.run(scene, paced(&args.common), |robot, step| {
+        drive.run(robot, seconds, |_| step())?;
+        Ok(drive.turns())
+    })?;
+    Ok(Outing {
+        turns: run.ending.as_ref().copied().unwrap_or(0),
+        contacts: run.truth.contacts.into(),
+        contact_places: run.truth.contact_places.clone(),
+        report: run.report(|_| Outcome::verdict("driven")),
+        paths: vec![run.true_path],
+    })
+}
+
+/// Several robots in one thread.
+fn together(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
+    let common = &args.common;
+    if common.record.is_some() || common.replay.is_some() || !common.fault.is_empty() {
+        return Err(Failure::input(
+            "--record, --replay or --fault: found it for several robots; expected it for one robot alone",
+        ));
+    }
+    let options = SimOptions::with_noise(common.noise, common.seed);
+    let turns: Vec<Cell<u32>> = scene.robots.iter().map(|_| Cell::new(0)).collect();
+    let mut fleet = Fleet::new(scene, options).map_err(Failure::input)?;
+    for (robot, turns) in turns.iter().enumerate() {
+        let mut drive = behaviour(scene, robot, common.seed)?;
+        let (mut scan, mut points) = (LidarScan::default(), Vec::new());
+        let period = RandomDriveParameters::default().period;
+        fleet.control(robot, period, move |robot| {
+            RandomDrive::look(robot, &mut scan, &mut points)?;
+            let twist = drive.step(robot.pose()?, &points)?;
+            robot.set_speed(twist)?;
+            turns.set(drive.turns());
+            Ok(ControlFlow::Continue(()))
+        })?;
+    }
+    let mut paths: Vec<Vec<Pose>> = scene.robots.iter().map(|robot| vec![robot.pose]).collect();
+    let mut pace = paced(common);
+    while fleet.time() + 0.5 * STEP < seconds {
+        fleet.run_for(STEP)?;
+        for (robot, path) in paths.iter_mut().enumerate() {
+            path.extend(fleet.pose(robot));
+        }
+        pace(fleet.time());
+    }
+    let first = fleet.truth(0)?;
+    let (mut contacts, mut contact_places) = (0, Vec::new());
+    for robot in 0..scene.robots.len() {
+        let truth = fleet.truth(robot)?;
+        contacts += u64::from(truth.contacts);
+        contact_places.extend(truth.contact_places);
+    }
+    let report = Report {
+        sim_time: Some(fleet.time()),
+        path_length: Some(first.path_length),
+        pose: Some(first.pose),
+        odometry: Some(scene.robots[0].pose.compose(&first.odometry)),
+        ..Report::new(Outcome::verdict("driven"))
+    };
+    Ok(Outing { turns: turns.iter().map(Cell::get).sum(), contacts, contact_places, report, paths })
+}
+
+/// The share of the floor that the robots have passed over.
+fn covered(scene: &Scene, paths: &[Vec<Pose>]) -> Option<f64> {
+    let radius = scene.robots[0].spec.footprint.bounding_radius();
+    let parameters = CoverageParameters { radius, ..CoverageParameters::default() };
+    let mut map = CoverageMap::new(&scene.world, scene.robots[0].pose.position(), parameters).ok()?;
+    paths.iter().flatten().for_each(|pose| map.cover(pose.position()));
+    Some(map.share())
+}
+
+/// The ways of all robots.
+fn picture(args: &Args, scene: &Scene, outing: &Outing, share: Option<f64>) -> Picture {
+    let mut picture = Picture::new(&scene.world);
+    let ending = if outing.contacts > 0 { "collided" } else { "no contact" };
+    picture.title(format!("Random drive: {} robots, {ending}", outing.paths.len()));
+    let share = share.map_or("-".into(), |share| format!("{:.0} %", 100.0 * share));
+    picture.caption(format!(
+        "{share} of the floor, {} turns, noise {}, seed {}",
+        outing.turns, args.common.noise, args.common.seed
+    ));
+    for (number, path) in outing.paths.iter().enumerate() {
+        let points = path.iter().map(Pose::position);
+        match number {
+            0 => picture.true_path(points),
+            1 => picture.line(points, Style::plan().labelled("other robots")),
+            _ => picture.line(points, Style::plan()),
+        };
+    }
+    for (robot, path) in scene.robots.iter().zip(&outing.paths) {
+        picture.mark(Mark::Start, robot.pose.position());
+        if let Some(&pose) = path.last() {
+            picture.robot(pose, &robot.spec.footprint);
+        }
+    }
+    for &place in &outing.contact_places {
+        picture.mark(Mark::Contact, place);
+    }
+    picture
+}

@@ -1,0 +1,198 @@
+use crate::geometry::Point;
+use crate::io::error::require_positive;
+use crate::io::{Error, ErrorKind, Result};
+use crate::world::{Clearance, Raster, World};
+
+/// What a robot covers, and how near it may come to things.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CoverageParameters {
+    /// The radius of the robot in metres. It covers the floor under it.
+    pub radius: f64,
+    /// Metres that it keeps away from everything.
+    pub margin: f64,
+    /// Metres by which neighbouring lanes overlap.
+    pub overlap: f64,
+    /// Metres along the edges of the map's cells.
+    pub resolution: f64,
+}
+
+impl Default for CoverageParameters {
+    /// An S4.
+    fn default() -> Self {
+        Self { radius: 0.06, margin: 0.015, overlap: 0.01, resolution: 0.01 }
+    }
+}
+
+impl CoverageParameters {
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<()> {
+        require_positive("radius", self.radius)?;
+        require_positive("margin", self.margin)?;
+        require_positive("resolution", self.resolution)?;
+        if self.resolution > 0.5 * self.radius {
+            return Err(Error::invalid_input(
+                "resolution",
+                self.resolution,
+                "at most half of the robot's radius",
+            ));
+        }
+        if (0.0..self.radius).contains(&self.overlap) {
+            return Ok(());
+        }
+        Err(Error::invalid_input("overlap", self.overlap, "0 to the robot's radius"))
+    }
+}
+
+/// Which part of the floor a robot can cover, and which it has covered.
+///
+/// It can cover what is under it wherever it can get from its start while it keeps its margin.
+#[derive(Debug, Clone)]
+pub struct CoverageMap {
+    raster: Raster,
+    /// Where the robot's middle may be.
+    pub(super) places: Vec<bool>,
+    floor: Vec<bool>,
+    covered: Vec<bool>,
+    parameters: CoverageParameters,
+    /// Cells of the floor, and those that are covered.
+    cells: usize,
+    done: usize,
+}
+
+impl CoverageMap {
+    /// The map of a world for a robot at a start. Fails for a start where the robot cannot be, and for a world that is too
+    /// large.
+    pub fn new(world: &World, start: Point, parameters: CoverageParameters) -> Result<Self> {
+        parameters.validate()?;
+        let CoverageParameters { radius, margin, resolution, .. } = parameters;
+        let reach = radius + margin;
+        let clearance = Clearance::new(world, resolution, reach + 2.0 * resolution).map_err(|error| {
+            Error::new(ErrorKind::InvalidInput, format!("the world cannot be mapped: {error}"))
+                .with_source(error)
+        })?;
+        let raster = clearance.raster().clone();
+        let inside = |cell: usize| world.floor.contains(raster.centre(cell));
+        let regions = raster.regions(|cell| clearance.at(cell) >= reach && inside(cell));
+        let home = raster.cell_at(start).and_then(|cell| regions[cell]);
+        let Some(home) = home else {
+            let found = format!("({}, {}) m", start.x, start.y);
+            let expected = format!("a place {reach} m away from everything");
+            return Err(Error::invalid_input("start", found, &expected));
+        };
+        let places: Vec<bool> = regions.iter().map(|&region| region == Some(home)).collect();
+        let mut map = Self {
+            floor: vec![false; raster.cells()],
+            covered: vec![false; raster.cells()],
+            raster,
+            places,
+            parameters,
+            cells: 0,
+            done: 0,
+        };
+        map.find_floor();
+        Ok(map)
+    }
+
+    fn find_floor(&mut self) {
+        let under = self.disc(self.parameters.radius);
+        for cell in 0..self.places.len() {
+            if self.places[cell] {
+                for floor in self.under(cell, &under) {
+                    self.floor[floor] = true;
+                }
+            }
+        }
+        self.cells = self.floor.iter().filter(|&&floor| floor).count();
+    }
+
+    /// Steps in columns and rows from a cell to those whose middles lie within a radius.
+    fn disc(&self, radius: f64) -> Vec<(i64, i64)> {
+        let cells = radius / self.raster.resolution();
+        let reach = cells.ceil() as i64;
+        let within = |&(x, y): &(i64, i64)| ((x * x + y * y) as f64) <= cells * cells;
+        (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| (x, y))).filter(within).collect()
+    }
+
+    fn under<'a>(&self, cell: usize, disc: &'a [(i64, i64)]) -> impl Iterator<Item = usize> + use<'a> {
+        let (columns, rows) = (self.raster.columns() as i64, self.raster.rows() as i64);
+        let (column, row) = (cell as i64 % columns, cell as i64 / columns);
+        disc.iter().filter_map(move |&(x, y)| {
+            let (x, y) = (column + x, row + y);
+            ((0..columns).contains(&x) && (0..rows).contains(&y)).then_some((y * columns + x) as usize)
+        })
+    }
+
+    /// Covers the floor under a robot at a place.
+    pub fn cover(&mut self, place: Point) {
+        let disc = self.disc(self.parameters.radius);
+        self.cover_by(place, &disc);
+    }
+
+    fn cover_by(&mut self, place: Point, disc: &[(i64, i64)]) {
+        let Some(cell) = self.raster.cell_at(place) else { return };
+        for under in self.under(cell, disc) {
+            if self.floor[under] && !self.covered[under] {
+                self.covered[under] = true;
+                self.done += 1;
+            }
+        }
+    }
+
+    /// Covers the floor along a line that a robot's middle drives, which errs by so many metres to either side.
+    pub fn cover_line(&mut self, from: Point, to: Point, error: f64) {
+        let disc = self.disc((self.parameters.radius - error).max(0.0));
+        let length = (to - from).norm();
+        let steps = (length / self.raster.resolution()).ceil().max(1.0) as usize;
+        for step in 0..=steps {
+            self.cover_by(from + (to - from) * (step as f64 / steps as f64), &disc);
+        }
+    }
+
+    /// The share of the floor that is covered, 0 to 1.
+    pub fn share(&self) -> f64 {
+        self.done as f64 / self.cells.max(1) as f64
+    }
+
+    /// Square metres of the floor that the robot can cover.
+    pub fn area(&self) -> f64 {
+        self.cells as f64 * self.raster.resolution() * self.raster.resolution()
+    }
+
+    /// The cells.
+    pub fn raster(&self) -> &Raster {
+        &self.raster
+    }
+
+    /// What it was made for.
+    pub fn parameters(&self) -> &CoverageParameters {
+        &self.parameters
+    }
+
+    /// Whether the robot's middle may be at a place.
+    pub fn is_place(&self, place: Point) -> bool {
+        self.raster.cell_at(place).is_some_and(|cell| self.places[cell])
+    }
+
+    /// The middles of the floor's cells that are covered, or those that are not.
+    pub fn cells(&self, covered: bool) -> impl Iterator<Item = Point> + '_ {
+        let wanted = move |&cell: &usize| self.floor[cell] && self.covered[cell] == covered;
+        (0..self.floor.len()).filter(wanted).map(|cell| self.raster.centre(cell))
+    }
+
+    /// The same map with nothing covered.
+    pub(super) fn uncovered(mut self) -> Self {
+        self.covered.fill(false);
+        self.done = 0;
+        self
+    }
+
+    /// How many cells that are not covered yet a robot at a cell would cover.
+    pub(super) fn gain(&self, cell: usize, disc: &[(i64, i64)]) -> usize {
+        self.under(cell, disc).filter(|&under| self.floor[under] && !self.covered[under]).count()
+    }
+
+    /// The cells under a robot, as steps.
+    pub(super) fn robot(&self) -> Vec<(i64, i64)> {
+        self.disc(0.9 * self.parameters.radius)
+    }
+}

@@ -1,0 +1,11 @@
+//! Driving over the whole floor (book, sections 3.1 and 6.3): a plan in lanes, and a map of what has been covered.
+
+mod lanes;
+mod map;
+mod plan;
+mod route;
+mod tour;
+
+pub use map::{CoverageMap, CoverageParameters};
+pub use plan::CoveragePlan;
+pub use tour::{Tour, TourParameters};

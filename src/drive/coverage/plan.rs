@@ -1,0 +1,204 @@
+use super::CoverageMap;
+use super::lanes::{Block, blocks};
+use super::route::{Routes, is_free};
+use crate::geometry::Point;
+use crate::io::Result;
+
+/// A way over the whole floor, in lanes as a lawn mower's (book, sections 3.1 and 6.3), and to what the lanes leave out.
+///
+/// ```
+/// use roverlab::drive::{CoverageMap, CoverageParameters, CoveragePlan};
+/// use roverlab::geometry::Point;
+/// use roverlab::world::World;
+/// let world = World::walled(1.5, 1.0);
+/// let mut map = CoverageMap::new(&world, Point::new(0.2, 0.2), CoverageParameters::default())?;
+/// let plan = CoveragePlan::new(&map, Point::new(0.2, 0.2))?;
+/// plan.points().windows(2).for_each(|two| map.cover_line(two[0], two[1], 0.0));
+/// assert!(map.share() > 0.98 && plan.length() < 1.5 * map.area() / 0.12);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct CoveragePlan {
+    points: Vec<Point>,
+    share: f64,
+}
+
+/// Metres by which the robot may miss its way without leaving a gap that the plan does not know of.
+const ERROR: f64 = 0.004;
+/// Of the cells under the robot, the share that has to be gained for a place to be worth a visit.
+const WORTH: f64 = 0.12;
+/// The share of the floor at which the plan is content.
+const ENOUGH: f64 = 0.995;
+/// The most visits beside the lanes.
+const VISITS: usize = 2000;
+
+impl CoveragePlan {
+    /// A plan for a robot at a start. What the map says to be covered is not looked at. Takes time in proportion to the
+    /// cells times the blocks and the visits beside them.
+    pub fn new(map: &CoverageMap, start: Point) -> Result<Self> {
+        let mut planned = CoverageMap::clone(map).uncovered();
+        let mut points = vec![start];
+        let mut blocks = blocks(map);
+        let cell_of = |place: Point| map.raster().cell_at(place).unwrap_or(0);
+        while !blocks.is_empty() {
+            let here = points[points.len() - 1];
+            let (routes, _) = Routes::from(map, cell_of(here), |_| false);
+            let Some((index, lanes)) = nearest(&blocks, |place| f64::from(routes.lengths[cell_of(place)]))
+            else {
+                break;
+            };
+            blocks.swap_remove(index);
+            for lane in lanes {
+                for place in lane {
+                    connect(map, &mut points, place);
+                }
+            }
+        }
+        for two in points.windows(2) {
+            planned.cover_line(two[0], two[1], ERROR);
+        }
+        visit_the_rest(map, &mut planned, &mut points);
+        Ok(Self { points, share: planned.share() })
+    }
+
+    /// The corners of the way, from the start on.
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// Metres.
+    pub fn length(&self) -> f64 {
+        self.points.windows(2).map(|two| (two[1] - two[0]).norm()).sum()
+    }
+
+    /// The share of the floor that it covers if it is driven to within a few millimetres.
+    pub fn share(&self) -> f64 {
+        self.share
+    }
+}
+
+/// The block that begins nearest, and its lanes in the order and in the directions in which they are to be driven.
+fn nearest(blocks: &[Block], length_to: impl Fn(Point) -> f64) -> Option<(usize, Vec<[Point; 2]>)> {
+    let mut best: Option<(f64, usize, bool, bool)> = None;
+    for (index, block) in blocks.iter().enumerate() {
+        let ends = [block.lanes.first(), block.lanes.last()];
+        for (backwards, lane) in ends.into_iter().enumerate() {
+            let Some(lane) = lane else { continue };
+            for (flipped, &end) in lane.iter().enumerate() {
+                let length = length_to(end);
+                if length.is_finite() && best.is_none_or(|(least, ..)| length < least) {
+                    best = Some((length, index, backwards == 1, flipped == 1));
+                }
+            }
+        }
+    }
+    let (_, index, backwards, flipped) = best?;
+    let mut lanes = blocks[index].lanes.clone();
+    if backwards {
+        lanes.reverse();
+    }
+    for (number, lane) in lanes.iter_mut().enumerate() {
+        if (number % 2 == 1) != flipped {
+            lane.reverse();
+        }
+    }
+    Some((index, lanes))
+}
+
+/// Adds a place to a way, straight or round what is between.
+fn connect(map: &CoverageMap, points: &mut Vec<Point>, place: Point) {
+    let here = points[points.len() - 1];
+    if is_free(map, here, place) {
+        points.push(place);
+        return;
+    }
+    let (Some(from), Some(to)) = (map.raster().cell_at(here), map.raster().cell_at(place)) else { return };
+    let (routes, found) = Routes::from(map, from, |cell| cell == to);
+    if found.is_some() {
+        points.extend(routes.to(map, to).into_iter().skip(1));
+    }
+}
+
+/// Drives to the nearest places that are worth it, until the floor is covered.
+fn visit_the_rest(map: &CoverageMap, planned: &mut CoverageMap, points: &mut Vec<Point>) {
+    let robot = planned.robot();
+    let worth = ((robot.len() as f64 * WORTH) as usize).max(1);
+    for _ in 0..VISITS {
+        let here = points[points.len() - 1];
+        let Some(from) = map.raster().cell_at(here) else { return };
+        if planned.share() >= ENOUGH {
+            return;
+        }
+        let (routes, found) = Routes::from(map, from, |cell| planned.gain(cell, &robot) >= worth);
+        let Some(goal) = found.filter(|&goal| goal != from) else { return };
+        for place in routes.to(map, goal).into_iter().skip(1) {
+            planned.cover_line(points[points.len() - 1], place, ERROR);
+            points.push(place);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::CoverageParameters;
+    use super::*;
+    use crate::geometry::Pose;
+    use crate::world::{Object, ObjectKind, Wall, World};
+    use proptest::prelude::*;
+
+    const START: Point = Point::new(0.2, 0.2);
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(12))]
+        #[test]
+        fn plans_cover_the_floor_and_stay_on_it(
+            width in 1.4..2.4f64, depth in 1.2..2.0f64, wall in 0.3..0.7f64, x in 0.3..0.8f64, y in 0.4..0.8f64, turn in 0.0..1.5f64,
+        ) {
+            let mut world = World::walled(width, depth);
+            let middle = Point::new(0.5 * width, 0.0);
+            world.walls.push(Wall::new(middle, Point::new(middle.x, wall * depth)));
+            let kind = std::sync::Arc::new(ObjectKind::predefined("crate").unwrap());
+            world.objects.push(Object::new(kind, Pose::new(x * width, y * depth, turn)));
+            let Ok(mut map) = CoverageMap::new(&world, START, CoverageParameters::default()) else { return Ok(()) };
+            let plan = CoveragePlan::new(&map, START).unwrap();
+            // The plan itself takes the robot to err by some millimetres.
+            prop_assert!(plan.share() >= 0.94, "{}", plan.share());
+            prop_assert!(plan.length() < 1.7 * map.area() / 0.12, "{} m for {} m2", plan.length(), map.area());
+            for two in plan.points().windows(2) {
+                prop_assert!(is_free(&map, two[0], two[1]), "{:?}", two);
+                map.cover_line(two[0], two[1], 0.0);
+            }
+            prop_assert!(map.share() >= 0.98, "{}", map.share());
+        }
+    }
+
+    #[test]
+    fn what_is_covered_is_what_was_passed_over() {
+        let mut map =
+            CoverageMap::new(&World::walled(1.0, 1.0), START, CoverageParameters::default()).unwrap();
+        assert_eq!((map.share(), map.cells(true).count()), (0.0, 0));
+        map.cover(Point::new(0.5, 0.5));
+        let disc = std::f64::consts::PI * 0.06 * 0.06;
+        assert!((map.share() * map.area() - disc).abs() < 0.1 * disc);
+        map.cover_line(Point::new(0.2, 0.5), Point::new(0.8, 0.5), 0.0);
+        assert!((map.share() * map.area() - disc - 0.6 * 0.12).abs() < 0.003);
+        // Walls leave 15 mm and the robot's round corners.
+        assert!((map.area() - 0.96 * 0.96).abs() < 0.02, "{}", map.area());
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        let good = CoverageParameters::default();
+        let world = World::walled(1.0, 1.0);
+        for bad in [
+            CoverageParameters { radius: 0.0, ..good },
+            CoverageParameters { resolution: 0.05, ..good },
+            CoverageParameters { overlap: 0.1, ..good },
+            CoverageParameters { margin: f64::NAN, ..good },
+        ] {
+            assert!(CoverageMap::new(&world, START, bad).is_err());
+        }
+        assert!(CoverageMap::new(&world, Point::new(0.03, 0.5), good).is_err());
+        assert!(CoverageMap::new(&world, Point::new(5.0, 5.0), good).is_err());
+    }
+}

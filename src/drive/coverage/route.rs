@@ -1,0 +1,124 @@
+use std::collections::BinaryHeap;
+
+use super::CoverageMap;
+use crate::geometry::Point;
+
+/// Shortest ways of a robot's middle over the cells where it may be, from one cell to all others.
+#[derive(Debug, Clone)]
+pub(super) struct Routes {
+    /// The cell before each on the way from the start.
+    before: Vec<u32>,
+    /// The length of the way in cells; infinite where there is none.
+    pub(super) lengths: Vec<f32>,
+    start: usize,
+}
+
+#[derive(PartialEq)]
+struct Open(f32, u32);
+
+impl Eq for Open {}
+
+impl PartialOrd for Open {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Open {
+    /// The nearest comes first.
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        other.0.total_cmp(&self.0).then(other.1.cmp(&self.1))
+    }
+}
+
+impl Routes {
+    /// All ways from a cell, until one is found that `is_goal` accepts. Returns that, too.
+    pub(super) fn from(
+        map: &CoverageMap,
+        start: usize,
+        mut is_goal: impl FnMut(usize) -> bool,
+    ) -> (Self, Option<usize>) {
+        let columns = map.raster().columns() as i64;
+        let cells = map.places.len();
+        let mut routes = Self { before: vec![u32::MAX; cells], lengths: vec![f32::INFINITY; cells], start };
+        routes.lengths[start] = 0.0;
+        let mut open = BinaryHeap::from([Open(0.0, start as u32)]);
+        while let Some(Open(length, cell)) = open.pop() {
+            let here = cell as usize;
+            if length > routes.lengths[here] {
+                continue;
+            }
+            if is_goal(here) {
+                return (routes, Some(here));
+            }
+            for (x, y, step) in STEPS {
+                let next = here as i64 + y * columns + x;
+                // Places keep away from the raster's edge, so that no step leaves it.
+                let Some(next) = usize::try_from(next).ok().filter(|&next| next < cells && map.places[next])
+                else {
+                    continue;
+                };
+                if length + step < routes.lengths[next] {
+                    routes.lengths[next] = length + step;
+                    routes.before[next] = cell;
+                    open.push(Open(length + step, next as u32));
+                }
+            }
+        }
+        (routes, None)
+    }
+
+    /// The way to a cell as few straight lines, both ends included.
+    pub(super) fn to(&self, map: &CoverageMap, goal: usize) -> Vec<Point> {
+        let mut cells = vec![goal];
+        let mut cell = goal;
+        while cell != self.start && self.before[cell] != u32::MAX {
+            cell = self.before[cell] as usize;
+            cells.push(cell);
+        }
+        cells.reverse();
+        let points: Vec<Point> = cells.into_iter().map(|cell| map.raster().centre(cell)).collect();
+        straightened(map, &points)
+    }
+}
+
+const DIAGONAL: f32 = std::f32::consts::SQRT_2;
+const STEPS: [(i64, i64, f32); 8] = [
+    (1, 0, 1.0),
+    (-1, 0, 1.0),
+    (0, 1, 1.0),
+    (0, -1, 1.0),
+    (1, 1, DIAGONAL),
+    (-1, 1, DIAGONAL),
+    (1, -1, DIAGONAL),
+    (-1, -1, DIAGONAL),
+];
+
+/// Whether the robot's middle may be all along a line.
+pub(super) fn is_free(map: &CoverageMap, from: Point, to: Point) -> bool {
+    let steps = (2.0 * (to - from).norm() / map.raster().resolution()).ceil().max(1.0) as usize;
+    (0..=steps).all(|step| map.is_place(from + (to - from) * (step as f64 / steps as f64)))
+}
+
+/// Leaves out the points of a way that straight lines do without.
+fn straightened(map: &CoverageMap, points: &[Point]) -> Vec<Point> {
+    let Some(&first) = points.first() else { return Vec::new() };
+    let mut line = vec![first];
+    let mut from = 0;
+    while from + 1 < points.len() {
+        // The farthest point in sight, looked for in steps that double.
+        let (mut seen, mut step) = (from + 1, 1);
+        while step > 0 {
+            let next = (seen + step).min(points.len() - 1);
+            if next > seen && is_free(map, points[from], points[next]) {
+                seen = next;
+                step *= 2;
+            } else {
+                step /= 2;
+            }
+        }
+        line.push(points[seen]);
+        from = seen;
+    }
+    line
+}

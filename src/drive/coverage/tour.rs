@@ -1,0 +1,122 @@
+use crate::geometry::{Point, Pose, Twist, angle_difference, math};
+use crate::io::error::require_positive;
+use crate::io::{Error, Result};
+
+/// What [`Tour`] goes by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TourParameters {
+    /// The fastest speed in m/s.
+    pub speed: f64,
+    /// The fastest turn in rad/s.
+    pub turn_rate: f64,
+    /// Metres to a corner at which the next leg begins.
+    pub arrival: f64,
+    /// Metres of way in which a distance from the line dies away.
+    pub reach: f64,
+    /// The seconds by which the robot does later what it is told.
+    pub lag: f64,
+}
+
+impl Default for TourParameters {
+    /// An S4.
+    fn default() -> Self {
+        Self { speed: 0.25, turn_rate: 2.0, arrival: 0.006, reach: 0.08, lag: 0.2 }
+    }
+}
+
+/// Drives along straight legs with sharp corners: on the spot towards the next corner, then straight on, with feedback.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tour {
+    parameters: TourParameters,
+    corners: Vec<Point>,
+    /// The corner that is driven to.
+    next: usize,
+    turning: bool,
+}
+
+/// Legs shorter than this, in metres, are left out.
+const LEAST_LEG: f64 = 0.008;
+/// Heading errors, in radians, at which a turn on the spot ends, and at which one is needed again.
+const ALIGNED: f64 = 0.03;
+const ASTRAY: f64 = 0.5;
+
+impl Tour {
+    /// A tour along a line through some points, the first of which is the start.
+    pub fn new(points: &[Point], parameters: TourParameters) -> Result<Self> {
+        require_positive("speed", parameters.speed)?;
+        require_positive("turn rate", parameters.turn_rate)?;
+        require_positive("arrival", parameters.arrival)?;
+        require_positive("reach", parameters.reach)?;
+        require_positive("lag", parameters.lag)?;
+        let mut corners: Vec<Point> = Vec::with_capacity(points.len());
+        for &point in points {
+            if !(point.x.is_finite() && point.y.is_finite()) {
+                return Err(Error::invalid_input("corner", format!("{point:?}"), "finite numbers"));
+            }
+            if corners.last().is_none_or(|last| (point - last).norm() > LEAST_LEG) {
+                corners.push(point);
+            }
+        }
+        Ok(Self { parameters, corners, next: 1, turning: true })
+    }
+
+    /// The share of the corners that have been passed, 0 to 1.
+    pub fn progress(&self) -> f64 {
+        let legs = self.corners.len().saturating_sub(1).max(1);
+        ((self.next - 1) as f64 / legs as f64).min(1.0)
+    }
+
+    /// The next speed; `None` at the end.
+    pub fn step(&mut self, pose: Pose) -> Option<Twist> {
+        let TourParameters { speed, turn_rate, arrival, reach, lag } = self.parameters;
+        loop {
+            let (&from, &to) = (self.corners.get(self.next - 1)?, self.corners.get(self.next)?);
+            let along = to - from;
+            let heading = math::atan2(along.y, along.x);
+            let leg = Pose::new(to.x, to.y, heading);
+            let place = leg.to_local(pose.position());
+            // What is left of the leg, and how far to the left of it the robot is.
+            let (rest, aside) = (-place.x, place.y);
+            if rest < arrival {
+                self.next += 1;
+                self.turning = true;
+                continue;
+            }
+            let error = angle_difference(heading, pose.heading);
+            if self.turning && error.abs() > ALIGNED {
+                return Some(Twist::new(0.0, (3.5 * error).clamp(-turn_rate, turn_rate)));
+            }
+            self.turning = error.abs() > ASTRAY;
+            let linear = speed.min(rest / (2.0 * lag)).max(0.01);
+            let bend = (2.0 * math::sin(error) - (aside / reach).clamp(-1.0, 1.0)) / reach;
+            return Some(Twist::new(linear, (linear * bend).clamp(-turn_rate, turn_rate)));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::{Displacement, advance};
+
+    #[test]
+    fn the_legs_are_driven_one_after_the_other() {
+        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 0.11), (0.2, 0.11), (0.2, 0.11), (0.2, 0.8)];
+        let points = corners.map(|(x, y)| Point::new(x, y));
+        let mut tour = Tour::new(&points, TourParameters::default()).unwrap();
+        let (mut pose, mut worst) = (Pose::new(0.0, 0.01, 2.0), 0.0_f64);
+        let mut steps = 0;
+        while let Some(twist) = tour.step(pose) {
+            pose = advance(pose, Displacement { length: 0.05 * twist.linear, angle: 0.05 * twist.angular });
+            let legs = points.windows(2).map(|two| crate::geometry::Segment::new(two[0], two[1]));
+            worst = worst.max(legs.map(|leg| leg.distance_to(pose.position())).fold(f64::INFINITY, f64::min));
+            steps += 1;
+            assert!(steps < 2000, "{pose:?}");
+        }
+        assert!(worst < 0.012 && pose.distance_to(points[5]) < 0.015, "{worst} {pose:?}");
+        assert_eq!(tour.progress(), 1.0);
+        assert!(Tour::new(&points, TourParameters { speed: 0.0, ..TourParameters::default() }).is_err());
+        assert!(Tour::new(&[Point::new(f64::NAN, 0.0)], TourParameters::default()).is_err());
+        assert!(Tour::new(&[], TourParameters::default()).unwrap().step(pose).is_none());
+    }
+}

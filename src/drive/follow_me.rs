@@ -1,0 +1,343 @@
+use std::f64::consts::PI;
+
+use super::way::Way;
+use crate::geometry::{Point, Pose, Twist, Vector, math, normalize_angle};
+use crate::io::error::require_positive;
+use crate::io::{Error, LidarScan, Result};
+
+/// What [`Follower`] goes by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FollowMeParameters {
+    /// Metres between the middles of the follower and of the robot ahead.
+    pub gap: f64,
+    /// The fastest speed in m/s.
+    pub speed: f64,
+    /// The fastest turn in rad/s.
+    pub turn_rate: f64,
+    /// The radius of the robot in metres, and what it keeps free around it.
+    pub radius: f64,
+    /// Metres that are kept free beside the robot.
+    pub margin: f64,
+    /// The radius of the robot ahead in metres.
+    pub leader_radius: f64,
+    /// Seconds without a sight of the robot ahead after which it is lost.
+    pub patience: f64,
+    /// Seconds from one step to the next.
+    pub period: f64,
+}
+
+impl Default for FollowMeParameters {
+    /// An S4 behind another robot of about its size.
+    fn default() -> Self {
+        Self {
+            gap: 0.4,
+            speed: 0.35,
+            turn_rate: 2.0,
+            radius: 0.06,
+            margin: 0.04,
+            leader_radius: 0.07,
+            patience: 3.0,
+            period: 0.1,
+        }
+    }
+}
+
+impl FollowMeParameters {
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<()> {
+        require_positive("speed", self.speed)?;
+        require_positive("turn rate", self.turn_rate)?;
+        require_positive("radius", self.radius)?;
+        require_positive("margin", self.margin)?;
+        require_positive("radius of the leader", self.leader_radius)?;
+        require_positive("patience", self.patience)?;
+        require_positive("control period", self.period)?;
+        let least = self.radius + self.leader_radius + 2.0 * self.margin;
+        if self.gap >= least && self.gap.is_finite() {
+            return Ok(());
+        }
+        Err(Error::invalid_input("gap", self.gap, &format!("at least {least:.3} m, for both robots")))
+    }
+}
+
+/// What a follower sees at a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FollowMeObservation<'a> {
+    /// Seconds.
+    pub time: f64,
+    /// Where odometry takes the robot to be.
+    pub pose: Pose,
+    /// Where the robot ahead may be: the middles of things of its size, in the follower's frame.
+    pub candidates: &'a [Point],
+    /// What must not be touched, in the follower's frame.
+    pub obstacles: &'a [Point],
+}
+
+/// Follows a robot that it sees (book, sections 5.2 and 5.3).
+///
+/// The robot ahead is tracked: of all things of its size it is the one nearest to where it was to be expected, so that the
+/// nearest thing around, which the book follows, cannot take its place. The follower closes up to a gap with the speed of the
+/// robot ahead, and goes round what stands between.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Follower {
+    parameters: FollowMeParameters,
+    /// The robot ahead in the frame of odometry, its velocity, and when it was seen.
+    target: Option<Target>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Target {
+    place: Point,
+    velocity: Vector,
+    seen: f64,
+}
+
+/// Metres, and metres for each second without a sight, within which a thing is taken for the robot ahead.
+const GATE: f64 = 0.15;
+const GATE_GROWTH: f64 = 0.35;
+/// The shares of a new sight in place and velocity.
+const OF_PLACE: f64 = 0.5;
+const OF_VELOCITY: f64 = 0.15;
+/// Metres per second for each metre that the gap is too large.
+const PULL: f64 = 1.2;
+/// Metres that are looked ahead for a free way.
+const AHEAD: f64 = 0.3;
+/// Radians per second with which it looks round for a robot that it has lost.
+const LOOKING_RATE: f64 = 1.0;
+/// Seconds in which the free way ahead is driven.
+const BRAKING: f64 = 0.7;
+
+impl Follower {
+    /// A follower that has not seen anybody.
+    pub fn new(parameters: FollowMeParameters) -> Result<Self> {
+        parameters.validate()?;
+        Ok(Self { parameters, target: None })
+    }
+
+    /// Where the robot ahead is in the frame of odometry, as far as that is known.
+    pub fn target(&self) -> Option<Point> {
+        self.target.map(|target| target.place)
+    }
+
+    /// Seconds since the robot ahead was seen; infinite before the first sight.
+    pub fn unseen(&self, time: f64) -> f64 {
+        self.target.map_or(f64::INFINITY, |target| time - target.seen)
+    }
+
+    /// Whether the robot ahead is lost.
+    pub fn is_lost(&self, time: f64) -> bool {
+        self.unseen(time) > self.parameters.patience
+    }
+
+    /// The next speed.
+    pub fn step(&mut self, seen: &FollowMeObservation<'_>) -> Result<Twist> {
+        if !(seen.pose.is_finite() && seen.time.is_finite()) {
+            let found = format!("{:?} at {} s", seen.pose, seen.time);
+            return Err(Error::invalid_input("observed pose", found, "finite numbers"));
+        }
+        self.track(seen);
+        let parameters = &self.parameters;
+        let Some(target) = self.target else { return Ok(Twist::STOP) };
+        if self.is_lost(seen.time) {
+            // It looks round for the robot ahead, first to where that was.
+            let bearing = seen.pose.bearing_to(target.place);
+            return Ok(Twist::new(0.0, LOOKING_RATE.min(parameters.turn_rate).copysign(bearing)));
+        }
+        let away = seen.pose.to_local(target.place);
+        let distance = away.coords.norm();
+        let bearing = math::atan2(away.y, away.x);
+        // The robot ahead is no obstacle on the way to its gap.
+        let near_target = parameters.leader_radius + 0.05;
+        let obstacles: Vec<Point> =
+            seen.obstacles.iter().copied().filter(|point| (point - away).norm() > near_target).collect();
+        let way = Way { radius: parameters.radius, margin: parameters.margin };
+        let (towards, free) = way.towards(&obstacles, bearing, AHEAD.min(distance));
+        let along = crate::geometry::direction(seen.pose.heading + bearing).dot(&target.velocity);
+        let closing = PULL * (distance - parameters.gap) + along;
+        let turn = normalize_angle(towards);
+        let facing = math::cos(turn).max(0.0);
+        // What stands straight ahead of the robot as it points now limits its speed as well.
+        let free =
+            free.min(way.free(&obstacles, 0.0)).min(distance - parameters.radius - parameters.leader_radius);
+        let most = ((free - parameters.margin) / BRAKING).clamp(0.0, parameters.speed);
+        let linear = (closing * facing * facing).clamp(0.0, most);
+        Ok(Twist::new(linear, (2.5 * turn).clamp(-parameters.turn_rate, parameters.turn_rate)))
+    }
+
+    /// Finds the robot ahead among the candidates.
+    fn track(&mut self, seen: &FollowMeObservation<'_>) {
+        let nearest_to = |place: Point| {
+            let candidates = seen.candidates.iter().map(|&candidate| seen.pose.to_world(candidate));
+            candidates.min_by(|a, b| (a - place).norm().total_cmp(&(b - place).norm()))
+        };
+        let Some(target) = self.target.filter(|_| !self.is_lost(seen.time)) else {
+            // At first, and when it was lost, it is the nearest one ahead.
+            let ahead = seen.candidates.iter().filter(|point| math::atan2(point.y, point.x).abs() < 0.3 * PI);
+            let first = ahead.min_by(|a, b| a.coords.norm().total_cmp(&b.coords.norm()));
+            let found = first.map(|&point| Target {
+                place: seen.pose.to_world(point),
+                velocity: Vector::zeros(),
+                seen: seen.time,
+            });
+            self.target = found.or(self.target);
+            return;
+        };
+        let since = (seen.time - target.seen).max(1e-3);
+        let moved = target.velocity * since.min(1.0);
+        let expected = target.place + moved;
+        let Some(found) =
+            nearest_to(expected).filter(|found| (found - expected).norm() < GATE + GATE_GROWTH * since)
+        else {
+            return;
+        };
+        let place = expected + (found - expected) * OF_PLACE;
+        let velocity =
+            target.velocity + (found - expected) * (OF_VELOCITY / since.max(self.parameters.period));
+        self.target = Some(Target { place, velocity, seen: seen.time });
+    }
+}
+
+/// The middles of the things in a scan that may be a robot of some radius, in the robot's frame.
+///
+/// Neighbouring beams whose points are near each other make a thing; it counts if it is no wider than the robot, and what is
+/// beside it is farther away. What is seen of a round robot is its front.
+pub fn robots_in(scan: &LidarScan, radius: f64) -> Vec<Point> {
+    /// Metres between neighbouring points of one thing, beyond what the angle between beams makes, and the least part of
+    /// the robot's width that has to be seen.
+    const STEP: f64 = 0.07;
+    const LEAST: f64 = 0.8;
+    let beams = scan.ranges.len();
+    let all_round = (scan.angle_increment.abs() * beams as f64 - std::f64::consts::TAU).abs() < 1e-6;
+    let joined = |a: usize, b: usize| {
+        let (one, other) = (scan.ranges[a], scan.ranges[b]);
+        one.is_finite() && other.is_finite() && (one - other).abs() < STEP
+    };
+    let first =
+        if all_round { (0..beams).find(|&beam| !joined((beam + beams - 1) % beams, beam)) } else { Some(0) };
+    let Some(first) = first else { return Vec::new() };
+    let mut found = Vec::new();
+    let mut start = 0;
+    for step in 1..=beams {
+        let at = |step: usize| (first + step) % beams;
+        if step < beams && joined(at(step - 1), at(step)) {
+            continue;
+        }
+        let thing: Vec<usize> = (start..step).map(at).collect();
+        // What is beside it has to be farther away.
+        let before = if start > 0 || all_round { Some(at(start + beams - 1)) } else { None };
+        let after = if step < beams || all_round { Some(at(step)) } else { None };
+        let farther = |beside: Option<usize>, end: usize| {
+            beside.is_none_or(|beside| scan.ranges[beside] > scan.ranges[end] + STEP)
+        };
+        if farther(before, at(start)) && farther(after, at(step - 1)) {
+            found.extend(middle_of(scan, &thing, radius, LEAST));
+        }
+        start = step;
+    }
+    found
+}
+
+/// The middle of the disc that a row of beams hits, if it may be one.
+fn middle_of(scan: &LidarScan, beams: &[usize], radius: f64, least: f64) -> Option<Point> {
+    let ranges = || beams.iter().map(|&beam| scan.ranges[beam]).filter(|range| range.is_finite());
+    let count = ranges().count();
+    if count != beams.len() || count == 0 {
+        return None;
+    }
+    let mean = ranges().sum::<f64>() / count as f64;
+    let width = mean * scan.angle_increment.abs() * count as f64;
+    let middle = scan.angle(beams[0]) + 0.5 * scan.angle_increment * (count - 1) as f64;
+    if width > 2.6 * radius + 0.03 || width < least * radius {
+        return None;
+    }
+    let ray = crate::geometry::direction(scan.mount.heading + middle);
+    Some(scan.mount.position() + ray * (mean + radius * std::f64::consts::FRAC_PI_4))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::{Displacement, advance};
+    use proptest::prelude::*;
+
+    fn follower() -> Follower {
+        Follower::new(FollowMeParameters::default()).unwrap()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+        /// The robot ahead drives along a circle, more slowly than the follower can.
+        #[test]
+        fn the_gap_is_kept(curvature in -0.8..0.8f64, speed in 0.05..0.25f64, aside in -0.3..0.3f64) {
+            let mut follower = follower();
+            let (mut robot, mut leader) = (Pose::default(), Pose::new(0.7, aside, 0.0));
+            for step in 0..600 {
+                let place = robot.to_local(leader.position());
+                let others = [Point::new(-0.5, 0.3), Point::new(1.5, -1.4)];
+                let candidates = [others[0], place, others[1]];
+                let seen = FollowMeObservation {
+                    time: 0.1 * f64::from(step), pose: robot, candidates: &candidates, obstacles: &[],
+                };
+                let twist = follower.step(&seen).unwrap();
+                robot = advance(robot, Displacement { length: 0.1 * twist.linear, angle: 0.1 * twist.angular });
+                leader = advance(leader, Displacement { length: 0.1 * speed, angle: 0.1 * speed * curvature });
+                prop_assert!(robot.distance_to(leader.position()) > 0.2);
+            }
+            let gap = robot.distance_to(leader.position());
+            prop_assert!((gap - 0.4).abs() < 0.1, "{}", gap);
+        }
+    }
+
+    #[test]
+    fn it_does_not_take_another_thing_for_the_robot_ahead() {
+        let mut follower = follower();
+        let step = |follower: &mut Follower, time: f64, candidates: &[Point]| {
+            let seen = FollowMeObservation { time, pose: Pose::default(), candidates, obstacles: &[] };
+            follower.step(&seen).unwrap()
+        };
+        step(&mut follower, 0.0, &[Point::new(0.8, 0.0), Point::new(0.5, 0.9)]);
+        // The other one comes nearer.
+        let twist = step(&mut follower, 0.1, &[Point::new(0.8, 0.01), Point::new(0.4, 0.4)]);
+        assert!(twist.angular.abs() < 0.2 && twist.linear > 0.0);
+        // The robot ahead is gone: first it is expected to be there still, then it is lost.
+        assert!(step(&mut follower, 0.2, &[Point::new(0.2, 0.9)]).linear > 0.0);
+        let twist = step(&mut follower, 9.0, &[Point::new(-0.9, 0.9)]);
+        assert!(follower.is_lost(9.0) && twist.linear == 0.0 && twist.angular != 0.0);
+        // It is found again.
+        step(&mut follower, 9.1, &[Point::new(0.9, 0.3)]);
+        assert!(!follower.is_lost(9.1) && step(&mut follower, 9.2, &[Point::new(0.9, 0.3)]).linear > 0.0);
+    }
+
+    #[test]
+    fn obstacles_are_passed_and_not_driven_at() {
+        let mut follower = follower();
+        let obstacles: Vec<Point> = (-2..3).map(|i| Point::new(0.35, 0.03 * f64::from(i))).collect();
+        let seen = FollowMeObservation {
+            time: 0.0,
+            pose: Pose::default(),
+            candidates: &[Point::new(1.5, 0.0)],
+            obstacles: &obstacles,
+        };
+        let twist = follower.step(&seen).unwrap();
+        assert!(twist.angular.abs() > 0.2, "{twist:?}");
+        let wall: Vec<Point> = (-20..21).map(|i| Point::new(0.12, 0.03 * f64::from(i))).collect();
+        let blocked = follower.step(&FollowMeObservation { time: 0.1, obstacles: &wall, ..seen }).unwrap();
+        assert!(blocked.linear < 0.05, "{blocked:?}");
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        let good = FollowMeParameters::default();
+        for bad in [
+            FollowMeParameters { gap: 0.1, ..good },
+            FollowMeParameters { speed: -1.0, ..good },
+            FollowMeParameters { patience: f64::NAN, ..good },
+        ] {
+            assert!(Follower::new(bad).is_err());
+        }
+        let lost = Pose::new(f64::NAN, 0.0, 0.0);
+        let seen = FollowMeObservation { time: 0.0, pose: lost, candidates: &[], obstacles: &[] };
+        assert!(follower().step(&seen).is_err());
+        assert!(robots_in(&LidarScan::default(), 0.07).is_empty());
+    }
+}

@@ -1,0 +1,132 @@
+use super::way::Way;
+use crate::geometry::{Point, Pose, Twist, math};
+use crate::io::error::require_positive;
+use crate::io::{Error, Result};
+
+/// A place in a formation that is kept by radio: the leader sends where it is, and each follower keeps to its place beside or
+/// behind it (book, section 5.3, the first of its three ways).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Formation {
+    /// Where the follower's place is, in the leader's frame.
+    pub offset: Point,
+    /// The fastest speed in m/s.
+    pub speed: f64,
+    /// The fastest turn in rad/s.
+    pub turn_rate: f64,
+    /// The radius of the robot in metres.
+    pub radius: f64,
+    /// Metres that are kept free beside it.
+    pub margin: f64,
+}
+
+/// Metres ahead of its place that a follower aims at.
+const AIM: f64 = 0.25;
+/// Metres per second for each metre behind its place.
+const PULL: f64 = 1.0;
+/// Metres that are looked ahead for a free way, and the seconds in which it is driven.
+const AHEAD: f64 = 0.25;
+const BRAKING: f64 = 1.0;
+
+impl Formation {
+    /// A place in the leader's frame, for an S4.
+    pub fn at(offset: Point) -> Self {
+        Self { offset, speed: 0.35, turn_rate: 2.0, radius: 0.06, margin: 0.06 }
+    }
+
+    /// Fails with the name of what is out of range.
+    pub fn validate(&self) -> Result<()> {
+        require_positive("speed", self.speed)?;
+        require_positive("turn rate", self.turn_rate)?;
+        require_positive("radius", self.radius)?;
+        require_positive("margin", self.margin)?;
+        if self.offset.coords.norm() >= 2.0 * self.radius {
+            return Ok(());
+        }
+        Err(Error::invalid_input("offset", format!("{:?}", self.offset), "a place beside the leader"))
+    }
+
+    /// What the leader sends: its pose, in a frame that all share, and its speed.
+    pub fn message(pose: Pose, speed: f64) -> Vec<u8> {
+        [pose.x, pose.y, pose.heading, speed].iter().flat_map(|number| number.to_le_bytes()).collect()
+    }
+
+    /// What a message says. Fails for one that is none of a leader's.
+    pub fn read(message: &[u8]) -> Result<(Pose, f64)> {
+        let numbers: Vec<f64> = message
+            .chunks(8)
+            .filter_map(|bytes| bytes.try_into().ok().map(f64::from_le_bytes))
+            .filter(|number| number.is_finite())
+            .collect();
+        match numbers.as_slice() {
+            &[x, y, heading, speed] if message.len() == 32 => Ok((Pose::new(x, y, heading), speed)),
+            _ => Err(Error::invalid_input(
+                "message",
+                format!("{} bytes", message.len()),
+                "a leader's pose and speed",
+            )),
+        }
+    }
+
+    /// The next speed, for the robot's pose in the frame that all share, the leader's pose and speed, and what is seen.
+    pub fn step(&self, pose: Pose, leader: Pose, leader_speed: f64, points: &[Point]) -> Twist {
+        let place = leader.to_world(self.offset);
+        let behind = pose.to_local(place);
+        let aim = pose.to_local(place + leader.forward() * AIM);
+        let bearing = math::atan2(aim.y, aim.x);
+        let way = Way { radius: self.radius, margin: self.margin };
+        let (towards, _) = way.towards(points, bearing, AHEAD);
+        let most = ((way.free(points, 0.0) - self.margin) / BRAKING).clamp(0.0, self.speed);
+        // Who stands where he should, waits for the leader without turning.
+        let waits = leader_speed.abs() < 0.01 && behind.coords.norm() < 0.05;
+        if waits {
+            return Twist::STOP;
+        }
+        let facing = math::cos(towards).max(0.0);
+        let linear = ((leader_speed + PULL * behind.x) * facing).clamp(0.0, most);
+        Twist::new(linear, (2.5 * towards).clamp(-self.turn_rate, self.turn_rate))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::{Displacement, advance};
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+        #[test]
+        fn the_place_is_kept(x in -0.8..-0.2f64, y in -0.5..0.5f64, curvature in -0.4..0.4f64) {
+            let formation = Formation::at(Point::new(x, y));
+            formation.validate().unwrap();
+            let mut leader = Pose::new(1.0, 1.0, 0.3);
+            let start = leader.to_world(formation.offset);
+            let mut robot = Pose::new(start.x + 0.1, start.y - 0.1, 0.0);
+            for _ in 0..600 {
+                let twist = formation.step(robot, leader, 0.15, &[]);
+                robot = advance(robot, Displacement { length: 0.1 * twist.linear, angle: 0.1 * twist.angular });
+                leader = advance(leader, Displacement { length: 0.015, angle: 0.015 * curvature });
+            }
+            let off = robot.distance_to(leader.to_world(formation.offset));
+            prop_assert!(off < 0.12, "{}", off);
+        }
+
+        #[test]
+        fn messages_say_what_was_meant(x in -9.0..9.0f64, y in -9.0..9.0f64, heading in -3.0..3.0f64, speed in 0.0..1.0f64) {
+            let pose = Pose::new(x, y, heading);
+            prop_assert_eq!(Formation::read(&Formation::message(pose, speed)).unwrap(), (pose, speed));
+        }
+
+        #[test]
+        fn other_messages_are_refused(message in prop::collection::vec(any::<u8>(), 0..31)) {
+            prop_assert!(Formation::read(&message).is_err());
+        }
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        assert!(Formation::at(Point::origin()).validate().is_err());
+        assert!(Formation { speed: -1.0, ..Formation::at(Point::new(-1.0, 0.0)) }.validate().is_err());
+        assert!(Formation::read(&Formation::message(Pose::new(f64::NAN, 0.0, 0.0), 1.0)).is_err());
+    }
+}

@@ -1,0 +1,52 @@
+use crate::geometry::{Point, Vector, cross, direction};
+
+/// How far a round robot can drive among points that it sees, in its own frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Way {
+    /// The robot's radius in metres, and what is kept free beside it.
+    pub(super) radius: f64,
+    pub(super) margin: f64,
+}
+
+/// Headings that are tried to either side, and radians between them.
+const TRIED: u32 = 18;
+const SPACING: f64 = 0.13;
+
+impl Way {
+    /// Metres straight on in a direction until the outline is at a point. What has been passed does not count.
+    pub(super) fn free(&self, points: &[Point], towards: f64) -> f64 {
+        let half = self.radius + self.margin;
+        let ahead: Vector = direction(towards);
+        let mut free = f64::INFINITY;
+        for point in points {
+            let (along, aside) = (ahead.dot(&point.coords), cross(ahead, point.coords));
+            if along > 0.0 && aside.abs() < half {
+                let nose = (half * half - aside * aside).sqrt() - self.margin;
+                free = free.min(along - nose.max(0.0));
+            }
+        }
+        free
+    }
+
+    /// The direction nearest to a wished one in which so many metres are free, or else the one with the most room; and the
+    /// room there.
+    pub(super) fn towards(&self, points: &[Point], wished: f64, room: f64) -> (f64, f64) {
+        let mut best = (wished, self.free(points, wished));
+        if best.1 >= room {
+            return best;
+        }
+        for step in 1..=TRIED {
+            let aside = f64::from(step) * SPACING;
+            let both = [wished + aside, wished - aside].map(|angle| (angle, self.free(points, angle)));
+            let [left, right] = both;
+            let roomier = if left.1 >= right.1 { left } else { right };
+            if roomier.1 >= room {
+                return roomier;
+            }
+            if roomier.1 > best.1 {
+                best = roomier;
+            }
+        }
+        best
+    }
+}

@@ -1,0 +1,127 @@
+//! The examples `random_drive`, `coverage` and `follow_me` as wholes.
+
+#[path = "../examples/common/mod.rs"]
+mod common;
+#[path = "../examples/coverage/mod.rs"]
+mod coverage;
+#[path = "../examples/driving/mod.rs"]
+mod driving;
+#[path = "../examples/follow_me/mod.rs"]
+mod follow_me;
+#[path = "../examples/random_drive/mod.rs"]
+mod random_drive;
+
+use std::ffi::OsString;
+use std::fs;
+use std::path::Path;
+
+use clap::Parser;
+use common::{CommonArgs, Failure, Report};
+use serde_json::Value;
+
+fn run<A: Parser + AsRef<CommonArgs>>(
+    name: &'static str,
+    work: fn(&A) -> Result<Report, Failure>,
+    options: &[&str],
+) -> (u8, Value, String) {
+    let words = [name, "--json"].iter().chain(options).map(OsString::from).collect::<Vec<_>>();
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    let status = common::run(name, words, &mut out, &mut err, work);
+    let err = String::from_utf8(err).unwrap();
+    (status, serde_json::from_slice(&out).unwrap_or(Value::Null), err)
+}
+
+fn number(report: &Value, name: &str) -> f64 {
+    report[name].as_f64().unwrap_or_else(|| panic!("{name} in {report}"))
+}
+
+fn assert_ended((status, report, err): &(u8, Value, String), outcome: &str) {
+    assert_eq!((*status, report["outcome"].as_str(), err.as_str()), (0, Some(outcome), ""), "{report}");
+    assert_eq!(number(report, "collisions"), 0.0);
+}
+
+#[test]
+fn robots_drive_at_random_without_touching_anything() {
+    for (robots, seed) in [("1", "1"), ("1", "2"), ("3", "1"), ("3", "2"), ("6", "3")] {
+        let options = ["--robots", robots, "--seed", seed, "--time-limit", "60"];
+        let ended = run("random_drive", random_drive::work, &options);
+        assert_ended(&ended, "driven");
+        assert!(
+            number(&ended.1, "turns") >= 3.0 && number(&ended.1, "coverage_percent") > 5.0,
+            "{}",
+            ended.1
+        );
+        assert_eq!(ended.1["robots"].to_string(), robots);
+    }
+    let refused = run("random_drive", random_drive::work, &["--robots", "3", "--fault", "link@1"]);
+    assert!(refused.0 == 2 && refused.2.contains("several robots"), "{}", refused.2);
+}
+
+#[test]
+fn the_whole_floor_is_covered() {
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("coverage.svg");
+    let ended = run("coverage", coverage::work, &["--picture", file.to_str().unwrap()]);
+    assert_ended(&ended, "covered");
+    let report = &ended.1;
+    assert!(number(report, "coverage_percent") >= 98.0 && number(report, "path_ratio") <= 1.5, "{report}");
+    assert!(number(report, "random_drive_percent") < number(report, "coverage_percent") - 10.0, "{report}");
+    assert!(fs::read_to_string(&file).unwrap().contains("% of the floor"));
+    let (status, report, _) = run("coverage", coverage::work, &["--time-limit", "20"]);
+    assert_eq!((status, report["outcome"].as_str()), (1, Some("timed_out")), "{report}");
+}
+
+#[test]
+fn nobody_is_lost() {
+    for options in [
+        &["--followers", "1"][..],
+        &["--followers", "1", "--obstacles", "4"],
+        &["--followers", "5"],
+        &["--followers", "5", "--mode", "radio", "--obstacles", "3"],
+        &["--followers", "20", "--time-limit", "40"],
+    ] {
+        let ended = run("follow_me", follow_me::work, options);
+        assert_ended(&ended, "followed");
+        assert_eq!(number(&ended.1, "lost"), 0.0);
+        assert!(number(&ended.1, "path_length_mm") > 3000.0, "{}", ended.1);
+    }
+}
+
+#[test]
+fn letters_in_a_maze_stand_for_robots() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    fs::write(
+        folder.join("swarm.maz"),
+        " _ _ _ _ _ _\n|           |\n|           |\n|  a a l    |\n|_ _ _ _ _ _|\n720\n",
+    )
+    .unwrap();
+    let sim = folder.join("swarm.sim");
+    fs::write(&sim, "world swarm.maz\nLabBot l 0\nS4 a 0\n").unwrap();
+    let (status, report, err) = run(
+        "follow_me",
+        follow_me::work,
+        &["--world", sim.to_str().unwrap(), "--time-limit", "20", "--mode", "chain"],
+    );
+    assert!(status == 0 || status == 1, "{report} {err}");
+    assert_eq!(number(&report, "followers"), 2.0);
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    let world = Path::new(env!("CARGO_TARGET_TMPDIR")).join("alone.wld");
+    fs::write(&world, "floor 3000 3000\nposition 500 500 0\n").unwrap();
+    for options in [&["--record", "x.mcap"][..], &["--followers", "0"], &["--world", world.to_str().unwrap()]]
+    {
+        let (status, _, err) = run("follow_me", follow_me::work, options);
+        assert!(status == 2 && err.lines().count() == 1, "{options:?}: {err}");
+    }
+}
+
+#[test]
+fn the_table_of_a_campaign() {
+    let words = ["follow_me", "--campaign", "--runs", "1", "--time-limit", "30"];
+    let args = follow_me::Args::try_parse_from(words).unwrap();
+    let rows = follow_me::rows(&args).unwrap();
+    let text = follow_me::text(&rows);
+    assert!(rows.iter().all(follow_me::Row::is_good), "{text}");
+    assert!(text.lines().count() >= rows.len() + 2);
+}
