@@ -13,6 +13,15 @@ pub enum WallSide {
 }
 
 impl WallSide {
+    /// The other side.
+    #[must_use]
+    pub fn other(self) -> Self {
+        match self {
+            WallSide::Left => WallSide::Right,
+            WallSide::Right => WallSide::Left,
+        }
+    }
+
     /// The sense in which headings are tried from the obstacle outwards: +1 counter-clockwise, -1 clockwise.
     pub(super) fn sense(self) -> f64 {
         match self {
@@ -60,6 +69,11 @@ impl BoundaryFollower {
     /// A follower of the obstacle at `anchor`.
     pub(super) fn new(side: WallSide, distances: FollowDistances, anchor: Point) -> Self {
         Self { side, distances, anchor, unseen: 0 }
+    }
+
+    /// The same boundary the other way.
+    pub(super) fn turn_back(&mut self) {
+        self.side = self.side.other();
     }
 
     /// The heading to take, relative to the robot's; `None` when no step is free. An anchor that is out of sight for

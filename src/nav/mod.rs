@@ -2,7 +2,7 @@
 //! can be reached, and planning on maps ([`grid`]) and in graphs ([`graph`]).
 
 mod boundary;
-mod distbug;
+mod bug;
 pub mod graph;
 pub mod grid;
 mod lidar;
@@ -15,8 +15,10 @@ mod scan_reference;
 mod surroundings;
 
 pub use boundary::WallSide;
-pub use distbug::{
-    DistBug, DistBugEvent, DistBugObservation, DistBugOutcome, DistBugParameters, DistBugPhase,
+pub use bug::{
+    Alg1, Alg2, Bug, Bug1, Bug2, BugEvent, BugKind, BugObservation, BugOutcome, BugParameters, BugPhase,
+    Class1, DistBug, DistBugEvent, DistBugObservation, DistBugOutcome, DistBugParameters, DistBugPhase,
+    Guarantee, LeaveBug, OneBug, PathBound, Rev1, Rev2, TangentBug, UnknownBug, run_bug,
 };
 pub use lidar::{
     ExtractionParameters, Extremum, ExtremumKind, ScanCorner, ScanFeatures, ScanObject, ScanWall,

@@ -54,6 +54,15 @@ pub struct Course {
 ///
 /// If the options do not pass [`CourseOptions::validate`].
 pub fn obstacle_course(stream: &mut Stream, options: &CourseOptions) -> Result<Course, CourseOptionsError> {
+    draw(stream, options, &ObstacleKind::DRAWN)
+}
+
+/// The same of some kinds of obstacles.
+pub(super) fn draw(
+    stream: &mut Stream,
+    options: &CourseOptions,
+    kinds: &[ObstacleKind],
+) -> Result<Course, CourseOptionsError> {
     options.validate()?;
     let margins = Margins::new(options);
     let (fewest, most) = options.obstacles;
@@ -61,7 +70,7 @@ pub fn obstacle_course(stream: &mut Stream, options: &CourseOptions) -> Result<C
     let mut wanted = (fewest + stream.below(most - fewest + 1)).max(usize::from(enclosed));
     loop {
         for _ in 0..TRIES_WITH_ALL {
-            if let Some(course) = try_course(stream, options, margins, wanted, enclosed) {
+            if let Some(course) = try_course(stream, options, margins, (kinds, wanted), enclosed) {
                 return Ok(course);
             }
         }
@@ -92,11 +101,11 @@ fn try_course(
     stream: &mut Stream,
     options: &CourseOptions,
     margins: Margins,
-    wanted: usize,
+    (kinds, wanted): (&[ObstacleKind], usize),
     enclosed: bool,
 ) -> Option<Course> {
     let mut layout = Layout::new(stream, options, margins.room);
-    layout.fill(stream, wanted, enclosed);
+    layout.fill(stream, kinds, wanted, enclosed);
     layout.add_objects(stream, options.objects);
     let survey = Survey::new(&layout.world, margins)?;
     let (start, goal) = if enclosed {

@@ -86,14 +86,14 @@ impl Layout {
         Self { field, world, kinds: Vec::new(), pockets: Vec::new(), chambers: Vec::new(), pieces, room }
     }
 
-    /// Draws an enclosure first, if asked for, then obstacles until there are `count`, as far as they fit.
-    pub(super) fn fill(&mut self, stream: &mut Stream, count: usize, enclosed: bool) {
+    /// Draws an enclosure first, if asked for, then obstacles of some kinds until there are `count`, as far as they fit.
+    pub(super) fn fill(&mut self, stream: &mut Stream, kinds: &[ObstacleKind], count: usize, enclosed: bool) {
         // About the side of the square that falls to each obstacle.
         let share = self.field.shorter() / (count as f64 + 2.0).sqrt();
         if enclosed {
             self.try_kind(stream, ObstacleKind::Enclosure, share);
         }
-        let mut deck = ObstacleKind::DRAWN.to_vec();
+        let mut deck = kinds.to_vec();
         stream.shuffle(&mut deck);
         let wanted = count.saturating_sub(self.kinds.len());
         for &kind in deck.iter().cycle().take(wanted) {

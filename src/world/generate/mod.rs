@@ -15,6 +15,7 @@ mod border;
 mod contour;
 mod course;
 mod enclosure;
+mod family;
 mod figure;
 mod layout;
 mod options;
@@ -25,6 +26,7 @@ mod straight;
 mod survey;
 
 pub use course::{Course, obstacle_course};
+pub use family::{CourseFamily, UnknownFamily};
 pub use options::{CourseOptions, CourseOptionsError};
 pub use repertoire::ObstacleKind;
 pub use room::{Room, RoomFeature, RoomOptions, RoomOptionsError, room};

@@ -14,26 +14,38 @@ pub(super) struct LoopProgress {
     turned: f64,
     /// Steps without a free heading.
     boxed_in: u32,
+    /// Full turns after which the place where the loop began should have been found.
+    lost_turns: f64,
+}
+
+/// What the latest step has shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Lap {
+    /// There is more of the boundary to come.
+    Open,
+    /// The robot is back where the loop began, which is so many metres long.
+    Closed(f64),
+    /// There is no way on at all.
+    BoxedIn,
 }
 
 /// Steps without a free heading after which the robot is boxed in.
 const BOXED_IN_STEPS: u32 = 40;
-/// Full turns after which the place where the loop began should have been found.
-const LOST_TURNS: f64 = 2.0;
 
 impl LoopProgress {
-    pub(super) fn new(pose: Pose) -> Self {
-        Self { begin: None, last: pose, approach: 0.0, travelled: 0.0, turned: 0.0, boxed_in: 0 }
+    /// A loop that begins about here, unless it is lost: not found again in some full turns.
+    pub(super) fn new(pose: Pose, lost_turns: f64) -> Self {
+        Self { begin: None, last: pose, approach: 0.0, travelled: 0.0, turned: 0.0, boxed_in: 0, lost_turns }
     }
 
     /// Takes in where the robot is and the heading that it takes; whether it is back where the loop began.
-    pub(super) fn update(&mut self, pose: Pose, heading: Option<f64>, radius: f64) -> bool {
+    pub(super) fn update(&mut self, pose: Pose, heading: Option<f64>, radius: f64) -> Lap {
         let moved = pose.distance_to(self.last.position());
         let turned = angle_difference(pose.heading, self.last.heading);
         self.last = pose;
         let Some(heading) = heading else {
             self.boxed_in += 1;
-            return self.boxed_in > BOXED_IN_STEPS;
+            return if self.boxed_in > BOXED_IN_STEPS { Lap::BoxedIn } else { Lap::Open };
         };
         self.boxed_in = 0;
         let Some(begin) = self.begin else {
@@ -43,7 +55,7 @@ impl LoopProgress {
             if in_line || self.approach > 6.0 * radius {
                 self.begin = Some(pose);
             }
-            return false;
+            return Lap::Open;
         };
         self.travelled += moved;
         self.turned += turned;
@@ -52,11 +64,11 @@ impl LoopProgress {
         let been_away = self.travelled > 6.0 * radius || self.turned.abs() > 1.1 * TAU;
         // Once round a closed curve, the heading turns by one full turn, whatever the curve; back and forth, by none.
         let all_round = self.turned.abs() > 0.6 * TAU;
-        if self.turned.abs() > LOST_TURNS * TAU {
+        if self.turned.abs() > self.lost_turns * TAU {
             // It has been round without finding the place, so its pose there was wrong. The loop begins anew here.
-            *self = Self { begin: Some(pose), ..Self::new(pose) };
-            return false;
+            *self = Self { begin: Some(pose), ..Self::new(pose, self.lost_turns) };
+            return Lap::Open;
         }
-        near && same_way && been_away && all_round
+        if near && same_way && been_away && all_round { Lap::Closed(self.travelled) } else { Lap::Open }
     }
 }

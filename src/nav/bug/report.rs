@@ -2,9 +2,9 @@ use crate::geometry::{Point, Pose, Twist};
 use crate::io::LidarScan;
 use crate::nav::boundary::WallSide;
 
-/// How a run of DistBug ended.
+/// How the run of a bug ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DistBugOutcome {
+pub enum BugOutcome {
     /// The robot is at the goal.
     Reached,
     /// The robot went all the way round an obstacle without getting nearer to the goal: there is no way.
@@ -15,26 +15,33 @@ pub enum DistBugOutcome {
 
 /// What the robot is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DistBugPhase {
+pub enum BugPhase {
     /// Looking round: standing, then turning once on the spot, which shows how true odometry's turns are.
     LookingRound,
-    /// Driving straight to the goal.
+    /// Driving towards the goal.
     ToGoal,
     /// Following the boundary of an obstacle.
     Following(WallSide),
     /// Standing, with a verdict.
-    Ended(DistBugOutcome),
+    Ended(BugOutcome),
 }
 
 /// Something worth telling that happened in a step. Points are where the robot was, relative to its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub enum DistBugEvent {
+pub enum BugEvent {
     /// An obstacle is in the way: the hit point.
     Hit {
         /// Where the robot was.
         point: Point,
         /// The side of the robot on which it follows the obstacle.
+        side: WallSide,
+    },
+    /// The robot turns back and follows the same obstacle the other way.
+    Reverse {
+        /// Where the robot was.
+        point: Point,
+        /// The side of the robot on which it follows the obstacle from now on.
         side: WallSide,
     },
     /// The way to the goal is free enough: the leave point.
@@ -45,12 +52,12 @@ pub enum DistBugEvent {
         free: f64,
     },
     /// The run is over.
-    End(DistBugOutcome),
+    End(BugOutcome),
 }
 
-/// What a step of DistBug is given.
+/// What a step of a bug is given.
 #[derive(Debug, Clone, Copy)]
-pub struct DistBugObservation<'a> {
+pub struct BugObservation<'a> {
     /// The pose by odometry, relative to the start.
     pub odometry: Pose,
     /// The speed by odometry.

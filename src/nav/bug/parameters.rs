@@ -2,16 +2,16 @@ use crate::io::error::require_positive;
 use crate::io::{Error, Result};
 use crate::nav::boundary::{FollowDistances, WallSide};
 
-/// What DistBug goes by. Lengths in metres, speeds in metres per second.
+/// What the bugs go by. Lengths in metres, speeds in metres per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DistBugParameters {
+pub struct BugParameters {
     /// The radius of the robot's outline.
     pub robot_radius: f64,
     /// The free space beside the outline that a passage must offer on either side.
     pub least_clearance: f64,
     /// The free space beside the outline that is kept to an obstacle where there is room.
     pub clearance: f64,
-    /// STEP of the leave condition: how much nearer to the goal than ever before a leave must bring the robot.
+    /// STEP of the leave conditions: how much nearer to the goal than before a leave must bring the robot.
     pub step: f64,
     /// The distance to the goal that counts as reached.
     pub goal_tolerance: f64,
@@ -19,15 +19,15 @@ pub struct DistBugParameters {
     pub cruise_speed: f64,
     /// The speed along an obstacle.
     pub follow_speed: f64,
-    /// On which side obstacles are kept; `None`: on the side that needs the smaller turn.
+    /// On which side obstacles are kept at first; `None`: on the side that needs the smaller turn.
     pub side: Option<WallSide>,
     /// Whether odometry is corrected by matching scans.
     pub match_scans: bool,
-    /// Seconds from one control step to the next, for [`run`](super::DistBug::run).
+    /// Seconds from one control step to the next, for [`run_bug`](super::run_bug).
     pub period: f64,
 }
 
-impl DistBugParameters {
+impl BugParameters {
     /// Parameters for a disc-shaped robot of a radius in metres; distances are scaled to it.
     pub fn for_radius(radius: f64) -> Self {
         Self {
@@ -66,7 +66,7 @@ impl DistBugParameters {
     }
 }
 
-impl Default for DistBugParameters {
+impl Default for BugParameters {
     /// For the S4's 60 mm.
     fn default() -> Self {
         Self::for_radius(0.060)

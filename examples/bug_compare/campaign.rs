@@ -1,0 +1,177 @@
+use std::fmt::Write as _;
+
+use roverlab::geometry::Segment;
+use roverlab::nav::{BugKind, PathBound};
+use roverlab::random::Stream;
+use roverlab::world::RobotSpec;
+use roverlab::world::generate::{CourseOptions, obstacle_course};
+use serde_json::{Value, json};
+
+use super::Args;
+use super::boundaries::Boundaries;
+use super::contest::Setting;
+use super::ride::{Ride, parameters, ride};
+use super::workers::share_out;
+use crate::common::{Failure, Outcome, Report, rounded};
+
+/// What is left of one run in the campaign.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Checked {
+    pub(crate) kind: BugKind,
+    pub(crate) seed: u64,
+    /// Whether the algorithm is proved complete.
+    pub(crate) complete: bool,
+    pub(crate) correct: bool,
+    pub(crate) contacts: u32,
+    pub(crate) sim_time: f64,
+    /// The path's length in terms of its bound, where there is one.
+    pub(crate) of_bound: Option<f64>,
+}
+
+/// By which part more than those traced the perimeters count.
+const TOLERANCE: f64 = 0.02;
+
+/// The work of the campaign.
+pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
+    let courses = args.runs.unwrap_or(1000);
+    let checked =
+        share_out(courses, args.threads(), |index| check(args, args.common.seed.wrapping_add(index)))?;
+    let checked: Vec<Checked> = checked.into_iter().flatten().collect();
+    args.common.tell(text(args.bugs(), &checked));
+    let good = checked.iter().all(|run| (run.correct || !run.complete) && !breaks(run));
+    let outcome = if good { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
+    Ok(Report {
+        sim_time: Some(checked.iter().map(|run| run.sim_time).sum()),
+        collisions: Some(checked.iter().map(|run| u64::from(run.contacts)).sum()),
+        ..Report::new(outcome)
+    }
+    .field("courses", courses)
+    .field("bugs", json(args.bugs(), &checked)))
+}
+
+/// Lets all algorithms drive through the course of one seed.
+pub(crate) fn check(args: &Args, seed: u64) -> Result<Vec<Checked>, Failure> {
+    let robot_radius = RobotSpec::s4().footprint.bounding_radius();
+    let options = CourseOptions { robot_radius, ..CourseOptions::default() };
+    let course = obstacle_course(&mut Stream::new(seed), &options).map_err(Failure::run)?;
+    let setting = Setting::of_course("course", seed, &course)?;
+    let conditions = setting.conditions(args);
+    let mut boundaries = None;
+    let drive = |&kind| {
+        let ride = ride(&setting.trip, kind, conditions)?;
+        let bounded = args.common.noise == 0.0 && ride.guarantee.path_bound != PathBound::Unknown;
+        if bounded && boundaries.is_none() {
+            let parameters = parameters(&setting.trip, args.common.noise);
+            let followed = parameters.robot_radius + parameters.clearance;
+            boundaries = Some(Boundaries::new(&course.world, followed).map_err(Failure::run)?);
+        }
+        let traced = boundaries.as_ref().filter(|_| bounded);
+        Ok(Checked {
+            kind,
+            seed,
+            complete: ride.guarantee.complete,
+            correct: ride.is_correct(setting.is_reachable(), args.common.noise),
+            contacts: ride.contacts,
+            sim_time: ride.sim_time,
+            of_bound: traced
+                .and_then(|boundaries| Some(ride.path_length / bound(&setting, &ride, boundaries)?)),
+        })
+    };
+    args.bugs().iter().map(drive).collect()
+}
+
+/// The bound of a ride's path in metres.
+fn bound(setting: &Setting, ride: &Ride, boundaries: &Boundaries) -> Option<f64> {
+    let line = Segment::new(setting.trip.start().position(), setting.trip.goal);
+    let mut met: Vec<usize> = ride.hits.iter().filter_map(|&hit| boundaries.nearest(hit)).collect();
+    met.sort_unstable();
+    met.dedup();
+    let crossed = ride.guarantee.path_bound == PathBound::Crossings;
+    let counted = boundaries.all.iter().enumerate().filter(|(index, _)| crossed || met.contains(index));
+    let terms: Vec<(f64, usize)> = counted
+        .map(|(_, line_of)| ((1.0 + TOLERANCE) * line_of.perimeter, line_of.crossings(line)))
+        .collect();
+    ride.guarantee.path_bound.metres(setting.trip.distance(), &terms)
+}
+
+fn breaks(run: &Checked) -> bool {
+    run.of_bound.is_some_and(|share| share > 1.0)
+}
+
+/// What is told of one algorithm.
+struct Row {
+    kind: BugKind,
+    complete: bool,
+    runs: usize,
+    contacts: u32,
+    wrong: Vec<u64>,
+    touched: Vec<u64>,
+    bounded: usize,
+    broken: Vec<u64>,
+    /// The largest share of a bound.
+    closest: Option<f64>,
+}
+
+fn row(kind: BugKind, checked: &[Checked]) -> Row {
+    let runs: Vec<&Checked> = checked.iter().filter(|run| run.kind == kind).collect();
+    let seeds = |pick: &dyn Fn(&Checked) -> bool| {
+        runs.iter().filter(|run| pick(run)).map(|run| run.seed).collect::<Vec<_>>()
+    };
+    Row {
+        kind,
+        complete: runs.iter().any(|run| run.complete),
+        runs: runs.len(),
+        contacts: runs.iter().map(|run| run.contacts).sum(),
+        wrong: seeds(&|run| !run.correct),
+        touched: seeds(&|run| run.contacts > 0),
+        bounded: runs.iter().filter(|run| run.of_bound.is_some()).count(),
+        broken: seeds(&breaks),
+        closest: runs.iter().filter_map(|run| run.of_bound).reduce(f64::max),
+    }
+}
+
+fn text(bugs: &[BugKind], checked: &[Checked]) -> String {
+    let mut text = String::from("bug         runs  correct  contacts  bounds  broken  closest\n");
+    let mut seeds = String::new();
+    for row in bugs.iter().map(|&kind| row(kind, checked)) {
+        writeln!(
+            text,
+            "{:<10}{:>6}{:>9}{:>10}{:>8}{:>8}{:>9}",
+            row.kind.name(),
+            row.runs,
+            row.runs - row.wrong.len(),
+            row.contacts,
+            row.bounded,
+            row.broken.len(),
+            row.closest.map_or("-".into(), |share| format!("{share:.3}")),
+        )
+        .expect("writing to a string does not fail");
+        for (what, list) in [("wrong", &row.wrong), ("contact", &row.touched), ("bound broken", &row.broken)]
+        {
+            if !list.is_empty() {
+                writeln!(seeds, "{}, {what}: seeds {list:?}", row.kind.name())
+                    .expect("writing to a string does not fail");
+            }
+        }
+    }
+    format!("{text}{seeds}closest: the largest part of its bound that a path has had")
+}
+
+fn json(bugs: &[BugKind], checked: &[Checked]) -> Value {
+    let row = |kind: &BugKind| {
+        let row = row(*kind, checked);
+        json!({
+            "bug": row.kind.name(),
+            "complete": row.complete,
+            "runs": row.runs,
+            "correct": row.runs - row.wrong.len(),
+            "contacts": row.contacts,
+            "wrong_seeds": row.wrong,
+            "contact_seeds": row.touched,
+            "bounds_checked": row.bounded,
+            "bounds_broken": row.broken,
+            "closest": row.closest.map(rounded),
+        })
+    };
+    bugs.iter().map(row).collect()
+}

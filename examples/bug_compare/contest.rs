@@ -1,0 +1,89 @@
+use roverlab::nav::Reachability;
+use roverlab::random::Stream;
+use roverlab::world::generate::{Course, CourseFamily};
+use roverlab::world::{RobotSpec, Scene};
+
+use super::ride::{Conditions, Ride, ride};
+use super::workers::share_out;
+use super::{Args, job};
+use crate::common::{Failure, Trip};
+
+/// A world with a robot and a goal, and the truth about it.
+#[derive(Debug, Clone)]
+pub(crate) struct Setting {
+    /// The family's name, or that of the world.
+    pub(crate) family: String,
+    pub(crate) seed: u64,
+    pub(crate) trip: Trip,
+    /// Metres along the shortest way, if there is one.
+    pub(crate) shortest: Option<f64>,
+}
+
+/// Metres along a cell's edge of the grid that knows the truth.
+const RESOLUTION: f64 = 0.010;
+/// How much more time than is generous for DistBug the algorithms get: some see nothing ahead.
+const PATIENCE: f64 = 4.0;
+
+impl Setting {
+    pub(crate) fn new(family: &str, seed: u64, trip: Trip) -> Result<Self, Failure> {
+        let radius = trip.spec().footprint.bounding_radius();
+        let ways = Reachability::new(&trip.scene.world, radius, RESOLUTION).map_err(Failure::run)?;
+        let shortest = ways.shortest_path_length(trip.start().position(), trip.goal);
+        Ok(Self { family: family.to_owned(), seed, trip, shortest })
+    }
+
+    /// A generated course.
+    pub(crate) fn of_course(family: &str, seed: u64, course: &Course) -> Result<Self, Failure> {
+        let scene = Scene::with_robot(course.world.clone(), RobotSpec::s4(), course.start);
+        Self::new(family, seed, Trip { scene, goal: course.goal })
+    }
+
+    pub(crate) fn is_reachable(&self) -> bool {
+        self.shortest.is_some()
+    }
+
+    /// How to drive here.
+    pub(crate) fn conditions(&self, args: &Args) -> Conditions {
+        let time_limit = args.common.time_limit.unwrap_or_else(|| PATIENCE * self.trip.generous_time_limit());
+        Conditions { seed: self.seed, noise: args.common.noise, time_limit }
+    }
+}
+
+/// What all algorithms did in one setting.
+#[derive(Debug, Clone)]
+pub(crate) struct Entry {
+    pub(crate) setting: Setting,
+    pub(crate) rides: Vec<Ride>,
+}
+
+/// Lets all algorithms drive in all settings, in the order of these.
+pub(crate) fn entries(args: &Args) -> Result<Vec<Entry>, Failure> {
+    let runs = args.runs.unwrap_or(10);
+    let own = args.common.world.is_some().then(|| job::own_trip(args)).transpose()?;
+    let families = if own.is_some() { 1 } else { args.families().len() as u64 };
+    share_out(families * runs, args.threads(), |index| {
+        let seed = args.common.seed.wrapping_add(index % runs);
+        let setting = match &own {
+            Some(trip) => Setting::new("world", seed, trip.clone())?,
+            None => of_family(args.families()[(index / runs) as usize], seed)?,
+        };
+        enter(args, setting)
+    })
+}
+
+/// The course of a family and a seed.
+pub(crate) fn of_family(family: CourseFamily, seed: u64) -> Result<Setting, Failure> {
+    let course = family.course(&mut Stream::new(seed)).map_err(Failure::run)?;
+    Setting::of_course(family.name(), seed, &course)
+}
+
+fn enter(args: &Args, setting: Setting) -> Result<Entry, Failure> {
+    let conditions = setting.conditions(args);
+    let drive = |&kind| {
+        let ride = ride(&setting.trip, kind, conditions)?;
+        // Paths are for the picture, which drives anew; those of many runs would fill the memory.
+        Ok(Ride { path: Vec::new(), ..ride })
+    };
+    let rides = args.bugs().iter().map(drive).collect::<Result<_, Failure>>()?;
+    Ok(Entry { setting, rides })
+}

@@ -1,0 +1,117 @@
+use std::f64::consts::TAU;
+
+use roverlab::geometry::{Pose, units};
+use roverlab::world::{DriveSpec, RobotSpec, Scene, World};
+
+use super::contest::{self, Entry, Setting, of_family};
+use super::ride::{Ride, ride};
+use super::{Args, campaign, picture, table};
+use crate::common::{CommonArgs, Failure, Outcome, Report, Trip};
+
+/// The work of the example.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    check(args)?;
+    if args.campaign {
+        return campaign::campaign(args);
+    }
+    let entries = contest::entries(args)?;
+    let rows = table::rows(&entries, args.common.noise);
+    args.common.tell(table::text(&rows));
+    // Errors of odometry can lead any algorithm astray: verdicts are judged without noise alone.
+    let good = args.common.noise > 0.0 || table::all_correct(&rows);
+    let outcome = if good { Outcome::verdict("compared") } else { Outcome::failure("wrong") };
+    let trouble = drawn(args).err().map(|failure| failure.to_string());
+    Ok(summed(outcome, &entries, trouble)
+        .field("rows", table::json(&rows))
+        .field("runs", table::json_runs(&rows))
+        .field("picture", args.common.picture.as_deref()))
+}
+
+/// A report with the sums over all rides.
+pub(super) fn summed(outcome: Outcome, entries: &[Entry], trouble: Option<String>) -> Report {
+    let rides = || entries.iter().flat_map(|entry| &entry.rides);
+    Report {
+        sim_time: Some(rides().map(|ride| ride.sim_time).sum()),
+        collisions: Some(rides().map(|ride| u64::from(ride.contacts)).sum()),
+        path_length: Some(rides().map(|ride| ride.path_length).sum()),
+        trouble,
+        ..Report::new(outcome)
+    }
+}
+
+/// Refuses what makes no sense for many runs.
+fn check(args: &Args) -> Result<(), Failure> {
+    let common = &args.common;
+    common.check_picture()?;
+    let alone: [(&str, bool); 3] = [
+        ("--start", common.start.is_some()),
+        ("--goal", common.goal.is_some()),
+        ("--robot", common.robot.is_some()),
+    ];
+    if let Some((option, _)) = alone.iter().find(|(_, given)| *given && common.world.is_none()) {
+        return Err(Failure::input(format!("{option}: found no --world; expected both, or neither")));
+    }
+    let never = [
+        ("--fault", !common.fault.is_empty()),
+        ("--realtime", common.realtime),
+        ("--record", common.record.is_some()),
+        ("--replay", common.replay.is_some()),
+    ];
+    if let Some((option, _)) = never.iter().find(|(_, given)| *given) {
+        return Err(Failure::input(format!(
+            "{option}: found it for a comparison of many runs; expected a command line without it, or the example \
+             `distbug`"
+        )));
+    }
+    if args.campaign && (common.world.is_some() || common.picture.is_some() || !args.families.is_empty()) {
+        return Err(Failure::input(
+            "--campaign: found --world, --picture or --families beside it; expected none, since it draws its own \
+             courses",
+        ));
+    }
+    Ok(())
+}
+
+/// The trip of the options, for a robot that can do it.
+pub(super) fn own_trip(args: &Args) -> Result<Trip, Failure> {
+    // The scene of `--world` comes before this empty one.
+    let empty = || Scene::with_robot(World::walled(1.0, 1.0), RobotSpec::s4(), Pose::new(0.5, 0.5, 0.0));
+    let trip = args.common.trip(empty)?;
+    let file = args.common.robot.as_ref().or(args.common.world.as_ref());
+    let place = file.map_or(String::new(), |file| format!("{}: ", file.display()));
+    let spec = trip.spec();
+    let found = if matches!(spec.drive, DriveSpec::Ackermann { .. }) {
+        Some("a car; expected one that turns on the spot".to_owned())
+    } else {
+        match spec.lidar {
+            None => Some("without a lidar; expected one with a lidar".into()),
+            Some(lidar) if lidar.field_of_view < 0.999 * TAU => Some(format!(
+                "with a lidar of {:.0} degrees; expected one of 360 degrees",
+                units::to_deg(lidar.field_of_view)
+            )),
+            Some(_) => None,
+        }
+    };
+    match found {
+        Some(found) => {
+            Err(Failure::input(format!("{place}found robot {} {found}, as bugs need it", spec.name)))
+        }
+        None => Ok(trip),
+    }
+}
+
+/// Draws the paths of all algorithms on one world, if asked for.
+fn drawn(args: &Args) -> Result<(), Failure> {
+    let Some(file) = &args.common.picture else { return Ok(()) };
+    let setting = if args.common.world.is_some() {
+        Setting::new("world", args.common.seed, own_trip(args)?)?
+    } else {
+        of_family(args.families()[0], args.common.seed)?
+    };
+    let conditions = setting.conditions(args);
+    let drive = |&kind| ride(&setting.trip, kind, conditions);
+    let rides: Vec<Ride> = args.bugs().iter().map(drive).collect::<Result<_, Failure>>()?;
+    picture::of(&setting, &rides, conditions).save(file)?;
+    args.common.tell(format_args!("picture: {}", file.display()));
+    Ok(())
+}

@@ -1,0 +1,119 @@
+use roverlab::geometry::{Point, Pose};
+use roverlab::io::sim::{SimOptions, Simulation};
+use roverlab::io::{self, ErrorKind};
+use roverlab::nav::{BugEvent, BugKind, BugOutcome, BugParameters, Guarantee, run_bug};
+
+use crate::common::{Failure, Trip};
+
+/// How to drive.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Conditions {
+    pub(crate) seed: u64,
+    pub(crate) noise: f64,
+    /// Simulated seconds.
+    pub(crate) time_limit: f64,
+}
+
+/// How an algorithm ended.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Ending {
+    /// With a verdict, or because the time was over.
+    Verdict(BugOutcome),
+    /// The robot failed.
+    Failed(String),
+}
+
+impl Ending {
+    /// The word for it.
+    pub(crate) fn word(&self) -> &'static str {
+        match self {
+            Self::Verdict(BugOutcome::Reached) => "reached",
+            Self::Verdict(BugOutcome::Unreachable) => "unreachable",
+            Self::Verdict(BugOutcome::TimedOut) => "timed_out",
+            Self::Failed(_) => "failed",
+        }
+    }
+}
+
+/// One algorithm's run and what is true about it.
+#[derive(Debug, Clone)]
+pub(crate) struct Ride {
+    pub(crate) kind: BugKind,
+    pub(crate) guarantee: Guarantee,
+    pub(crate) ending: Ending,
+    pub(crate) contacts: u32,
+    /// Metres.
+    pub(crate) path_length: f64,
+    pub(crate) goal_distance: f64,
+    /// Simulated seconds.
+    pub(crate) sim_time: f64,
+    /// Where obstacles were met, in the world.
+    pub(crate) hits: Vec<Point>,
+    /// Where the robot was at each step, truly.
+    pub(crate) path: Vec<Point>,
+}
+
+impl Ride {
+    /// Whether the verdict is the truth: `reached` counts if the robot really is at the goal.
+    pub(crate) fn is_correct(&self, reachable: bool, noise: f64) -> bool {
+        // Odometry errs, so "at the goal" is farther away with noise.
+        let tolerance = if noise == 0.0 { 0.050 } else { 0.250 };
+        match self.ending {
+            Ending::Verdict(BugOutcome::Reached) => reachable && self.goal_distance <= tolerance,
+            Ending::Verdict(BugOutcome::Unreachable) => !reachable,
+            _ => false,
+        }
+    }
+}
+
+/// What a bug goes by on a trip.
+pub(crate) fn parameters(trip: &Trip, noise: f64) -> BugParameters {
+    let radius = trip.spec().footprint.bounding_radius();
+    // Odometry without noise needs no correction.
+    BugParameters { match_scans: noise > 0.0, ..BugParameters::for_radius(radius) }
+}
+
+/// Drives the first robot of a scene to a goal by one algorithm.
+///
+/// Fails if the robot cannot be simulated or the algorithm cannot run. What goes wrong on the way is part of the result.
+pub(crate) fn ride(trip: &Trip, kind: BugKind, conditions: Conditions) -> Result<Ride, Failure> {
+    let options = SimOptions {
+        time_limit: Some(conditions.time_limit + 1.0),
+        ..SimOptions::with_noise(conditions.noise, conditions.seed)
+    };
+    let simulation = Simulation::new(&trip.scene, options).map_err(Failure::input)?;
+    let (start, truth) = (trip.start(), simulation.truth());
+    let parameters = parameters(trip, conditions.noise);
+    let mut bug = kind.with(start.to_local(trip.goal), parameters).map_err(Failure::input)?;
+    let mut robot = simulation.robot(0).map_err(Failure::input)?;
+    let (mut hits, mut path) = (Vec::new(), vec![start.position()]);
+    let result = run_bug(bug.as_mut(), &mut robot, conditions.time_limit, |bug, _| {
+        path.extend(truth.pose(0).ok().as_ref().map(Pose::position));
+        hits.extend(bug.take_events().iter().filter_map(|event| match event {
+            BugEvent::Hit { point, .. } => Some(start.to_world(*point)),
+            _ => None,
+        }));
+    });
+    // The robot lets go of the world, so that what is true stays as it is.
+    drop(robot);
+    let (sim_time, truth) = (truth.time(), truth.robot(0).map_err(Failure::run)?);
+    Ok(Ride {
+        kind,
+        guarantee: bug.guarantee(),
+        ending: ending(result),
+        contacts: truth.contacts,
+        path_length: truth.path_length,
+        goal_distance: truth.pose.distance_to(trip.goal),
+        sim_time,
+        hits,
+        path,
+    })
+}
+
+fn ending(result: io::Result<BugOutcome>) -> Ending {
+    match result {
+        Ok(outcome) => Ending::Verdict(outcome),
+        Err(error) if error.kind() == ErrorKind::TimedOut => Ending::Verdict(BugOutcome::TimedOut),
+        Err(error) => Ending::Failed(Failure::from(error).to_string()),
+    }
+}

@@ -1,0 +1,37 @@
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use crate::common::{Failure, Progress};
+
+/// The results of some pieces of work in their order, done by several threads. The number of threads makes no difference
+/// to them. The first failure ends it.
+pub(super) fn share_out<T: Send>(
+    count: u64,
+    threads: usize,
+    work: impl Fn(u64) -> Result<T, Failure> + Sync,
+) -> Result<Vec<T>, Failure> {
+    let (next, done, failed) = (AtomicU64::new(0), AtomicU64::new(0), AtomicBool::new(false));
+    let results = Mutex::new(Vec::new());
+    let drive = |mut told: Box<dyn FnMut(u64) + '_>| {
+        while !failed.load(Ordering::Relaxed) {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            if index >= count {
+                return;
+            }
+            let result = work(index);
+            failed.fetch_or(result.is_err(), Ordering::Relaxed);
+            results.lock().expect("no thread has panicked").push((index, result));
+            told(done.fetch_add(1, Ordering::Relaxed) + 1);
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..threads.min(usize::try_from(count).unwrap_or(usize::MAX)) {
+            scope.spawn(|| drive(Box::new(|_| {})));
+        }
+        let mut progress = Progress::start();
+        drive(Box::new(|done| progress.show(|| format!("{done} of {count} courses"))));
+    });
+    let mut results = results.into_inner().expect("no thread has panicked");
+    results.sort_by_key(|(index, _)| *index);
+    results.into_iter().map(|(_, result)| result).collect()
+}

@@ -1,0 +1,218 @@
+use super::parameters::BugParameters;
+use super::report::{BugEvent, BugObservation, BugOutcome, BugPhase};
+use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math};
+use crate::io::{Error, Result};
+use crate::nav::boundary::{WallSide, nearer_side};
+use crate::nav::surroundings::Surroundings;
+use crate::nav::{ScanFilter, ScanMatcher};
+
+/// What all bugs have in common: where they are, what they see, and how they steer.
+///
+/// The robot is a disc; an obstacle grown by its radius and the least clearance is what the boundary is of.
+#[derive(Debug, Clone)]
+pub(super) struct Body {
+    pub(super) parameters: BugParameters,
+    pub(super) goal: Point,
+    pub(super) phase: BugPhase,
+    pub(super) pose: Pose,
+    pub(super) surroundings: Surroundings,
+    /// The noise-filtered hits of the scan in the robot's frame.
+    pub(super) points: Vec<Point>,
+    pub(super) events: Vec<BugEvent>,
+    slow_to_pass: bool,
+    look: LookRound,
+    filter: ScanFilter,
+    matcher: ScanMatcher,
+}
+
+/// How far the robot has looked round.
+#[derive(Debug, Clone, Default)]
+struct LookRound {
+    steps: u32,
+    turned: f64,
+    last: Option<f64>,
+}
+
+/// The goal as the robot sees it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct GoalView {
+    pub(super) bearing: f64,
+    pub(super) distance: f64,
+    /// How far the disc can move towards the goal, and what it touches there.
+    pub(super) free: f64,
+    pub(super) obstacle: Option<Point>,
+}
+
+/// The standard deviation of a lidar's ranges that the filter starts from, in metres.
+const EXPECTED_NOISE: f64 = 0.010;
+/// How far round the robot points count for its next step, in steps.
+const REACH: f64 = 2.4;
+/// The position may be wrong by so many times the noise of a range.
+const NOISE_SLACK: f64 = 5.0;
+/// The part of the robot's radius that must be free round a goal that counts in spite of not being met exactly.
+const GOAL_ROOM: f64 = 0.7;
+/// Radians per second at which the robot turns to look round.
+const LOOKING_TURN: f64 = 2.0;
+/// Steps, at the start, that only look.
+const SETTLING_STEPS: u32 = 12;
+
+impl Body {
+    pub(super) fn new(goal: Point, parameters: BugParameters, slow_to_pass: bool) -> Result<Self> {
+        parameters.validate()?;
+        if !(goal.x.is_finite() && goal.y.is_finite()) {
+            return Err(Error::invalid_input("goal", goal, "finite numbers"));
+        }
+        Ok(Self {
+            parameters,
+            goal,
+            phase: BugPhase::LookingRound,
+            pose: Pose::default(),
+            surroundings: Surroundings::default(),
+            points: Vec::new(),
+            events: Vec::new(),
+            slow_to_pass,
+            look: LookRound::default(),
+            filter: ScanFilter::new(EXPECTED_NOISE),
+            matcher: ScanMatcher::new(),
+        })
+    }
+
+    pub(super) fn goal_distance(&self) -> f64 {
+        self.pose.distance_to(self.goal)
+    }
+
+    /// Ends the run, unless it has ended.
+    pub(super) fn end(&mut self, outcome: BugOutcome) {
+        if !matches!(self.phase, BugPhase::Ended(_)) {
+            self.phase = BugPhase::Ended(outcome);
+            self.events.push(BugEvent::End(outcome));
+        }
+    }
+
+    /// Takes in what the robot measures.
+    pub(super) fn perceive(&mut self, observation: &BugObservation<'_>) -> Result<()> {
+        if !observation.odometry.is_finite() {
+            let Pose { x, y, heading } = observation.odometry;
+            let found = format!("{x} m, {y} m, {heading} rad");
+            return Err(Error::invalid_input("odometry", found, "finite numbers"));
+        }
+        let ranges = &observation.scan.ranges;
+        if !ranges.is_empty() && ranges.iter().all(|range| range.is_nan()) {
+            return Err(Error::invalid_input(
+                "every range of the lidar scan",
+                f64::NAN,
+                "metres or +infinity",
+            ));
+        }
+        self.pose = self.locate(observation);
+        self.filter.update(self.pose, observation.scan)?;
+        self.points.clear();
+        self.points.extend(self.filter.points());
+        let reach = REACH * self.parameters.follow_distances().step;
+        self.surroundings.update(self.points.iter().copied(), reach);
+        Ok(())
+    }
+
+    /// The pose by odometry, corrected by matching the scan as measured.
+    fn locate(&mut self, observation: &BugObservation<'_>) -> Pose {
+        if !self.parameters.match_scans {
+            return observation.odometry;
+        }
+        self.points.clear();
+        self.points.extend(observation.scan.points());
+        self.matcher.update(observation.odometry, &self.points)
+    }
+
+    /// Keeps what is seen for the correction of later poses.
+    pub(super) fn learn(&mut self) {
+        self.matcher.learn(&self.points);
+    }
+
+    /// Stands until the filter has something to go by, then turns once on the spot.
+    pub(super) fn look_round(&mut self) -> Twist {
+        self.look.steps += 1;
+        if self.look.steps < SETTLING_STEPS {
+            return Twist::STOP;
+        }
+        self.learn();
+        let heading = self.pose.heading;
+        self.look.turned += self.look.last.map_or(0.0, |last| angle_difference(heading, last));
+        self.look.last = Some(heading);
+        if !self.parameters.match_scans || self.look.turned >= std::f64::consts::TAU {
+            self.phase = BugPhase::ToGoal;
+            return Twist::STOP;
+        }
+        Twist::new(0.0, LOOKING_TURN)
+    }
+
+    /// Bearing and distance of the goal, how far the way there is free, and what ends it.
+    pub(super) fn look_at_goal(&self) -> GoalView {
+        let bearing = self.pose.bearing_to(self.goal);
+        let distance = self.goal_distance();
+        let radius = self.parameters.follow_distances().least;
+        let (free, obstacle) = self.surroundings.free_distance(direction(bearing), radius);
+        GoalView { bearing, distance, free, obstacle }
+    }
+
+    /// Whether the way to the goal ends right here.
+    pub(super) fn is_blocked(&self, view: &GoalView) -> bool {
+        let near = self.parameters.follow_distances().wished - self.parameters.robot_radius;
+        view.free < near && view.free < view.distance
+    }
+
+    /// The side on which to follow an obstacle, unless the algorithm has its own mind about it.
+    pub(super) fn usual_side(&mut self, view: &GoalView, obstacle: Point) -> WallSide {
+        let distances = self.parameters.follow_distances();
+        self.parameters
+            .side
+            .unwrap_or_else(|| nearer_side(view.bearing, obstacle, &mut self.surroundings, distances))
+    }
+
+    /// Whether what ends the way to the goal is the followed obstacle itself, a margin away: then the disc pushed up
+    /// to it is a point of the boundary, not a place to leave for.
+    pub(super) fn is_at_followed_boundary(&self, view: &GoalView, side: WallSide) -> bool {
+        let distances = self.parameters.follow_distances();
+        let margin = distances.wished - distances.least + self.parameters.step;
+        let towards_it = math::sin(view.bearing) * side.sense() < 0.2;
+        towards_it && view.free < margin && view.free < view.distance
+    }
+
+    /// Whether nothing is seen where the robot would stand at the goal, errors of the position aside.
+    pub(super) fn goal_has_room(&self) -> bool {
+        let goal = self.pose.to_local(self.goal);
+        let room = GOAL_ROOM * self.parameters.robot_radius;
+        self.points.iter().all(|point| (point - goal).norm() > room)
+    }
+
+    /// How wrong the robot's position may well be, in metres, judged by the noise of its ranges; never as much as
+    /// would let a goal behind a wall count.
+    pub(super) fn position_slack(&self) -> f64 {
+        (NOISE_SLACK * self.filter.noise()).min(self.parameters.robot_radius)
+    }
+
+    /// The twist that turns the robot to a heading and drives it on.
+    pub(super) fn steer(&self, heading: f64, speed: Twist) -> Twist {
+        // Proportional to the error, damped by the turn rate: the motors' lag would make it swing otherwise.
+        let angular = (8.0 * heading - 1.5 * speed.angular).clamp(-3.0, 3.0);
+        let ahead = math::cos(heading).max(0.0);
+        let aligned = ahead * ahead * ahead;
+        let cruise = match self.phase {
+            BugPhase::ToGoal => self.parameters.cruise_speed,
+            _ => self.parameters.follow_speed,
+        };
+        let linear = (cruise * aligned).min(self.safe_speed());
+        Twist::new(linear, angular)
+    }
+
+    /// The speed from which the robot can still stop before what is ahead, or at the goal.
+    fn safe_speed(&self) -> f64 {
+        // The motors' lag lets the robot roll on for about 0.2 s; a little more is reserve.
+        const STOPPING_TIME: f64 = 0.45;
+        let passing = if self.slow_to_pass && self.phase == BugPhase::ToGoal { 1.0 } else { 0.5 };
+        let outline = self.parameters.robot_radius + passing * self.parameters.least_clearance;
+        let (ahead, _) = self.surroundings.free_distance(direction(0.0), outline);
+        let goal = self.goal_distance();
+        let creep = 0.02;
+        (ahead / STOPPING_TIME).min(goal / STOPPING_TIME).max(creep)
+    }
+}

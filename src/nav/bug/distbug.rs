@@ -1,0 +1,127 @@
+use super::body::Body;
+use super::family::{Bug, family, run_bug};
+use super::report::{BugEvent, BugObservation, BugOutcome, BugPhase};
+use super::strategy::{Decision, Sight, Strategy};
+use crate::geometry::{Point, Pose, Twist};
+use crate::io::{Clock, Drive, Lidar, Result};
+
+family! {
+    /// DistBug: to a goal through unknown obstacles, with a proof when there is no way (book, sections 10.1 and 10.2;
+    /// I. Kamon and E. Rivlin, "Sensory-based motion planning with global proofs", IEEE Transactions on Robotics and
+    /// Automation 13(6), 1997).
+    ///
+    /// The robot drives straight at the goal until something is in the way: the *hit point*. It then follows the
+    /// obstacle's boundary and keeps the smallest distance `d_min` that the boundary has had to the goal. As soon as
+    /// `d - F <= d_min - STEP`, where `d` is the distance to the goal and `F` the free range towards it, it leaves: the
+    /// *leave point*. Back at the hit point without having left, it knows that the goal cannot be reached.
+    ///
+    /// # Model
+    ///
+    /// The robot is a disc; an obstacle grown by its radius and the least clearance is what the boundary is of. So the
+    /// proof holds for a robot of that size: a passage narrower than `2 (radius + least clearance)` counts as closed.
+    /// `F` is the distance that the whole disc can move towards the goal, and `d_min` starts at the place where the
+    /// disc would have touched the obstacle, so that the margins kept from obstacles do not enter the comparison.
+    ///
+    /// # Failure modes
+    ///
+    /// Odometry errors move the goal and can hide that the robot has come back to its hit point; with
+    /// [`match_scans`](super::BugParameters::match_scans) poses are corrected by the scans themselves.
+    DistBug, "DistBug", DistRule, PathBound::Unknown
+}
+
+/// Leaves as soon as free range promises to get nearer than the boundary has been.
+#[derive(Debug, Clone)]
+pub(super) struct DistRule {
+    /// `d_min`: the smallest distance to the goal that a boundary has had.
+    least_distance: f64,
+    /// The part of a free range that is not relied upon.
+    doubt: f64,
+}
+
+/// The part of a free range that is not relied upon at first, and at the most: gaps between beams and errors of
+/// the pose grow with the distance.
+const DOUBT: f64 = 0.02;
+const MAX_DOUBT: f64 = 0.3;
+
+impl Default for DistRule {
+    fn default() -> Self {
+        Self { least_distance: f64::INFINITY, doubt: DOUBT }
+    }
+}
+
+impl Strategy for DistRule {
+    /// It turns the nearer way, which leads past.
+    const SLOW_TO_PASS: bool = false;
+
+    /// A boundary begun anew costs it a part of a lap at the most.
+    const LOST_TURNS: f64 = 2.0;
+
+    /// Takes in how near to the goal the boundary of a new obstacle begins. If the last leave has not brought the
+    /// robot as much nearer as it promised, free ranges are relied upon less from now on; so the robot cannot go back
+    /// and forth for ever because of errors.
+    fn meet(&mut self, meeting: &Sight) {
+        let distance = meeting.distance - meeting.free;
+        if distance > self.least_distance - 0.5 * meeting.step && self.least_distance.is_finite() {
+            self.doubt = (2.0 * self.doubt).min(MAX_DOUBT);
+        }
+        self.least_distance = self.least_distance.min(distance);
+    }
+
+    fn consider(&mut self, _body: &Body, sight: &Sight) -> Decision {
+        self.least_distance = self.least_distance.min(sight.boundary_distance());
+        if sight.at_boundary {
+            return Decision::Follow;
+        }
+        let free = sight.free.min(sight.distance) * (1.0 - self.doubt);
+        let promising = sight.distance - free <= self.least_distance - sight.step;
+        if promising || sight.is_goal_at_hand() { Decision::Leave } else { Decision::Follow }
+    }
+}
+
+impl DistBug {
+    /// What the robot is doing.
+    pub fn phase(&self) -> BugPhase {
+        Bug::phase(self)
+    }
+
+    /// Where the robot takes itself to be, relative to its start.
+    pub fn pose(&self) -> Pose {
+        Bug::pose(self)
+    }
+
+    /// The distance to the goal that the robot takes itself to have.
+    pub fn goal_distance(&self) -> f64 {
+        Bug::goal_distance(self)
+    }
+
+    /// What it sees at the moment: the noise-filtered hits of the scan in the robot's frame.
+    pub fn visible_points(&self) -> &[Point] {
+        Bug::visible_points(self)
+    }
+
+    /// Takes the events that have happened since the last call.
+    pub fn take_events(&mut self) -> Vec<BugEvent> {
+        Bug::take_events(self)
+    }
+
+    /// One control step: what the robot shall do until the next.
+    pub fn step(&mut self, observation: &BugObservation<'_>) -> Result<Twist> {
+        Bug::step(self, observation)
+    }
+
+    /// Ends the run with a verdict from outside, such as that the time is over.
+    pub fn end(&mut self, outcome: BugOutcome) {
+        Bug::end(self, outcome);
+    }
+
+    /// Drives a robot to the goal, or finds that there is no way, within `time_limit` seconds. `observe` is called
+    /// after every step. See [`run_bug`].
+    pub fn run<R: Clock + Drive + Lidar + ?Sized>(
+        &mut self,
+        robot: &mut R,
+        time_limit: f64,
+        observe: impl FnMut(&mut Self, f64),
+    ) -> Result<BugOutcome> {
+        run_bug(self, robot, time_limit, observe)
+    }
+}

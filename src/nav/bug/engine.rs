@@ -1,0 +1,216 @@
+use std::f64::consts::FRAC_PI_2;
+
+use super::body::{Body, GoalView};
+use super::parameters::BugParameters;
+use super::progress::{Lap, LoopProgress};
+use super::report::{BugEvent, BugObservation, BugOutcome, BugPhase};
+use super::strategy::{Decision, Place, Sight, Strategy};
+use crate::geometry::{Point, Twist, math, normalize_angle};
+use crate::io::Result;
+use crate::nav::boundary::{BoundaryFollower, WallSide};
+
+/// A body that acts by a strategy: to the goal, along boundaries, and to a verdict.
+#[derive(Debug, Clone)]
+pub(super) struct Engine<S> {
+    pub(super) body: Body,
+    strategy: S,
+    following: Option<Following>,
+}
+
+/// One obstacle's boundary, as far as it has been followed.
+#[derive(Debug, Clone)]
+struct Following {
+    side: WallSide,
+    boundary: BoundaryFollower,
+    /// The nearest that the robot has come to the goal.
+    nearest: f64,
+    progress: LoopProgress,
+    /// Metres since the obstacle was met, and where they were counted last.
+    travelled: f64,
+    last: Point,
+    /// Whether the last heading was about the robot's own.
+    in_line: bool,
+}
+
+/// A goal that recedes by this much, in metres, has been passed.
+const PASSING_MARGIN: f64 = 0.02;
+/// Headings up to this many radians count as along the boundary.
+const IN_LINE: f64 = 0.5;
+
+impl<S: Strategy> Engine<S> {
+    pub(super) fn new(goal: Point, parameters: BugParameters, strategy: S) -> Result<Self> {
+        Ok(Self { body: Body::new(goal, parameters, S::SLOW_TO_PASS)?, strategy, following: None })
+    }
+
+    /// One control step: what the robot shall do until the next.
+    pub(super) fn step(&mut self, observation: &BugObservation<'_>) -> Result<Twist> {
+        self.body.perceive(observation)?;
+        if self.body.phase == BugPhase::LookingRound {
+            return Ok(self.body.look_round());
+        }
+        self.body.learn();
+        if self.body.goal_distance() <= self.body.parameters.goal_tolerance {
+            self.body.end(BugOutcome::Reached);
+        }
+        let heading = match self.body.phase {
+            BugPhase::ToGoal => self.head_for_goal(),
+            BugPhase::Following(_) => self.follow(),
+            BugPhase::LookingRound | BugPhase::Ended(_) => None,
+        };
+        Ok(heading.map_or(Twist::STOP, |heading| self.body.steer(heading, observation.speed)))
+    }
+
+    /// Drives at the goal; the heading to take.
+    fn head_for_goal(&mut self) -> Option<f64> {
+        let view = self.body.look_at_goal();
+        if let Some(heading) = self.strategy.detour(&self.body, &view) {
+            return Some(heading);
+        }
+        match view.obstacle {
+            Some(obstacle) if self.body.is_blocked(&view) => self.hit(&view, obstacle),
+            _ => Some(view.bearing),
+        }
+    }
+
+    /// Starts to follow what is in the way.
+    fn hit(&mut self, view: &GoalView, obstacle: Point) -> Option<f64> {
+        let body = &mut self.body;
+        let own = self.strategy.side(body, view);
+        let side = own.unwrap_or_else(|| body.usual_side(view, obstacle));
+        let (pose, point) = (body.pose, body.pose.position());
+        let anchor = pose.to_world(obstacle);
+        self.following = Some(Following {
+            side,
+            boundary: BoundaryFollower::new(side, body.parameters.follow_distances(), anchor),
+            nearest: view.distance,
+            progress: LoopProgress::new(pose, S::LOST_TURNS),
+            travelled: 0.0,
+            last: point,
+            in_line: false,
+        });
+        body.phase = BugPhase::Following(side);
+        body.events.push(BugEvent::Hit { point, side });
+        let to_wall = anchor - point;
+        let place = Place { point, wall: math::atan2(to_wall.y, to_wall.x) };
+        let meeting = Sight { place, at_boundary: true, ..self.sight(view)? };
+        self.strategy.meet(&meeting);
+        self.follow()
+    }
+
+    /// What the strategy decides by.
+    fn sight(&self, view: &GoalView) -> Option<Sight> {
+        let (body, following) = (&self.body, self.following.as_ref()?);
+        let distances = body.parameters.follow_distances();
+        let sense = following.side.sense();
+        let wall = normalize_angle(body.pose.heading - sense * FRAC_PI_2);
+        Some(Sight {
+            place: Place { point: body.pose.position(), wall },
+            side: following.side,
+            distance: view.distance,
+            free: view.free,
+            into_wall: -sense * math::sin(view.bearing),
+            at_boundary: body.is_at_followed_boundary(view, following.side),
+            in_line: following.in_line,
+            travelled: following.travelled,
+            margin: distances.wished - distances.least + body.parameters.step,
+            step: body.parameters.step,
+            radius: body.parameters.robot_radius,
+        })
+    }
+
+    /// Follows the boundary until it can be left or is closed; the heading to take.
+    fn follow(&mut self) -> Option<f64> {
+        let view = self.body.look_at_goal();
+        let position = self.body.pose.position();
+        let following = self.following.as_mut()?;
+        following.travelled += (position - following.last).norm();
+        following.last = position;
+        let sight = self.sight(&view)?;
+        let decision = self.strategy.consider(&self.body, &sight);
+        if let Some(heading) = self.obey(decision, &view)? {
+            return Some(heading);
+        }
+        if self.has_passed_goal(&view) {
+            self.body.end(BugOutcome::Reached);
+            return None;
+        }
+        let (heading, lap) = self.along_boundary()?;
+        let decision = match lap {
+            Lap::Open => return heading,
+            Lap::Closed(length) => self.strategy.all_round(&sight, length),
+            Lap::BoxedIn => Decision::GiveUp,
+        };
+        match self.obey(decision, &view)? {
+            None => self.along_boundary()?.0,
+            heading => heading,
+        }
+    }
+
+    /// Does what the strategy has decided. `None`: the run has ended; `Some(None)`: the boundary is to be followed on.
+    #[allow(
+        clippy::option_option,
+        reason = "the end of the run is not the lack of a heading, and `?` leads there"
+    )]
+    fn obey(&mut self, decision: Decision, view: &GoalView) -> Option<Option<f64>> {
+        match decision {
+            Decision::Follow => Some(None),
+            Decision::Leave => {
+                self.leave(view);
+                Some(Some(view.bearing))
+            }
+            Decision::Reverse => {
+                self.reverse()?;
+                Some(None)
+            }
+            Decision::BeginLap => {
+                self.following.as_mut()?.progress = LoopProgress::new(self.body.pose, S::LOST_TURNS);
+                Some(None)
+            }
+            Decision::GiveUp => {
+                self.body.end(BugOutcome::Unreachable);
+                None
+            }
+        }
+    }
+
+    /// The heading along the boundary, and what has been seen of it.
+    fn along_boundary(&mut self) -> Option<(Option<f64>, Lap)> {
+        let body = &mut self.body;
+        let following = self.following.as_mut()?;
+        let heading = following.boundary.heading(&body.pose, &mut body.surroundings);
+        let lap = following.progress.update(body.pose, heading, body.parameters.robot_radius);
+        following.in_line = heading.is_some_and(|heading| heading.abs() < IN_LINE);
+        Some((heading, lap))
+    }
+
+    /// Whether the robot has been as near to the goal as obstacles and its knowledge of the position allow, and is
+    /// going away again.
+    fn has_passed_goal(&mut self, view: &GoalView) -> bool {
+        let slack = self.body.position_slack();
+        let Some(following) = self.following.as_mut() else { return false };
+        following.nearest = following.nearest.min(view.distance);
+        let passed = view.distance > following.nearest + PASSING_MARGIN;
+        passed
+            && following.nearest <= self.body.parameters.goal_tolerance + slack
+            && self.body.goal_has_room()
+    }
+
+    fn reverse(&mut self) -> Option<()> {
+        let following = self.following.as_mut()?;
+        let (pose, side) = (self.body.pose, following.side.other());
+        following.side = side;
+        following.boundary.turn_back();
+        following.progress = LoopProgress::new(pose, S::LOST_TURNS);
+        following.in_line = false;
+        self.body.phase = BugPhase::Following(side);
+        self.body.events.push(BugEvent::Reverse { point: pose.position(), side });
+        Some(())
+    }
+
+    fn leave(&mut self, view: &GoalView) {
+        self.following = None;
+        self.body.phase = BugPhase::ToGoal;
+        let point = self.body.pose.position();
+        self.body.events.push(BugEvent::Leave { point, free: view.free.min(view.distance) });
+    }
+}

@@ -1,0 +1,191 @@
+use std::fmt::Debug;
+
+use super::parameters::BugParameters;
+use super::report::{BugEvent, BugObservation, BugOutcome, BugPhase};
+use crate::geometry::{Point, Pose, Twist};
+use crate::io::{Clock, Drive, Error, ErrorKind, Lidar, LidarScan, Result};
+
+/// A bug algorithm: to a goal through unknown obstacles by what a robot senses around it.
+///
+/// All drive at the goal until something is in the way, follow its boundary, and leave it again; they differ in when
+/// they leave, when they turn back, and when they give up. Give every step an observation, or let [`run_bug`] do so.
+pub trait Bug: Debug {
+    /// What the algorithm is called.
+    fn name(&self) -> &'static str;
+
+    /// What is proved about it.
+    fn guarantee(&self) -> Guarantee;
+
+    /// What it goes by.
+    fn parameters(&self) -> &BugParameters;
+
+    /// One control step: what the robot shall do until the next.
+    fn step(&mut self, observation: &BugObservation<'_>) -> Result<Twist>;
+
+    /// Ends the run with a verdict from outside, such as that the time is over.
+    fn end(&mut self, outcome: BugOutcome);
+
+    /// What the robot is doing.
+    fn phase(&self) -> BugPhase;
+
+    /// Where the robot takes itself to be, relative to its start.
+    fn pose(&self) -> Pose;
+
+    /// The distance to the goal that the robot takes itself to have.
+    fn goal_distance(&self) -> f64;
+
+    /// What it sees at the moment: the noise-filtered hits of the scan in the robot's frame.
+    fn visible_points(&self) -> &[Point];
+
+    /// Takes the events that have happened since the last call.
+    fn take_events(&mut self) -> Vec<BugEvent>;
+}
+
+/// What is proved about an algorithm, for a robot whose position and sensors are exact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Guarantee {
+    /// Whether it always comes to the goal, or to the verdict that there is no way.
+    pub complete: bool,
+    /// How long its path can become.
+    pub path_bound: PathBound,
+}
+
+/// A bound of a path's length, by the straight distance `D` from start to goal and the boundaries that are met, of
+/// perimeters `p`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum PathBound {
+    /// `D + 1.5 sum(p)`.
+    Perimeters,
+    /// `D + sum(n p) / 2`, where the line from start to goal crosses a boundary `n` times; `n` counts as even, because
+    /// one more time leads into an obstacle that the goal is in.
+    Crossings,
+    /// None is known in these terms.
+    Unknown,
+}
+
+impl PathBound {
+    /// The bound in metres, for boundaries given by their perimeters in metres and how often the line from start to goal
+    /// crosses them; `None` if none is known.
+    ///
+    /// ```
+    /// use roverlab::nav::PathBound;
+    /// let boundaries = [(2.0, 2), (4.0, 6)];
+    /// assert_eq!(PathBound::Perimeters.metres(3.0, &boundaries), Some(12.0));
+    /// assert_eq!(PathBound::Crossings.metres(3.0, &boundaries), Some(17.0));
+    /// assert_eq!(PathBound::Unknown.metres(3.0, &boundaries), None);
+    /// ```
+    pub fn metres(self, distance: f64, boundaries: &[(f64, usize)]) -> Option<f64> {
+        let weight = |crossings: usize| match self {
+            Self::Perimeters => Some(1.5),
+            Self::Crossings => Some(crossings.div_ceil(2) as f64),
+            Self::Unknown => None,
+        };
+        boundaries
+            .iter()
+            .try_fold(distance, |sum, &(perimeter, crossings)| Some(sum + weight(crossings)? * perimeter))
+            .filter(|_| self != Self::Unknown)
+    }
+}
+
+/// Drives a robot to the goal of a bug, or finds that there is no way, within `time_limit` seconds. `observe` is called
+/// after every step.
+///
+/// Fails if the robot does, or if its clock stands still.
+pub fn run_bug<B: Bug + ?Sized, R: Clock + Drive + Lidar + ?Sized>(
+    bug: &mut B,
+    robot: &mut R,
+    time_limit: f64,
+    mut observe: impl FnMut(&mut B, f64),
+) -> Result<BugOutcome> {
+    let mut scan = LidarScan::default();
+    let begin = robot.now()?;
+    let mut next = begin;
+    let mut last = f64::NEG_INFINITY;
+    loop {
+        let now = robot.now()?;
+        if now <= last {
+            return Err(Error::new(ErrorKind::Other, "the robot's clock stands still"));
+        }
+        last = now;
+        if now - begin >= time_limit {
+            bug.end(BugOutcome::TimedOut);
+        }
+        robot.scan_into(&mut scan)?;
+        let observation = BugObservation { odometry: robot.pose()?, speed: robot.speed()?, scan: &scan };
+        let twist = bug.step(&observation)?;
+        robot.set_speed(twist)?;
+        observe(bug, now);
+        if let BugPhase::Ended(outcome) = bug.phase() {
+            return Ok(outcome);
+        }
+        next += bug.parameters().period;
+        let pause = next - robot.now()?;
+        robot.wait(pause)?;
+    }
+}
+
+/// Defines a bug: its name, the strategy that an engine acts by, and the path's bound. All are complete.
+macro_rules! family {
+    ($(#[$doc:meta])* $bug:ident, $name:literal, $strategy:ty, PathBound::$bound:ident) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone)]
+        pub struct $bug(crate::nav::bug::engine::Engine<$strategy>);
+
+        impl $bug {
+            /// A run to a goal given relative to the robot's start: metres ahead and to the left.
+            pub fn new(
+                goal: crate::geometry::Point,
+                parameters: crate::nav::BugParameters,
+            ) -> crate::io::Result<Self> {
+                crate::nav::bug::engine::Engine::new(goal, parameters, <$strategy>::default()).map(Self)
+            }
+        }
+
+        impl crate::nav::Bug for $bug {
+            fn name(&self) -> &'static str {
+                $name
+            }
+
+            fn guarantee(&self) -> crate::nav::Guarantee {
+                crate::nav::Guarantee { complete: true, path_bound: crate::nav::PathBound::$bound }
+            }
+
+            fn parameters(&self) -> &crate::nav::BugParameters {
+                &self.0.body.parameters
+            }
+
+            fn step(
+                &mut self,
+                observation: &crate::nav::BugObservation<'_>,
+            ) -> crate::io::Result<crate::geometry::Twist> {
+                self.0.step(observation)
+            }
+
+            fn end(&mut self, outcome: crate::nav::BugOutcome) {
+                self.0.body.end(outcome);
+            }
+
+            fn phase(&self) -> crate::nav::BugPhase {
+                self.0.body.phase
+            }
+
+            fn pose(&self) -> crate::geometry::Pose {
+                self.0.body.pose
+            }
+
+            fn goal_distance(&self) -> f64 {
+                self.0.body.goal_distance()
+            }
+
+            fn visible_points(&self) -> &[crate::geometry::Point] {
+                &self.0.body.points
+            }
+
+            fn take_events(&mut self) -> Vec<crate::nav::BugEvent> {
+                std::mem::take(&mut self.0.body.events)
+            }
+        }
+    };
+}
+pub(super) use family;

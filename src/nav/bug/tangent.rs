@@ -1,0 +1,213 @@
+use super::body::{Body, GoalView};
+use super::family::family;
+use super::panorama::{Edge, Panorama};
+use super::strategy::{Decision, Sight, Strategy};
+use crate::geometry::{Point, direction, math, normalize_angle};
+use crate::nav::boundary::WallSide;
+
+family! {
+    /// TangentBug: drives for the ends of obstacles that it sees from afar (I. Kamon, E. Rimon and E. Rivlin, "TangentBug: a
+    /// range-sensor-based navigation algorithm", International Journal of Robotics Research 17(9), 1998).
+    ///
+    /// The ends of what is in the way, where the free range jumps, are the nodes of the *local tangent graph*, and so is the
+    /// goal if the way to it is free. Of the nodes that bring the robot nearer to the goal, it drives for that with the
+    /// shortest way over it. Where none does, in a local minimum, it drives up to the obstacle and follows its boundary to
+    /// the side of the best node. It keeps `d_followed`, the smallest distance to the goal of the boundary that it has
+    /// seen, and looks for `d_reach`, the smallest distance of the places that it can move to straight. As soon as
+    /// `d_reach < d_followed`, by STEP, it leaves for that place. All round without having left, it knows that there is no
+    /// way.
+    ///
+    /// # Guarantee
+    ///
+    /// Complete: every leave brings the robot nearer to the goal than all of the boundary before, and between them the
+    /// distance to the goal decreases.
+    ///
+    /// # Model
+    ///
+    /// As for [`DistBug`](super::DistBug): free ranges are those of the whole disc. Places count up to
+    /// 33 robot radii away, since walls hide between the beams of a lidar beyond.
+    TangentBug, "TangentBug", Tangent, PathBound::Unknown
+}
+
+/// Motion to the goal over the nodes of the local tangent graph, and boundary following by `d_reach < d_followed`.
+#[derive(Debug, Clone)]
+pub(super) struct Tangent {
+    panorama: Panorama,
+    /// How near to the goal boundaries have come where the robot was: each leave is nearer than all before.
+    passed: f64,
+    /// The same for the present obstacle's boundary as far as it has been seen.
+    seen: f64,
+    /// `d_reach` at its smallest along the present boundary.
+    reach: f64,
+    /// Whether what was only seen of the boundary no longer counts. It may have been of something else.
+    distrustful: bool,
+    /// The part of a free range that is relied upon.
+    trust: f64,
+    /// The place that the obstacle was left for, until it is reached.
+    leaving_for: Option<Point>,
+    /// On which side of the goal's direction the robot passes the obstacle, as [`Edge::obstacle`].
+    passing: Option<f64>,
+}
+
+/// How far away, in robot radii, places count.
+const REACH: f64 = 33.0;
+/// Free space behind an edge, in robot radii, that makes it a node.
+const NODE_DEPTH: f64 = 3.0;
+/// The least cosine between the way to a node and that to the goal.
+const LEAST_PROGRESS: f64 = 0.1;
+/// How much longer, as a factor, the way over a node on the other side may be said to be, so that the robot does not
+/// waver.
+const LOYALTY: f64 = 1.1;
+/// How far, in radians, a robot turns away from an edge that it is as near to as it can be.
+const YIELD: f64 = 0.5;
+/// The part of a free range that is relied upon at first, and at the least.
+const TRUST: f64 = 0.98;
+const LEAST_TRUST: f64 = 0.7;
+/// Ends of free ranges in neighbouring directions that are no farther apart than this, in robot radii, are of one
+/// obstacle: the robot does not fit between.
+const LINK: f64 = 2.0;
+/// How near, in robot radii, the place is reached that an obstacle was left for.
+const ARRIVAL: f64 = 0.5;
+
+impl Default for Tangent {
+    fn default() -> Self {
+        Self {
+            panorama: Panorama::default(),
+            passed: f64::INFINITY,
+            seen: f64::INFINITY,
+            reach: f64::INFINITY,
+            distrustful: false,
+            trust: TRUST,
+            leaving_for: None,
+            passing: None,
+        }
+    }
+}
+
+impl Tangent {
+    /// The length of the way over a node.
+    fn length(edge: &Edge, view: &GoalView) -> f64 {
+        let node = direction(edge.bearing) * edge.distance;
+        edge.distance + (direction(view.bearing) * view.distance - node).norm()
+    }
+
+    /// The best node among those that `pick` picks.
+    fn best_node(&self, body: &Body, view: &GoalView, pick: impl Fn(&Edge) -> bool) -> Option<Edge> {
+        let depth = NODE_DEPTH * body.parameters.robot_radius;
+        let weighed = |edge: &Edge| {
+            let other_side = self.passing.is_some_and(|side| side != edge.obstacle);
+            Self::length(edge, view) * if other_side { LOYALTY } else { 1.0 }
+        };
+        self.panorama.edges(depth).filter(|edge| pick(edge)).min_by(|a, b| weighed(a).total_cmp(&weighed(b)))
+    }
+
+    /// The heading to a node, past its obstacle at the wished distance.
+    fn heading_to(edge: &Edge, body: &Body) -> f64 {
+        let distances = body.parameters.follow_distances();
+        let nearest = body.surroundings.nearest_to(Point::origin());
+        let Some(nearest) = nearest.filter(|point| point.coords.norm() < distances.wished) else {
+            return edge.bearing;
+        };
+        let towards = normalize_angle(math::atan2(nearest.y, nearest.x) - edge.bearing);
+        if towards * edge.obstacle <= 0.0 {
+            return edge.bearing;
+        }
+        let lacking = distances.wished - nearest.coords.norm();
+        let most = distances.wished - body.parameters.robot_radius;
+        edge.bearing - edge.obstacle * YIELD * (lacking / most).min(1.0)
+    }
+
+    /// The heading to the place that the obstacle was left for, as long as there is one.
+    fn leave_on(&mut self, body: &Body, view: &GoalView) -> Option<f64> {
+        let place = body.pose.to_local(self.leaving_for?);
+        let radius = body.parameters.robot_radius;
+        let bearing = math::atan2(place.y, place.x);
+        let least = body.parameters.follow_distances().least;
+        let (free, _) = body.surroundings.free_distance(direction(bearing), least);
+        let arrived =
+            place.coords.norm() < ARRIVAL * radius || view.distance < self.passed - body.parameters.step;
+        if arrived || free < place.coords.norm().min(radius) {
+            self.leaving_for = None;
+            return None;
+        }
+        Some(bearing)
+    }
+}
+
+impl Strategy for Tangent {
+    fn detour(&mut self, body: &Body, view: &GoalView) -> Option<f64> {
+        let distances = body.parameters.follow_distances();
+        if let Some(heading) = self.leave_on(body, view) {
+            return Some(heading);
+        }
+        if view.free >= view.distance {
+            self.passing = None;
+            return None;
+        }
+        self.panorama.look(&body.points, distances.wished);
+        let nearing = |edge: &Edge| {
+            let node = direction(edge.bearing) * edge.distance;
+            let nearer = (direction(view.bearing) * view.distance - node).norm() < view.distance;
+            nearer && math::cos(edge.bearing - view.bearing) > LEAST_PROGRESS
+        };
+        let node = self.best_node(body, view, nearing)?;
+        let heading = Self::heading_to(&node, body);
+        let (free, _) = body.surroundings.free_distance(direction(heading), distances.least);
+        if free < distances.wished - body.parameters.robot_radius {
+            return None;
+        }
+        self.passing = Some(node.obstacle);
+        Some(heading)
+    }
+
+    fn side(&mut self, body: &Body, view: &GoalView) -> Option<WallSide> {
+        if body.parameters.side.is_some() {
+            return None;
+        }
+        self.panorama.look(&body.points, body.parameters.follow_distances().wished);
+        let node = self.best_node(body, view, |_| true)?;
+        // With the obstacle clockwise of the way past its end, the robot has it to its right.
+        Some(if node.obstacle < 0.0 { WallSide::Right } else { WallSide::Left })
+    }
+
+    fn meet(&mut self, meeting: &Sight) {
+        let distance = meeting.distance - meeting.free;
+        if distance > self.passed - 0.5 * meeting.step && self.passed.is_finite() {
+            // The last leave has not led as near as it promised.
+            self.trust = (1.0 - 2.0 * (1.0 - self.trust)).max(LEAST_TRUST);
+        }
+        let passed = self.passed.min(distance);
+        let (panorama, trust) = (std::mem::take(&mut self.panorama), self.trust);
+        *self = Self { panorama, passed, trust, ..Self::default() };
+    }
+
+    fn consider(&mut self, body: &Body, sight: &Sight) -> Decision {
+        self.passed = self.passed.min(sight.corner_distance());
+        if sight.is_goal_at_hand() {
+            return Decision::Leave;
+        }
+        self.panorama.look(&body.points, body.parameters.follow_distances().least);
+        let (pose, radius) = (body.pose, body.parameters.robot_radius);
+        let goal = pose.to_local(body.goal);
+        let wall = normalize_angle(sight.place.wall - pose.heading);
+        let seen = self.panorama.obstacle(wall, LINK * radius).map(|end| (end - goal).norm());
+        self.seen = seen.fold(self.seen, f64::min);
+        let place = self.panorama.nearest_to(goal, REACH * radius, self.trust);
+        let reach = (place - goal).norm();
+        self.reach = self.reach.min(reach);
+        let followed = if self.distrustful { self.passed } else { self.passed.min(self.seen) };
+        if reach > followed - sight.step {
+            return Decision::Follow;
+        }
+        self.leaving_for = Some(pose.to_world(place));
+        Decision::Leave
+    }
+
+    fn all_round(&mut self, sight: &Sight, _lap: f64) -> Decision {
+        if self.distrustful || self.reach > self.passed - sight.step {
+            return Decision::GiveUp;
+        }
+        self.distrustful = true;
+        Decision::BeginLap
+    }
+}

@@ -1,0 +1,130 @@
+use super::body::Body;
+use super::family::family;
+use super::strategy::{Decision, Sight, Strategy};
+
+family! {
+    /// Bug1: goes all round every obstacle, and leaves it at its place nearest to the goal (V. J. Lumelsky and
+    /// A. A. Stepanov, "Path-planning strategies for a point mobile automaton moving amidst unknown obstacles of arbitrary
+    /// shape", Algorithmica 2, 1987).
+    ///
+    /// The robot drives at the goal until something is in the way, follows the boundary once round, returns to its place
+    /// nearest to the goal the shorter way, and leaves. If the way from there leads into the same obstacle, there is none.
+    ///
+    /// # Guarantee
+    ///
+    /// Complete. The path is at most `D + 1.5 sum(p)`, where `D` is the straight distance and `p` the perimeters of the
+    /// boundaries that are met: each is met once at the most.
+    ///
+    /// # Model
+    ///
+    /// As for [`DistBug`](super::DistBug): the robot is a disc, and boundaries are those of obstacles grown by it. Of the
+    /// lidar it uses no more than a robot that feels its surroundings would.
+    Bug1, "Bug1", Tour<false>, PathBound::Perimeters
+}
+
+family! {
+    /// LeaveBug: goes all round every obstacle, and leaves it where the free range towards the goal brings it nearest.
+    ///
+    /// This is [`Bug1`](super::Bug1) with eyes: what counts of a place is not how near it is to the goal but how near the
+    /// way from it leads, as in the leave condition of [`DistBug`](super::DistBug).
+    ///
+    /// The name is from J. Ng and T. Bräunl, "Performance comparison of bug navigation algorithms", Journal of Intelligent
+    /// and Robotic Systems 50, 2007. The definition is this library's own, and no claim about theirs.
+    ///
+    /// # Guarantee
+    ///
+    /// Complete, for the reasons of Bug1: what the best place promises is nearer than all of the boundary, so no obstacle
+    /// is met twice; the path is at most `D + 1.5 sum(p)`.
+    LeaveBug, "LeaveBug", Tour<true>, PathBound::Perimeters
+}
+
+/// Goes once round, then to the best place to leave. With `BY_RANGE` free ranges count too.
+#[derive(Debug, Clone)]
+pub(super) struct Tour<const BY_RANGE: bool> {
+    /// How near to the goal the boundary has come.
+    least_distance: f64,
+    best: Option<Candidate>,
+    returning: Option<Returning>,
+}
+
+/// A place to leave.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    /// How near to the goal it leads.
+    merit: f64,
+    /// Metres from the hit point along the boundary.
+    at: f64,
+}
+
+/// The way back to the best place.
+#[derive(Debug, Clone, Copy)]
+struct Returning {
+    /// Where it began, in metres from the hit point.
+    from: f64,
+    length: f64,
+}
+
+/// The part of a free range that is not relied upon: gaps between beams grow with the distance.
+const DOUBT: f64 = 0.02;
+/// How much worse, in STEPs, the place may seem when it is met again, and for each metre that it has been missed by.
+const SLACK: f64 = 0.5;
+const SLACK_PER_METRE: f64 = 0.1;
+
+impl<const BY_RANGE: bool> Default for Tour<BY_RANGE> {
+    fn default() -> Self {
+        Self { least_distance: f64::INFINITY, best: None, returning: None }
+    }
+}
+
+impl<const BY_RANGE: bool> Tour<BY_RANGE> {
+    /// How near to the goal leaving here leads; `None` where the way is blocked.
+    fn merit(sight: &Sight) -> Option<f64> {
+        let free = if BY_RANGE { sight.free.min(sight.distance) * (1.0 - DOUBT) } else { 0.0 };
+        sight.is_open().then_some(sight.distance - free)
+    }
+
+    fn survey(&mut self, sight: &Sight) {
+        self.least_distance = self.least_distance.min(sight.corner_distance());
+        let Some(merit) = Self::merit(sight) else { return };
+        if self.best.is_none_or(|best| merit < best.merit) {
+            self.best = Some(Candidate { merit, at: sight.travelled });
+        }
+    }
+
+    /// Whether the robot is back at the best place.
+    fn is_there(&self, sight: &Sight, way: Returning) -> bool {
+        let missed_by = (sight.travelled - way.from - way.length).max(0.0);
+        let slack = SLACK * sight.step + SLACK_PER_METRE * missed_by;
+        self.best.zip(Self::merit(sight)).is_some_and(|(best, merit)| merit <= best.merit + slack)
+    }
+}
+
+impl<const BY_RANGE: bool> Strategy for Tour<BY_RANGE> {
+    fn meet(&mut self, meeting: &Sight) {
+        *self = Self { least_distance: meeting.distance - meeting.free, ..Self::default() };
+    }
+
+    fn consider(&mut self, _body: &Body, sight: &Sight) -> Decision {
+        if self.returning.is_none() {
+            self.survey(sight);
+        }
+        let leave = self.returning.is_some_and(|way| self.is_there(sight, way));
+        if leave || sight.is_goal_at_hand() { Decision::Leave } else { Decision::Follow }
+    }
+
+    fn all_round(&mut self, sight: &Sight, lap: f64) -> Decision {
+        if self.returning.is_some() {
+            return Decision::BeginLap;
+        }
+        // A place that can be left for a goal outside is nearer to it than all of the boundary.
+        let Some(best) = self.best.filter(|best| best.merit <= self.least_distance) else {
+            return Decision::GiveUp;
+        };
+        let begin = sight.travelled - lap;
+        let ahead = (best.at - begin).rem_euclid(lap);
+        let forward = ahead <= 0.5 * lap;
+        let length = if forward { ahead } else { lap - ahead };
+        self.returning = Some(Returning { from: sight.travelled, length });
+        if forward { Decision::BeginLap } else { Decision::Reverse }
+    }
+}
