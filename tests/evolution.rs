@@ -116,10 +116,7 @@ mod walking {
 
     fn resumable(folder: &Path) -> Value {
         let checkpoint = folder.join("run.json");
-        evolved(
-            folder,
-            &["--leading", "2", "--threads", "1", "--checkpoint", checkpoint.to_str().unwrap()],
-        )
+        evolved(folder, &["--leading", "2", "--threads", "1", "--checkpoint", checkpoint.to_str().unwrap()])
     }
 
     #[test]

@@ -207,7 +207,12 @@ impl<'a, I: Iterator<Item = (usize, &'a str)>> Lines<'a, I> {
             if line.trim().is_empty() {
                 let rest = self.inner.by_ref().any(|(_, line)| !line.trim().is_empty());
                 let found = if rest { "an empty line" } else { "the end of the file" };
-                return Err(FormatError::new(self.file, Location { line: number, column: 1 }, found, expected));
+                return Err(FormatError::new(
+                    self.file,
+                    Location { line: number, column: 1 },
+                    found,
+                    expected,
+                ));
             }
             self.row(number, line.trim_end(), width, &mut terrain)?;
         }
