@@ -181,9 +181,10 @@ mod tests {
         let disc = std::f64::consts::PI * 0.06 * 0.06;
         assert!((map.share() * map.area() - disc).abs() < 0.1 * disc);
         map.cover_line(Point::new(0.2, 0.5), Point::new(0.8, 0.5), 0.0);
-        assert!((map.share() * map.area() - disc - 0.6 * 0.12).abs() < 0.003);
+        // A row of cells more or less on either side.
+        assert!((map.share() * map.area() - disc - 0.6 * 0.12).abs() < 0.6 * 0.02);
         // Walls leave 15 mm and the robot's round corners.
-        assert!((map.area() - 0.96 * 0.96).abs() < 0.02, "{}", map.area());
+        assert!((map.area() - 0.96 * 0.96).abs() < 0.04, "{}", map.area());
     }
 
     #[test]

@@ -122,7 +122,8 @@ fn the_end_of_a_free_wall_is_rounded() {
     world.walls.push(Wall::new(Point::new(0.8, 1.5), Point::new(2.2, 1.5)));
     let mut follower = follower(Some(WallSide::Left));
     let drive = drive(&world, Pose::new(1.2, 1.1, 1.4), &mut follower, 60.0, 1.0, 2);
-    assert!(drive.contacts == 0 && drive.length > 9.0, "{}", drive.length);
+    // Twice round the free wall.
+    assert!(drive.contacts == 0 && drive.length > 8.0, "{}", drive.length);
     // Round the free wall it stays within reach of it.
     assert!(drive.rms() < 0.03, "{}", drive.rms());
 }
