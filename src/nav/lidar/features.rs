@@ -81,8 +81,9 @@ pub fn extract_features(scan: &LidarScan, parameters: &ExtractionParameters) -> 
             continue;
         }
         let parts = straight_parts(&cluster.hits, parameters);
-        features.corners.extend(parts.windows(2).filter_map(|two| corner(two, parameters)));
-        features.walls.extend(parts.iter().map(|part| wall(&cluster.hits, part)));
+        let walls: Vec<ScanWall> = parts.iter().map(|part| wall(&cluster.hits, part)).collect();
+        features.corners.extend(walls.windows(2).filter_map(|two| corner(&two[0], &two[1], parameters)));
+        features.walls.extend(walls);
     }
     close_round(&mut features, parameters);
     Ok(features)
@@ -97,22 +98,14 @@ fn wall(hits: &[Hit], part: &Part) -> ScanWall {
     }
 }
 
-fn corner(parts: &[Part], parameters: &ExtractionParameters) -> Option<ScanCorner> {
-    let (one, other) = (&parts[0].line, &parts[1].line);
-    corner_between(one, other, parameters.corner_gap)
-}
-
-/// The corner between two walls that follow each other counter-clockwise.
-fn corner_between(one: &FittedLine, other: &FittedLine, gap: f64) -> Option<ScanCorner> {
+/// The corner between two walls that follow each other counter-clockwise, if it lies near where they end.
+fn corner(one: &ScanWall, other: &ScanWall, parameters: &ExtractionParameters) -> Option<ScanCorner> {
     /// Walls that turn by less make no corner, in radians.
     const LEAST_TURN: f64 = 0.2;
-    let turn = angle_difference(other.angle(), one.angle());
-    let position = one.crossing(other)?;
-    let near = |line: &FittedLine| {
-        let along = (position - line.middle).dot(&line.direction).abs();
-        along < 0.5 * line.length + gap
-    };
-    (turn.abs() > LEAST_TURN && near(one) && near(other))
+    let turn = angle_difference(other.line.angle(), one.line.angle());
+    let position = one.line.crossing(&other.line)?;
+    let near = |end: Point| (position - end).norm() < parameters.corner_gap;
+    (turn.abs() > LEAST_TURN && near(one.ends[1]) && near(other.ends[0]))
         .then_some(ScanCorner { position, angle: std::f64::consts::PI - turn })
 }
 
@@ -134,7 +127,7 @@ fn close_round(features: &mut ScanFeatures, parameters: &ExtractionParameters) {
         let joined = ScanWall { line, ends, beams: last.beams.start..first.beams.end };
         features.walls.pop();
         features.walls[0] = joined;
-    } else if let Some(corner) = corner_between(&last.line, &first.line, parameters.corner_gap) {
+    } else if let Some(corner) = corner(last, first, parameters) {
         let known = features.corners.iter().any(|other| (other.position - corner.position).norm() < 1e-9);
         if !known {
             features.corners.push(corner);

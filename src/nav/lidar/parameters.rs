@@ -12,14 +12,14 @@ pub struct ExtractionParameters {
     pub least_points: usize,
     /// The largest width of an object, in metres: what stands alone and is wider is a wall.
     pub largest_object: f64,
-    /// How near to the crossing of their lines, in metres, two walls have to come for a corner.
+    /// How near to the crossing of their lines, in metres, two walls have to end for a corner.
     pub corner_gap: f64,
 }
 
 impl Default for ExtractionParameters {
     /// For the lidar of the real robot.
     fn default() -> Self {
-        Self { range_error: 0.01, least_wall: 0.12, least_points: 6, largest_object: 0.35, corner_gap: 0.15 }
+        Self { range_error: 0.01, least_wall: 0.12, least_points: 6, largest_object: 0.35, corner_gap: 0.3 }
     }
 }
 
@@ -45,5 +45,10 @@ impl ExtractionParameters {
     /// How far a point may lie off its wall, in metres.
     pub(super) fn tolerance(&self) -> f64 {
         (3.2 * self.range_error).max(0.01)
+    }
+
+    /// How far a wall's points may lie off it, in metres: the root of their mean square.
+    pub(super) fn straightness(&self) -> f64 {
+        1.5 * self.range_error + 0.002
     }
 }

@@ -26,7 +26,10 @@ pub(super) fn straight_parts(hits: &[Hit], parameters: &ExtractionParameters) ->
     split(hits, 0, hits.len(), parameters, &mut parts);
     merge(hits, parameters, &mut parts);
     parts.retain(|part| {
-        part.end - part.first >= parameters.least_points && part.line.length >= parameters.least_wall
+        let long =
+            part.end - part.first >= parameters.least_points && part.line.length >= parameters.least_wall;
+        // Where two walls meet, a few points of both may look like a third one; they lie worse on a line.
+        long && part.line.rms <= parameters.straightness()
     });
     parts
 }
