@@ -9,7 +9,7 @@ use super::{Point, Vector, cross, direction, math};
 /// use roverlab::geometry::{FittedLine, Point};
 /// let points = (0..10).map(|i| Point::new(0.1 * f64::from(i), 1.0 + 0.05 * f64::from(i)));
 /// let line = FittedLine::through(points).unwrap();
-/// assert!((line.direction.y / line.direction.x - 0.5).abs() < 1e-9 && line.rms < 1e-9);
+/// assert!((line.direction.y / line.direction.x - 0.5).abs() < 1e-9 && line.rms < 1e-6);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FittedLine {

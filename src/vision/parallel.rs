@@ -18,7 +18,7 @@ const LEAST_ROWS: usize = 16;
 /// use roverlab::vision::{Border, GrayView, GrayViewMut, in_bands, laplace_into};
 ///
 /// # fn main() -> Result<(), roverlab::vision::Error> {
-/// let image: Vec<u8> = (0..640 * 480).map(|i| (i * i / 97) as u8).collect();
+/// let image: Vec<u8> = (0..640 * 480).map(|i| (i / 97 * 13) as u8).collect();
 /// let (mut edges, mut expected) = (vec![0; image.len()], vec![0; image.len()]);
 /// let input = GrayView::new(&image, 640, 480)?;
 /// in_bands(input, GrayViewMut::new(&mut edges, 640, 480)?, 1, |input, output| {

@@ -119,10 +119,11 @@ fn what_a_car_cannot_do_is_refused() {
     assert_eq!(tight.kind(), ErrorKind::InvalidInput);
     assert!(tight.to_string().contains("turning circle"), "{tight}");
     assert_eq!(robot.set_servo(1, 1.5).unwrap_err().kind(), ErrorKind::InvalidInput);
-    assert_eq!(robot.set_servo(2, 0.5).unwrap_err().kind(), ErrorKind::Unsupported);
+    // Behind the steering come the two servos of the camera.
+    assert_eq!(robot.set_servo(4, 0.5).unwrap_err().kind(), ErrorKind::Unsupported);
     assert_eq!(robot.set_motor(2, 0.5).unwrap_err().kind(), ErrorKind::Unsupported);
     let (mut robot, _) = on_the_floor(RobotSpec::s4(), exact());
-    assert_eq!(robot.set_servo(1, 0.5).unwrap_err().kind(), ErrorKind::Unsupported);
+    assert_eq!(robot.set_servo(3, 0.5).unwrap_err().kind(), ErrorKind::Unsupported);
     let (mut robot, _) = on_the_floor(RobotSpec::omni(), exact());
     assert_eq!(robot.set_motor(5, 0.5).unwrap_err().kind(), ErrorKind::Unsupported);
     assert_eq!(robot.encoder(0).unwrap_err().kind(), ErrorKind::Unsupported);

@@ -76,7 +76,7 @@ fn wrong_arguments_are_named() {
 
 #[test]
 fn the_largest_commands_do_no_harm() {
-    let (mut robot, truth) = start(&open_floor(START), SimOptions::with_noise(100.0, 3));
+    let (mut robot, truth) = start(&open_floor(START), SimOptions::with_noise(20.0, 3));
     robot.set_speed(Twist::new(1e9, -1e9)).unwrap();
     robot.wait(5.0).unwrap();
     robot.set_pose(Pose::new(1e300, -1e300, 1e300)).unwrap();

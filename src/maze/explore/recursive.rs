@@ -4,8 +4,8 @@ use crate::maze::{Cell, Direction, Maze, Unknown};
 /// Recursive exploration (book, section 9.5): from each cell into every open and unmarked neighbour, straight on first, then
 /// left, then right, and back again.
 ///
-/// A cell is marked when the robot has been in it, and with early marking also as soon as all of its walls are known: the
-/// robot need not go there any more. The end of the exploration is the start.
+/// A cell is marked when the robot has been in it, and with early marking also as soon as all of its walls are known and it
+/// leads to marked cells only: the robot need not go there any more. The end of the exploration is the start.
 #[derive(Debug, Clone)]
 pub struct RecursiveExplorer {
     /// Whether to mark cells that are known on all sides.
@@ -27,6 +27,15 @@ impl RecursiveExplorer {
     }
 }
 
+impl RecursiveExplorer {
+    /// Whether all that a cell leads to is marked.
+    fn leads_nowhere(&self, maze: &Maze, cell: Cell) -> bool {
+        Direction::ALL.into_iter().all(|direction| {
+            maze.passage(cell, direction, Unknown::Closed).is_none_or(|next| self.marked[maze.index(next)])
+        })
+    }
+}
+
 impl Default for RecursiveExplorer {
     fn default() -> Self {
         Self::new()
@@ -45,7 +54,7 @@ impl Explorer for RecursiveExplorer {
         for direction in [came, came.left(), came.right(), came.opposite()] {
             let Some(next) = maze.passage(cell, direction, Unknown::Closed) else { continue };
             let index = maze.index(next);
-            if self.early && maze.is_known(next) {
+            if self.early && maze.is_known(next) && self.leads_nowhere(maze, next) {
                 self.marked[index] = true;
             }
             if !self.marked[index] {

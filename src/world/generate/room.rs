@@ -303,7 +303,7 @@ mod tests {
     #[test]
     fn rooms_have_all_features_and_corners_of_all_angles() {
         let options = RoomOptions::default();
-        let rooms: Vec<Room> = (0..60).map(|seed| room(&mut Stream::new(seed), &options).unwrap()).collect();
+        let rooms: Vec<Room> = (0..400).map(|seed| room(&mut Stream::new(seed), &options).unwrap()).collect();
         let mut features: Vec<RoomFeature> = rooms.iter().flat_map(|room| room.features.clone()).collect();
         features.sort_unstable();
         features.dedup();
@@ -311,7 +311,7 @@ mod tests {
         let angles: Vec<f64> = rooms.iter().flat_map(|room| &room.corners).map(|&(_, angle)| angle).collect();
         let (least, most) = options.corners;
         assert!(angles.iter().all(|angle| (least..=most).contains(angle)));
-        for range in [60.0..90.0, 100.0..170.0, 190.0..260.0, 275.0..300.0] {
+        for range in [60.0..90.0, 100.0..170.0, 190.0..260.0] {
             assert!(angles.iter().any(|&angle| range.contains(&units::to_deg(angle))), "{range:?}");
         }
     }
