@@ -126,7 +126,8 @@ proptest! {
         prop_assume!(reach(ends.0, ends.1) >= 40);
         let mut data = vec![0; 120 * 90];
         draw(&mut data, 120, ends);
-        let found = find(&data, 120, SegmentParameters { threshold: 25, min_length: 10, max_gap: 3, seed });
+        // Rounded to pixels, a line's votes fall into two or three neighbouring distances.
+        let found = find(&data, 120, SegmentParameters { threshold: 12, min_length: 10, max_gap: 3, seed });
         let pixel = |(x, y): (usize, usize)| (x as i32, y as i32);
         // One of the angles holds the line or, where it lies between two of them, a piece of it.
         prop_assert!(!found.is_empty());
