@@ -25,9 +25,10 @@ fn report(options: &[&str]) -> Value {
     serde_json::from_str(&out).unwrap()
 }
 
-/// A picture of 8 x 8 pixels whose lower right quarter is black but for its last pixel.
-fn picture() -> String {
-    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("quadtree.pgm");
+/// A picture of 8 x 8 pixels whose lower right quarter is black but for its last pixel. Each test writes a file of its
+/// own, as tests run at the same time.
+fn picture(name: &str) -> String {
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let black = |x: usize, y: usize| x >= 4 && y >= 4 && (x, y) != (7, 7);
     let pixels = (0..64).map(|i| if black(i % 8, i / 8) { 0 } else { 255 });
     fs::write(&file, b"P5 8 8 255\n".iter().copied().chain(pixels).collect::<Vec<u8>>()).unwrap();
@@ -36,7 +37,7 @@ fn picture() -> String {
 
 #[test]
 fn free_squares_are_listed_in_the_books_order() {
-    let map = picture();
+    let map = picture("listed.pgm");
     let report_of_map = report(&["--map", &map, "--list"]);
     let list = ["free 0 0 (4)", "free 4 0 (4)", "free 0 4 (4)", "free 7 7 (1)"];
     assert_eq!(report_of_map["list"], json!(list));
@@ -49,7 +50,7 @@ fn free_squares_are_listed_in_the_books_order() {
 
 #[test]
 fn paths_are_found_or_there_are_none() {
-    let map = picture();
+    let map = picture("paths.pgm");
     let found = report(&["--map", &map, "--from", "0,7", "--to", "7,0"]);
     // Straight past the corner of the black quarter.
     assert_eq!(found["outcome"], "found");
@@ -61,7 +62,7 @@ fn paths_are_found_or_there_are_none() {
 
 #[test]
 fn what_is_wrong_is_named() {
-    let map = picture();
+    let map = picture("wrong.pgm");
     for (options, message) in [
         (vec!["--map", "nowhere.png"], "nowhere.png:1:1: found"),
         (vec!["--minimum", "3"], "the minimum leaf is 3 cells wide"),
