@@ -11,6 +11,8 @@ mod common;
 mod distbug;
 #[path = "driving/mod.rs"]
 mod driving;
+#[path = "navigate/mod.rs"]
+mod navigate;
 #[path = "omni/mod.rs"]
 mod omni;
 #[path = "common/programs.rs"]

@@ -10,6 +10,8 @@ mod common;
 mod distbug;
 #[path = "../examples/driving/mod.rs"]
 mod driving;
+#[path = "../examples/navigate/mod.rs"]
+mod navigate;
 #[path = "../examples/omni/mod.rs"]
 mod omni;
 #[path = "../examples/common/programs.rs"]

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::io::Write;
 
 use crate::common::run;
-use crate::{a_to_b, ackermann, distbug, omni, wall_following};
+use crate::{a_to_b, ackermann, distbug, navigate, omni, wall_following};
 
 /// Runs a program with a command line and its two outputs. Returns the exit status.
 type Run = fn(Vec<OsString>, &mut dyn Write, &mut dyn Write) -> u8;
@@ -20,6 +20,7 @@ pub(crate) const PROGRAMS: &[Program] = &[
     Program { name: "a_to_b", run: |words, out, err| run("a_to_b", words, out, err, a_to_b::work) },
     Program { name: "ackermann", run: |words, out, err| run("ackermann", words, out, err, ackermann::work) },
     Program { name: "distbug", run: |words, out, err| run("distbug", words, out, err, distbug::work) },
+    Program { name: "navigate", run: |words, out, err| run("navigate", words, out, err, navigate::work) },
     Program { name: "omni", run: |words, out, err| run("omni", words, out, err, omni::work) },
     Program {
         name: "wall_following",
