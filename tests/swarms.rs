@@ -101,7 +101,7 @@ fn letters_in_a_maze_stand_for_robots() {
 fn what_cannot_be_is_refused() {
     let world = Path::new(env!("CARGO_TARGET_TMPDIR")).join("alone.wld");
     fs::write(&world, "floor 3000 3000\nposition 500 500 0\n").unwrap();
-    for options in [&["--record", "x.mcap"][..], &["--followers", "0"], &["--world", world.to_str().unwrap()]]
+    for options in [&["--fault", "link@1"][..], &["--followers", "0"], &["--world", world.to_str().unwrap()]]
     {
         let (status, _, err) = run("follow_me", follow_me::work, options);
         assert!(status == 2 && err.lines().count() == 1, "{options:?}: {err}");

@@ -53,7 +53,7 @@ pub(crate) struct Run<T> {
     pub(crate) sim_time: f64,
     pub(crate) true_path: Vec<Pose>,
     pub(crate) odometry_path: Vec<Point>,
-    /// Where the scene's objects are at the end; none if they may have been pushed and a recording does not tell.
+    /// Where the scene's objects are at the end.
     pub(crate) objects: Vec<Point>,
 }
 
@@ -136,8 +136,12 @@ impl Conditions {
         });
         // The robot lets go of the world, so that what is true stays as it is.
         drop(robot);
-        let known = || scene.world.objects.iter().map(|object| object.pose.position()).collect();
-        let objects = stage.objects().unwrap_or_else(|| if self.pushing { Vec::new() } else { known() });
+        let objects = scene.world.objects.iter().enumerate().map(|(index, object)| {
+            // What nobody pushes stays where it was.
+            let moved = if self.pushing { truth.object(index).ok() } else { None };
+            moved.unwrap_or(object.pose).position()
+        });
+        let objects = objects.collect();
         let run = finish(result, &mut truth, start, true_path, odometry_path)?;
         Ok(Run { objects, ..run })
     }

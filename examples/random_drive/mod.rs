@@ -2,12 +2,13 @@
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
+use std::rc::Rc;
 use std::sync::Arc;
 
 use roverlab::drive::{CoverageMap, CoverageParameters, RandomDrive, RandomDriveParameters};
 use roverlab::geometry::{Point, Pose, units};
-use roverlab::io::sim::{Fleet, SimOptions};
-use roverlab::io::{Drive, LidarScan};
+use roverlab::io::sim::SimOptions;
+use roverlab::io::{LidarScan, RobotIo};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
 use roverlab::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
@@ -22,7 +23,7 @@ use crate::driving::{Conditions, counted, drawn, paced};
     about = "Drives straight on, turns by a random angle where something is ahead, and so on; one robot or several",
     after_help = "\
 Without --world, the robots drive in a room with two crates and a can. With a .sim, all of its robots drive, and --robots is
-not looked at. Several robots are driven in one thread, which is not recorded: --record, --replay and --fault are for one.
+not looked at. --fault is for one robot alone.
 
 JSON fields:
   robots                      how many drive
@@ -116,7 +117,7 @@ fn behaviour(scene: &Scene, robot: usize, seed: u64) -> Result<RandomDrive, Fail
     RandomDrive::new(parameters, stream).map_err(Failure::input)
 }
 
-/// One robot, which can be recorded.
+/// One robot.
 fn alone(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
     let conditions = Conditions::new(&args.common, seconds)?;
     let mut drive = behaviour(scene, 0, args.common.seed)?;
@@ -136,34 +137,33 @@ fn alone(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
 /// Several robots in one thread.
 fn together(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
     let common = &args.common;
-    if common.record.is_some() || common.replay.is_some() || !common.fault.is_empty() {
-        return Err(Failure::input(
-            "--record, --replay or --fault: found it for several robots; expected it for one robot alone",
-        ));
+    if !common.fault.is_empty() {
+        return Err(Failure::input("--fault: found it for several robots; expected it for one robot alone"));
     }
     let options = SimOptions::with_noise(common.noise, common.seed);
-    let turns: Vec<Cell<u32>> = scene.robots.iter().map(|_| Cell::new(0)).collect();
-    let mut fleet = Fleet::new(scene, options).map_err(Failure::input)?;
-    for (robot, turns) in turns.iter().enumerate() {
+    let turns: Vec<Rc<Cell<u32>>> = scene.robots.iter().map(|_| Rc::default()).collect();
+    let mut fleet = common.troop(scene, options)?;
+    for (robot, turns) in turns.iter().cloned().enumerate() {
         let mut drive = behaviour(scene, robot, common.seed)?;
         let (mut scan, mut points) = (LidarScan::default(), Vec::new());
         let period = RandomDriveParameters::default().period;
-        fleet.control(robot, period, move |robot| {
+        let step = move |robot: &mut dyn RobotIo| {
             RandomDrive::look(robot, &mut scan, &mut points)?;
             let twist = drive.step(robot.pose()?, &points)?;
             robot.set_speed(twist)?;
             turns.set(drive.turns());
             Ok(ControlFlow::Continue(()))
-        })?;
+        };
+        fleet.control(robot, period, Box::new(step))?;
     }
     let mut paths: Vec<Vec<Pose>> = scene.robots.iter().map(|robot| vec![robot.pose]).collect();
     let mut pace = paced(common);
-    while fleet.time() + 0.5 * STEP < seconds {
+    while fleet.time()? + 0.5 * STEP < seconds {
         fleet.run_for(STEP)?;
         for (robot, path) in paths.iter_mut().enumerate() {
-            path.extend(fleet.pose(robot));
+            path.push(fleet.pose(robot)?);
         }
-        pace(fleet.time());
+        pace(fleet.time()?);
     }
     let first = fleet.truth(0)?;
     let (mut contacts, mut contact_places) = (0, Vec::new());
@@ -173,13 +173,13 @@ fn together(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure>
         contact_places.extend(truth.contact_places);
     }
     let report = Report {
-        sim_time: Some(fleet.time()),
+        sim_time: Some(fleet.time()?),
         path_length: Some(first.path_length),
         pose: Some(first.pose),
         odometry: Some(scene.robots[0].pose.compose(&first.odometry)),
         ..Report::new(Outcome::verdict("driven"))
     };
-    Ok(Outing { turns: turns.iter().map(Cell::get).sum(), contacts, contact_places, report, paths })
+    Ok(Outing { turns: turns.iter().map(|turns| turns.get()).sum(), contacts, contact_places, report, paths })
 }
 
 /// The share of the floor that the robots have passed over.
