@@ -28,7 +28,7 @@ pub(crate) fn table(tasks: &[Task]) {
     let mut each = METHODS.map(|_| vec![f64::INFINITY; tasks.len()]);
     for _ in 0..ROUNDS {
         for (fill, times) in fillers.iter_mut().zip(&mut in_turn) {
-            times.push(seconds(1, || tasks.iter().for_each(|task| fill(task))) / tasks.len() as f64);
+            times.push(seconds(1, || tasks.iter().for_each(&mut *fill)) / tasks.len() as f64);
         }
     }
     for _ in 0..9 {
