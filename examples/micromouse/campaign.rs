@@ -49,7 +49,7 @@ impl Trial {
         let mut list: Vec<String> = self.error.iter().cloned().collect();
         let mut add = |wrong: bool, what: String| {
             if wrong {
-                list.push(what)
+                list.push(what);
             }
         };
         add(self.contacts > 0, format!("{} contacts", self.contacts));
@@ -192,7 +192,7 @@ struct Row {
 }
 
 impl Row {
-    fn new<'a>(name: String, trials: impl Iterator<Item = &'a Trial> + Clone) -> Self {
+    fn new<'a>(name: String, trials: &(impl Iterator<Item = &'a Trial> + Clone)) -> Self {
         let count = |good: fn(&Trial) -> bool| trials.clone().filter(|trial| good(trial)).count();
         let worst = |value: fn(&Trial) -> f64| trials.clone().map(value).fold(0.0, f64::max);
         Self {
@@ -227,8 +227,8 @@ impl Row {
 
 fn rows(trials: &[Trial]) -> Vec<Row> {
     let sides: BTreeSet<usize> = trials.iter().map(|trial| trial.side).collect();
-    let of = |side: usize| Row::new(format!("{side}"), trials.iter().filter(move |trial| trial.side == side));
-    sides.into_iter().map(of).chain([Row::new("all".into(), trials.iter())]).collect()
+    let of = |side: usize| Row::new(side.to_string(), &trials.iter().filter(move |trial| trial.side == side));
+    sides.into_iter().map(of).chain([Row::new("all".into(), &trials.iter())]).collect()
 }
 
 /// The table, and what went wrong.
