@@ -62,6 +62,7 @@ mod stage;
 mod trip;
 mod values;
 mod wall_clock;
+mod workers;
 
 pub(crate) use args::CommonArgs;
 pub(crate) use failure::Failure;
@@ -74,3 +75,4 @@ pub(crate) use values::{
     GoalOption, parse_goal, parse_noise, parse_picture, parse_point, parse_pose, parse_seconds,
 };
 pub(crate) use wall_clock::{Pacer, Progress, Stopwatch};
+pub(crate) use workers::share_out;
