@@ -62,7 +62,8 @@ impl Route {
         let before = self.length;
         self.cell = nearest_free(chart, self.planner.grid(), robot)?;
         let found = self.planner.move_to(self.cell).is_ok() && self.plan(chart);
-        found.then(|| (self.length - before).abs() > 2.0 * chart.resolution())
+        // The robot has moved on, so that a way that is as long as before has become longer.
+        found.then(|| self.length > before)
     }
 
     fn plan(&mut self, chart: &Chart) -> bool {
