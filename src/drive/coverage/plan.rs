@@ -42,9 +42,12 @@ impl CoveragePlan {
     pub fn new(map: &CoverageMap, start: Point) -> Result<Self> {
         let [one, other] = [true, false].map(|along_x| Self::in_lanes(map, start, along_x));
         // A plan that leaves out more is no better for being shorter.
-        let worth = |plan: &Self| (plan.share < ENOUGH, plan.length());
-        let (a, b) = (worth(&one), worth(&other));
-        Ok(if a.0 < b.0 || (a.0 == b.0 && a.1 <= b.1) { one } else { other })
+        let is_better = match (one.share < ENOUGH, other.share < ENOUGH) {
+            (false, true) => true,
+            (true, false) => false,
+            _ => one.length() <= other.length(),
+        };
+        Ok(if is_better { one } else { other })
     }
 
     fn in_lanes(map: &CoverageMap, start: Point, along_x: bool) -> Self {
