@@ -109,11 +109,11 @@ fn behaviours(c: &mut Criterion) {
     });
     let mut pid = PidWallFollower::new(PidWallParameters::default()).expect("a follower");
     c.bench_function("wall following, PID: step", |b| {
-        b.iter(|| pid.step(black_box(&seen(0.2, 0.155)), 0.02))
+        b.iter(|| pid.step(black_box(&seen(0.2, 0.155)), 0.02));
     });
     let mut book = TwoLevelWallFollower::default();
     c.bench_function("wall following, the book: step", |b| {
-        b.iter(|| book.step(black_box(&seen(0.2, 0.155))))
+        b.iter(|| book.step(black_box(&seen(0.2, 0.155))));
     });
 
     let (world, scan) = (room(), scan(1.0));
@@ -150,7 +150,7 @@ fn behaviours(c: &mut Criterion) {
     let mut group = c.benchmark_group("planning");
     group.sample_size(10);
     group.bench_function("coverage of 4 square metres", |b| {
-        b.iter(|| CoveragePlan::new(&map, PLACE.position()))
+        b.iter(|| CoveragePlan::new(&map, PLACE.position()));
     });
     group.finish();
 }
