@@ -449,7 +449,7 @@ fn a_mock_robot_without_a_clock_that_moves_is_recorded() {
 }
 
 /// Two robots, the first of which stops for good after some steps.
-fn patrol<'a>(troop: &mut dyn Troop<'a>, period: f64, steps: u32) -> Result<Vec<Pose>> {
+fn patrol(troop: &mut dyn Troop<'_>, period: f64, steps: u32) -> Result<Vec<Pose>> {
     let mut left = steps;
     let first = move |robot: &mut dyn RobotIo| {
         left -= 1;
