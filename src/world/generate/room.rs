@@ -192,11 +192,15 @@ mod tests {
         let mut features: Vec<RoomFeature> = rooms.iter().flat_map(|room| room.features.clone()).collect();
         features.sort_unstable();
         features.dedup();
-        assert_eq!(features.len(), 5, "{features:?}");
+        assert_eq!(features.len(), 7, "{features:?}");
+        let with = |feature| rooms.iter().filter(|room: &&Room| room.features.contains(&feature)).count();
+        for feature in [RoomFeature::Door, RoomFeature::Wedge, RoomFeature::Nook] {
+            assert!(with(feature) >= 20, "{feature:?} in {} of 400 rooms", with(feature));
+        }
         let angles: Vec<f64> = rooms.iter().flat_map(|room| &room.corners).map(|&(_, angle)| angle).collect();
         let (least, most) = options.corners;
         assert!(angles.iter().all(|angle| (least..=most).contains(angle)));
-        for range in [60.0..90.0, 100.0..170.0, 190.0..260.0] {
+        for range in [60.0..90.0, 100.0..170.0, 190.0..260.0, 260.0..280.0, 285.0..300.0] {
             assert!(angles.iter().any(|&angle| range.contains(&units::to_deg(angle))), "{range:?}");
         }
     }
