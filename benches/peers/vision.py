@@ -99,8 +99,7 @@ def opencv_calls(first, second):
         cv2.cvtColor(gray, cv2.COLOR_GRAY2RGB, rgb)
         rgb[edges != 0] = (255, 0, 0)
 
-    hog = cv2.HOGDescriptor((gray.shape[1] // 8 * 8, gray.shape[0] // 8 * 8), (16, 16), (8, 8), (8, 8), 9)
-    return {
+    calls = {
         "copy": lambda: np.copyto(out, gray),
         "gray": lambda: cv2.cvtColor(first, cv2.COLOR_RGB2GRAY, out),
         "gray_to_rgb": lambda: cv2.cvtColor(gray, cv2.COLOR_GRAY2RGB, rgb),
@@ -121,10 +120,15 @@ def opencv_calls(first, second):
         "blobs": lambda: cv2.connectedComponentsWithStats(red, connectivity=8),
         "hough": lambda: cv2.HoughLines(edges, 1, math.pi / 180, 60),
         "hough_probabilistic": lambda: cv2.HoughLinesP(edges, 1, math.pi / 180, 50, minLineLength=30, maxLineGap=5),
-        "hog": lambda: hog.compute(gray),
         "difference": lambda: cv2.absdiff(gray, gray2, tmp),
         "mean_difference (fused)": lambda: cv2.norm(gray, gray2, cv2.NORM_L1),
     }
+    # OpenCV 5 has moved it out of the main modules.
+    if hasattr(cv2, "HOGDescriptor"):
+        whole = (gray.shape[1] // 8 * 8, gray.shape[0] // 8 * 8)
+        hog = cv2.HOGDescriptor(whole, (16, 16), (8, 8), (8, 8), 9)
+        calls["hog"] = lambda: hog.compute(gray)
+    return calls
 
 
 def kornia_calls(first, _second):

@@ -1,3 +1,4 @@
+use super::blocks::in_blocks;
 use super::dispatch::vectorised;
 use super::{Error, GrayView, GrayViewMut};
 
@@ -158,13 +159,11 @@ fn differentiate(above: &[u8], row: &[u8], below: &[u8], out: &mut Gradients) {
         let dx = &mut out.dx[1..][..inner];
         let dy = &mut out.dy[1..][..inner];
         let magnitude = &mut out.magnitude[2..][..inner];
-        let (a0, a1, a2) = (&above[..inner], &above[1..][..inner], &above[2..][..inner]);
-        let (b0, b2) = (&row[..inner], &row[2..][..inner]);
-        let (c0, c1, c2) = (&below[..inner], &below[1..][..inner], &below[2..][..inner]);
-        for x in 0..inner {
-            (dx[x], dy[x], magnitude[x]) =
-                gradient([a0[x], a1[x], a2[x]], [b0[x], b2[x]], [c0[x], c1[x], c2[x]]);
-        }
+        in_blocks!(dx, dy, magnitude;
+            nw in above, n in above[1..], ne in above[2..],
+            w in row, e in row[2..],
+            sw in below, s in below[1..], se in below[2..] =>
+            gradient([nw, n, ne], [w, e], [sw, s, se]));
     }
     for x in [0, width - 1] {
         let (west, east) = (x.saturating_sub(1), (x + 1).min(width - 1));
@@ -187,27 +186,27 @@ fn gradient(above: [u8; 3], [w, e]: [u8; 2], below: [u8; 3]) -> (i16, i16, u16) 
 /// Marks the pixels of the middle row.
 #[inline(always)]
 fn suppress(rows: &[Gradients; 3], marks: &mut [u8], CannyThresholds { low, high }: CannyThresholds) {
-    let n = marks.len();
     let [above, row, below] = rows;
-    let (dx, dy) = (&row.dx[..n], &row.dy[..n]);
-    let (a0, a1, a2) = (&above.magnitude[..n], &above.magnitude[1..][..n], &above.magnitude[2..][..n]);
-    let (b0, b1, b2) = (&row.magnitude[..n], &row.magnitude[1..][..n], &row.magnitude[2..][..n]);
-    let (c0, c1, c2) = (&below.magnitude[..n], &below.magnitude[1..][..n], &below.magnitude[2..][..n]);
-    for x in 0..n {
-        let (along, up, magnitude) = (dx[x].unsigned_abs(), dy[x].unsigned_abs(), b1[x]);
+    let (a, b, c) = (&above.magnitude, &row.magnitude, &below.magnitude);
+    in_blocks!(marks;
+        dx in row.dx, dy in row.dy,
+        nw in a, n in a[1..], ne in a[2..],
+        w in b, magnitude in b[1..], e in b[2..],
+        sw in c, s in c[1..], se in c[2..] => {
+        let (along, up) = (dx.unsigned_abs(), dy.unsigned_abs());
         // `tan(22.5°) |dx|` is whole only where `dx` is 0, so rounding down keeps the order.
         let flat = ((u32::from(2 * along) * 13_573) >> 16) as u16;
         let (horizontal, vertical) = (up <= flat, up > flat + 2 * along);
-        let rising = (dx[x] ^ dy[x]) < 0;
-        let (first, second) = (if rising { a2[x] } else { a0[x] }, if rising { c0[x] } else { c2[x] } + 1);
-        let first = if vertical { a1[x] } else { first };
-        let second = if vertical { c1[x] } else { second };
-        let first = if horizontal { b0[x] } else { first };
-        let second = if horizontal { b2[x] } else { second };
+        let rising = (dx ^ dy) < 0;
+        let (first, second) = (if rising { ne } else { nw }, if rising { sw } else { se } + 1);
+        let first = if vertical { n } else { first };
+        let second = if vertical { s } else { second };
+        let first = if horizontal { w } else { first };
+        let second = if horizontal { e } else { second };
         let kept = (magnitude > low) & (magnitude > first) & (magnitude >= second);
         let mark = if magnitude > high { STRONG } else { WEAK };
-        marks[x] = if kept { mark } else { NONE };
-    }
+        if kept { mark } else { NONE }
+    });
 }
 
 #[inline(always)]

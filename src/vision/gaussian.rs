@@ -1,3 +1,4 @@
+use super::blocks::in_blocks;
 use super::border::mirrored;
 use super::dispatch::vectorised;
 use super::{Error, GrayView, GrayViewMut};
@@ -71,7 +72,7 @@ pub fn gaussian_into(
 }
 
 /// Columns that are smoothed together; the sums of so many fit the fastest cache.
-const STRIP: usize = 1024;
+const STRIP: usize = 4096;
 
 /// The columns of a strip with three more on either side.
 type Sums = [u16; STRIP + 6];
@@ -80,12 +81,8 @@ type Sums = [u16; STRIP + 6];
 pub(super) fn smooth_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>, kernel: GaussianKernel) {
     match kernel {
         // Small whole weights keep the sums within 16 bits.
-        GaussianKernel::THREE => filter::<1>(input, output, [2, 1, 0, 0], |sums, out| {
-            across_16::<1>(sums, out, [2, 1, 0, 0], 4);
-        }),
-        GaussianKernel::FIVE => filter::<2>(input, output, [6, 4, 1, 0], |sums, out| {
-            across_16::<2>(sums, out, [6, 4, 1, 0], 8);
-        }),
+        GaussianKernel::THREE => filter::<1>(input, output, [2, 1, 0, 0], across_three),
+        GaussianKernel::FIVE => filter::<2>(input, output, [6, 4, 1, 0], across_five),
         GaussianKernel::SEVEN => filter::<3>(input, output, [18, 14, 7, 2], across_seven),
         GaussianKernel { weights, size } => {
             let wide = weights.map(u32::from);
@@ -127,20 +124,19 @@ fn filter<const R: usize>(
 /// Weighted sums of columns.
 #[inline(always)]
 fn down<'a, const R: usize>(row: impl Fn(isize) -> &'a [u8], weights: [u16; 4], sums: &mut [u16]) {
-    let n = sums.len();
-    let middle = &row(0)[..n];
-    let pair = |i: isize| (&row(-i)[..n], &row(i)[..n]);
-    let ((a1, b1), (a2, b2), (a3, b3)) = (pair(1), pair(2.min(R as isize)), pair(3.min(R as isize)));
     let both = |a: u8, b: u8| u16::from(a) + u16::from(b);
-    for x in 0..n {
-        let mut sum = weights[0] * u16::from(middle[x]) + weights[1] * both(a1[x], b1[x]);
-        if R > 1 {
-            sum += weights[2] * both(a2[x], b2[x]);
+    let [w0, w1, w2, w3] = weights;
+    match R {
+        1 => in_blocks!(sums; c in row(0), n in row(-1), s in row(1) => w0 * u16::from(c) + w1 * both(n, s)),
+        2 => in_blocks!(sums; c in row(0), n1 in row(-1), s1 in row(1), n2 in row(-2), s2 in row(2) => {
+            w0 * u16::from(c) + w1 * both(n1, s1) + w2 * both(n2, s2)
+        }),
+        _ => {
+            let (c, n1, s1, n2, s2) = (row(0), row(-1), row(1), row(-2), row(2));
+            in_blocks!(sums; c in c, n1 in n1, s1 in s1, n2 in n2, s2 in s2, n3 in row(-3), s3 in row(3) => {
+                w0 * u16::from(c) + w1 * both(n1, s1) + w2 * both(n2, s2) + w3 * both(n3, s3)
+            });
         }
-        if R > 2 {
-            sum += weights[3] * both(a3[x], b3[x]);
-        }
-        sums[x] = sum;
     }
 }
 
@@ -159,34 +155,30 @@ fn mirror_columns<const R: usize>(sums: &mut Sums, start: usize, end: usize, wid
 }
 
 #[inline(always)]
-fn across_16<const R: usize>(sums: &[u16], out: &mut [u8], weights: [u16; 4], shift: u32) {
-    let n = out.len();
-    let column = |i: usize| &sums[i.min(2 * R)..][..n];
-    let (c, w1, e1, w2, e2) =
-        (column(R), column(R - 1), column(R + 1), column(R.saturating_sub(2)), column(R + 2));
-    for x in 0..n {
-        let mut sum = weights[0] * c[x] + weights[1] * (w1[x] + e1[x]) + (1 << (shift - 1));
-        if R > 1 {
-            sum += weights[2] * (w2[x] + e2[x]);
-        }
-        out[x] = (sum >> shift) as u8;
-    }
+fn across_three(sums: &[u16], out: &mut [u8]) {
+    in_blocks!(out; w in sums, c in sums[1..], e in sums[2..] => ((2 * c + w + e + 8) >> 4) as u8);
 }
 
-/// Sums of 64ths of 64ths need 20 bits: the upper and lower parts of the columns' sums go separate ways.
+#[inline(always)]
+fn across_five(sums: &[u16], out: &mut [u8]) {
+    in_blocks!(out; w2 in sums, w1 in sums[1..], c in sums[2..], e1 in sums[3..], e2 in sums[4..] => {
+        ((6 * c + 4 * (w1 + e1) + w2 + e2 + 128) >> 8) as u8
+    });
+}
+
+/// Sums of 64ths of 64ths, `T = 18 c + 14 a + 7 b + 2 d`, need 20 bits, and only `(T + 2048) / 4096` is wanted. As
+/// `T = 16 (c + a) + 2 (c + d) - 2 a + 7 b`, the parts that are not multiples of 16 lose their lower bits, which go
+/// another way; what is left of `T / 16` has 16 bits.
 #[inline(always)]
 fn across_seven(sums: &[u16], out: &mut [u8]) {
-    let n = out.len();
-    let column = |i: usize| &sums[i..][..n];
-    let (w3, w2, w1, c) = (column(0), column(1), column(2), column(3));
-    let (e1, e2, e3) = (column(4), column(5), column(6));
-    let weigh = |sums: [u16; 4]| 18 * sums[0] + 14 * sums[1] + 7 * sums[2] + 2 * sums[3];
-    for x in 0..n {
-        let (one, two, three) = (w1[x] + e1[x], w2[x] + e2[x], w3[x] + e3[x]);
-        let high = weigh([c[x] >> 4, one >> 4, two >> 4, three >> 4]);
-        let low = weigh([c[x] & 15, one & 15, two & 15, three & 15]);
-        out[x] = ((high + (low >> 4) + 128) >> 8) as u8;
-    }
+    let (c, e1, e2, e3) = (&sums[3..], &sums[4..], &sums[5..], &sums[6..]);
+    in_blocks!(out; w3 in sums, w2 in sums[1..], w1 in sums[2..], c in c, e1 in e1, e2 in e2, e3 in e3 => {
+        let (a, b, d) = (w1 + e1, w2 + e2, w3 + e3);
+        let f = c + d;
+        let high = (c + a).wrapping_add(f >> 3).wrapping_sub(a >> 3).wrapping_add(7 * (b >> 4));
+        let low = (2 * (f & 7) + 2048 + 7 * (b & 15) - 2 * (a & 7)) >> 4;
+        (high.wrapping_add(low) >> 8) as u8
+    });
 }
 
 #[inline(always)]

@@ -123,9 +123,15 @@ impl HoughSegments {
         self.places.resize(self.directions.len(), 0);
     }
 
+    /// No pixel's line is farther from the first pixel: the diagonal, in whole pixels.
+    fn reach(&self) -> usize {
+        let (width, height) = self.size;
+        (width * width + height * height).isqrt() + 1
+    }
+
     /// Places for the votes of an angle: distances from minus to plus the largest.
     fn stride(&self) -> usize {
-        2 * (self.size.0 + self.size.1) + 1
+        2 * self.reach() + 1
     }
 
     /// Lets a pixel vote. Returns the most votes that one of its lines has, and that line's angle.
@@ -152,7 +158,7 @@ impl HoughSegments {
 
     /// Where in the votes a pixel's lines are.
     fn reckon(&mut self, x: usize, y: usize) {
-        let (stride, middle) = (self.stride() as u32, (self.size.0 + self.size.1) as u32);
+        let (stride, middle) = (self.stride() as u32, self.reach() as u32);
         places_of([x as f32, y as f32], &self.directions, stride, middle, &mut self.places);
     }
 

@@ -29,6 +29,7 @@
     reason = "loops are to be compiled for the processor that their caller has chosen"
 )]
 
+mod blocks;
 mod border;
 mod canny;
 mod combine;

@@ -5,7 +5,7 @@ use crate::vision::{Error, GrayView, mean_difference, view::require_size};
 pub struct MotionParameters {
     /// Pixels on each side of the blocks that are compared.
     pub block: usize,
-    /// Levels, of 255, by which a block's mean may change without motion.
+    /// Levels, of 255, by which a white block's mean may change without motion.
     pub threshold: f64,
     /// Pixels by which edges may be off without motion: 0 for a robot that stands.
     pub slack: f64,
@@ -14,14 +14,14 @@ pub struct MotionParameters {
 impl Default for MotionParameters {
     /// For a robot that stands and a camera with the noise of the real one.
     fn default() -> Self {
-        Self { block: 8, threshold: 2.6, slack: 0.0 }
+        Self { block: 8, threshold: 2.3, slack: 0.0 }
     }
 }
 
 /// How much moved from one image to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
-    /// The largest change of a block in each third of the image: left, middle, right. In levels.
+    /// The largest change of a block in each third of the image: left, middle, right. In levels of a white block.
     pub sectors: [f64; 3],
     /// The mean of the absolute difference over all pixels (Programs 11.12 and 11.13).
     pub mean_difference: f64,
@@ -46,7 +46,8 @@ impl Motion {
 /// The book compares the mean of the absolute differences of all pixels with a fixed number. That mean has a floor, the
 /// camera's noise in every pixel, that hides whatever is small; and a change of the exposure moves all of it. Here the
 /// signed differences are averaged over blocks, where noise cancels and motion does not, after the second image has
-/// been brought to the first one's brightness.
+/// been brought to the first one's brightness. A camera's noise grows with the square root of the brightness, so the
+/// change of a darker block counts for more.
 #[derive(Debug, Clone)]
 pub struct MotionDetector {
     parameters: MotionParameters,
@@ -61,6 +62,9 @@ struct Block {
     edges: u32,
     pixels: u32,
 }
+
+/// Noise does not fall below that of this level.
+const DARKEST: f64 = 10.0;
 
 impl MotionDetector {
     /// A detector. Fails unless blocks have 2 to 256 pixels a side and threshold and slack are numbers of at least 0.
@@ -108,7 +112,9 @@ impl MotionDetector {
         for (index, block) in self.sums.iter().enumerate() {
             let pixels = f64::from(block.pixels);
             let change = (f64::from(block.first) - gain * f64::from(block.second)).abs() / pixels;
-            let excess = change - slack * f64::from(block.edges) / pixels;
+            let shade = 0.5 * f64::from(block.first + block.second) / pixels;
+            let noise = (shade.max(DARKEST) / 255.0).sqrt();
+            let excess = (change - slack * f64::from(block.edges) / pixels) / noise;
             // A block belongs to the sector of its middle.
             let middle = (index % across * size + size / 2).min(width - 1);
             let sector = &mut sectors[3 * middle / width];

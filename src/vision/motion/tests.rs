@@ -24,7 +24,8 @@ fn hills(light: f64, seed: u64) -> GrayImage {
     let mut stream = Stream::new(seed);
     GrayImage::from_fn(160, 120, |x, y| {
         let shade = 90.0 + f64::from((x / 20 + y / 15) % 4) * 25.0;
-        image::Luma([(light * shade + 2.0 * stream.normal()).round().clamp(0.0, 255.0) as u8])
+        let noise = 2.0 * (shade / 255.0).sqrt() * stream.normal();
+        image::Luma([(light * shade + noise).round().clamp(0.0, 255.0) as u8])
     })
 }
 

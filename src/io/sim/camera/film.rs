@@ -52,13 +52,15 @@ impl Film {
         }
         // In 256ths; the brightest light that is told apart makes the darkest shade white.
         let gain = (gain * 256.0 + 0.5).clamp(0.0, 65_535.0) as u32;
+        // A camera's noise comes before its levels are made whole, which it hides; so the rest is rounded by chance.
+        let dither = (noise.shot > 0.0).then(|| self.stream.bits() as u32);
         let weights = blur_weights(noise.blur * f64::from(width) / BLUR_WIDTH);
         if weights.len() > 1 {
             room.sharp.resize(image.len(), 0);
-            expose(&canvas.colours, gain, &mut room.sharp);
+            expose(&canvas.colours, gain, dither, &mut room.sharp);
             blur(room, &weights, width as usize, image);
         } else {
-            expose(&canvas.colours, gain, image);
+            expose(&canvas.colours, gain, dither, image);
         }
         if noise.shot > 0.0 {
             grain(image, noise.shot as f32, self.stream.bits() as u32);
@@ -102,10 +104,23 @@ fn blur_weights(sigma: f64) -> Vec<u16> {
 }
 
 #[multiversion::multiversion(targets("x86_64+avx2+bmi1+bmi2", "x86_64+ssse3+sse4.1"))]
-fn expose(colours: &[u32], gain: u32, image: &mut [u8]) {
-    for (pixel, &colour) in image.as_chunks_mut::<3>().0.iter_mut().zip(colours) {
-        let channel = |shift: u32| (((colour >> shift & 255) * gain + 128) >> 8).min(255) as u8;
-        *pixel = [channel(16), channel(8), channel(0)];
+fn expose(colours: &[u32], gain: u32, dither: Option<u32>, image: &mut [u8]) {
+    let pixels = image.as_chunks_mut::<3>().0.iter_mut().zip(colours);
+    let level =
+        |colour: u32, shift: u32, more: u32| (((colour >> shift & 255) * gain + more) >> 8).min(255) as u8;
+    match dither {
+        None => {
+            for (pixel, &colour) in pixels {
+                *pixel = [level(colour, 16, 128), level(colour, 8, 128), level(colour, 0, 128)];
+            }
+        }
+        Some(seed) => {
+            for ((pixel, &colour), i) in pixels.zip(0_u32..) {
+                let random = hash(i, seed);
+                let more = |shift: u32| random >> shift & 255;
+                *pixel = [level(colour, 16, more(0)), level(colour, 8, more(8)), level(colour, 0, more(16))];
+            }
+        }
     }
 }
 
@@ -180,12 +195,19 @@ fn grain(image: &mut [u8], sigma: f32, seed: u32) {
 #[inline(always)]
 #[allow(clippy::inline_always, reason = "part of a loop compiled for several processors")]
 fn four_bytes(index: u32, seed: u32) -> i16 {
+    let x = hash(index, seed);
+    let sum = (x & 255) + (x >> 8 & 255) + (x >> 16 & 255) + (x >> 24);
+    sum as i16 - 510
+}
+
+/// 32 bits that look random.
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "part of a loop compiled for several processors")]
+fn hash(index: u32, seed: u32) -> u32 {
     let mut x = index.wrapping_mul(0x9e37_79b9).wrapping_add(seed);
     x = (x ^ x >> 16).wrapping_mul(0x7feb_352d);
     x = (x ^ x >> 15).wrapping_mul(0x846c_a68b);
-    x ^= x >> 16;
-    let sum = (x & 255) + (x >> 8 & 255) + (x >> 16 & 255) + (x >> 24);
-    sum as i16 - 510
+    x ^ x >> 16
 }
 
 #[cfg(test)]
@@ -237,6 +259,20 @@ mod tests {
             assert!((variance - sigma * sigma).abs() < 0.08 * sigma * sigma + 0.01, "{sigma}: {variance}");
         }
         assert_eq!(blur_weights(0.0), [256]);
+    }
+
+    #[test]
+    fn rounding_by_chance_keeps_the_mean() {
+        let colours = vec![0x14_28_50; 20_000];
+        let mut image = vec![0; 3 * colours.len()];
+        // 20, 40 and 80 levels by 1.0117.
+        expose(&colours, 259, Some(5), &mut image);
+        for (channel, level) in [20.0, 40.0, 80.0].into_iter().enumerate() {
+            let (mean, _) = moments(image.iter().skip(channel).step_by(3).map(|&v| f64::from(v)));
+            assert!((mean - level * 259.0 / 256.0).abs() < 0.02, "{level}: {mean}");
+        }
+        expose(&colours, 259, None, &mut image);
+        assert_eq!(image[..3], [20, 40, 81]);
     }
 
     #[test]
