@@ -106,6 +106,37 @@ fn every_group_of_functions_does_what_it_should() {
 }
 
 #[test]
+fn every_chapter_has_its_program() {
+    if !compiler() {
+        return;
+    }
+    check("chapter03.c", &["--start", "1000,1000,0"]);
+    check("chapter04.c", &["--start", "2000,2000,0"]);
+    check("chapter06.c", &["--start", "2000,2000,0", "--time-limit", "300"]);
+    check("chapter07.c", &["--robot", "Omni", "--start", "2000,2000,0"]);
+    check("chapter11.c", &["--start", "1000,1000,0"]);
+    check("chapter14.c", &["--robot", "Car", "--start", "2000,2000,0"]);
+
+    let folder = Folder::new("chapters");
+    folder.copy("chapter05.c", "follow.c");
+    folder.write("lead.py", "from eye import *\nVWSetSpeed(200, 15)\n");
+    folder
+        .write("field.wld", "floor 6000 6000\n0 0 6000 0\n6000 0 6000 6000\n6000 6000 0 6000\n0 6000 0 0\n");
+    let script =
+        folder.write("chase.sim", "world field.wld\nLabBot 2500 2000 0 lead.py\nS4 1500 2000 0 follow.x\n");
+    if python() {
+        let all = report(&["--time-limit", "20", script.to_str().unwrap()]);
+        assert_eq!(all["robots"][1]["exit"], 0, "{all}");
+        assert!(all["robots"][0]["path_length_mm"].as_f64().unwrap() > 2000.0, "it drives on: {all}");
+    }
+    let maze = folder.write("maze.maz", " _ _ _ _\n|_     _|\n|  _| | |\n|S|_ _ _|\n360\n");
+    let file = folder.copy("chapter09.c", "chapter09.c");
+    let start = ["--world", maze.to_str().unwrap(), "--start", "180,180,90"];
+    let all = report(&[&start[..], &[file.to_str().unwrap()]].concat());
+    assert_eq!((&all["exit"], &all["collisions"]), (&0.into(), &0.into()), "{all}");
+}
+
+#[test]
 fn hostile_arguments_are_answered_with_codes() {
     if compiler() {
         let report = check("hostile.c", &["--time-limit", "100000"]);
@@ -230,6 +261,9 @@ fn python_programs_run() {
     assert!(report["lcd_text"].as_str().unwrap().ends_with("python is done"), "{report}");
     let report = check("sleepy.py", &["--time-limit", "600"]);
     assert_eq!(report["lcd_text"], "slept 100 s");
+    if cfg!(target_os = "linux") {
+        assert_eq!(check("foreign.py", &[])["lcd_text"], "number 7");
+    }
 }
 
 #[test]

@@ -115,9 +115,8 @@ impl Robios {
 
     /// `MOTORDrive`: percent of EyeSim's full speed.
     pub fn motor_drive(&mut self, motor: i32, percent: i32) -> Result<()> {
-        if !(-100..=100).contains(&percent) {
-            return Err(invalid("motor speed", percent, "-100 to 100"));
-        }
+        // Programs that ask for more get all there is.
+        let percent = percent.clamp(-100, 100);
         let share = self.identity.full_speed / self.identity.top_speed;
         self.motor(motor, f64::from(percent) / 100.0 * share)
     }
@@ -169,9 +168,7 @@ impl Robios {
     /// `SERVOSet`: 0 to 255, 128 in the middle. What no device of the robot follows is remembered.
     pub fn servo_set(&mut self, servo: i32, angle: i32) -> Result<()> {
         let index = servo_index(servo)?;
-        if !(0..=255).contains(&angle) {
-            return Err(invalid("servo position", angle, "0 to 255"));
-        }
+        let angle = angle.clamp(0, 255);
         self.servos[index] = angle;
         let position = f64::from(angle - 128) / 128.0;
         match self.order(&Request::Servo(index as u8, position)) {

@@ -85,7 +85,16 @@ fn source(path: &Path) -> Option<PathBuf> {
         return Some(path.to_owned());
     }
     let endings = C.iter().chain(&CPP).chain(&["py"]);
-    endings.map(|ending| path.with_extension(ending)).find(|file| file.is_file())
+    let beside = endings.map(|ending| path.with_extension(ending)).find(|file| file.is_file());
+    beside.or_else(|| only_source(path.parent()?))
+}
+
+/// The source text of a folder that has only one: programs are often named otherwise than what they are made of.
+fn only_source(folder: &Path) -> Option<PathBuf> {
+    let files = std::fs::read_dir(folder).ok()?.filter_map(Result::ok).map(|entry| entry.path());
+    let mut sources = files.filter(|file| is_source(file));
+    let first = sources.next()?;
+    sources.next().is_none().then_some(first)
 }
 
 /// Whether this system can start a file: it is a program of its own format, or a script that says by what.

@@ -21,6 +21,6 @@ int main(void)
     CHECK(DIGITALSetup(2, 'J') == 0 && DIGITALRead(2) == 0 && DIGITALSetup(17, 'i') == 1 && DIGITALSetup(1, 'q') == 1);
     CHECK(ANALOGVoltage() == 820 && ANALOGRead(1) == 0 && ANALOGRecord(8, 50) == 0 && ANALOGTransfer(samples) == 50);
     CHECK(SERVOSet(5, 200) == 0 && SERVOGet(5) == 200 && SERVODone(5) == 1 && SERVOWait(5) == 0 && SERVOStalled(5) == 0);
-    CHECK(SERVOSet(1, 300) == 1 && SERVOSet(0, 1) == 1 && SERVORange(1, 10, 20) == 0 && SERVOSetAngle(6, 9) == 0);
+    CHECK(SERVOSet(5, 300) == 0 && SERVOGet(5) == 255 && SERVOSet(0, 1) == 1 && SERVORange(1, 10, 20) == 0 && SERVOSetAngle(6, 9) == 0);
     return 0;
 }

@@ -14,7 +14,7 @@ int main(void)
     CHECK(ENCODERReset(1) == 0 && ENCODERRead(1) == 0 && abs(ENCODERRead(2) - left) < 20);
     CHECK(MOTORDrive(1, 0) == 0 && MOTORDrive(2, 0) == 0);
     OSWait(2000);
-    CHECK(MOTORDrive(5, 1) == 1 && MOTORDrive(1, 101) == 1 && MOTORDrive(3, 10) == 1 && ENCODERRead(0) == 0);
+    CHECK(MOTORDrive(5, 1) == 1 && MOTORDrive(3, 10) == 1 && ENCODERRead(0) == 0);
     CHECK(MOTORPID(1, 4, 1, 1) == 0 && MOTORPIDOff(1) == 0 && MOTORDriveRaw(1, 0) == 0);
     ENCODERReset(1);
     CHECK(MOTORSpeed(1, 5) == 0 && MOTORSpeed(2, -5) == 0); /* 500 ticks/s */
