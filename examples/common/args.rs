@@ -81,6 +81,11 @@ impl CommonArgs {
             check_writable("--record", file)?;
         }
         match &self.robios {
+            Some(library) if cfg!(feature = "robios") => Err(Failure::input(format!(
+                "--robios {}: the examples know what is true about their robots; expected a program of your own, which \
+                 the feature `robios` lets drive a real one (`roverlab::io::robios`)",
+                library.display()
+            ))),
             Some(library) => Err(Failure::input(format!(
                 "--robios {}: this build lacks the feature `robios`; expected `cargo run --features robios ...`",
                 library.display()

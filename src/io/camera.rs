@@ -1,6 +1,6 @@
 use image::{GrayImage, RgbImage};
 
-use super::Result;
+use super::{Error, Result};
 
 /// The size of a camera's images.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
@@ -23,6 +23,19 @@ pub enum Resolution {
 impl Resolution {
     /// All of them, in the order of RoBIOS's numbers.
     pub const ALL: [Self; 6] = [Self::Qqvga, Self::Qvga, Self::Vga, Self::Cam1Mp, Self::CamHd, Self::Cam5Mp];
+
+    /// The one of so many columns and rows. Fails if there is none.
+    pub fn of(dimensions: (u32, u32)) -> Result<Self> {
+        let found = Self::ALL.into_iter().find(|resolution| resolution.dimensions() == dimensions);
+        found.ok_or_else(|| {
+            let (width, height) = dimensions;
+            Error::invalid_input(
+                "image size",
+                format!("{width} x {height}"),
+                "one of RoBIOS's, such as 320 x 240",
+            )
+        })
+    }
 
     /// Columns and rows.
     ///

@@ -21,6 +21,8 @@ pub mod sim;
 pub mod wrappers;
 #[cfg(feature = "log")]
 pub mod log;
+#[cfg(feature = "robios")]
+pub mod robios;
 
 pub use actuators::{Encoders, Motors, Servos};
 pub use camera::{Camera, Resolution};

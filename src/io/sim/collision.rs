@@ -178,6 +178,13 @@ impl Engine {
         self.look_around_again();
     }
 
+    /// Puts an object that there is somewhere else.
+    pub(super) fn place_object(&mut self, object: usize, pose: Pose) {
+        let solid = self.movables[object].solid;
+        self.space.set_pose(solid, pose);
+        self.look_around_again();
+    }
+
     /// Lets every robot look for solids before it moves: one of them has come from afar.
     fn look_around_again(&mut self) {
         for body in &mut self.bodies {

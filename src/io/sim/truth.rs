@@ -71,6 +71,16 @@ impl Truth {
         state.engine.place(robot, pose);
         Ok(())
     }
+
+    /// Puts an object somewhere else, as a hand would, by its index in the scene.
+    pub fn set_object(&self, object: usize, pose: Pose) -> Result<()> {
+        self.object(object)?;
+        if !pose.is_finite() {
+            return Err(Error::invalid_input("pose", format!("{pose:?}"), "finite numbers"));
+        }
+        self.shared.lock().engine.place_object(object, pose);
+        Ok(())
+    }
 }
 
 pub(super) fn robot_truth(engine: &Engine, robot: usize) -> Result<RobotTruth> {

@@ -1,4 +1,4 @@
-//! Robots around robots: noise, faults, limits and a trace for whatever is inside.
+//! Robots around robots: noise, faults, limits, whole numbers and a trace for whatever is inside.
 //!
 //! A wrapper has the capabilities of the robot that it wraps, changes what it is for and passes on the rest, so
 //! wrappers stack, and work around simulated, recorded and real robots alike. The outermost one is the one that the
@@ -33,6 +33,7 @@ mod faulty;
 mod limited;
 mod memory;
 mod noisy;
+mod quantised;
 mod trace_text;
 mod traced;
 
@@ -40,6 +41,7 @@ pub use fault::{Fault, FaultKind, Sensor};
 pub use faulty::Faulty;
 pub use limited::{Excess, Limited, Limits};
 pub use noisy::{Noise, Noisy};
+pub use quantised::Quantised;
 pub use traced::{Stamp, Traced};
 
 #[cfg(test)]

@@ -1,0 +1,284 @@
+//! What a program's library asks the world for, and who answers.
+
+use image::RgbImage;
+use roverlab::geometry::{Pose, Twist};
+use roverlab::io::sim::{SimRobot, Simulation, TICK, Truth};
+use roverlab::io::{
+    Camera, Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Lidar, LidarScan, LidarSettings,
+    Motors, Psd, Radio, RadioMessage, Resolution, Result, Servos,
+};
+use roverlab::world::{DriveSpec, RobotSpec, Scene};
+
+/// One thing that the world is asked for. Lengths are metres, angles radians.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Request {
+    /// Who the robot is; see [`Identity`].
+    Identity,
+    /// Lets so many seconds pass.
+    Pass(f64),
+    /// Drives at a speed.
+    SetSpeed(Twist),
+    /// The speed that odometry measures.
+    Speed,
+    /// The pose by odometry.
+    Pose,
+    /// Sets the pose by odometry.
+    SetPose(Pose),
+    /// Drives an arc: its length, its angle and the speed along it.
+    Curve(f64, f64, f64),
+    /// What is left of the running manoeuvre.
+    Remaining,
+    /// Whether no manoeuvre is running.
+    IsDone,
+    /// Waits until the running manoeuvre has ended or stalled.
+    WaitDone,
+    /// Whether something holds the robot.
+    IsStalled,
+    /// The reading of a distance sensor.
+    Distance(u8),
+    /// A scan of the lidar.
+    Scan,
+    /// How the lidar scans from now on.
+    ConfigureLidar(LidarSettings),
+    /// The size of images from now on, by its place in [`Resolution::ALL`].
+    SetResolution(u8),
+    /// An image of the camera.
+    Image,
+    /// Sends a message to a robot.
+    Send(u32, Vec<u8>),
+    /// The oldest message that has not been received; waits for so many seconds at most.
+    Receive(f64),
+    /// Drives a motor with a fraction of its full speed.
+    Motor(u8, f64),
+    /// Moves a servo to a position, -1 to 1.
+    Servo(u8, f64),
+    /// An encoder's ticks.
+    Encoder(u8),
+    /// Sets an encoder's count to zero.
+    ResetEncoder(u8),
+    /// Where a robot truly is; 0 is the robot that asks.
+    RobotAt(u32),
+    /// Puts a robot somewhere else.
+    PlaceRobot(u32, Pose),
+    /// Where an object truly is, numbered from 1.
+    ObjectAt(u32),
+    /// Puts an object somewhere else.
+    PlaceObject(u32, Pose),
+}
+
+/// What the world answers.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Reply {
+    /// It is done.
+    Done,
+    /// Yes or no.
+    Flag(bool),
+    /// A number.
+    Number(f64),
+    /// A count.
+    Count(i64),
+    /// A speed.
+    Twist(Twist),
+    /// A pose, and metres above the floor.
+    Pose(Pose, f64),
+    /// Distances counter-clockwise; infinity where there is no return.
+    Ranges(Vec<f64>),
+    /// An image.
+    Image(RgbImage),
+    /// A message, if there is one.
+    Message(Option<RadioMessage>),
+    /// Who the robot is.
+    Identity(Identity),
+}
+
+/// What a library has to know about its robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Identity {
+    /// Its number, from 1.
+    pub id: u32,
+    /// How many robots there are.
+    pub robots: u32,
+    /// How many objects there are.
+    pub objects: u32,
+    /// The fastest that its wheels' rims move, in metres per second.
+    pub top_speed: f64,
+    /// The rims' speed, in metres per second, that a motor's 100 percent stand for.
+    pub full_speed: f64,
+    /// Metres that a wheel rolls in a tick of its encoder.
+    pub tick_length: f64,
+    /// Beams in a scan.
+    pub lidar_points: u32,
+    /// Whether scans go all round.
+    pub full_turn: bool,
+    /// Seconds that a call takes.
+    pub call_duration: f64,
+    /// Seconds after which every call fails; infinity if there is no such time.
+    pub time_limit: f64,
+}
+
+/// EyeSim drives motors with percentages of this speed, in metres per second, whatever they could do.
+const FULL_SPEED: f64 = 0.4;
+/// The same for cars.
+const FULL_SPEED_OF_CARS: f64 = 0.5;
+
+/// Someone who drives one robot of a simulation.
+#[derive(Debug)]
+pub struct Seat {
+    robot: SimRobot,
+    truth: Truth,
+    identity: Identity,
+    index: usize,
+    elevations: (Vec<f64>, Vec<f64>),
+    scan: LidarScan,
+}
+
+impl Seat {
+    /// Takes a robot of a simulation of a scene.
+    pub fn take(
+        simulation: &Simulation,
+        scene: &Scene,
+        index: usize,
+        (call_duration, time_limit): (f64, Option<f64>),
+    ) -> Result<Self> {
+        let robot = simulation.robot(index)?;
+        // Taking the robot has checked the index.
+        let spec = &scene.robots[index].spec;
+        let (top_speed, full_speed, tick_length) = speeds(spec);
+        let identity = Identity {
+            id: index as u32 + 1,
+            robots: scene.robots.len() as u32,
+            objects: scene.world.objects.len() as u32,
+            top_speed,
+            full_speed,
+            tick_length,
+            lidar_points: spec.lidar.map_or(0, |lidar| lidar.points as u32),
+            full_turn: spec.lidar.is_none_or(|lidar| lidar.field_of_view > std::f64::consts::TAU - 1e-9),
+            call_duration,
+            time_limit: time_limit.unwrap_or(f64::INFINITY),
+        };
+        let robots = scene.robots.iter().map(|robot| robot.elevation).collect();
+        let objects = scene.world.objects.iter().map(|object| object.elevation).collect();
+        let (truth, scan) = (simulation.truth(), LidarScan::default());
+        Ok(Self { robot, truth, identity, index, elevations: (robots, objects), scan })
+    }
+
+    /// Who the robot is.
+    pub fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    /// The truth about the world.
+    pub fn truth(&self) -> &Truth {
+        &self.truth
+    }
+
+    /// The robot's index in the scene.
+    pub fn index(&self) -> usize {
+        self.index
+    }
+
+    /// The robot's own time in seconds.
+    pub fn now(&mut self) -> f64 {
+        self.robot.peek_time().unwrap_or_default()
+    }
+
+    /// Lets `debt` seconds pass that calls without the world have taken, and answers.
+    pub fn ask(&mut self, debt: f64, request: &Request) -> Result<Reply> {
+        if debt > 0.0 {
+            self.robot.wait((debt - self.identity.call_duration).max(0.0))?;
+        }
+        let robot = &mut self.robot;
+        Ok(match *request {
+            Request::Identity => Reply::Identity(self.identity),
+            Request::Pass(seconds) => done(robot.wait(seconds)?),
+            Request::SetSpeed(twist) => done(robot.set_speed(twist)?),
+            Request::Speed => Reply::Twist(robot.speed()?),
+            Request::Pose => Reply::Pose(robot.pose()?, 0.0),
+            Request::SetPose(pose) => done(robot.set_pose(pose)?),
+            Request::Curve(length, angle, speed) => done(robot.curve(length, angle, speed)?),
+            Request::Remaining => Reply::Number(robot.remaining()?),
+            Request::IsDone => Reply::Flag(robot.is_done()?),
+            Request::WaitDone => done(robot.wait_done()?),
+            Request::IsStalled => Reply::Flag(robot.is_stalled()?),
+            Request::Distance(sensor) => Reply::Number(robot.distance(Psd(sensor))?),
+            Request::Scan => {
+                robot.scan_into(&mut self.scan)?;
+                Reply::Ranges(self.scan.ranges.clone())
+            }
+            Request::ConfigureLidar(settings) => done(robot.configure_lidar(settings)?),
+            Request::SetResolution(number) => done(robot.set_resolution(resolution(number)?)?),
+            Request::Image => Reply::Image(robot.image()?),
+            Request::Send(to, ref data) => done(robot.send(to, data)?),
+            Request::Receive(seconds) => Reply::Message(self.receive(seconds)?),
+            Request::Motor(motor, fraction) => done(robot.set_motor(motor, fraction)?),
+            Request::Servo(servo, position) => done(robot.set_servo(servo, position)?),
+            Request::Encoder(motor) => Reply::Count(robot.encoder(motor)?),
+            Request::ResetEncoder(motor) => done(robot.reset_encoder(motor)?),
+            Request::RobotAt(id) => {
+                let index = self.robot_index(id)?;
+                Reply::Pose(self.truth.pose(index)?, elevation(&self.elevations.0, index))
+            }
+            Request::PlaceRobot(id, pose) => {
+                let index = self.robot_index(id)?;
+                done(self.truth.set_pose(index, pose)?)
+            }
+            Request::ObjectAt(id) => {
+                let index = index_of("object", id)?;
+                Reply::Pose(self.truth.object(index)?, elevation(&self.elevations.1, index))
+            }
+            Request::PlaceObject(id, pose) => done(self.truth.set_object(index_of("object", id)?, pose)?),
+        })
+    }
+
+    fn robot_index(&self, id: u32) -> Result<usize> {
+        if id == 0 { Ok(self.index) } else { index_of("robot", id) }
+    }
+
+    fn receive(&mut self, seconds: f64) -> Result<Option<RadioMessage>> {
+        let end = self.now() + seconds;
+        loop {
+            let message = self.robot.receive()?;
+            if message.is_some() || seconds <= 0.0 {
+                return Ok(message);
+            }
+            if self.now() >= end {
+                return Ok(None);
+            }
+            self.robot.wait(TICK)?;
+        }
+    }
+}
+
+fn done((): ()) -> Reply {
+    Reply::Done
+}
+
+fn elevation(all: &[f64], index: usize) -> f64 {
+    all.get(index).copied().unwrap_or_default()
+}
+
+fn index_of(what: &str, id: u32) -> Result<usize> {
+    let index = id.checked_sub(1).ok_or_else(|| Error::invalid_input(what, id, "a number from 1"))?;
+    Ok(index as usize)
+}
+
+fn resolution(number: u8) -> Result<Resolution> {
+    let found = Resolution::ALL.get(usize::from(number)).copied();
+    found.ok_or_else(|| Error::new(ErrorKind::InvalidInput, format!("resolution {number}; expected 0 to 5")))
+}
+
+/// The top speed of the wheels' rims, the speed that 100 percent stand for, and the length of an encoder's tick.
+fn speeds(spec: &RobotSpec) -> (f64, f64, f64) {
+    let (diameter, fastest, ticks, full) = match spec.drive {
+        DriveSpec::Differential { wheel_diameter, max_wheel_speed, ticks_per_turn, .. }
+        | DriveSpec::Omni { wheel_diameter, max_wheel_speed, ticks_per_turn, .. } => {
+            (wheel_diameter, max_wheel_speed, ticks_per_turn, FULL_SPEED)
+        }
+        DriveSpec::Ackermann { wheel_diameter, max_wheel_speed, ticks_per_turn, .. } => {
+            (wheel_diameter, max_wheel_speed, ticks_per_turn, FULL_SPEED_OF_CARS)
+        }
+        _ => (0.0, 0.0, 1.0, FULL_SPEED),
+    };
+    let top_speed = 0.5 * diameter * fastest;
+    (top_speed, full.min(top_speed), std::f64::consts::PI * diameter / ticks)
+}

@@ -1,0 +1,90 @@
+use std::ffi::c_int;
+
+use super::runtime::{code, enter};
+
+#[unsafe(no_mangle)]
+extern "C" fn MOTORDrive(motor: c_int, speed: c_int) -> c_int {
+    code(enter(|robios| robios.motor_drive(motor, speed)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn MOTORDriveRaw(motor: c_int, speed: c_int) -> c_int {
+    MOTORDrive(motor, speed)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn MOTORPID(motor: c_int, _p: c_int, _i: c_int, _d: c_int) -> c_int {
+    code(enter(|robios| robios.motor_pid(motor)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn MOTORPIDOff(motor: c_int) -> c_int {
+    code(enter(|robios| robios.motor_pid(motor)))
+}
+
+/// The name of 2017.
+#[unsafe(no_mangle)]
+extern "C" fn MOTORPIDoff(motor: c_int) -> c_int {
+    MOTORPIDOff(motor)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn MOTORSpeed(motor: c_int, ticks: c_int) -> c_int {
+    code(enter(|robios| robios.motor_speed(motor, ticks)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn ENCODERRead(quad: c_int) -> c_int {
+    enter(|robios| robios.encoder_read(quad)).unwrap_or(0)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn ENCODERReset(quad: c_int) -> c_int {
+    code(enter(|robios| robios.encoder_reset(quad)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SERVOSet(servo: c_int, angle: c_int) -> c_int {
+    code(enter(|robios| robios.servo_set(servo, angle)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SERVOSetRaw(servo: c_int, angle: c_int) -> c_int {
+    SERVOSet(servo, angle)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SERVOSetAngle(servo: c_int, angle: c_int) -> c_int {
+    SERVOSet(servo, angle)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SERVORange(servo: c_int, _low: c_int, _high: c_int) -> c_int {
+    code(enter(|robios| robios.servo_check(servo)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SERVOSetExtension(servo: c_int, _extension: c_int) -> c_int {
+    code(enter(|robios| robios.servo_check(servo)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SERVOGet(servo: c_int) -> c_int {
+    enter(|robios| robios.servo_get(servo)).unwrap_or(-1)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SERVODone(servo: c_int) -> c_int {
+    c_int::from(enter(|robios| robios.servo_check(servo)).is_some())
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SERVOWait(servo: c_int) -> c_int {
+    code(enter(|robios| robios.servo_check(servo)))
+}
+
+/// No servo ever stalls.
+#[unsafe(no_mangle)]
+extern "C" fn SERVOStalled(servo: c_int) -> c_int {
+    enter(|robios| robios.servo_check(servo)).map_or(0, |()| 0)
+}

@@ -1,0 +1,243 @@
+//! The system's functions that sleep or tell the time, in the place of those of the C library: a program's time is
+//! virtual wherever it looks.
+//!
+//! They take effect in programs that are linked against this library before the C library, as `gccsim` does, from the
+//! first call of a function of RoBIOS on, or from the start if the runner has started the program. Everybody else gets
+//! the system's own. What is not replaced runs by the real clock: timers of the kernel (`alarm`, `setitimer`), waiting
+//! for files and sockets, and waiting for condition variables with a time limit.
+
+use std::ffi::{c_int, c_long, c_uint, c_void};
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use libc::{clockid_t, pthread_attr_t, pthread_t, time_t, timespec, timeval};
+
+use super::memory::{input, output};
+use super::runtime::{enter, is_alive, is_ours, note_thread, sleep_for};
+use crate::plan::names;
+use crate::robios::EPOCH;
+
+/// Whether the runner has started this process: 0 not looked yet, 1 no, 2 yes.
+static STARTED_BY_RUNNER: AtomicU8 = AtomicU8::new(0);
+
+fn started_by_runner() -> bool {
+    match STARTED_BY_RUNNER.load(Ordering::Relaxed) {
+        0 => {
+            let yes = std::env::var_os(names::REPORT).is_some();
+            STARTED_BY_RUNNER.store(if yes { 2 } else { 1 }, Ordering::Relaxed);
+            yes
+        }
+        state => state == 2,
+    }
+}
+
+fn is_virtual() -> bool {
+    (is_alive() || started_by_runner()) && is_ours()
+}
+
+/// Seconds since the start of the run by the program's clock.
+fn now() -> Option<f64> {
+    if !is_virtual() {
+        return None;
+    }
+    enter(|robios| {
+        robios.charge()?;
+        Ok(robios.now())
+    })
+}
+
+/// Sleeps by the program's clock. `None` if there is none.
+fn sleep_virtually(seconds: f64) -> Option<()> {
+    if is_virtual() { sleep_for(seconds) } else { None }
+}
+
+const BILLION: f64 = 1e9;
+
+fn seconds(time: timespec) -> Option<f64> {
+    let sane = time.tv_sec >= 0 && (0..1_000_000_000).contains(&time.tv_nsec);
+    sane.then_some(time.tv_sec as f64 + time.tv_nsec as f64 / BILLION)
+}
+
+fn spec(seconds: f64) -> timespec {
+    let whole = seconds.floor();
+    timespec { tv_sec: whole as time_t, tv_nsec: ((seconds - whole) * BILLION) as c_long }
+}
+
+/// Sleeps for so many real nanoseconds.
+pub(super) fn real_nap(nanoseconds: i64) {
+    let time = timespec { tv_sec: 0, tv_nsec: nanoseconds };
+    // SAFETY: the kernel reads the time, which lives until it returns, and writes nothing.
+    unsafe { libc::syscall(libc::SYS_nanosleep, &raw const time, std::ptr::null_mut::<timespec>()) };
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn nanosleep(request: *const timespec, rest: *mut timespec) -> c_int {
+    let time = input(request, 1).and_then(|times| seconds(times[0]));
+    if let Some(time) = time
+        && sleep_virtually(time).is_some()
+    {
+        return 0;
+    }
+    // SAFETY: the kernel checks both pointers, and sets the error's number as the C library would.
+    unsafe { libc::syscall(libc::SYS_nanosleep, request, rest) as c_int }
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn clock_nanosleep(
+    clock: clockid_t,
+    flags: c_int,
+    request: *const timespec,
+    rest: *mut timespec,
+) -> c_int {
+    let time = input(request, 1).and_then(|times| seconds(times[0]));
+    if let Some(time) = time.filter(|_| is_wall_clock(clock)) {
+        let wait =
+            if flags & libc::TIMER_ABSTIME == 0 { Some(time) } else { now().map(|now| time - EPOCH - now) };
+        if wait.and_then(|wait| sleep_virtually(wait.max(0.0))).is_some() {
+            return 0;
+        }
+    }
+    // SAFETY: the kernel checks both pointers.
+    let result = unsafe { libc::syscall(libc::SYS_clock_nanosleep, clock, flags, request, rest) };
+    // This function returns the error's number.
+    if result == 0 { 0 } else { std::io::Error::last_os_error().raw_os_error().unwrap_or(libc::EINVAL) }
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn usleep(microseconds: c_uint) -> c_int {
+    let time = f64::from(microseconds) / 1e6;
+    if sleep_virtually(time).is_some() {
+        return 0;
+    }
+    let time = spec(time);
+    nanosleep(&raw const time, std::ptr::null_mut())
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn sleep(time: c_uint) -> c_uint {
+    if sleep_virtually(time.into()).is_some() {
+        return 0;
+    }
+    let (time, mut rest) = (spec(time.into()), spec(0.0));
+    let done = nanosleep(&raw const time, &raw mut rest) == 0;
+    if done { 0 } else { rest.tv_sec as c_uint }
+}
+
+/// Clocks that go while a program sleeps.
+fn is_wall_clock(clock: clockid_t) -> bool {
+    matches!(
+        clock,
+        libc::CLOCK_REALTIME
+            | libc::CLOCK_REALTIME_COARSE
+            | libc::CLOCK_MONOTONIC
+            | libc::CLOCK_MONOTONIC_COARSE
+            | libc::CLOCK_MONOTONIC_RAW
+            | libc::CLOCK_BOOTTIME
+    )
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn clock_gettime(clock: clockid_t, time: *mut timespec) -> c_int {
+    if is_wall_clock(clock)
+        && let Some(now) = now()
+        && output(time, &[spec(EPOCH + now)])
+    {
+        return 0;
+    }
+    // SAFETY: the kernel checks the pointer.
+    unsafe { libc::syscall(libc::SYS_clock_gettime, clock, time) as c_int }
+}
+
+fn real_time() -> timespec {
+    let mut time = spec(0.0);
+    // SAFETY: the kernel writes to a time that lives until it returns.
+    unsafe { libc::syscall(libc::SYS_clock_gettime, libc::CLOCK_REALTIME, &raw mut time) };
+    time
+}
+
+fn wall_time() -> timespec {
+    now().map_or_else(real_time, |now| spec(EPOCH + now))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn time(result: *mut time_t) -> time_t {
+    let time = wall_time().tv_sec;
+    output(result, &[time]);
+    time
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn gettimeofday(result: *mut timeval, _zone: *mut c_void) -> c_int {
+    let time = wall_time();
+    output(result, &[timeval { tv_sec: time.tv_sec, tv_usec: time.tv_nsec / 1000 }]);
+    0
+}
+
+/// Processor time passes as the program's clock does.
+#[unsafe(no_mangle)]
+extern "C" fn clock() -> libc::clock_t {
+    if let Some(now) = now() {
+        return (1e6 * now) as libc::clock_t;
+    }
+    let mut time = spec(0.0);
+    // SAFETY: the kernel writes to a time that lives until it returns.
+    unsafe { libc::syscall(libc::SYS_clock_gettime, libc::CLOCK_PROCESS_CPUTIME_ID, &raw mut time) };
+    time.tv_sec * 1_000_000 + time.tv_nsec / 1000
+}
+
+/// The C library's function of a name.
+fn original(name: &std::ffi::CStr) -> *mut c_void {
+    // SAFETY: looks up a name that ends with a zero byte.
+    unsafe { libc::dlsym(libc::RTLD_NEXT, name.as_ptr()) }
+}
+
+type Start = extern "C" fn(*mut c_void) -> *mut c_void;
+type Create = unsafe extern "C" fn(*mut pthread_t, *const pthread_attr_t, Start, *mut c_void) -> c_int;
+
+/// Starts a thread as the C library does, and notes that there are several now.
+#[unsafe(no_mangle)]
+extern "C" fn pthread_create(
+    thread: *mut pthread_t,
+    attributes: *const pthread_attr_t,
+    start: Start,
+    argument: *mut c_void,
+) -> c_int {
+    note_thread();
+    let found = original(c"pthread_create");
+    if found.is_null() {
+        return libc::ENOSYS;
+    }
+    // SAFETY: the C library's function of this name has this type, and gets what the program has passed.
+    unsafe {
+        let create = std::mem::transmute::<*mut c_void, Create>(found);
+        create(thread, attributes, start, argument)
+    }
+}
+
+type Select = unsafe extern "C" fn(c_int, *mut c_void, *mut c_void, *mut c_void, *mut timeval) -> c_int;
+
+/// Programs sleep by waiting for no files.
+#[unsafe(no_mangle)]
+extern "C" fn select(
+    files: c_int,
+    readable: *mut c_void,
+    writable: *mut c_void,
+    special: *mut c_void,
+    timeout: *mut timeval,
+) -> c_int {
+    let nothing = readable.is_null() && writable.is_null() && special.is_null();
+    let time = input(timeout.cast_const(), 1).map(|t| t[0].tv_sec as f64 + t[0].tv_usec as f64 / 1e6);
+    if let Some(time) = time.filter(|&time| nothing && time >= 0.0)
+        && sleep_virtually(time).is_some()
+    {
+        return 0;
+    }
+    let found = original(c"select");
+    if found.is_null() {
+        return -1;
+    }
+    // SAFETY: the C library's function of this name has this type, and gets what the program has passed.
+    unsafe {
+        let select = std::mem::transmute::<*mut c_void, Select>(found);
+        select(files, readable, writable, special, timeout)
+    }
+}

@@ -1,0 +1,133 @@
+use std::ffi::{c_char, c_int, c_uint};
+
+use super::memory::{bytes, input, output, output_text};
+use super::runtime::{code, enter};
+
+#[unsafe(no_mangle)]
+extern "C" fn SERInit(port: c_int, baud: c_int, _handshake: c_int) -> c_int {
+    code(enter(|robios| robios.ser_init(port, baud)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SERSendChar(port: c_int, letter: c_char) -> c_int {
+    code(enter(|robios| robios.ser_send(port, &[letter as u8])))
+}
+
+/// Sends a text that ends with a zero byte.
+#[unsafe(no_mangle)]
+extern "C" fn SERSend(port: c_int, message: *const c_char) -> c_int {
+    code(bytes(message).and_then(|message| enter(|robios| robios.ser_send(port, message))))
+}
+
+/// The form with a length, to which the header sends calls that have one.
+#[unsafe(no_mangle)]
+extern "C" fn eyesim_SERSendN(port: c_int, message: *const u8, length: c_uint) -> c_int {
+    let message = input(message, length as usize);
+    code(message.and_then(|message| enter(|robios| robios.ser_send(port, message))))
+}
+
+/// 0 if nothing waits.
+#[unsafe(no_mangle)]
+extern "C" fn SERReceiveChar(port: c_int) -> c_char {
+    let letter = enter(|robios| robios.ser_receive(port, 1));
+    letter.and_then(|data| data.first().copied()).unwrap_or(0) as c_char
+}
+
+/// Bytes that the form without a size receives at most, the zero byte behind them included.
+const UNSIZED: usize = 128;
+
+/// Returns how many bytes were received.
+#[unsafe(no_mangle)]
+extern "C" fn SERReceive(port: c_int, buffer: *mut c_char) -> c_int {
+    eyesim_SERReceiveN(port, buffer, UNSIZED as c_int)
+}
+
+/// The form with a size, to which the header sends calls that have one.
+#[unsafe(no_mangle)]
+extern "C" fn eyesim_SERReceiveN(port: c_int, buffer: *mut c_char, size: c_int) -> c_int {
+    let room = usize::try_from(size).unwrap_or(0).saturating_sub(1);
+    if buffer.is_null() || size < 1 {
+        return 0;
+    }
+    let data = enter(|robios| robios.ser_receive(port, room)).unwrap_or_default();
+    output_text(buffer, &data, room + 1);
+    data.len() as c_int
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SERCheck(port: c_int) -> c_int {
+    enter(|robios| robios.ser_check(port)).unwrap_or(0)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SERFlush(port: c_int) -> c_int {
+    code(enter(|robios| robios.ser_flush(port)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SERClose(port: c_int) -> c_int {
+    code(enter(|robios| robios.ser_close(port)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn DIGITALSetup(line: c_int, direction: c_char) -> c_int {
+    code(enter(|robios| robios.digital_setup(line, direction as u8)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn DIGITALRead(line: c_int) -> c_int {
+    enter(|robios| robios.digital_read(line)).unwrap_or(0)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn DIGITALReadAll() -> c_int {
+    enter(|robios| robios.digital_read_all()).unwrap_or(0)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn DIGITALWrite(line: c_int, state: c_int) -> c_int {
+    code(enter(|robios| robios.digital_write(line, state)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn ANALOGRead(channel: c_int) -> c_int {
+    enter(|robios| robios.analog_read(channel)).unwrap_or(0)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn ANALOGVoltage() -> c_int {
+    enter(|robios| robios.analog_voltage()).unwrap_or(0)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn ANALOGRecord(channel: c_int, samples: c_int) -> c_int {
+    code(enter(|robios| robios.analog_record(channel, samples)))
+}
+
+/// Returns how many samples there are.
+#[unsafe(no_mangle)]
+extern "C" fn ANALOGTransfer(buffer: *mut u8) -> c_int {
+    let samples = enter(|robios| robios.analog_transfer()).unwrap_or_default();
+    if output(buffer, &samples) { samples.len() as c_int } else { 0 }
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn AUBeep() -> c_int {
+    code(enter(|robios| robios.au_play()))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn AUPlay(sample: *const c_char) -> c_int {
+    if sample.is_null() { 1 } else { AUBeep() }
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn AUDone() -> c_int {
+    c_int::from(enter(|robios| robios.au_done()).unwrap_or(true))
+}
+
+/// There is nothing to hear.
+#[unsafe(no_mangle)]
+extern "C" fn AUMicrophone() -> c_int {
+    enter(|robios| robios.charge()).map_or(0, |()| 0)
+}

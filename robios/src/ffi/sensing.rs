@@ -1,0 +1,105 @@
+use std::ffi::c_int;
+use std::sync::atomic::{AtomicI32, Ordering};
+
+use super::memory::{output, scatter};
+use super::runtime::{code, enter};
+
+/// How many distances `LIDARGet` writes.
+#[unsafe(no_mangle)]
+static LIDAR_RESOLUTION: AtomicI32 = AtomicI32::new(360);
+
+#[unsafe(no_mangle)]
+extern "C" fn PSDGet(psd: c_int) -> c_int {
+    enter(|robios| robios.psd_get(psd)).unwrap_or(0)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn PSDGetRaw(psd: c_int) -> c_int {
+    PSDGet(psd)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn LIDARGet(distances: *mut c_int) -> c_int {
+    let scan = enter(|robios| {
+        // Robots' scanners differ; a program learns how many points there are by this number.
+        LIDAR_RESOLUTION.store(robios.lidar_points() as i32, Ordering::Relaxed);
+        robios.lidar_get()
+    });
+    code(scan.filter(|scan| output(distances, scan)).map(|_| ()))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn LIDARSet(range: c_int, tilt: c_int, points: c_int) -> c_int {
+    let set = enter(|robios| robios.lidar_set(range, tilt, points));
+    if set.is_some() {
+        LIDAR_RESOLUTION.store(points, Ordering::Relaxed);
+    }
+    code(set)
+}
+
+/// The name of 2017.
+#[unsafe(no_mangle)]
+extern "C" fn SIMLaserScan(distances: *mut c_int) -> c_int {
+    LIDARGet(distances)
+}
+
+/// Zeros stand for a thing that there is not.
+fn place<const N: usize>(places: [*mut c_int; N], found: Option<[i32; N]>) {
+    scatter(places, found.unwrap_or([0; N]));
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SIMGetRobot(id: c_int, x: *mut c_int, y: *mut c_int, z: *mut c_int, phi: *mut c_int) {
+    place([x, y, z, phi], enter(|robios| robios.sim_get_robot(id)));
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SIMSetRobot(id: c_int, x: c_int, y: c_int, _z: c_int, phi: c_int) {
+    enter(|robios| robios.sim_set_robot(id, [x, y, phi]));
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SIMGetObject(id: c_int, x: *mut c_int, y: *mut c_int, z: *mut c_int, phi: *mut c_int) {
+    place([x, y, z, phi], enter(|robios| robios.sim_get_object(id)));
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SIMSetObject(id: c_int, x: c_int, y: c_int, _z: c_int, phi: c_int) {
+    enter(|robios| robios.sim_set_object(id, [x, y, phi]));
+}
+
+fn without_z([x, y, _, phi]: [i32; 4]) -> [i32; 3] {
+    [x, y, phi]
+}
+
+/// The form of 2017, to which the header sends calls with four arguments.
+#[unsafe(no_mangle)]
+extern "C" fn eyesim_SIMGetObject4(id: c_int, x: *mut c_int, y: *mut c_int, phi: *mut c_int) {
+    place([x, y, phi], enter(|robios| robios.sim_get_object(id)).map(without_z));
+}
+
+/// The form of 2017, to which the header sends calls with four arguments.
+#[unsafe(no_mangle)]
+extern "C" fn eyesim_SIMSetObject4(id: c_int, x: c_int, y: c_int, phi: c_int) {
+    enter(|robios| robios.sim_set_object(id, [x, y, phi]));
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SIMGetPose(x: *mut c_int, y: *mut c_int, phi: *mut c_int) {
+    place([x, y, phi], enter(|robios| robios.sim_get_robot(0)).map(without_z));
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SIMSetPose(x: c_int, y: c_int, phi: c_int) {
+    enter(|robios| robios.sim_set_robot(0, [x, y, phi]));
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SIMGetRobotCount() -> c_int {
+    enter(|robios| robios.charge().map(|()| robios.identity().robots as i32)).unwrap_or(0)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SIMGetObjectCount() -> c_int {
+    enter(|robios| robios.charge().map(|()| robios.identity().objects as i32)).unwrap_or(0)
+}

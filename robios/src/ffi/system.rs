@@ -1,0 +1,131 @@
+use std::ffi::{c_char, c_int};
+use std::process::{Command, Stdio};
+
+use super::memory::{output_text, scatter, text};
+use super::runtime::{code, enter, sleep_for};
+use crate::robios::Callback;
+
+/// Bytes that are written to memory whose size the program does not state.
+const ROOM: usize = 128;
+
+/// Runs a command and hands back the beginning of what it prints.
+#[unsafe(no_mangle)]
+extern "C" fn OSExecute(command: *const c_char, result: *mut c_char) -> c_int {
+    code(text(command).and_then(|command| {
+        enter(|robios| robios.charge())?;
+        let run = Command::new("sh").arg("-c").arg(command).stdin(Stdio::null()).output().ok()?;
+        output_text(result, &run.stdout, ROOM);
+        run.status.success().then_some(())
+    }))
+}
+
+fn tell(buffer: *mut c_char, answer: &str) -> c_int {
+    code(enter(|robios| robios.charge()).filter(|()| output_text(buffer, answer.as_bytes(), ROOM)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn OSVersion(buffer: *mut c_char) -> c_int {
+    tell(buffer, "7.2")
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn OSVersionIO(buffer: *mut c_char) -> c_int {
+    tell(buffer, "1.0")
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn OSMachineName(buffer: *mut c_char) -> c_int {
+    tell(buffer, "EyeBot")
+}
+
+/// In MHz.
+#[unsafe(no_mangle)]
+extern "C" fn OSMachineSpeed() -> c_int {
+    enter(|robios| robios.charge()).map_or(0, |()| 1200)
+}
+
+/// A vehicle.
+#[unsafe(no_mangle)]
+extern "C" fn OSMachineType() -> c_int {
+    enter(|robios| robios.charge()).map_or(0, |()| 1)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn OSMachineID() -> c_int {
+    enter(|robios| robios.charge().map(|()| robios.identity().id as i32)).unwrap_or(0)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn OSError(message: *const c_char, _number: c_int, _dead: c_int) -> c_int {
+    code(text(message).and_then(|message| enter(|robios| robios.lcd_print(&message))))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn OSWait(milliseconds: c_int) -> c_int {
+    if milliseconds <= 0 {
+        return code(enter(|robios| robios.pass(0.0)));
+    }
+    code(sleep_for(f64::from(milliseconds) / 1000.0))
+}
+
+/// Returns the timer's handle, or 0.
+#[unsafe(no_mangle)]
+extern "C" fn OSAttachTimer(scale: c_int, function: Option<Callback>) -> c_int {
+    let timer = function.and_then(|function| enter(|robios| robios.os_attach_timer(scale, function)));
+    timer.unwrap_or(0)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn OSDetachTimer(timer: c_int) -> c_int {
+    code(enter(|robios| robios.os_detach_timer(timer)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn OSSetTime(hours: c_int, minutes: c_int, seconds: c_int) -> c_int {
+    code(enter(|robios| robios.os_set_time(hours, minutes, seconds)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn OSGetTime(
+    hours: *mut c_int,
+    minutes: *mut c_int,
+    seconds: *mut c_int,
+    ticks: *mut c_int,
+) -> c_int {
+    let time = enter(|robios| robios.os_get_time());
+    code(time.filter(|&time| scatter([hours, minutes, seconds, ticks], time)).map(|_| ()))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn OSGetCount() -> c_int {
+    enter(|robios| robios.os_get_count()).unwrap_or(0)
+}
+
+/// Seconds since 1970 by the program's clock, for `eye.py`; negative if there is none.
+#[unsafe(no_mangle)]
+extern "C" fn eyesim_time() -> f64 {
+    let time = enter(|robios| {
+        robios.charge()?;
+        Ok(robios.now())
+    });
+    time.map_or(-1.0, |now| crate::robios::EPOCH + now)
+}
+
+/// Waits, for `eye.py`. Returns 1 if there is no clock to wait by.
+#[unsafe(no_mangle)]
+extern "C" fn eyesim_sleep(seconds: f64) -> c_int {
+    let sane = seconds.is_finite() && seconds >= 0.0;
+    code(sane.then_some(()).and_then(|()| sleep_for(seconds.min(1e6))))
+}
+
+/// Notes that the program has started a thread, for `eye.py`.
+#[unsafe(no_mangle)]
+extern "C" fn eyesim_note_thread() {
+    super::runtime::note_thread();
+}
+
+/// Programs for the X window system ask for it.
+#[unsafe(no_mangle)]
+extern "C" fn XInitThreads() -> c_int {
+    1
+}

@@ -1,0 +1,183 @@
+//! What a program's run looks like from outside, in a file that the library keeps up to date.
+//!
+//! It is written at every call, so that whoever started the program knows how far it came, however it ended.
+
+use std::fs::{File, OpenOptions};
+use std::io;
+use std::os::unix::fs::FileExt;
+use std::path::Path;
+
+use roverlab::geometry::Pose;
+
+/// How far a program is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Stage {
+    /// It has called no function of RoBIOS.
+    #[default]
+    Silent,
+    /// It runs, or ended without a word.
+    Running,
+    /// It has ended by itself.
+    Ended,
+    /// The time limit has ended it.
+    TimedOut,
+    /// The library could not make a world for it.
+    Refused,
+    /// The world that it shared is gone.
+    Disconnected,
+}
+
+const STAGES: [Stage; 6] =
+    [Stage::Silent, Stage::Running, Stage::Ended, Stage::TimedOut, Stage::Refused, Stage::Disconnected];
+
+/// What is known about a run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Report {
+    /// How far the program is.
+    pub stage: Stage,
+    /// Whether the numbers that follow are known: not in a world that is shared, where the runner knows them.
+    pub known: bool,
+    /// Simulated seconds that the program has taken.
+    pub time: f64,
+    /// Simulated seconds that the world has run.
+    pub world_time: f64,
+    /// Where the robot is.
+    pub pose: Pose,
+    /// Where it believes to be.
+    pub odometry: Pose,
+    /// Metres.
+    pub path_length: f64,
+    /// Contacts.
+    pub contacts: u64,
+    /// Beeps and sounds.
+    pub sounds: u64,
+    /// The text that the display has shown, and shows.
+    pub text: String,
+}
+
+const NUMBERS: usize = 13;
+const HEADER: usize = 8 * (NUMBERS + 2);
+const STANDING: usize = 24 * 1024;
+
+/// The file of a report, open to be written.
+#[derive(Debug)]
+pub struct ReportFile {
+    file: File,
+    history: usize,
+}
+
+impl ReportFile {
+    /// Opens a file that exists.
+    pub fn open(path: &Path) -> io::Result<Self> {
+        Ok(Self { file: OpenOptions::new().write(true).open(path)?, history: 0 })
+    }
+
+    /// Writes everything but the text.
+    pub fn write(&self, report: &Report) -> io::Result<()> {
+        let stage = STAGES.iter().position(|&stage| stage == report.stage).unwrap_or_default();
+        let (pose, odometry) = (report.pose, report.odometry);
+        let numbers: [f64; NUMBERS] = [
+            stage as f64,
+            f64::from(u8::from(report.known)),
+            report.time,
+            report.world_time,
+            pose.x,
+            pose.y,
+            pose.heading,
+            odometry.x,
+            odometry.y,
+            odometry.heading,
+            report.path_length,
+            report.contacts as f64,
+            report.sounds as f64,
+        ];
+        let mut bytes = [0; 8 * NUMBERS];
+        for (place, number) in bytes.as_chunks_mut::<8>().0.iter_mut().zip(numbers) {
+            *place = number.to_le_bytes();
+        }
+        self.file.write_all_at(&bytes, 0)
+    }
+
+    /// Writes the text: the rows that stand on the display, and what was added to the history.
+    pub fn write_text(&mut self, history: &str, standing: &str) -> io::Result<()> {
+        let standing = &standing.as_bytes()[..standing.len().min(STANDING)];
+        let fresh = history.as_bytes().get(self.history..).unwrap_or_default();
+        self.file.write_all_at(fresh, (HEADER + STANDING + self.history) as u64)?;
+        self.history = history.len();
+        self.file.write_all_at(standing, HEADER as u64)?;
+        let mut lengths = [0; 16];
+        lengths[..8].copy_from_slice(&(self.history as u64).to_le_bytes());
+        lengths[8..].copy_from_slice(&(standing.len() as u64).to_le_bytes());
+        self.file.write_all_at(&lengths, 8 * NUMBERS as u64)
+    }
+}
+
+impl Report {
+    /// Reads the file of a report. A program may have written anything there, so nothing is believed.
+    pub fn read(path: &Path) -> io::Result<Self> {
+        Ok(Self::parse(&std::fs::read(path)?))
+    }
+
+    fn parse(bytes: &[u8]) -> Self {
+        let number = |index: usize| {
+            let bytes = bytes.get(8 * index..8 * index + 8).and_then(|bytes| bytes.try_into().ok());
+            Some(bytes.map_or(0.0, f64::from_le_bytes)).filter(|n| n.is_finite()).unwrap_or_default()
+        };
+        let length = |index: usize, most: usize| {
+            let bytes = bytes.get(8 * index..8 * index + 8).and_then(|bytes| bytes.try_into().ok());
+            (bytes.map_or(0, u64::from_le_bytes) as usize).min(most)
+        };
+        let text = |start: usize, length: usize| {
+            let start = start.min(bytes.len());
+            String::from_utf8_lossy(&bytes[start..(start + length).min(bytes.len())]).into_owned()
+        };
+        let history = text(HEADER + STANDING, length(NUMBERS, 1 << 20));
+        let standing = text(HEADER, length(NUMBERS + 1, STANDING));
+        Self {
+            stage: STAGES.get(number(0) as usize).copied().unwrap_or_default(),
+            known: number(1) != 0.0,
+            time: number(2),
+            world_time: number(3),
+            pose: Pose::new(number(4), number(5), number(6)),
+            odometry: Pose::new(number(7), number(8), number(9)),
+            path_length: number(10),
+            contacts: number(11) as u64,
+            sounds: number(12) as u64,
+            text: history + &standing,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_report_is_read_as_it_was_written() {
+        let path = std::env::temp_dir().join(format!("robios-report-{}", std::process::id()));
+        File::create(&path).unwrap();
+        assert_eq!(Report::read(&path).unwrap(), Report::default());
+        let mut file = ReportFile::open(&path).unwrap();
+        let mut report = Report {
+            stage: Stage::TimedOut,
+            known: true,
+            time: 1.5,
+            pose: Pose::new(1.0, 2.0, 3.0),
+            contacts: 4,
+            ..Report::default()
+        };
+        file.write(&report).unwrap();
+        file.write_text("one\n", "a long row").unwrap();
+        file.write_text("one\ntwo\n", "three").unwrap();
+        report.text = "one\ntwo\nthree".into();
+        assert_eq!(Report::read(&path).unwrap(), report);
+        std::fs::remove_file(&path).unwrap();
+    }
+
+    #[test]
+    fn nonsense_is_survived() {
+        for length in [0, 1, 100, HEADER + 10] {
+            Report::parse(&vec![0xff; length]);
+        }
+    }
+}

@@ -1,0 +1,197 @@
+use roverlab::geometry::{Twist, math, units};
+use roverlab::io::Result;
+
+use super::{Moving, Robios, in_whole, invalid, millimetres, pose_from};
+use crate::ask::{Reply, Request};
+
+/// Motors and encoders are numbered from 1.
+const MOTORS: i32 = 4;
+
+impl Robios {
+    /// `VWSetSpeed`, in mm/s and degrees/s.
+    pub fn vw_set_speed(&mut self, linear: i32, angular: i32) -> Result<()> {
+        let twist = Twist::new(units::from_mm(linear.into()), units::from_deg(angular.into()));
+        self.order(&Request::SetSpeed(twist))?;
+        self.drives(if (linear, angular) == (0, 0) { Moving::No } else { Moving::Speeds });
+        Ok(())
+    }
+
+    fn drives(&mut self, moving: Moving) {
+        if moving == Moving::No && self.moving != Moving::No {
+            self.standing_since = self.now();
+        }
+        self.moving = moving;
+    }
+
+    /// Since when the robot stands; now, if it drives.
+    pub(super) fn standing_since(&mut self) -> Result<f64> {
+        if self.moving == Moving::Manoeuvre && self.flag(&Request::IsDone)? {
+            self.drives(Moving::No);
+        }
+        Ok(if self.moving == Moving::No { self.standing_since } else { self.now() })
+    }
+
+    /// `VWGetSpeed`.
+    pub fn vw_get_speed(&mut self) -> Result<[i32; 2]> {
+        match self.ask(&Request::Speed)? {
+            Reply::Twist(twist) => {
+                Ok([millimetres(twist.linear), units::to_deg(twist.angular).round() as i32])
+            }
+            _ => Err(super::foreign()),
+        }
+    }
+
+    /// `VWSetPosition`.
+    pub fn vw_set_position(&mut self, pose: [i32; 3]) -> Result<()> {
+        self.order(&Request::SetPose(pose_from(pose)))
+    }
+
+    /// `VWGetPosition`.
+    pub fn vw_get_position(&mut self) -> Result<[i32; 3]> {
+        Ok(in_whole(self.pose_of(&Request::Pose)?.0))
+    }
+
+    /// `VWStraight`.
+    pub fn vw_straight(&mut self, distance: i32, speed: i32) -> Result<()> {
+        self.manoeuvre(units::from_mm(distance.into()), 0.0, units::from_mm(speed.into()))
+    }
+
+    /// `VWTurn`.
+    pub fn vw_turn(&mut self, angle: i32, speed: i32) -> Result<()> {
+        self.manoeuvre(0.0, units::from_deg(angle.into()), units::from_deg(speed.into()))
+    }
+
+    /// `VWCurve`: the arc's length, the whole change of heading, and the speed along the arc.
+    pub fn vw_curve(&mut self, length: i32, angle: i32, speed: i32) -> Result<()> {
+        let speed = f64::from(speed);
+        let speed = if length == 0 { units::from_deg(speed) } else { units::from_mm(speed) };
+        self.manoeuvre(units::from_mm(length.into()), units::from_deg(angle.into()), speed)
+    }
+
+    /// `VWDrive`: the arc that leads to a point ahead and to the left, whose length and angle are whole millimetres
+    /// and degrees.
+    pub fn vw_drive(&mut self, forward: i32, left: i32, speed: i32) -> Result<()> {
+        if left == 0 {
+            return self.vw_straight(forward, speed);
+        }
+        let (x, y) = (f64::from(forward), f64::from(left));
+        let half = math::atan2(y, x);
+        let length = math::hypot(x, y) * half / math::sin(half);
+        self.vw_curve(length as i32, (2.0 * units::to_deg(half)) as i32, speed)
+    }
+
+    fn manoeuvre(&mut self, length: f64, angle: f64, speed: f64) -> Result<()> {
+        self.turns = length == 0.0;
+        self.order(&Request::Curve(length, angle, speed.abs()))?;
+        self.drives(Moving::Manoeuvre);
+        Ok(())
+    }
+
+    /// `VWRemain`: millimetres, or degrees of a turn on the spot.
+    pub fn vw_remain(&mut self) -> Result<i32> {
+        let rest = self.number(&Request::Remaining)?;
+        Ok(if self.turns { units::to_deg(rest).round() as i32 } else { millimetres(rest) })
+    }
+
+    /// `VWDone`.
+    pub fn vw_done(&mut self) -> Result<bool> {
+        self.flag(&Request::IsDone)
+    }
+
+    /// Whether `VWWait` may go on: the drive has ended, or something holds the robot.
+    pub fn vw_arrived(&mut self) -> Result<bool> {
+        Ok(self.flag(&Request::IsDone)? || self.flag(&Request::IsStalled)?)
+    }
+
+    /// `VWWait`, for a program that has nothing else to do.
+    pub fn vw_wait(&mut self) -> Result<()> {
+        self.order(&Request::WaitDone)
+    }
+
+    /// `VWStalled`: 3 for both wheels, 0 for none.
+    pub fn vw_stalled(&mut self) -> Result<i32> {
+        Ok(if self.flag(&Request::IsStalled)? { 3 } else { 0 })
+    }
+
+    /// `MOTORDrive`: percent of EyeSim's full speed.
+    pub fn motor_drive(&mut self, motor: i32, percent: i32) -> Result<()> {
+        // Programs that ask for more get all there is.
+        let percent = percent.clamp(-100, 100);
+        let share = self.identity.full_speed / self.identity.top_speed;
+        self.motor(motor, f64::from(percent) / 100.0 * share)
+    }
+
+    /// `MOTORSpeed`: encoder ticks in a hundredth of a second.
+    pub fn motor_speed(&mut self, motor: i32, ticks: i32) -> Result<()> {
+        let speed = self.identity.tick_length * f64::from(ticks) * 100.0;
+        self.motor(motor, speed / self.identity.top_speed)
+    }
+
+    /// Drives a motor with a fraction of the speed that it can do.
+    fn motor(&mut self, motor: i32, fraction: f64) -> Result<()> {
+        let number = self.motor_number(motor)?;
+        self.order(&Request::Motor(number, fraction.clamp(-1.0, 1.0)))?;
+        // Other motors may turn; they count as driving until the speeds are set anew.
+        if fraction != 0.0 {
+            self.drives(Moving::Speeds);
+        }
+        Ok(())
+    }
+
+    /// A motor's number as the simulator has it.
+    fn motor_number(&self, motor: i32) -> Result<u8> {
+        let number = u8::try_from(motor).ok().filter(|_| (1..=MOTORS).contains(&motor));
+        number.ok_or_else(|| invalid("motor", motor, "1 to 4"))
+    }
+
+    /// `MOTORPID` and `MOTORPIDOff`: the simulated motors' controllers need no tuning.
+    pub fn motor_pid(&mut self, motor: i32) -> Result<()> {
+        self.motor_number(motor)?;
+        self.charge()
+    }
+
+    /// `ENCODERRead`.
+    pub fn encoder_read(&mut self, motor: i32) -> Result<i32> {
+        let number = self.motor_number(motor)?;
+        match self.ask(&Request::Encoder(number))? {
+            Reply::Count(count) => Ok(count as i32),
+            _ => Err(super::foreign()),
+        }
+    }
+
+    /// `ENCODERReset`.
+    pub fn encoder_reset(&mut self, motor: i32) -> Result<()> {
+        let number = self.motor_number(motor)?;
+        self.order(&Request::ResetEncoder(number))
+    }
+
+    /// `SERVOSet`: 0 to 255, 128 in the middle. What no device of the robot follows is remembered.
+    pub fn servo_set(&mut self, servo: i32, angle: i32) -> Result<()> {
+        let index = servo_index(servo)?;
+        let angle = angle.clamp(0, 255);
+        self.servos[index] = angle;
+        let position = f64::from(angle - 128) / 128.0;
+        match self.order(&Request::Servo(index as u8, position)) {
+            Err(error) if error.kind() == roverlab::io::ErrorKind::Unsupported => Ok(()),
+            result => result,
+        }
+    }
+
+    /// `SERVOGet`.
+    pub fn servo_get(&mut self, servo: i32) -> Result<i32> {
+        let index = servo_index(servo)?;
+        self.charge()?;
+        Ok(self.servos[index])
+    }
+
+    /// Whether there is such a servo.
+    pub fn servo_check(&mut self, servo: i32) -> Result<()> {
+        servo_index(servo)?;
+        self.charge()
+    }
+}
+
+fn servo_index(servo: i32) -> Result<usize> {
+    let index = usize::try_from(servo).ok().filter(|_| (1..=14).contains(&servo));
+    index.ok_or_else(|| invalid("servo", servo, "1 to 14"))
+}

@@ -1,0 +1,185 @@
+use std::collections::{BTreeMap, VecDeque};
+
+use roverlab::io::Result;
+
+use super::{Robios, invalid};
+
+/// What a simulated robot has no counterpart for: digital and analog lines and serial ports. They are looped back:
+/// what a program writes is what it reads.
+#[derive(Debug)]
+pub struct Lines {
+    digital: [Digital; 16],
+    ports: BTreeMap<i32, VecDeque<u8>>,
+    recorded: Vec<u8>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Digital {
+    direction: u8,
+    state: bool,
+}
+
+impl Default for Lines {
+    /// Lines 1 to 8 are inputs with a pull-up resistor, 9 to 16 outputs at 0.
+    fn default() -> Self {
+        let line = |index| {
+            if index < 8 {
+                Digital { direction: b'I', state: true }
+            } else {
+                Digital { direction: b'o', state: false }
+            }
+        };
+        Self { digital: std::array::from_fn(line), ports: BTreeMap::new(), recorded: Vec::new() }
+    }
+}
+
+/// `SERInit` knows the serial port, 0, and 20 USB devices.
+const PORTS: std::ops::RangeInclusive<i32> = 0..=20;
+/// Bytes that wait in a port; more are lost.
+const LONGEST_QUEUE: usize = 65_536;
+/// Hundredths of a volt: a battery of two cells, fully charged.
+const SUPPLY: i32 = 820;
+/// What a channel reads that nothing is connected to, of 0 to 255.
+const SILENCE: u8 = 0;
+/// Samples of one recording.
+const LONGEST_RECORDING: i32 = 65_536;
+/// Seconds that a sound takes.
+const SOUND: f64 = 0.5;
+
+impl Robios {
+    /// `DIGITALSetup`.
+    pub fn digital_setup(&mut self, line: i32, direction: u8) -> Result<()> {
+        let index = line_index(line)?;
+        let state = match direction {
+            b'i' | b'J' | b'o' => false,
+            b'I' => true,
+            _ => return Err(invalid("direction", direction, "i, I, J or o")),
+        };
+        self.lines.digital[index] = Digital { direction, state };
+        self.charge()
+    }
+
+    /// `DIGITALRead`.
+    pub fn digital_read(&mut self, line: i32) -> Result<i32> {
+        let index = line_index(line)?;
+        self.charge()?;
+        Ok(i32::from(self.lines.digital[index].state))
+    }
+
+    /// `DIGITALReadAll`: line 1 is the lowest bit.
+    pub fn digital_read_all(&mut self) -> Result<i32> {
+        self.charge()?;
+        Ok(self.lines.digital.iter().rev().fold(0, |bits, line| bits << 1 | i32::from(line.state)))
+    }
+
+    /// `DIGITALWrite`.
+    pub fn digital_write(&mut self, line: i32, state: i32) -> Result<()> {
+        let index = line_index(line)?;
+        if self.lines.digital[index].direction != b'o' {
+            return Err(invalid("digital line", format!("{line}, an input"), "an output"));
+        }
+        self.lines.digital[index].state = state != 0;
+        self.charge()
+    }
+
+    /// `ANALOGRead`: the supply on channel 0, silence elsewhere.
+    pub fn analog_read(&mut self, channel: i32) -> Result<i32> {
+        self.charge()?;
+        match channel {
+            0 => Ok(SUPPLY),
+            1..=8 => Ok(SILENCE.into()),
+            _ => Err(invalid("analog channel", channel, "0 to 8")),
+        }
+    }
+
+    /// `ANALOGVoltage`.
+    pub fn analog_voltage(&mut self) -> Result<i32> {
+        self.charge()?;
+        Ok(SUPPLY)
+    }
+
+    /// `ANALOGRecord`.
+    pub fn analog_record(&mut self, channel: i32, samples: i32) -> Result<()> {
+        if !(0..=8).contains(&channel) || !(0..=LONGEST_RECORDING).contains(&samples) {
+            return Err(invalid("recording", format!("{samples} of channel {channel}"), "65536 of 0 to 8"));
+        }
+        self.lines.recorded = vec![SILENCE; samples as usize];
+        self.charge()
+    }
+
+    /// `ANALOGTransfer`.
+    pub fn analog_transfer(&mut self) -> Result<Vec<u8>> {
+        self.charge()?;
+        Ok(std::mem::take(&mut self.lines.recorded))
+    }
+
+    /// `SERInit`.
+    pub fn ser_init(&mut self, port: i32, baud: i32) -> Result<()> {
+        if !PORTS.contains(&port) || !(50..=230_400).contains(&baud) {
+            return Err(invalid("serial port", format!("{port} at {baud} baud"), "0 to 20, 50 to 230400"));
+        }
+        self.lines.ports.entry(port).or_default().clear();
+        self.charge()
+    }
+
+    fn port(&mut self, port: i32) -> Result<&mut VecDeque<u8>> {
+        let found = self.lines.ports.get_mut(&port);
+        found.ok_or_else(|| invalid("serial port", port, "one that SERInit has opened"))
+    }
+
+    /// `SERSend` and `SERSendChar`.
+    pub fn ser_send(&mut self, port: i32, data: &[u8]) -> Result<()> {
+        let queue = self.port(port)?;
+        let room = LONGEST_QUEUE - queue.len();
+        queue.extend(&data[..data.len().min(room)]);
+        self.charge()
+    }
+
+    /// `SERReceive` and `SERReceiveChar`: what there is, at most so many bytes.
+    pub fn ser_receive(&mut self, port: i32, most: usize) -> Result<Vec<u8>> {
+        let queue = self.port(port)?;
+        let count = queue.len().min(most);
+        let data = queue.drain(..count).collect();
+        self.charge()?;
+        Ok(data)
+    }
+
+    /// `SERCheck`: how many bytes wait.
+    pub fn ser_check(&mut self, port: i32) -> Result<i32> {
+        let count = self.port(port)?.len();
+        self.charge()?;
+        Ok(count as i32)
+    }
+
+    /// `SERFlush`.
+    pub fn ser_flush(&mut self, port: i32) -> Result<()> {
+        self.port(port)?.clear();
+        self.charge()
+    }
+
+    /// `SERClose`.
+    pub fn ser_close(&mut self, port: i32) -> Result<()> {
+        self.port(port)?;
+        self.lines.ports.remove(&port);
+        self.charge()
+    }
+
+    /// `AUBeep` and `AUPlay`: counted.
+    pub fn au_play(&mut self) -> Result<()> {
+        self.sounds += 1;
+        self.charge()?;
+        self.sound_ends = self.now() + SOUND;
+        Ok(())
+    }
+
+    /// `AUDone`.
+    pub fn au_done(&mut self) -> Result<bool> {
+        self.charge()?;
+        Ok(self.now() >= self.sound_ends)
+    }
+}
+
+fn line_index(line: i32) -> Result<usize> {
+    let index = usize::try_from(line).ok().filter(|_| (1..=16).contains(&line));
+    index.map(|index| index - 1).ok_or_else(|| invalid("digital line", line, "1 to 16"))
+}

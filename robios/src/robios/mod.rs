@@ -1,0 +1,271 @@
+//! RoBIOS in safe Rust: what its functions do, in its own units, for one robot.
+//!
+//! Methods are named after the functions. They answer with what the function returns, or with the error that makes it
+//! return its code for failure; who calls from C is in [`ffi`](crate::ffi).
+
+mod display;
+mod drive;
+pub(crate) mod images;
+mod lines;
+mod radio;
+mod sensing;
+mod system;
+
+pub use display::Frame;
+pub use lines::Lines;
+pub use sensing::NOTHING;
+pub use system::Timers;
+
+use image::RgbImage;
+use roverlab::geometry::{Pose, normalize_angle, units};
+use roverlab::io::sim::TICK;
+use roverlab::io::{Error, ErrorKind, Resolution, Result, Viewport};
+
+use crate::ask::{Identity, Reply, Request};
+use crate::keys::{KeyDesk, KeyPlan};
+use crate::link::Link;
+use crate::report::{Report, ReportFile, Stage};
+use crate::screen::Screen;
+
+pub(crate) use system::Callback;
+
+/// One robot and its devices, as a program sees them.
+#[derive(Debug)]
+pub struct Robios {
+    link: Box<dyn Link>,
+    identity: Identity,
+    /// Nanoseconds that calls without the world have taken since the last one with it.
+    debt: u64,
+    pub(crate) screen: Screen,
+    pub(crate) keys: KeyDesk,
+    pub(crate) lines: Lines,
+    pub(crate) timers: Timers,
+    /// The size of the camera's images, once it is started.
+    camera: Option<Resolution>,
+    /// The size of the images that functions of image processing take.
+    image_size: (usize, usize),
+    image_size_set: bool,
+    inbox: radio::Inbox,
+    /// The size of the images that the display takes, and where it puts them.
+    lcd_image: Option<(usize, usize)>,
+    window: Option<Viewport>,
+    /// Whether scans go all round.
+    full_turn: bool,
+    /// Whether the last drive command was one for a turn on the spot.
+    turns: bool,
+    moving: Moving,
+    standing_since: f64,
+    servos: [i32; 15],
+    /// Seconds by which a program has set the clock forward.
+    clock_offset: f64,
+    sounds: u64,
+    sound_ends: f64,
+    report: Report,
+    file: Option<ReportFile>,
+    text_changed: bool,
+    lcd_file: Option<std::path::PathBuf>,
+}
+
+/// What the last drive command was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Moving {
+    No,
+    Manoeuvre,
+    Speeds,
+}
+
+const NANOSECONDS: f64 = 1e9;
+/// Seconds from 1970 to the beginning of every run: noon of the first day of 2020, in Greenwich.
+pub(crate) const EPOCH: f64 = 1_577_880_000.0;
+
+/// Where a run is reported.
+#[derive(Debug, Default)]
+pub struct Outlets {
+    /// The file of the report.
+    pub report: Option<ReportFile>,
+    /// The picture of the display at the end.
+    pub lcd: Option<std::path::PathBuf>,
+}
+
+impl Robios {
+    /// A robot at the other end of a link.
+    pub fn new(mut link: Box<dyn Link>, keys: KeyPlan, outlets: Outlets) -> Result<Self> {
+        let Reply::Identity(identity) = link.ask(0.0, &Request::Identity)? else { return Err(foreign()) };
+        Ok(Self {
+            link,
+            identity,
+            debt: 0,
+            screen: Screen::default(),
+            keys: KeyDesk::new(keys),
+            lines: Lines::default(),
+            timers: Timers::default(),
+            camera: None,
+            image_size: images::size(Resolution::Qqvga),
+            image_size_set: false,
+            inbox: radio::Inbox::new(),
+            lcd_image: None,
+            window: None,
+            full_turn: identity.full_turn,
+            turns: false,
+            moving: Moving::No,
+            standing_since: 0.0,
+            servos: [128; 15],
+            clock_offset: 0.0,
+            sounds: 0,
+            sound_ends: 0.0,
+            report: Report { stage: Stage::Running, ..Report::default() },
+            file: outlets.report,
+            text_changed: false,
+            lcd_file: outlets.lcd,
+        })
+    }
+
+    /// Who the robot is.
+    pub fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    /// The program's time in seconds since the start.
+    pub fn now(&mut self) -> f64 {
+        self.link.now() + self.debt as f64 / NANOSECONDS
+    }
+
+    /// Asks the world.
+    fn ask(&mut self, request: &Request) -> Result<Reply> {
+        let debt = std::mem::take(&mut self.debt) as f64 / NANOSECONDS;
+        self.link.ask(debt, request)
+    }
+
+    /// Asks the world to do something.
+    fn order(&mut self, request: &Request) -> Result<()> {
+        match self.ask(request)? {
+            Reply::Done => Ok(()),
+            _ => Err(foreign()),
+        }
+    }
+
+    fn number(&mut self, request: &Request) -> Result<f64> {
+        match self.ask(request)? {
+            Reply::Number(number) => Ok(number),
+            _ => Err(foreign()),
+        }
+    }
+
+    fn flag(&mut self, request: &Request) -> Result<bool> {
+        match self.ask(request)? {
+            Reply::Flag(flag) => Ok(flag),
+            _ => Err(foreign()),
+        }
+    }
+
+    fn pose_of(&mut self, request: &Request) -> Result<(Pose, f64)> {
+        match self.ask(request)? {
+            Reply::Pose(pose, elevation) => Ok((pose, elevation)),
+            _ => Err(foreign()),
+        }
+    }
+
+    fn image(&mut self) -> Result<RgbImage> {
+        match self.ask(&Request::Image)? {
+            Reply::Image(image) => Ok(image),
+            _ => Err(foreign()),
+        }
+    }
+
+    /// Counts a call that the world has no part in.
+    pub fn charge(&mut self) -> Result<()> {
+        let call = self.identity.call_duration;
+        self.debt += (call * NANOSECONDS).round() as u64;
+        let debt = self.debt as f64 / NANOSECONDS;
+        if debt < TICK && self.now() < self.identity.time_limit {
+            return Ok(());
+        }
+        self.debt = 0;
+        // The request is a call itself.
+        self.link.ask(0.0, &Request::Pass((debt - call).max(0.0))).map(|_| ())
+    }
+
+    /// Lets seconds pass, and the time that the call takes.
+    pub fn pass(&mut self, seconds: f64) -> Result<()> {
+        self.order(&Request::Pass(seconds.max(0.0)))
+    }
+
+    /// Writes the report, if there is a file for it.
+    pub(crate) fn publish(&mut self) {
+        let Some(file) = &mut self.file else { return };
+        self.report.time = self.link.now() + self.debt as f64 / NANOSECONDS;
+        self.report.sounds = self.sounds;
+        if let Some(truth) = self.link.truth() {
+            self.report.known = true;
+            self.report.world_time = truth.time;
+            self.report.pose = truth.pose;
+            self.report.odometry = truth.odometry;
+            self.report.path_length = truth.path_length;
+            self.report.contacts = u64::from(truth.contacts);
+        }
+        // A report that cannot be written is missed by whoever reads it; the program goes on.
+        let _ = file.write(&self.report);
+        if std::mem::take(&mut self.text_changed) {
+            let _ = file.write_text(self.screen.history(), &self.screen.standing());
+        }
+    }
+
+    /// Ends the run: the robot drives on until it stands, is held or the time is over, as it would without a program;
+    /// then everything is written down.
+    pub fn finish(&mut self, stage: Stage) {
+        self.report.stage = stage;
+        // What is known now counts, whatever becomes of the rest.
+        self.publish();
+        let ended = self.report.time;
+        if stage == Stage::Ended && self.link.truth().is_some() {
+            while self.goes_on() && self.pass(TICK).is_ok() {}
+        }
+        self.publish();
+        if let Some(file) = &mut self.file {
+            self.report.time = ended;
+            let _ = file.write(&self.report);
+        }
+        if let Some(path) = &self.lcd_file {
+            let _ = self.screen.lcd.frame().save(path);
+        }
+    }
+
+    fn goes_on(&mut self) -> bool {
+        let held = self.flag(&Request::IsStalled).unwrap_or(true);
+        !held
+            && match self.moving {
+                Moving::No => false,
+                Moving::Manoeuvre => !self.flag(&Request::IsDone).unwrap_or(true),
+                Moving::Speeds => true,
+            }
+    }
+}
+
+fn foreign() -> Error {
+    Error::new(ErrorKind::Other, "the world has answered something else than what it was asked")
+}
+
+fn invalid(name: &str, found: impl std::fmt::Display, expected: &str) -> Error {
+    Error::invalid_input(name, found, expected)
+}
+
+/// Metres in whole millimetres.
+pub(crate) fn millimetres(metres: f64) -> i32 {
+    units::to_mm(metres).round() as i32
+}
+
+/// Radians in whole degrees, in `-179..=180`.
+pub(crate) fn degrees(radians: f64) -> i32 {
+    let whole = units::to_deg(normalize_angle(radians)).round() as i32;
+    if whole == -180 { 180 } else { whole }
+}
+
+/// A pose in whole millimetres and degrees.
+pub(crate) fn in_whole(pose: Pose) -> [i32; 3] {
+    [millimetres(pose.x), millimetres(pose.y), degrees(pose.heading)]
+}
+
+/// A pose from millimetres and degrees.
+pub(crate) fn pose_from([x, y, phi]: [i32; 3]) -> Pose {
+    Pose::from_mm_deg(f64::from(x), f64::from(y), f64::from(phi))
+}

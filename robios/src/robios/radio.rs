@@ -1,0 +1,52 @@
+use std::collections::VecDeque;
+
+use roverlab::io::{RadioMessage, Result};
+
+use super::{Robios, invalid};
+use crate::ask::{Reply, Request};
+
+/// Bytes of the longest message. EyeSim's own limit was 100 bytes.
+const LONGEST: usize = 1024;
+
+/// The messages that were looked at but not received.
+pub(crate) type Inbox = VecDeque<RadioMessage>;
+
+impl Robios {
+    /// `RADIOSend`: to a robot by its number from 1, or to all others with 0.
+    pub fn radio_send(&mut self, to: i32, data: &[u8]) -> Result<()> {
+        if data.is_empty() || data.len() > LONGEST {
+            return Err(invalid("radio message", format!("{} bytes long", data.len()), "1 to 1024 bytes"));
+        }
+        let to = u32::try_from(to).map_err(|_| invalid("radio receiver", to, "0 or more"))?;
+        if to > 0 {
+            return self.order(&Request::Send(to, data.to_vec()));
+        }
+        let others = (1..=self.identity.robots).filter(|&id| id != self.identity.id);
+        for id in others.collect::<Vec<_>>() {
+            self.order(&Request::Send(id, data.to_vec()))?;
+        }
+        Ok(())
+    }
+
+    /// The oldest message that has not been received; waits for so many seconds at most.
+    pub fn radio_receive(&mut self, seconds: f64) -> Result<Option<RadioMessage>> {
+        if let Some(message) = self.inbox.pop_front() {
+            self.charge()?;
+            return Ok(Some(message));
+        }
+        match self.ask(&Request::Receive(seconds))? {
+            Reply::Message(message) => Ok(message),
+            _ => Err(super::foreign()),
+        }
+    }
+
+    /// `RADIOCheck`: whom the oldest message is from, if there is one.
+    pub fn radio_check(&mut self) -> Result<Option<u32>> {
+        if self.inbox.is_empty()
+            && let Some(message) = self.radio_receive(0.0)?
+        {
+            self.inbox.push_back(message);
+        }
+        Ok(self.inbox.front().map(|message| message.from))
+    }
+}

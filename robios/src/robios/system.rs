@@ -1,0 +1,102 @@
+use roverlab::io::Result;
+
+use super::{EPOCH, Robios, invalid};
+
+/// A function that a program has attached to a timer.
+pub(crate) type Callback = extern "C" fn();
+
+/// The functions that are called again and again.
+#[derive(Debug, Default)]
+pub struct Timers {
+    all: Vec<Timer>,
+    last: i32,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Timer {
+    id: i32,
+    period: f64,
+    due: f64,
+    function: Callback,
+}
+
+/// RoBIOS has so many timers.
+const MOST: usize = 17;
+
+impl Timers {
+    /// Whether there is none.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// When the next one is due.
+    pub(crate) fn next(&self) -> Option<f64> {
+        self.all.iter().map(|timer| timer.due).min_by(f64::total_cmp)
+    }
+
+    /// The functions that are due. One that is late is called once, and goes on from there.
+    pub(crate) fn due(&mut self, now: f64) -> Vec<Callback> {
+        let mut due = Vec::new();
+        for timer in &mut self.all {
+            if timer.due <= now {
+                due.push(timer.function);
+                timer.due = (timer.due + timer.period).max(now);
+            }
+        }
+        due
+    }
+}
+
+impl Robios {
+    /// `OSAttachTimer`: a function that is called every `scale` milliseconds. Returns its handle.
+    pub(crate) fn os_attach_timer(&mut self, scale: i32, function: Callback) -> Result<i32> {
+        if scale < 1 || self.timers.all.len() >= MOST {
+            return Err(invalid("timer", format!("one of {scale} ms"), "17 of at least 1 ms"));
+        }
+        self.charge()?;
+        let period = f64::from(scale) / 1000.0;
+        let due = self.now() + period;
+        self.timers.last += 1;
+        self.timers.all.push(Timer { id: self.timers.last, period, due, function });
+        Ok(self.timers.last)
+    }
+
+    /// `OSDetachTimer`.
+    pub fn os_detach_timer(&mut self, id: i32) -> Result<()> {
+        let before = self.timers.all.len();
+        self.timers.all.retain(|timer| timer.id != id);
+        if self.timers.all.len() == before {
+            return Err(invalid("timer", id, "one that is attached"));
+        }
+        self.charge()
+    }
+
+    /// `OSSetTime`.
+    pub fn os_set_time(&mut self, hours: i32, minutes: i32, seconds: i32) -> Result<()> {
+        let fits = (0..24).contains(&hours) && (0..60).contains(&minutes) && (0..60).contains(&seconds);
+        if !fits {
+            return Err(invalid("time", format!("{hours}:{minutes}:{seconds}"), "0:0:0 to 23:59:59"));
+        }
+        self.charge()?;
+        let wanted = f64::from(hours * 3600 + minutes * 60 + seconds);
+        self.clock_offset = wanted - (EPOCH + self.now()).rem_euclid(86_400.0);
+        Ok(())
+    }
+
+    /// `OSGetTime`: hours, minutes, seconds and milliseconds.
+    pub fn os_get_time(&mut self) -> Result<[i32; 4]> {
+        self.charge()?;
+        let day = (EPOCH + self.now() + self.clock_offset).rem_euclid(86_400.0);
+        let milliseconds = (1000.0 * day) as i32;
+        let seconds = milliseconds / 1000;
+        Ok([seconds / 3600, seconds / 60 % 60, seconds % 60, milliseconds % 1000])
+    }
+
+    /// `OSGetCount`: milliseconds since the start.
+    pub fn os_get_count(&mut self) -> Result<i32> {
+        let now = self.now();
+        self.charge()?;
+        // The nearest number to a time may lie below it.
+        Ok((1000.0 * now + 1e-6) as i32)
+    }
+}

@@ -1,0 +1,185 @@
+use std::collections::BTreeMap;
+use std::env;
+use std::ffi::OsString;
+use std::io::{Read, Write};
+use std::os::unix::net::UnixStream;
+use std::os::unix::process::ExitStatusExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use eyesim::plan::{Plan, names};
+use eyesim::process;
+use eyesim::report::{Report, Stage};
+use roverlab::world::Scene;
+
+use super::options::{Options, ends_in, whole};
+use super::programs::{Program, home, library};
+use super::verdict::{Ending, Stopwatch, Truth, Verdict};
+use super::work_folder::WorkFolder;
+
+/// A program that runs.
+#[derive(Debug)]
+pub(crate) struct Running {
+    child: Child,
+    report: PathBuf,
+    relays: Vec<JoinHandle<()>>,
+    stopwatch: Stopwatch,
+}
+
+/// Bytes that a program may print on each of its outputs; the rest is dropped.
+const MOST_OUTPUT: usize = 1 << 16;
+/// How often the runner looks whether a program has ended.
+const LOOK: Duration = Duration::from_millis(1);
+
+/// Runs a program in a world of its own, which lives in the program's process.
+pub(crate) fn run_alone(
+    program: &Program,
+    plan: &Plan,
+    scene: &Scene,
+    options: &Options,
+    folder: &WorkFolder,
+) -> Result<Vec<Verdict>, String> {
+    let mut plan = plan.clone();
+    plan.index = program.robot;
+    if program.robot != 0 {
+        // Robot and start are said of the first robot.
+        (plan.robot, plan.start) = (None, None);
+    }
+    let variables = plan.variables().into_iter().map(|(name, value)| (name, OsString::from(value))).collect();
+    let ending = match start(program, variables, None, options, folder)? {
+        Ok(running) => running.wait(options.real_limit),
+        Err(message) => (Ending::NotStarted(message), Report::default()),
+    };
+    let (ending, report) = ending;
+    let placed = &scene.robots[program.robot];
+    let mut truth = Truth { pose: placed.pose, ..Truth::default() };
+    if report.known {
+        truth = Truth {
+            time: report.time,
+            pose: report.pose,
+            odometry: report.odometry,
+            path_length: report.path_length,
+            contacts: report.contacts,
+        };
+    }
+    Ok(vec![Verdict::new(program, ending, &report, truth)])
+}
+
+/// Starts a program. The inner error says why it cannot run, which is the program's own affair.
+pub(crate) fn start(
+    program: &Program,
+    variables: BTreeMap<&'static str, OsString>,
+    socket: Option<&UnixStream>,
+    options: &Options,
+    folder: &WorkFolder,
+) -> Result<Result<Running, String>, String> {
+    let file = match &program.file {
+        Ok(file) => file,
+        Err(message) => return Ok(Err(message.clone())),
+    };
+    let report = folder.empty(&format!("report{}", program.robot))?;
+    let (library, home) = (library()?, home()?);
+    let mut command = if ends_in(file, "py") { python(file) } else { Command::new(file) };
+    command.args(&program.arguments).current_dir(&program.folder).stdin(Stdio::null());
+    for name in [names::SOCKET, names::WORLD, names::ROBOT, names::START] {
+        command.env_remove(name);
+    }
+    command.envs(variables).env(names::REPORT, &report).env(names::KEYS, &options.keys);
+    command.env(names::LIBRARY, &library).env("PYTHONDONTWRITEBYTECODE", "1");
+    if let Some(lcd) = &options.lcd {
+        command.env(names::LCD, whole(lcd));
+    }
+    let path = search_path("LD_LIBRARY_PATH", &[folder.path(), library.parent().unwrap_or(Path::new("."))]);
+    command.env("LD_LIBRARY_PATH", path);
+    command.env("PYTHONPATH", search_path("PYTHONPATH", &[&home.join("python")]));
+    second_name(&library, folder);
+    if options.json {
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    }
+    match process::start(&mut command, socket) {
+        Err(error) => Ok(Err(format!("{}: cannot be started: {error}", file.display()))),
+        Ok(mut child) => {
+            let stdout = child.stdout.take().map(relay);
+            let stderr = child.stderr.take().map(relay);
+            let relays = stdout.into_iter().chain(stderr).collect();
+            Ok(Ok(Running { child, report, relays, stopwatch: Stopwatch::start() }))
+        }
+    }
+}
+
+fn python(file: &Path) -> Command {
+    let mut command = Command::new(env::var_os("PYTHON").unwrap_or_else(|| "python3".into()));
+    // What a program prints shall be there however it ends.
+    command.arg("-u").arg(file);
+    command
+}
+
+/// Folders before those that a variable of the environment lists.
+fn search_path(name: &str, first: &[&Path]) -> OsString {
+    let rest = env::var_os(name).unwrap_or_default();
+    let rest: Vec<PathBuf> = env::split_paths(&rest).filter(|path| !path.as_os_str().is_empty()).collect();
+    let all = first.iter().map(|path| path.to_path_buf()).chain(rest);
+    // A folder with a colon in its name cannot be listed; the dynamic loader then looks in its usual places.
+    env::join_paths(all).unwrap_or_default()
+}
+
+/// The library under its other name, for programs that were linked against the real robot's.
+fn second_name(library: &Path, folder: &WorkFolder) {
+    let name = library.file_name().map(|name| name.to_string_lossy().replace("eyesim", "eyebot"));
+    if let Some(name) = name {
+        // It may be there already, and programs that do not ask for it are none the worse without.
+        let _ = std::os::unix::fs::symlink(library, folder.file(&name));
+    }
+}
+
+/// Passes on what a program prints, to standard error, up to a limit; what comes after it is read and dropped.
+fn relay(mut output: impl Read + Send + 'static) -> JoinHandle<()> {
+    thread::spawn(move || {
+        let (mut passed, mut buffer) = (0, vec![0; 1 << 14]);
+        while let Ok(count @ 1..) = output.read(&mut buffer) {
+            let fitting = count.min(MOST_OUTPUT - passed);
+            passed += fitting;
+            let _ = std::io::stderr().write_all(&buffer[..fitting]);
+        }
+    })
+}
+
+impl Running {
+    /// The number of the process.
+    pub(crate) fn id(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// Waits until the program has ended, and ends it when its real time is over.
+    pub(crate) fn wait(mut self, real_limit: f64) -> (Ending, Report) {
+        let ending = loop {
+            match self.child.try_wait() {
+                Ok(Some(status)) => break of_status(status),
+                Ok(None) if self.stopwatch.seconds() < real_limit => thread::sleep(LOOK),
+                Ok(None) => break Ending::OutOfTime(format!("ended after {real_limit} real seconds")),
+                Err(error) => break Ending::NotStarted(error.to_string()),
+            }
+        };
+        // What it has started goes with it, and holds no pipe open.
+        process::kill_all(self.child.id());
+        let _ = self.child.wait();
+        for relay in self.relays {
+            let _ = relay.join();
+        }
+        let report = Report::read(&self.report).unwrap_or_default();
+        let ending = match report.stage {
+            Stage::TimedOut => Ending::OutOfTime("its simulated time was over".into()),
+            _ => ending,
+        };
+        (ending, report)
+    }
+}
+
+fn of_status(status: ExitStatus) -> Ending {
+    match (status.code(), status.signal()) {
+        (Some(code), _) => Ending::Exit(code),
+        (None, signal) => Ending::Signal(signal.unwrap_or_default()),
+    }
+}

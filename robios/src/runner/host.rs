@@ -1,0 +1,171 @@
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::io;
+use std::os::unix::net::UnixStream;
+use std::thread;
+use std::time::Duration;
+
+use eyesim::ask::Seat;
+use eyesim::plan::{Plan, names};
+use eyesim::process;
+use eyesim::wire::{Answer, LONGEST_REQUEST, Question, receive, send};
+use roverlab::geometry::Pose;
+use roverlab::io::sim::{SimOptions, Simulation, Truth as World};
+use roverlab::io::{Clock, ErrorKind};
+use roverlab::world::Scene;
+
+use super::children::{Running, start};
+use super::options::Options;
+use super::picture;
+use super::programs::Program;
+use super::verdict::{Ending, Truth, Verdict};
+use super::work_folder::WorkFolder;
+
+/// A program's end as its host saw it.
+#[derive(Debug)]
+struct Served {
+    /// The program's own time.
+    time: f64,
+    /// What the host has ended it for.
+    offence: Option<String>,
+}
+
+/// Seconds between two points of a path in a picture.
+const TRAIL: f64 = 0.1;
+
+/// Runs programs in one world, which lives here: each of them is answered by a thread of its own, and the world moves
+/// on when all that run have asked for it.
+pub(crate) fn run_together(
+    programs: &[Program],
+    plan: &Plan,
+    scene: &Scene,
+    options: &Options,
+    folder: &WorkFolder,
+) -> Result<Vec<Verdict>, String> {
+    let trail = options.picture.is_some().then_some(TRAIL);
+    let sim_options = SimOptions { trail_interval: trail, ..plan.options() };
+    let times = (sim_options.call_duration, sim_options.time_limit);
+    let simulation = Simulation::new(scene, sim_options).map_err(|error| error.to_string())?;
+    // All are seated before the first one drives, so that the world waits for all of them.
+    let seats = programs.iter().map(|program| Seat::take(&simulation, scene, program.robot, times));
+    let seats = seats.collect::<Result<Vec<_>, _>>().map_err(|error| error.to_string())?;
+
+    let mut tables = Vec::new();
+    for (program, seat) in programs.iter().zip(seats) {
+        let (ours, theirs) = UnixStream::pair().map_err(|error| format!("no socket: {error}"))?;
+        let number = OsString::from(process::socket_number(&theirs).to_string());
+        let variables = BTreeMap::from([(names::SOCKET, number)]);
+        let running = start(program, variables, Some(&theirs), options, folder)?;
+        drop(theirs);
+        tables.push((program, seat, ours, running));
+    }
+    let endings: Vec<_> = thread::scope(|scope| {
+        let threads: Vec<_> = tables
+            .into_iter()
+            .map(|(program, seat, stream, running)| {
+                scope.spawn(move || (program, attend(seat, stream, running, options)))
+            })
+            .collect();
+        threads.into_iter().filter_map(|thread| thread.join().ok()).collect()
+    });
+
+    drive_on(&simulation, scene);
+    let world = simulation.truth();
+    if let Some(file) = &options.picture {
+        picture::draw(scene, &world, file)?;
+    }
+    let verdicts = endings.into_iter().map(|(program, (served, (ending, report)))| {
+        let ending = match served.offence {
+            Some(offence) if !matches!(ending, Ending::Exit(_)) => Ending::Offence(offence),
+            _ => ending,
+        };
+        Verdict::new(program, ending, &report, truth(&world, program.robot, served.time))
+    });
+    Ok(verdicts.collect())
+}
+
+fn truth(world: &World, robot: usize, time: f64) -> Truth {
+    world.robot(robot).map_or_else(
+        |_| Truth::default(),
+        |robot| Truth {
+            time,
+            pose: robot.pose,
+            odometry: robot.odometry,
+            path_length: robot.path_length,
+            contacts: robot.contacts.into(),
+        },
+    )
+}
+
+/// Answers a program until it ends, and waits for its end.
+fn attend(
+    seat: Seat,
+    stream: UnixStream,
+    running: Result<Running, String>,
+    options: &Options,
+) -> (Served, (Ending, eyesim::report::Report)) {
+    match running {
+        Err(message) => {
+            let time = { seat }.now();
+            (Served { time, offence: None }, (Ending::NotStarted(message), Default::default()))
+        }
+        Ok(running) => {
+            let served = serve(seat, stream, running.id(), options.hang_limit);
+            (served, running.wait(options.real_limit))
+        }
+    }
+}
+
+/// Answers a program's questions. When it returns, the world goes on without the robot's program.
+fn serve(mut seat: Seat, mut stream: UnixStream, process: u32, hang_limit: f64) -> Served {
+    let mut frame = Vec::new();
+    let patience = Duration::try_from_secs_f64(hang_limit).ok();
+    // A program that neither asks nor takes its answers is ended: others wait for it.
+    let _ = stream.set_read_timeout(patience).and_then(|()| stream.set_write_timeout(patience));
+    let offence = loop {
+        match receive(&mut stream, LONGEST_REQUEST, &mut frame) {
+            Ok(true) => {}
+            Ok(false) => break None,
+            Err(error) if is_timeout(&error) => break Some(format!("no call for {hang_limit} real seconds")),
+            Err(error) if error.kind() == io::ErrorKind::InvalidData => break Some(error.to_string()),
+            // It has ended in the middle of a question.
+            Err(_) => break None,
+        }
+        let Some(Question { debt, request }) = Question::decode(&frame) else {
+            break Some(format!("a question of {} bytes that makes no sense", frame.len()));
+        };
+        let reply = seat.ask(debt, &request);
+        let over = reply.as_ref().is_err_and(|error| error.kind() == ErrorKind::TimedOut);
+        let answer = Answer { now: seat.now(), reply };
+        if send(&mut stream, answer.encode()).is_err() || over {
+            break None;
+        }
+    };
+    if offence.is_some() {
+        process::kill_all(process);
+    }
+    Served { time: seat.now(), offence }
+}
+
+fn is_timeout(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut)
+}
+
+/// Seconds between two looks at robots that drive on.
+const LOOK: f64 = 0.1;
+
+/// Lets robots whose programs have ended drive on until all stand, or the time is over.
+fn drive_on(simulation: &Simulation, scene: &Scene) {
+    let world = simulation.truth();
+    let poses =
+        || -> Vec<Pose> { (0..scene.robots.len()).filter_map(|robot| world.pose(robot).ok()).collect() };
+    let Ok(mut robot) = simulation.robot(0) else { return };
+    let mut before = poses();
+    while robot.wait(LOOK).is_ok() {
+        let now = poses();
+        if now == before {
+            return;
+        }
+        before = now;
+    }
+}

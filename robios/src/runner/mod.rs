@@ -1,0 +1,80 @@
+//! The runner: its command line, the programs, their processes, the world that they share, and the report.
+
+mod children;
+mod host;
+mod install;
+mod options;
+mod picture;
+mod programs;
+mod verdict;
+mod work_folder;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use options::{Command, Options};
+use verdict::Summary;
+
+/// The command line or an input file is wrong.
+const WRONG: u8 = 2;
+
+/// Reads the command line, runs the programs and prints the report. 0: every program has ended as it should; 1: one has
+/// not, or touched something; 2: the command line or a file is wrong.
+pub(crate) fn main() -> ExitCode {
+    let options = match Options::try_parse() {
+        Ok(options) => options,
+        Err(error) if !error.use_stderr() => {
+            let _ = write!(std::io::stdout(), "{}", error.render());
+            return ExitCode::SUCCESS;
+        }
+        Err(error) => return refuse(&in_one_line(&error)),
+    };
+    match options.command() {
+        Command::Install(folder) => match install::install(&folder) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(message) => refuse(&message),
+        },
+        Command::Run => match run(&options) {
+            Ok(summary) => {
+                let text = if options.json { summary.json() } else { summary.words() };
+                // A reader that had enough is no failure.
+                let _ = writeln!(std::io::stdout(), "{text}");
+                ExitCode::from(summary.status())
+            }
+            Err(message) => refuse(&message),
+        },
+    }
+}
+
+fn refuse(message: &str) -> ExitCode {
+    // Without standard error there is nobody left to tell; the status still does.
+    let _ = writeln!(std::io::stderr(), "{message}");
+    ExitCode::from(WRONG)
+}
+
+/// What is wrong with a command line, in one line.
+fn in_one_line(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let lines = text.lines().map(str::trim).take_while(|line| !line.is_empty());
+    lines.collect::<Vec<_>>().join(" ").trim_start_matches("error: ").to_owned()
+}
+
+fn run(options: &Options) -> Result<Summary, String> {
+    let stopwatch = verdict::Stopwatch::start();
+    let plan = options.plan()?;
+    let (scene, warnings) = plan.scene()?;
+    for warning in warnings {
+        let _ = writeln!(std::io::stderr(), "{warning}");
+    }
+    let folder = work_folder::WorkFolder::new()?;
+    let programs = programs::of(options, &scene, &folder)?;
+    let own_world = programs.len() == 1 && options.picture.is_none();
+    let verdicts = if own_world {
+        children::run_alone(&programs[0], &plan, &scene, options, &folder)
+    } else {
+        host::run_together(&programs, &plan, &scene, options, &folder)
+    }?;
+    Ok(Summary { verdicts, seed: plan.seed, noise: plan.noise, wall_time: stopwatch.seconds() })
+}

@@ -1,0 +1,153 @@
+use std::path::{Path, PathBuf};
+
+use eyesim::keys::KeyPlan;
+use eyesim::plan::{Plan, parse_pose};
+use roverlab::geometry::Pose;
+use roverlab::picture::FileType;
+
+/// Runs programs written for RoBIOS and EyeSim in simulated worlds, without a display and in virtual time.
+///
+/// A script starts the program that it names for each robot; all of them share one world. A program alone drives the
+/// first robot of the world, or an S4.
+#[derive(Debug, clap::Parser)]
+#[command(
+    name = "robios",
+    version,
+    after_help = "Per robot, `--json` prints: program, exit (null if a signal or a limit has ended it), outcome (finished, \
+                  collided, failed, crashed, timed_out), sim_time_s, pose, odometry, path_length_mm, collisions, \
+                  lcd_text, sounds, and error where there is one."
+)]
+pub(crate) struct Options {
+    /// World or scene: .sim, .wld, .maz, or a ROS map.yaml [default: the script, or a square of 4 m].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) world: Option<PathBuf>,
+
+    /// The robot: S4, LabBot, Omni, Car, or a description, .robi [default: the world's, or an S4].
+    #[arg(long, value_name = "ROBOT")]
+    pub(crate) robot: Option<String>,
+
+    /// Where the robot starts, in millimetres and degrees.
+    #[arg(long, value_name = "X,Y,DEG", value_parser = parse_pose, allow_hyphen_values = true)]
+    pub(crate) start: Option<Pose>,
+
+    /// Seed of every random stream.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+
+    /// Noise: 0 ideal, as in EyeSim at first; 1 as on the real robot; up to 5.
+    #[arg(long, value_name = "F", default_value = "0", value_parser = parse_noise)]
+    pub(crate) noise: f64,
+
+    /// Simulated seconds after which a program is ended.
+    #[arg(long, value_name = "S", default_value = "120", value_parser = parse_seconds)]
+    pub(crate) time_limit: f64,
+
+    /// Real seconds after which a program is ended.
+    #[arg(long, value_name = "S", default_value = "60", value_parser = parse_seconds)]
+    pub(crate) real_limit: f64,
+
+    /// Real seconds without a call after which a program that others wait for is ended.
+    #[arg(long, value_name = "S", default_value = "10", value_parser = parse_seconds)]
+    pub(crate) hang_limit: f64,
+
+    /// The keys: AUTO, NONE, or presses such as KEY1@2s,KEY4@60s,TOUCH:120:80@3s,IRTV_OK@4s.
+    #[arg(long, value_name = "PLAN", default_value = "AUTO", value_parser = parse_keys)]
+    pub(crate) keys: String,
+
+    /// Draw the robots' paths into a .svg or .png file.
+    #[arg(long, value_name = "FILE", value_parser = parse_picture)]
+    pub(crate) picture: Option<PathBuf>,
+
+    /// Save the display of the last robot that has one as a .png file.
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) lcd: Option<PathBuf>,
+
+    /// Print exactly one JSON object on standard output, and nothing else there.
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    /// A script (.sim); or a program: an executable, Python (.py), C (.c) or C++ (.cpp, .cc). Or: install FOLDER, to
+    /// copy library, headers and scripts there.
+    #[arg(value_name = "PROGRAM", required = true)]
+    pub(crate) program: PathBuf,
+
+    /// The program's arguments.
+    #[arg(value_name = "ARGUMENTS", trailing_var_arg = true, allow_hyphen_values = true)]
+    pub(crate) arguments: Vec<String>,
+}
+
+/// What the runner is to do.
+pub(crate) enum Command {
+    Run,
+    Install(PathBuf),
+}
+
+impl Options {
+    /// What is to be done.
+    pub(crate) fn command(&self) -> Command {
+        match self.arguments.as_slice() {
+            [folder] if self.program == Path::new("install") => Command::Install(folder.into()),
+            _ => Command::Run,
+        }
+    }
+
+    /// Whether the program is a script that names programs.
+    pub(crate) fn is_script(&self) -> bool {
+        ends_in(&self.program, "sim")
+    }
+
+    /// The world, with files by their whole names.
+    pub(crate) fn plan(&self) -> Result<Plan, String> {
+        if self.is_script() && self.world.is_some() {
+            return Err("--world and a script; expected one of them, a script names its world".into());
+        }
+        let world = if self.is_script() { Some(&self.program) } else { self.world.as_ref() };
+        let robot = self.robot.clone().map(|robot| {
+            // The name of a built-in robot is no file.
+            if ends_in(Path::new(&robot), "robi") {
+                whole(Path::new(&robot)).display().to_string()
+            } else {
+                robot
+            }
+        });
+        Ok(Plan {
+            world: world.map(|file| whole(file)),
+            folder: whole(&self.program).parent().map_or_else(|| PathBuf::from("."), Path::to_owned),
+            robot,
+            start: self.start,
+            index: 0,
+            seed: self.seed,
+            noise: self.noise,
+            time_limit: self.time_limit,
+        })
+    }
+}
+
+/// Whether a file's name has an ending, in any case.
+pub(crate) fn ends_in(file: &Path, ending: &str) -> bool {
+    file.extension().is_some_and(|found| found.to_string_lossy().eq_ignore_ascii_case(ending))
+}
+
+/// The name of a file from the root on; as it was if there is no such file.
+pub(crate) fn whole(file: &Path) -> PathBuf {
+    std::path::absolute(file).unwrap_or_else(|_| file.to_owned())
+}
+
+fn parse_noise(text: &str) -> Result<f64, String> {
+    let level = text.parse().ok().filter(|level| (0.0..=5.0).contains(level));
+    level.ok_or_else(|| "expected a number from 0 to 5".into())
+}
+
+fn parse_seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|&seconds: &f64| seconds > 0.0 && seconds <= 1e6);
+    seconds.ok_or_else(|| "expected a number of seconds above 0, at most a million".into())
+}
+
+/// Checks the plan here; the library reads it again.
+fn parse_keys(text: &str) -> Result<String, String> {
+    text.parse::<KeyPlan>().map(|_| text.to_owned())
+}
+
+fn parse_picture(text: &str) -> Result<PathBuf, String> {
+    FileType::of(text).map(|_| PathBuf::from(text)).map_err(|error| error.to_string())
+}

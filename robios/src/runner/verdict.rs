@@ -1,0 +1,180 @@
+use std::time::Instant;
+
+use eyesim::report::Report;
+use roverlab::geometry::{Pose, normalize_angle, units};
+use serde_json::{Value, json};
+
+use super::programs::Program;
+
+/// Measures time on the wall clock.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stopwatch(Instant);
+
+impl Stopwatch {
+    #[allow(
+        clippy::disallowed_methods,
+        reason = "for limits in real time and for the report; no result depends on it"
+    )]
+    pub(crate) fn start() -> Self {
+        Self(Instant::now())
+    }
+
+    pub(crate) fn seconds(&self) -> f64 {
+        self.0.elapsed().as_secs_f64()
+    }
+}
+
+/// How a program's process ended.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Ending {
+    Exit(i32),
+    Signal(i32),
+    OutOfTime(String),
+    Offence(String),
+    NotStarted(String),
+}
+
+/// What is true about a robot at the end.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Truth {
+    /// Seconds that its program took.
+    pub(crate) time: f64,
+    pub(crate) pose: Pose,
+    pub(crate) odometry: Pose,
+    pub(crate) path_length: f64,
+    pub(crate) contacts: u64,
+}
+
+/// What became of a program and its robot.
+#[derive(Debug)]
+pub(crate) struct Verdict {
+    program: String,
+    robot: usize,
+    ending: Ending,
+    truth: Truth,
+    lcd_text: String,
+    sounds: u64,
+}
+
+impl Verdict {
+    pub(crate) fn new(program: &Program, ending: Ending, report: &Report, truth: Truth) -> Self {
+        Self {
+            program: program.name.clone(),
+            robot: program.robot,
+            ending,
+            truth,
+            lcd_text: report.text.clone(),
+            sounds: report.sounds,
+        }
+    }
+
+    /// How it went, in a word.
+    fn outcome(&self) -> &'static str {
+        match self.ending {
+            Ending::Signal(_) => "crashed",
+            Ending::OutOfTime(_) => "timed_out",
+            Ending::Exit(0) if self.truth.contacts > 0 => "collided",
+            Ending::Exit(0) => "finished",
+            Ending::Exit(_) | Ending::Offence(_) | Ending::NotStarted(_) => "failed",
+        }
+    }
+
+    fn error(&self) -> Option<String> {
+        match &self.ending {
+            Ending::Exit(_) => None,
+            Ending::Signal(signal) => Some(format!("ended by signal {signal}")),
+            Ending::OutOfTime(message) | Ending::Offence(message) | Ending::NotStarted(message) => {
+                Some(message.clone())
+            }
+        }
+    }
+
+    fn value(&self) -> Value {
+        let exit = match self.ending {
+            Ending::Exit(code) => Some(code),
+            _ => None,
+        };
+        let mut value = json!({
+            "program": self.program,
+            "robot": self.robot + 1,
+            "exit": exit,
+            "outcome": self.outcome(),
+            "sim_time_s": rounded(self.truth.time),
+            "pose": pose(self.truth.pose),
+            "odometry": pose(self.truth.odometry),
+            "path_length_mm": rounded(units::to_mm(self.truth.path_length)),
+            "collisions": self.truth.contacts,
+            "lcd_text": self.lcd_text,
+            "sounds": self.sounds,
+        });
+        if let Some(error) = self.error() {
+            value["error"] = error.into();
+        }
+        value
+    }
+}
+
+/// What became of all programs of a run.
+#[derive(Debug)]
+pub(crate) struct Summary {
+    pub(crate) verdicts: Vec<Verdict>,
+    pub(crate) seed: u64,
+    pub(crate) noise: f64,
+    pub(crate) wall_time: f64,
+}
+
+impl Summary {
+    /// 0 if every program has ended as it should, without a contact.
+    pub(crate) fn status(&self) -> u8 {
+        u8::from(self.verdicts.iter().any(|verdict| verdict.outcome() != "finished"))
+    }
+
+    /// One JSON object in one line: the first robot's fields, and all robots in a list.
+    pub(crate) fn json(&self) -> String {
+        let robots: Vec<Value> = self.verdicts.iter().map(Verdict::value).collect();
+        let worst = ["crashed", "failed", "timed_out", "collided"];
+        let worst = worst.into_iter().find(|word| self.verdicts.iter().any(|v| v.outcome() == *word));
+        let mut value = robots.first().cloned().unwrap_or_else(|| json!({}));
+        value["example"] = "robios".into();
+        value["outcome"] = worst.unwrap_or("finished").into();
+        value["seed"] = self.seed.into();
+        value["noise"] = self.noise.into();
+        value["wall_time_s"] = rounded(self.wall_time).into();
+        value["robots"] = robots.into();
+        value.to_string()
+    }
+
+    /// The same for people.
+    pub(crate) fn words(&self) -> String {
+        let mut lines = Vec::new();
+        for verdict in &self.verdicts {
+            let truth = &verdict.truth;
+            lines.push(format!("robot {}, {}: {}", verdict.robot + 1, verdict.program, verdict.outcome()));
+            let (x, y) = (units::to_mm(truth.pose.x).round(), units::to_mm(truth.pose.y).round());
+            let heading = units::to_deg(normalize_angle(truth.pose.heading));
+            lines.push(format!("  pose               {x}, {y} mm, {heading:.1} deg"));
+            lines.push(format!("  path length        {:.0} mm", units::to_mm(truth.path_length)));
+            lines.push(format!("  collisions         {}", truth.contacts));
+            lines.push(format!("  simulated time     {:.2} s", truth.time));
+            if let Some(error) = verdict.error() {
+                lines.push(format!("  error              {error}"));
+            }
+            lines.extend(verdict.lcd_text.lines().map(|line| format!("  | {line}")));
+        }
+        lines.push(format!("{:.2} s on the wall clock", self.wall_time));
+        lines.join("\n")
+    }
+}
+
+fn pose(pose: Pose) -> Value {
+    json!({
+        "x_mm": rounded(units::to_mm(pose.x)),
+        "y_mm": rounded(units::to_mm(pose.y)),
+        "heading_deg": rounded(units::to_deg(normalize_angle(pose.heading))),
+    })
+}
+
+/// Without the tail of digits that a change of unit leaves, and without the sign of zero.
+fn rounded(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6 + 0.0
+}

@@ -1,0 +1,47 @@
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A folder of this run's own, which goes with it.
+#[derive(Debug)]
+pub(crate) struct WorkFolder(PathBuf);
+
+impl WorkFolder {
+    pub(crate) fn new() -> Result<Self, String> {
+        let base = std::env::temp_dir();
+        for attempt in 0..100 {
+            let path = base.join(format!("robios-{}-{attempt}", std::process::id()));
+            match fs::create_dir(&path) {
+                Ok(()) => return Ok(Self(path)),
+                Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
+                Err(error) => {
+                    return Err(format!("{}: {error}; expected a folder to write to", path.display()));
+                }
+            }
+        }
+        Err(format!("{}: no name is free for a folder", base.display()))
+    }
+
+    /// The name of a file in it.
+    pub(crate) fn file(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    /// An empty file in it.
+    pub(crate) fn empty(&self, name: &str) -> Result<PathBuf, String> {
+        let path = self.file(name);
+        fs::File::create(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+        Ok(path)
+    }
+
+    /// Where it is.
+    pub(crate) fn path(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for WorkFolder {
+    fn drop(&mut self) {
+        // What cannot be removed stays for the system to clean up.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}

@@ -1,0 +1,361 @@
+//! Requests and replies as bytes, for programs that share a world with others and live in processes of their own.
+//!
+//! A frame is its length in four bytes and that many bytes: for a request the seconds that the program has spent, a
+//! number for what is asked, and its arguments; for a reply the robot's time, a number, and the answer or the error.
+//! Numbers are little-endian. Whatever comes in is checked: nonsense is an error, and no length is believed beyond
+//! [`LONGEST`].
+
+use std::io::{self, Read, Write};
+
+use image::RgbImage;
+use roverlab::geometry::{Pose, Twist};
+use roverlab::io::{Error, ErrorKind, LidarSettings, RadioMessage, Result};
+
+use crate::ask::{Identity, Reply, Request};
+
+/// The longest frame in bytes: an image of five million pixels and its header.
+pub const LONGEST: usize = 16 << 20;
+/// The longest request in bytes: a radio message and its header.
+pub const LONGEST_REQUEST: usize = 70_000;
+
+/// A request with the seconds that the program has spent without the world.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Question {
+    /// Seconds.
+    pub debt: f64,
+    /// What is asked.
+    pub request: Request,
+}
+
+/// A reply with the robot's own time after it.
+#[derive(Debug)]
+pub struct Answer {
+    /// Seconds.
+    pub now: f64,
+    /// What is answered.
+    pub reply: Result<Reply>,
+}
+
+/// Writes a frame. The buffer's first four bytes are for the length.
+pub fn send(stream: &mut impl Write, mut frame: Vec<u8>) -> io::Result<()> {
+    let length = (frame.len() - 4) as u32;
+    frame[..4].copy_from_slice(&length.to_le_bytes());
+    stream.write_all(&frame)
+}
+
+/// Reads a frame into a buffer; `false` if the stream has ended between two frames.
+pub fn receive(stream: &mut impl Read, longest: usize, frame: &mut Vec<u8>) -> io::Result<bool> {
+    let mut length = [0; 4];
+    match stream.read_exact(&mut length) {
+        Ok(()) => {}
+        Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(false),
+        Err(error) => return Err(error),
+    }
+    let length = u32::from_le_bytes(length) as usize;
+    if length > longest {
+        let message = format!("a frame of {length} bytes; expected at most {longest}");
+        return Err(io::Error::new(io::ErrorKind::InvalidData, message));
+    }
+    frame.resize(length, 0);
+    stream.read_exact(frame)?;
+    Ok(true)
+}
+
+struct Writer(Vec<u8>);
+
+impl Writer {
+    fn new() -> Self {
+        Self(vec![0; 4])
+    }
+
+    fn byte(mut self, value: u8) -> Self {
+        self.0.push(value);
+        self
+    }
+
+    fn word(mut self, value: u32) -> Self {
+        self.0.extend(value.to_le_bytes());
+        self
+    }
+
+    fn number(mut self, value: f64) -> Self {
+        self.0.extend(value.to_le_bytes());
+        self
+    }
+
+    fn bytes(mut self, value: &[u8]) -> Self {
+        self.0.extend(value);
+        self
+    }
+
+    fn pose(self, pose: Pose) -> Self {
+        self.number(pose.x).number(pose.y).number(pose.heading)
+    }
+}
+
+struct Reader<'a>(&'a [u8]);
+
+impl<'a> Reader<'a> {
+    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (head, rest) = self.0.split_first_chunk::<N>()?;
+        self.0 = rest;
+        Some(*head)
+    }
+
+    fn byte(&mut self) -> Option<u8> {
+        self.take::<1>().map(|[byte]| byte)
+    }
+
+    fn word(&mut self) -> Option<u32> {
+        self.take().map(u32::from_le_bytes)
+    }
+
+    fn number(&mut self) -> Option<f64> {
+        self.take().map(f64::from_le_bytes)
+    }
+
+    fn pose(&mut self) -> Option<Pose> {
+        Some(Pose::new(self.number()?, self.number()?, self.number()?))
+    }
+
+    fn rest(&mut self) -> &'a [u8] {
+        std::mem::take(&mut self.0)
+    }
+
+    fn finish<T>(self, value: T) -> Option<T> {
+        self.0.is_empty().then_some(value)
+    }
+}
+
+impl Question {
+    /// The question as a frame.
+    pub fn encode(&self) -> Vec<u8> {
+        let w = Writer::new().number(self.debt);
+        match self.request {
+            Request::Identity => w.byte(0),
+            Request::Pass(seconds) => w.byte(1).number(seconds),
+            Request::SetSpeed(twist) => w.byte(2).number(twist.linear).number(twist.angular),
+            Request::Speed => w.byte(3),
+            Request::Pose => w.byte(4),
+            Request::SetPose(pose) => w.byte(5).pose(pose),
+            Request::Curve(length, angle, speed) => w.byte(6).number(length).number(angle).number(speed),
+            Request::Remaining => w.byte(7),
+            Request::IsDone => w.byte(8),
+            Request::WaitDone => w.byte(9),
+            Request::IsStalled => w.byte(10),
+            Request::Distance(sensor) => w.byte(11).byte(sensor),
+            Request::Scan => w.byte(12),
+            Request::ConfigureLidar(settings) => {
+                w.byte(13).number(settings.field_of_view).number(settings.tilt).word(settings.points as u32)
+            }
+            Request::SetResolution(number) => w.byte(14).byte(number),
+            Request::Image => w.byte(15),
+            Request::Send(to, ref data) => w.byte(16).word(to).bytes(data),
+            Request::Receive(seconds) => w.byte(17).number(seconds),
+            Request::Motor(motor, fraction) => w.byte(18).byte(motor).number(fraction),
+            Request::Servo(servo, position) => w.byte(19).byte(servo).number(position),
+            Request::Encoder(motor) => w.byte(20).byte(motor),
+            Request::ResetEncoder(motor) => w.byte(21).byte(motor),
+            Request::RobotAt(id) => w.byte(22).word(id),
+            Request::PlaceRobot(id, pose) => w.byte(23).word(id).pose(pose),
+            Request::ObjectAt(id) => w.byte(24).word(id),
+            Request::PlaceObject(id, pose) => w.byte(25).word(id).pose(pose),
+        }
+        .0
+    }
+
+    /// A question from the bytes of a frame; `None` if they are none.
+    pub fn decode(frame: &[u8]) -> Option<Self> {
+        let mut r = Reader(frame);
+        let debt = r.number()?;
+        let request = match r.byte()? {
+            0 => Request::Identity,
+            1 => Request::Pass(r.number()?),
+            2 => Request::SetSpeed(Twist::new(r.number()?, r.number()?)),
+            3 => Request::Speed,
+            4 => Request::Pose,
+            5 => Request::SetPose(r.pose()?),
+            6 => Request::Curve(r.number()?, r.number()?, r.number()?),
+            7 => Request::Remaining,
+            8 => Request::IsDone,
+            9 => Request::WaitDone,
+            10 => Request::IsStalled,
+            11 => Request::Distance(r.byte()?),
+            12 => Request::Scan,
+            13 => {
+                let (field_of_view, tilt) = (r.number()?, r.number()?);
+                Request::ConfigureLidar(LidarSettings { field_of_view, tilt, points: r.word()? as usize })
+            }
+            14 => Request::SetResolution(r.byte()?),
+            15 => Request::Image,
+            16 => Request::Send(r.word()?, r.rest().to_vec()),
+            17 => Request::Receive(r.number()?),
+            18 => Request::Motor(r.byte()?, r.number()?),
+            19 => Request::Servo(r.byte()?, r.number()?),
+            20 => Request::Encoder(r.byte()?),
+            21 => Request::ResetEncoder(r.byte()?),
+            22 => Request::RobotAt(r.word()?),
+            23 => Request::PlaceRobot(r.word()?, r.pose()?),
+            24 => Request::ObjectAt(r.word()?),
+            25 => Request::PlaceObject(r.word()?, r.pose()?),
+            _ => return None,
+        };
+        let debt_is_sound = debt.is_finite() && debt >= 0.0;
+        r.finish(Self { debt, request }).filter(|_| debt_is_sound)
+    }
+}
+
+const KINDS: [ErrorKind; 7] = [
+    ErrorKind::Unsupported,
+    ErrorKind::Disconnected,
+    ErrorKind::TimedOut,
+    ErrorKind::InvalidInput,
+    ErrorKind::EndOfLog,
+    ErrorKind::Diverged,
+    ErrorKind::Other,
+];
+
+impl Answer {
+    /// The answer as a frame.
+    pub fn encode(&self) -> Vec<u8> {
+        let w = Writer::new().number(self.now);
+        match &self.reply {
+            Err(error) => {
+                let kind = KINDS.iter().position(|&kind| kind == error.kind()).unwrap_or(KINDS.len() - 1);
+                w.byte(255).byte(kind as u8).bytes(error.to_string().as_bytes())
+            }
+            Ok(Reply::Done) => w.byte(0),
+            Ok(Reply::Flag(flag)) => w.byte(1).byte(u8::from(*flag)),
+            Ok(Reply::Number(number)) => w.byte(2).number(*number),
+            Ok(Reply::Count(count)) => w.byte(3).bytes(&count.to_le_bytes()),
+            Ok(Reply::Twist(twist)) => w.byte(4).number(twist.linear).number(twist.angular),
+            Ok(Reply::Pose(pose, elevation)) => w.byte(5).pose(*pose).number(*elevation),
+            Ok(Reply::Ranges(ranges)) => ranges.iter().fold(w.byte(6), |w, &range| w.number(range)),
+            Ok(Reply::Image(image)) => w.byte(7).word(image.width()).word(image.height()).bytes(image),
+            Ok(Reply::Message(None)) => w.byte(8),
+            Ok(Reply::Message(Some(message))) => w.byte(9).word(message.from).bytes(&message.data),
+            Ok(Reply::Identity(identity)) => w
+                .byte(10)
+                .word(identity.id)
+                .word(identity.robots)
+                .word(identity.objects)
+                .word(identity.lidar_points)
+                .number(identity.top_speed)
+                .number(identity.full_speed)
+                .number(identity.tick_length)
+                .byte(u8::from(identity.full_turn))
+                .number(identity.call_duration)
+                .number(identity.time_limit),
+        }
+        .0
+    }
+
+    /// An answer from the bytes of a frame; `None` if they are none.
+    pub fn decode(frame: &[u8]) -> Option<Self> {
+        let mut r = Reader(frame);
+        let now = r.number()?;
+        let reply = match r.byte()? {
+            0 => Ok(Reply::Done),
+            1 => Ok(Reply::Flag(r.byte()? != 0)),
+            2 => Ok(Reply::Number(r.number()?)),
+            3 => Ok(Reply::Count(i64::from_le_bytes(r.take()?))),
+            4 => Ok(Reply::Twist(Twist::new(r.number()?, r.number()?))),
+            5 => Ok(Reply::Pose(r.pose()?, r.number()?)),
+            6 => {
+                let (ranges, odd) = r.rest().as_chunks();
+                odd.is_empty().then_some(())?;
+                Ok(Reply::Ranges(ranges.iter().map(|&range| f64::from_le_bytes(range)).collect()))
+            }
+            7 => {
+                let (width, height) = (r.word()?, r.word()?);
+                Ok(Reply::Image(RgbImage::from_raw(width, height, r.rest().to_vec())?))
+            }
+            8 => Ok(Reply::Message(None)),
+            9 => Ok(Reply::Message(Some(RadioMessage { from: r.word()?, data: r.rest().to_vec() }))),
+            10 => {
+                let (id, robots, objects, lidar_points) = (r.word()?, r.word()?, r.word()?, r.word()?);
+                Ok(Reply::Identity(Identity {
+                    id,
+                    robots,
+                    objects,
+                    lidar_points,
+                    top_speed: r.number()?,
+                    full_speed: r.number()?,
+                    tick_length: r.number()?,
+                    full_turn: r.byte()? != 0,
+                    call_duration: r.number()?,
+                    time_limit: r.number()?,
+                }))
+            }
+            255 => {
+                let kind = *KINDS.get(usize::from(r.byte()?))?;
+                Err(Error::new(kind, String::from_utf8_lossy(r.rest())))
+            }
+            _ => return None,
+        };
+        r.finish(Self { now, reply })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use roverlab::random::Stream;
+
+    #[test]
+    fn questions_survive() {
+        let pose = Pose::new(1.0, -2.0, 0.5);
+        let settings = LidarSettings { field_of_view: 3.0, tilt: 0.1, points: 77 };
+        for request in [
+            Request::Identity,
+            Request::Curve(1.0, 2.0, 3.0),
+            Request::ConfigureLidar(settings),
+            Request::Send(3, vec![1, 2, 3]),
+            Request::Send(3, vec![]),
+            Request::Receive(0.5),
+            Request::PlaceObject(9, pose),
+            Request::Servo(2, -0.5),
+        ] {
+            let question = Question { debt: 0.25, request };
+            assert_eq!(Question::decode(&question.encode()[4..]), Some(question));
+        }
+    }
+
+    #[test]
+    fn answers_survive() {
+        for reply in [
+            Reply::Done,
+            Reply::Flag(true),
+            Reply::Count(-5),
+            Reply::Ranges(vec![1.0, f64::INFINITY]),
+            Reply::Image(RgbImage::from_pixel(2, 1, image::Rgb([1, 2, 3]))),
+            Reply::Message(Some(RadioMessage { from: 2, data: b"hello".to_vec() })),
+        ] {
+            let bytes = Answer { now: 1.5, reply: Ok(reply.clone()) }.encode();
+            let answer = Answer::decode(&bytes[4..]).unwrap();
+            assert_eq!((answer.now, answer.reply.unwrap()), (1.5, reply));
+        }
+        let error = Error::new(ErrorKind::TimedOut, "over");
+        let bytes = Answer { now: 0.0, reply: Err(error) }.encode();
+        let error = Answer::decode(&bytes[4..]).unwrap().reply.unwrap_err();
+        assert_eq!((error.kind(), error.to_string()), (ErrorKind::TimedOut, "over".to_owned()));
+    }
+
+    #[test]
+    fn nonsense_is_refused_and_no_length_is_believed() {
+        let mut stream = Stream::new(1);
+        for _ in 0..20_000 {
+            let bytes: Vec<u8> = (0..stream.below(60)).map(|_| stream.below(256) as u8).collect();
+            let _ = Question::decode(&bytes);
+            let _ = Answer::decode(&bytes);
+        }
+        let mut frame = Vec::new();
+        let huge = u32::MAX.to_le_bytes();
+        assert!(receive(&mut &huge[..], LONGEST, &mut frame).is_err());
+        assert!(frame.capacity() < LONGEST);
+        assert!(!receive(&mut &[][..], LONGEST, &mut frame).unwrap());
+        assert!(receive(&mut &[5, 0, 0, 0, 1][..], LONGEST, &mut frame).is_err());
+        let endless = Question { debt: f64::INFINITY, request: Request::Pose }.encode();
+        assert_eq!(Question::decode(&endless[4..]), None);
+    }
+}

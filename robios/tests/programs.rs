@@ -1,0 +1,322 @@
+//! Programs in C, C++ and Python against the library, through the runner.
+//!
+//! Without a C compiler, or without Python, the tests that need one say so and pass.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+use serde_json::Value;
+
+fn programs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs")
+}
+
+fn there_is(command: &str) -> bool {
+    Command::new(command).arg("--version").output().is_ok_and(|output| output.status.success())
+}
+
+/// Whether there is a C compiler.
+fn compiler() -> bool {
+    static FOUND: OnceLock<bool> = OnceLock::new();
+    *FOUND.get_or_init(|| {
+        let found = there_is("cc");
+        if !found {
+            eprintln!("skipped: no C compiler `cc` was found");
+        }
+        found
+    })
+}
+
+fn python() -> bool {
+    let found = there_is("python3");
+    if !found {
+        eprintln!("skipped: no `python3` was found");
+    }
+    found
+}
+
+/// A folder of a test's own.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        let _ = std::fs::remove_dir_all(&path);
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    /// Copies a program here, under a name.
+    fn copy(&self, program: &str, name: &str) -> PathBuf {
+        std::fs::copy(programs().join("check.h"), self.0.join("check.h")).unwrap();
+        std::fs::copy(programs().join(program), self.0.join(name)).unwrap();
+        self.0.join(name)
+    }
+
+    fn write(&self, name: &str, text: &str) -> PathBuf {
+        std::fs::write(self.0.join(name), text).unwrap();
+        self.0.join(name)
+    }
+}
+
+fn robios(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_robios")).args(arguments).output().unwrap()
+}
+
+/// Runs a program and returns the report.
+fn report(arguments: &[&str]) -> Value {
+    let output = robios(&[&["--json"], arguments].concat());
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let messages = String::from_utf8_lossy(&output.stderr).into_owned();
+    let value: Value =
+        serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}{messages}"));
+    if value["outcome"] == "failed" {
+        eprintln!("{messages}");
+    }
+    value
+}
+
+/// Runs one of the programs here and expects that it finds nothing wrong.
+fn check(program: &str, options: &[&str]) -> Value {
+    let folder = Folder::new(&format!("check-{program}"));
+    let file = folder.copy(program, program);
+    let report = report(&[options, &[file.to_str().unwrap()]].concat());
+    assert!(report["outcome"] == "finished" || report["outcome"] == "collided", "{program}: {report}");
+    assert_eq!(report["exit"], 0, "{program}");
+    report
+}
+
+#[test]
+fn every_group_of_functions_does_what_it_should() {
+    if !compiler() {
+        return;
+    }
+    check("display.c", &[]);
+    check("camera.c", &[]);
+    check("images.c", &[]);
+    check("system.c", &[]);
+    check("clocks.c", &[]);
+    check("lines.c", &[]);
+    check("motors.c", &[]);
+    check("driving.c", &[]);
+    check("threads.c", &[]);
+    check("keys.c", &["--keys", "KEY2@1s,KEY1@2s,KEY4@4s,TOUCH:12:34@5s,IRTV_OK@6s"]);
+    check("sensors.c", &["--start", "1000,2000,0"]);
+}
+
+#[test]
+fn every_chapter_has_its_program() {
+    if !compiler() {
+        return;
+    }
+    check("chapter03.c", &["--start", "1000,1000,0"]);
+    check("chapter04.c", &["--start", "2000,2000,0"]);
+    check("chapter06.c", &["--start", "2000,2000,0", "--time-limit", "300"]);
+    check("chapter07.c", &["--robot", "Omni", "--start", "2000,2000,0"]);
+    check("chapter11.c", &["--start", "1000,1000,0"]);
+    check("chapter14.c", &["--robot", "Car", "--start", "2000,2000,0"]);
+
+    let folder = Folder::new("chapters");
+    folder.copy("chapter05.c", "follow.c");
+    folder.write("lead.py", "from eye import *\nVWSetSpeed(200, 15)\n");
+    folder
+        .write("field.wld", "floor 6000 6000\n0 0 6000 0\n6000 0 6000 6000\n6000 6000 0 6000\n0 6000 0 0\n");
+    let script =
+        folder.write("chase.sim", "world field.wld\nLabBot 2500 2000 0 lead.py\nS4 1500 2000 0 follow.x\n");
+    if python() {
+        let all = report(&["--time-limit", "20", script.to_str().unwrap()]);
+        assert_eq!(all["robots"][1]["exit"], 0, "{all}");
+        assert!(all["robots"][0]["path_length_mm"].as_f64().unwrap() > 2000.0, "it drives on: {all}");
+    }
+    let maze = folder.write("maze.maz", " _ _ _ _\n|_     _|\n|  _| | |\n|S|_ _ _|\n360\n");
+    let file = folder.copy("chapter09.c", "chapter09.c");
+    let start = ["--world", maze.to_str().unwrap(), "--start", "180,180,90"];
+    let all = report(&[&start[..], &[file.to_str().unwrap()]].concat());
+    assert_eq!((&all["exit"], &all["collisions"]), (&0.into(), &0.into()), "{all}");
+}
+
+#[test]
+fn hostile_arguments_are_answered_with_codes() {
+    if compiler() {
+        let report = check("hostile.c", &["--time-limit", "100000"]);
+        assert_eq!(report["lcd_text"].as_str().unwrap().lines().last(), Some("survived"));
+    }
+}
+
+#[test]
+fn a_square_ends_where_it_began() {
+    if !compiler() {
+        return;
+    }
+    let report = check("square.c", &["--robot", "S4", "--start", "1000,1000,0", "--time-limit", "60"]);
+    assert_eq!((&report["outcome"], &report["lcd_text"]), (&"finished".into(), &"done".into()));
+    let near = |value: &Value, expected: f64, most: f64| (value.as_f64().unwrap() - expected).abs() <= most;
+    assert!(
+        near(&report["pose"]["x_mm"], 1000.0, 10.0) && near(&report["pose"]["y_mm"], 1000.0, 10.0),
+        "{report}"
+    );
+    assert!(near(&report["pose"]["heading_deg"], 0.0, 2.0), "{report}");
+    assert!(near(&report["path_length_mm"], 1600.0, 10.0), "{report}");
+    assert_eq!((&report["collisions"], &report["robots"][0]["collisions"]), (&0.into(), &0.into()));
+}
+
+#[test]
+fn runs_are_the_same_each_time() {
+    if !compiler() {
+        return;
+    }
+    let run = || {
+        let mut report = check("square.c", &["--noise", "1", "--seed", "3"]);
+        report["wall_time_s"] = Value::Null;
+        report
+    };
+    assert_eq!(run(), run());
+}
+
+#[test]
+fn a_minute_of_driving_takes_no_time_to_speak_of() {
+    if compiler() {
+        let report = check("speed.c", &["--start", "2000,2000,0"]);
+        assert!(report["sim_time_s"].as_f64().unwrap() >= 60.0);
+        // Loose, as tests run beside each other, without optimisation.
+        assert!(report["wall_time_s"].as_f64().unwrap() < 20.0);
+    }
+}
+
+#[test]
+fn robots_share_a_world() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("shared");
+    folder.copy("radio.c", "radio.c");
+    let script = folder.write("two.sim", "S4 400 600 0 radio.x\nLabBot 1000 600 180 radio.x\n");
+    let all = report(&["--time-limit", "600", script.to_str().unwrap()]);
+    assert_eq!(all["outcome"], "finished", "{all}");
+    let texts: Vec<&str> =
+        all["robots"].as_array().unwrap().iter().map(|robot| robot["lcd_text"].as_str().unwrap()).collect();
+    assert_eq!(texts, ["robot 1: 1000", "robot 2: 999"]);
+
+    folder.copy("simulation.c", "simulation.c");
+    folder.copy("square.c", "square.c");
+    let script =
+        folder.write("can.sim", "S4 500 600 90 simulation.x\nS4 1500 600 180 square.x\ncan 1000 1200 0\n");
+    let all = report(&[script.to_str().unwrap()]);
+    assert_eq!((&all["robots"][0]["exit"], &all["robots"][1]["exit"]), (&0.into(), &0.into()), "{all}");
+    assert_eq!(all["robots"][0]["pose"]["x_mm"], 800.0);
+}
+
+#[test]
+fn what_one_program_does_wrong_harms_no_other() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("wrong");
+    for name in ["square", "crash", "hang", "endless", "nonsense"] {
+        folder.copy(&format!("{name}.c"), &format!("{name}.c"));
+    }
+    let script = folder.write(
+        "all.sim",
+        "world all.wld\nS4 500 500 0 square.x\nS4 3000 500 0 crash.x\nS4 3000 1500 0 hang.x\nS4 3000 2500 0 endless.x\n\
+         S4 3000 3500 0 nonsense.x\nS4 1000 3500 0 missing.x\n",
+    );
+    folder.write("all.wld", "0 0 4000 0\n4000 0 4000 4000\n4000 4000 0 4000\n0 4000 0 0\n");
+    let all = report(&["--time-limit", "40", "--hang-limit", "1", script.to_str().unwrap()]);
+    let outcomes: Vec<&str> =
+        all["robots"].as_array().unwrap().iter().map(|robot| robot["outcome"].as_str().unwrap()).collect();
+    assert_eq!(outcomes, ["finished", "crashed", "failed", "timed_out", "failed", "failed"], "{all}");
+    assert_eq!(all["robots"][0]["lcd_text"], "done");
+    assert_eq!(all["robots"][1]["lcd_text"], "before");
+    assert_eq!(all["robots"][2]["lcd_text"], "hanging");
+    assert!(all["robots"][4]["error"].as_str().unwrap().contains("a frame of"), "{all}");
+    assert!(all["robots"][5]["error"].as_str().unwrap().contains("missing.x"), "{all}");
+}
+
+#[test]
+fn limits_end_any_program() {
+    if !compiler() {
+        return;
+    }
+    let file = |name: &str| programs().join(name).display().to_string();
+    let endless = report(&["--time-limit", "5", &file("endless.c")]);
+    assert_eq!((&endless["outcome"], &endless["lcd_text"]), (&"timed_out".into(), &"busy".into()));
+    assert_eq!(endless["sim_time_s"], 5.0);
+    let hang = report(&["--real-limit", "0.5", &file("hang.c")]);
+    assert_eq!((&hang["outcome"], &hang["lcd_text"]), (&"timed_out".into(), &"hanging".into()));
+    let crash = report(&[&file("crash.c")]);
+    assert_eq!(
+        (&crash["outcome"], &crash["exit"], &crash["lcd_text"]),
+        (&"crashed".into(), &Value::Null, &"before".into())
+    );
+    assert!((crash["path_length_mm"].as_f64().unwrap() - 100.0).abs() < 2.0, "{crash}");
+}
+
+#[test]
+fn python_programs_run() {
+    if !python() {
+        return;
+    }
+    let report = check("basics.py", &["--start", "1000,1000,0", "--time-limit", "600"]);
+    assert!(report["lcd_text"].as_str().unwrap().ends_with("python is done"), "{report}");
+    let report = check("sleepy.py", &["--time-limit", "600"]);
+    assert_eq!(report["lcd_text"], "slept 100 s");
+    if cfg!(target_os = "linux") {
+        assert_eq!(check("foreign.py", &[])["lcd_text"], "number 7");
+    }
+}
+
+#[test]
+fn headers_please_every_standard() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("headers");
+    let include = Path::new(env!("CARGO_MANIFEST_DIR")).join("include");
+    let compile = |compiler: &str, standard: &str, file: &Path| {
+        let output = Command::new(compiler)
+            .arg(format!("-std={standard}"))
+            .args(["-Wall", "-Wextra", "-pedantic", "-Werror", "-fsyntax-only", "-I"])
+            .arg(&include)
+            .arg(file)
+            .output()
+            .unwrap();
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{compiler} -std={standard}: {message}");
+    };
+    let text = "#include \"HEADER\"\n#include <X11/Xlib.h>\nint main(void)\n{\n    int id = 0, x, y, z, phi;\n    \
+                char text[64];\n    RADIOCheck();\n    RADIOCheck(&id);\n    SERSend(0, text);\n    SERSend(0, text, 3);\n    \
+                SERReceive(0, text);\n    SERReceive(0, text, 9);\n    SIMGetObject(1, &x, &y, &z, &phi);\n    \
+                SIMGetObject(1, &x, &y, &phi);\n    SIMSetObject(1, 2, 3, 4);\n    SIMSetObject(1, 2, 3, 4, 5);\n    \
+                return LCDMenu(\"a\", \"b\", \"c\", \"d\") + CAMWIDTH + XInitThreads();\n}\n";
+    let c = folder.write("header.c", &text.replace("HEADER", "eyebot.h"));
+    for standard in ["c99", "c11", "c17", "gnu17"] {
+        compile("cc", standard, &c);
+    }
+    let cpp =
+        folder.write("header.cpp", &text.replace("HEADER", "eyebot++.h").replace("<X11/Xlib.h>", "<vector>"));
+    if there_is("c++") {
+        for standard in ["c++11", "c++14", "c++17", "c++20"] {
+            compile("c++", standard, &cpp);
+        }
+    }
+}
+
+#[test]
+fn wrong_command_lines_are_refused() {
+    for (arguments, expected) in [
+        (&["missing.x"][..], "missing.x"),
+        (&["--start", "1,2", "x"], "X,Y,DEG"),
+        (&["--keys", "KEY9@1", "x"], "KEY9@1"),
+        (&["--noise", "9", "x"], "0 to 5"),
+        (&["--world", "missing.wld", "/bin/true"], "missing.wld"),
+        (&["--robot", "R2D2", "/bin/true"], "R2D2"),
+        (&[], "PROGRAM"),
+    ] {
+        let output = robios(arguments);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(output.stdout.is_empty() && message.lines().count() == 1, "{arguments:?}: {message}");
+        assert!(message.contains(expected), "{arguments:?}: {message}");
+    }
+}

@@ -1,0 +1,9 @@
+#include "eyebot.h"
+int main(void)
+{
+    LCDPrintf("before\n");
+    VWStraight(100, 100);
+    VWWait();
+    raise(SIGSEGV);
+    return 0;
+}

@@ -1,0 +1,7 @@
+#include "eyebot.h"
+int main(void)
+{
+    LCDPrintf("hanging\n");
+    for (;;)
+        ;
+}

@@ -1,0 +1,126 @@
+use std::ffi::{c_char, c_int, c_uchar};
+use std::path::Path;
+
+use libloading::Library;
+
+use crate::io::{Error, ErrorKind, Result};
+
+/// Declares the functions that are called, and how they are found.
+macro_rules! functions {
+    ($($name:ident: fn($($argument:ty),* $(; $more:tt)?) -> $result:ty;)*) => {
+        /// The functions of a library, as far as it has them.
+        #[allow(non_snake_case, reason = "RoBIOS's own names")]
+        #[derive(Debug)]
+        pub(super) struct Functions {
+            $($name: Option<unsafe extern "C" fn($($argument),* $(, $more)?) -> $result>,)*
+            /// Keeps the functions where they are.
+            _library: Library,
+        }
+
+        impl Functions {
+            fn find(library: Library) -> Self {
+                Self {
+                    $(
+                        // SAFETY: RoBIOS's functions have these types; a library that calls itself so and has others
+                        // cannot be told from it.
+                        $name: unsafe { library.get(concat!(stringify!($name), "\0").as_bytes()) }
+                            .ok()
+                            .map(|symbol| *symbol),
+                    )*
+                    _library: library,
+                }
+            }
+        }
+
+        $(functions!(@get $name ($($argument),* $(; $more)?) $result);)*
+    };
+    (@get $name:ident ($($argument:ty),* $(; $more:tt)?) $result:ty) => {
+        impl Functions {
+            /// The function, or an error that names it.
+            #[allow(non_snake_case, reason = "RoBIOS's own names")]
+            pub(super) fn $name(
+                &self,
+            ) -> Result<unsafe extern "C" fn($($argument),* $(, $more)?) -> $result> {
+                self.$name.ok_or_else(|| missing(stringify!($name)))
+            }
+        }
+    };
+}
+
+functions! {
+    OSGetCount: fn() -> c_int;
+    OSWait: fn(c_int) -> c_int;
+    VWSetSpeed: fn(c_int, c_int) -> c_int;
+    VWGetSpeed: fn(*mut c_int, *mut c_int) -> c_int;
+    VWSetPosition: fn(c_int, c_int, c_int) -> c_int;
+    VWGetPosition: fn(*mut c_int, *mut c_int, *mut c_int) -> c_int;
+    VWStraight: fn(c_int, c_int) -> c_int;
+    VWTurn: fn(c_int, c_int) -> c_int;
+    VWCurve: fn(c_int, c_int, c_int) -> c_int;
+    VWDrive: fn(c_int, c_int, c_int) -> c_int;
+    VWRemain: fn() -> c_int;
+    VWDone: fn() -> c_int;
+    VWWait: fn() -> c_int;
+    VWStalled: fn() -> c_int;
+    PSDGet: fn(c_int) -> c_int;
+    LIDARGet: fn(*mut c_int) -> c_int;
+    LIDARSet: fn(c_int, c_int, c_int) -> c_int;
+    CAMInit: fn(c_int) -> c_int;
+    CAMGet: fn(*mut c_uchar) -> c_int;
+    LCDSetPos: fn(c_int, c_int) -> c_int;
+    LCDGetPos: fn(*mut c_int, *mut c_int) -> c_int;
+    LCDSetColor: fn(c_int, c_int) -> c_int;
+    LCDSetFont: fn(c_int, c_int) -> c_int;
+    LCDSetFontSize: fn(c_int) -> c_int;
+    LCDSetMode: fn(c_int) -> c_int;
+    LCDClear: fn() -> c_int;
+    LCDGetSize: fn(*mut c_int, *mut c_int) -> c_int;
+    LCDPixel: fn(c_int, c_int, c_int) -> c_int;
+    LCDGetPixel: fn(c_int, c_int) -> c_int;
+    LCDLine: fn(c_int, c_int, c_int, c_int, c_int) -> c_int;
+    LCDArea: fn(c_int, c_int, c_int, c_int, c_int, c_int) -> c_int;
+    LCDCircle: fn(c_int, c_int, c_int, c_int, c_int) -> c_int;
+    LCDImageSize: fn(c_int) -> c_int;
+    LCDImageStart: fn(c_int, c_int, c_int, c_int) -> c_int;
+    LCDImage: fn(*const c_uchar) -> c_int;
+    LCDImageGray: fn(*const c_uchar) -> c_int;
+    LCDImageBinary: fn(*const c_uchar) -> c_int;
+    LCDMenu: fn(*const c_char, *const c_char, *const c_char, *const c_char) -> c_int;
+    LCDMenuI: fn(c_int, *const c_char, c_int, c_int) -> c_int;
+    LCDRefresh: fn() -> c_int;
+    KEYGet: fn() -> c_int;
+    KEYRead: fn() -> c_int;
+    KEYReadXY: fn(*mut c_int, *mut c_int) -> c_int;
+    RADIOInit: fn() -> c_int;
+    RADIOGetID: fn() -> c_int;
+    RADIOStatus: fn(*mut c_int) -> c_int;
+    RADIOSend: fn(c_int, *const c_char) -> c_int;
+    RADIOCheck: fn(*mut c_int) -> c_int;
+    RADIOReceive: fn(*mut c_int, *mut c_char, c_int) -> c_int;
+    MOTORDrive: fn(c_int, c_int) -> c_int;
+    SERVOSet: fn(c_int, c_int) -> c_int;
+    ENCODERRead: fn(c_int) -> c_int;
+    ENCODERReset: fn(c_int) -> c_int;
+    LCDPrintf: fn(*const c_char; ...) -> c_int;
+}
+
+impl Functions {
+    /// Loads a library. Fails if it cannot be loaded, or is none that drives robots.
+    pub(super) fn load(path: &Path) -> Result<Self> {
+        // SAFETY: loading a library runs what it does at its beginning; the user has named this one to be run.
+        let library = unsafe { Library::new(path) }.map_err(|error| {
+            let message = format!("{}: no library that can be loaded", path.display());
+            Error::new(ErrorKind::InvalidInput, message).with_source(error)
+        })?;
+        let functions = Self::find(library);
+        functions.VWSetSpeed().and(functions.OSWait().map(|_| ())).map_err(|error| {
+            let message = format!("{}: no library of RoBIOS", path.display());
+            Error::new(ErrorKind::InvalidInput, message).with_source(error)
+        })?;
+        Ok(functions)
+    }
+}
+
+fn missing(name: &str) -> Error {
+    Error::new(ErrorKind::Unsupported, format!("the library has no function {name}"))
+}

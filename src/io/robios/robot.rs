@@ -1,0 +1,487 @@
+use std::f64::consts::TAU;
+use std::ffi::{CString, c_char, c_int, c_uchar};
+use std::path::Path;
+
+use image::RgbImage;
+
+use super::library::Functions;
+use crate::geometry::{Pose, Twist, normalize_angle, units};
+use crate::io::{
+    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
+    FontFamily, FontStyle, Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio,
+    RadioMessage, Resolution, Result, Servos, Viewport,
+};
+use crate::world::Colour;
+
+/// A robot behind a RoBIOS library.
+///
+/// A library drives the one robot of its process: two of these with the same library are the same robot.
+#[derive(Debug)]
+pub struct RobiosRobot {
+    robios: Functions,
+    lidar: LidarSettings,
+    resolution: Resolution,
+    camera_is_on: bool,
+    radio_is_on: bool,
+    turns: bool,
+}
+
+/// What RoBIOS says where there is nothing within range.
+const NOTHING: c_int = 9999;
+/// Bytes of the longest radio message that is received.
+const LONGEST_MESSAGE: usize = 1024;
+/// RoBIOS's numbers of the soft keys.
+const KEYS: [(c_int, Key); 4] = [(1, Key::Key1), (2, Key::Key2), (4, Key::Key3), (8, Key::Key4)];
+
+/// Calls a function of the library and returns what it returns.
+macro_rules! call {
+    ($robot:expr, $name:ident($($argument:expr),*)) => {{
+        let function = $robot.robios.$name()?;
+        // SAFETY: the library is loaded, the arguments have the types of its header, and what pointers point to lives
+        // until the function returns and is as large as the function may write.
+        unsafe { function($($argument),*) }
+    }};
+}
+
+/// Calls a function that returns 0 when it has succeeded.
+macro_rules! order {
+    ($robot:expr, $name:ident($($argument:expr),*)) => {{
+        let code = call!($robot, $name($($argument),*));
+        succeeded(stringify!($name), code)
+    }};
+}
+
+fn succeeded(name: &str, code: c_int) -> Result<()> {
+    if code == 0 {
+        return Ok(());
+    }
+    Err(Error::new(ErrorKind::Other, format!("{name} returned {code}; expected 0, the code of success")))
+}
+
+/// A number as RoBIOS takes it.
+fn whole(name: &str, value: f64) -> Result<c_int> {
+    let rounded = value.round();
+    if rounded.abs() <= f64::from(c_int::MAX) {
+        return Ok(rounded as c_int);
+    }
+    Err(Error::invalid_input(name, value, "a number that RoBIOS can hold"))
+}
+
+fn millimetres(name: &str, metres: f64) -> Result<c_int> {
+    whole(name, units::to_mm(metres))
+}
+
+fn degrees(name: &str, radians: f64) -> Result<c_int> {
+    whole(name, units::to_deg(radians))
+}
+
+fn metres(millimetres: c_int) -> f64 {
+    units::from_mm(millimetres.into())
+}
+
+fn radians(degrees: c_int) -> f64 {
+    units::from_deg(degrees.into())
+}
+
+fn range(distance: c_int) -> f64 {
+    if distance >= NOTHING { f64::INFINITY } else { metres(distance.max(0)) }
+}
+
+/// A text as C takes it, up to its first zero byte.
+fn text(text: &str) -> CString {
+    let end = text.find('\0').unwrap_or(text.len());
+    CString::new(&text[..end]).unwrap_or_default()
+}
+
+fn number(colour: Colour) -> c_int {
+    c_int::from(colour.red) << 16 | c_int::from(colour.green) << 8 | c_int::from(colour.blue)
+}
+
+fn fills(fill: Fill) -> c_int {
+    c_int::from(fill == Fill::Solid)
+}
+
+impl RobiosRobot {
+    /// Loads a library. Its scanner is taken to have 360 beams all round, as RoBIOS's has at first.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self> {
+        Ok(Self {
+            robios: Functions::load(path.as_ref())?,
+            lidar: LidarSettings { field_of_view: TAU, tilt: 0.0, points: 360 },
+            resolution: Resolution::default(),
+            camera_is_on: false,
+            radio_is_on: false,
+            turns: false,
+        })
+    }
+
+    fn start_camera(&mut self) -> Result<()> {
+        if !self.camera_is_on {
+            self.set_resolution(self.resolution)?;
+        }
+        Ok(())
+    }
+
+    fn start_radio(&mut self) -> Result<()> {
+        if !self.radio_is_on {
+            order!(self, RADIOInit())?;
+            self.radio_is_on = true;
+        }
+        Ok(())
+    }
+}
+
+impl Clock for RobiosRobot {
+    fn now(&mut self) -> Result<f64> {
+        Ok(f64::from(call!(self, OSGetCount())) / 1000.0)
+    }
+
+    fn wait(&mut self, seconds: f64) -> Result<()> {
+        let milliseconds = whole("waiting time", 1000.0 * seconds.max(0.0))?;
+        order!(self, OSWait(milliseconds))
+    }
+}
+
+impl Drive for RobiosRobot {
+    fn set_speed(&mut self, twist: Twist) -> Result<()> {
+        let linear = millimetres("linear speed", twist.linear)?;
+        let angular = degrees("angular speed", twist.angular)?;
+        order!(self, VWSetSpeed(linear, angular))
+    }
+
+    fn speed(&mut self) -> Result<Twist> {
+        let (mut linear, mut angular) = (0, 0);
+        order!(self, VWGetSpeed(&raw mut linear, &raw mut angular))?;
+        Ok(Twist::new(metres(linear), radians(angular)))
+    }
+
+    fn pose(&mut self) -> Result<Pose> {
+        let (mut x, mut y, mut phi) = (0, 0, 0);
+        order!(self, VWGetPosition(&raw mut x, &raw mut y, &raw mut phi))?;
+        Ok(Pose::new(metres(x), metres(y), radians(phi)))
+    }
+
+    fn set_pose(&mut self, pose: Pose) -> Result<()> {
+        let (x, y) = (millimetres("x", pose.x)?, millimetres("y", pose.y)?);
+        let phi = degrees("heading", normalize_angle(pose.heading))?;
+        order!(self, VWSetPosition(x, y, if phi == -180 { 180 } else { phi }))
+    }
+
+    fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
+        let (distance, speed) = (millimetres("distance", distance)?, millimetres("speed", speed.abs())?);
+        self.turns = false;
+        order!(self, VWStraight(distance, speed))
+    }
+
+    fn turn(&mut self, angle: f64, speed: f64) -> Result<()> {
+        let (angle, speed) = (degrees("angle", angle)?, degrees("speed", speed.abs())?);
+        self.turns = true;
+        order!(self, VWTurn(angle, speed))
+    }
+
+    fn curve(&mut self, length: f64, angle: f64, speed: f64) -> Result<()> {
+        let (distance, change) = (millimetres("length", length)?, degrees("angle", angle)?);
+        if distance == 0 {
+            return self.turn(angle, speed);
+        }
+        self.turns = false;
+        let speed = millimetres("speed", speed.abs())?;
+        order!(self, VWCurve(distance, change, speed))
+    }
+
+    fn drive_to(&mut self, forward: f64, left: f64, speed: f64) -> Result<()> {
+        let (x, y) = (millimetres("forward distance", forward)?, millimetres("distance to the left", left)?);
+        let speed = millimetres("speed", speed.abs())?;
+        self.turns = false;
+        order!(self, VWDrive(x, y, speed))
+    }
+
+    fn remaining(&mut self) -> Result<f64> {
+        let rest = call!(self, VWRemain());
+        Ok(if self.turns { radians(rest) } else { metres(rest) })
+    }
+
+    fn is_done(&mut self) -> Result<bool> {
+        Ok(call!(self, VWDone()) != 0)
+    }
+
+    fn wait_done(&mut self) -> Result<()> {
+        order!(self, VWWait())
+    }
+
+    fn is_stalled(&mut self) -> Result<bool> {
+        Ok(call!(self, VWStalled()) != 0)
+    }
+}
+
+impl DistanceSensors for RobiosRobot {
+    /// RoBIOS says 0, or less, of sensors that the robot lacks.
+    fn distance(&mut self, sensor: Psd) -> Result<f64> {
+        match call!(self, PSDGet(sensor.0.into())) {
+            ..=0 => Err(Error::unsupported(sensor)),
+            distance => Ok(range(distance)),
+        }
+    }
+}
+
+impl Lidar for RobiosRobot {
+    fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()> {
+        let points = self.lidar.points;
+        let mut distances = vec![NOTHING; points];
+        order!(self, LIDARGet(distances.as_mut_ptr()))?;
+        if self.lidar.field_of_view > TAU - 1e-9 {
+            // The beam behind comes first, clockwise and counter-clockwise.
+            distances.rotate_left(1);
+        }
+        let (angle_min, angle_increment) = self.lidar.beams();
+        (scan.angle_min, scan.angle_increment) = (angle_min, angle_increment);
+        scan.range_max = metres(NOTHING);
+        scan.mount = Pose::default();
+        scan.ranges.clear();
+        scan.ranges.extend(distances.into_iter().rev().map(range));
+        Ok(())
+    }
+
+    fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
+        settings.validate()?;
+        let angle = degrees("lidar field of view", settings.field_of_view)?;
+        let tilt = degrees("lidar tilt", settings.tilt)?;
+        order!(self, LIDARSet(angle, -tilt, settings.points as c_int))?;
+        let field_of_view = if angle == 360 { TAU } else { radians(angle) };
+        self.lidar = LidarSettings { field_of_view, tilt: radians(tilt), points: settings.points };
+        Ok(())
+    }
+}
+
+impl Camera for RobiosRobot {
+    fn set_resolution(&mut self, resolution: Resolution) -> Result<()> {
+        let number = Resolution::ALL.iter().position(|&r| r == resolution).unwrap_or_default();
+        order!(self, CAMInit(number as c_int))?;
+        self.resolution = resolution;
+        self.camera_is_on = true;
+        Ok(())
+    }
+
+    /// As it was set last: RoBIOS does not tell.
+    fn resolution(&mut self) -> Result<Resolution> {
+        Ok(self.resolution)
+    }
+
+    fn image_into(&mut self, image: &mut RgbImage) -> Result<()> {
+        self.start_camera()?;
+        let (width, height) = self.resolution.dimensions();
+        if image.dimensions() != (width, height) {
+            *image = RgbImage::new(width, height);
+        }
+        let pixels: *mut c_uchar = image.as_mut().as_mut_ptr();
+        order!(self, CAMGet(pixels))
+    }
+}
+
+impl Display for RobiosRobot {
+    fn print(&mut self, line: &str) -> Result<()> {
+        let line = text(line);
+        order!(self, LCDPrintf(c"%s".as_ptr(), line.as_ptr()))
+    }
+
+    fn set_cursor(&mut self, row: i32, column: i32) -> Result<()> {
+        order!(self, LCDSetPos(row, column))
+    }
+
+    fn cursor(&mut self) -> Result<(i32, i32)> {
+        let (mut row, mut column) = (0, 0);
+        order!(self, LCDGetPos(&raw mut row, &raw mut column))?;
+        Ok((row, column))
+    }
+
+    fn set_text_colours(&mut self, foreground: Colour, background: Colour) -> Result<()> {
+        order!(self, LCDSetColor(number(foreground), number(background)))
+    }
+
+    fn set_font(&mut self, font: Font) -> Result<()> {
+        let family = match font.family {
+            FontFamily::Helvetica => 0,
+            FontFamily::Times => 1,
+            FontFamily::Courier => 2,
+        };
+        let style = match font.style {
+            FontStyle::Normal => 0,
+            FontStyle::Bold => 1,
+            FontStyle::Italic => 2,
+        };
+        order!(self, LCDSetFont(family, style))?;
+        order!(self, LCDSetFontSize(font.size))
+    }
+
+    fn clear_display(&mut self) -> Result<()> {
+        order!(self, LCDClear())
+    }
+
+    fn display_size(&mut self) -> Result<(i32, i32)> {
+        let (mut width, mut height) = (0, 0);
+        order!(self, LCDGetSize(&raw mut width, &raw mut height))?;
+        Ok((width, height))
+    }
+
+    fn set_pixel(&mut self, (x, y): Pixel, colour: Colour) -> Result<()> {
+        order!(self, LCDPixel(x, y, number(colour)))
+    }
+
+    /// RoBIOS calls what is off the display black.
+    fn pixel(&mut self, (x, y): Pixel) -> Result<Option<Colour>> {
+        Ok(Some(Colour::from_hex(call!(self, LCDGetPixel(x, y)) as u32)))
+    }
+
+    fn draw_line(&mut self, from: Pixel, to: Pixel, colour: Colour) -> Result<()> {
+        order!(self, LCDLine(from.0, from.1, to.0, to.1, number(colour)))
+    }
+
+    fn draw_rectangle(&mut self, from: Pixel, to: Pixel, colour: Colour, fill: Fill) -> Result<()> {
+        order!(self, LCDArea(from.0, from.1, to.0, to.1, number(colour), fills(fill)))
+    }
+
+    fn draw_circle(&mut self, middle: Pixel, diameter: i32, colour: Colour, fill: Fill) -> Result<()> {
+        order!(self, LCDCircle(middle.0, middle.1, diameter, number(colour), fills(fill)))
+    }
+
+    /// Fails for images that have none of RoBIOS's sizes.
+    fn draw_image(&mut self, picture: Picture<'_>, viewport: Viewport) -> Result<()> {
+        let resolution = Resolution::of(picture.dimensions())?;
+        let size = Resolution::ALL.iter().position(|&r| r == resolution).unwrap_or_default();
+        order!(self, LCDImageSize(size as c_int))?;
+        let Viewport { corner: (x, y), width, height } = viewport;
+        order!(self, LCDImageStart(x, y, width, height))?;
+        match picture {
+            Picture::Rgb(image) => order!(self, LCDImage(image.as_raw().as_ptr())),
+            Picture::Gray(image) => order!(self, LCDImageGray(image.as_raw().as_ptr())),
+            Picture::Binary(image) => order!(self, LCDImageBinary(image.as_raw().as_ptr())),
+        }
+    }
+
+    fn set_menu_label(
+        &mut self,
+        key: Key,
+        label: &str,
+        foreground: Colour,
+        background: Colour,
+    ) -> Result<()> {
+        let place = Key::ALL.iter().position(|&k| k == key).unwrap_or_default() as c_int + 1;
+        let label = text(label);
+        order!(self, LCDMenuI(place, label.as_ptr(), number(foreground), number(background)))
+    }
+
+    fn set_menu(&mut self, labels: [&str; 4]) -> Result<()> {
+        let labels = labels.map(text);
+        let [first, second, third, fourth] = labels.each_ref().map(|label| label.as_ptr());
+        order!(self, LCDMenu(first, second, third, fourth))
+    }
+
+    fn set_display_option(&mut self, option: DisplayOption, on: bool) -> Result<()> {
+        let (switch_on, switch_off) = match option {
+            DisplayOption::AutoRefresh => (0x0001, 0x0100),
+            DisplayOption::Scrolling => (0x0002, 0x0200),
+            DisplayOption::LineFeed => (0x0004, 0x0400),
+            DisplayOption::Menu => (0x0008, 0x0800),
+            DisplayOption::TransparentText => (0x01_0000, 0x10_0000),
+            DisplayOption::InvertedBackground => (0x02_0000, 0x20_0000),
+            DisplayOption::InvertedForeground => (0x04_0000, 0x40_0000),
+        };
+        order!(self, LCDSetMode(if on { switch_on } else { switch_off }))
+    }
+
+    fn refresh(&mut self) -> Result<()> {
+        order!(self, LCDRefresh())
+    }
+
+    /// RoBIOS cannot read the whole display.
+    fn screenshot(&mut self) -> Result<RgbImage> {
+        Err(Error::unsupported("way to read its display"))
+    }
+}
+
+fn key(number: c_int) -> Option<Key> {
+    KEYS.into_iter().find(|(code, _)| number & code != 0).map(|(_, key)| key)
+}
+
+impl Keys for RobiosRobot {
+    fn read_key(&mut self) -> Result<Option<Key>> {
+        Ok(key(call!(self, KEYRead())))
+    }
+
+    fn wait_key(&mut self) -> Result<Key> {
+        let number = call!(self, KEYGet());
+        key(number)
+            .ok_or_else(|| Error::new(ErrorKind::Other, format!("KEYGet returned {number}, which is no key")))
+    }
+
+    fn read_touch(&mut self) -> Result<Option<Pixel>> {
+        let (mut x, mut y) = (0, 0);
+        let code = call!(self, KEYReadXY(&raw mut x, &raw mut y));
+        Ok((code == 0).then_some((x, y)))
+    }
+}
+
+impl Radio for RobiosRobot {
+    fn radio_id(&mut self) -> Result<u32> {
+        self.start_radio()?;
+        Ok(call!(self, RADIOGetID()) as u32)
+    }
+
+    fn radio_peers(&mut self) -> Result<Vec<u32>> {
+        self.start_radio()?;
+        // RoBIOS's numbers are single bytes.
+        let mut ids = [0; 256];
+        let count = call!(self, RADIOStatus(ids.as_mut_ptr()));
+        let count = usize::try_from(count).unwrap_or_default().min(ids.len());
+        Ok(ids[..count].iter().map(|&id| id as u32).collect())
+    }
+
+    fn send(&mut self, to: u32, data: &[u8]) -> Result<()> {
+        self.start_radio()?;
+        let refused = || Error::invalid_input("radio message", format!("{data:?}"), "bytes other than 0");
+        let message = CString::new(data).map_err(|_| refused())?;
+        if data.is_empty() {
+            return Err(refused());
+        }
+        order!(self, RADIOSend(to as c_int, message.as_ptr()))
+    }
+
+    fn receive(&mut self) -> Result<Option<RadioMessage>> {
+        self.start_radio()?;
+        let mut from = 0;
+        if call!(self, RADIOCheck(&raw mut from)) == 0 {
+            return Ok(None);
+        }
+        let mut buffer: [c_char; LONGEST_MESSAGE] = [0; LONGEST_MESSAGE];
+        // Some libraries return the length, others 0 for success; a message ends with a zero byte in both.
+        call!(self, RADIOReceive(&raw mut from, buffer.as_mut_ptr(), LONGEST_MESSAGE as c_int));
+        let data = buffer.iter().take_while(|&&byte| byte != 0).map(|&byte| byte as u8).collect();
+        Ok(Some(RadioMessage { from: from as u32, data }))
+    }
+}
+
+impl Motors for RobiosRobot {
+    fn set_motor(&mut self, motor: u8, fraction: f64) -> Result<()> {
+        let percent = whole("motor speed", 100.0 * fraction)?;
+        order!(self, MOTORDrive(motor.into(), percent))
+    }
+}
+
+impl Servos for RobiosRobot {
+    fn set_servo(&mut self, servo: u8, position: f64) -> Result<()> {
+        if !(-1.0..=1.0).contains(&position) {
+            return Err(Error::invalid_input("servo position", position, "-1 to 1"));
+        }
+        let angle = whole("servo position", 128.0 + 128.0 * position)?.min(255);
+        order!(self, SERVOSet(servo.into(), angle))
+    }
+}
+
+impl Encoders for RobiosRobot {
+    fn encoder(&mut self, motor: u8) -> Result<i64> {
+        Ok(call!(self, ENCODERRead(motor.into())).into())
+    }
+
+    fn reset_encoder(&mut self, motor: u8) -> Result<()> {
+        order!(self, ENCODERReset(motor.into()))
+    }
+}
