@@ -22,6 +22,7 @@
 
 mod a_to_b;
 mod a_to_b_run;
+mod beat;
 mod car;
 mod chase;
 pub mod cones;
@@ -44,7 +45,7 @@ mod way;
 
 pub use a_to_b::{AToB, AToBCommand, AToBObservation, AToBOutcome, AToBParameters, Goal, Method};
 pub use car::{CarCommand, CarDriver, CarOutcome, CarParameters, CarToB};
-pub use chase::{Chase, ChaseParameters};
+pub use chase::{Chase, ChaseOutcome, ChaseParameters};
 pub use coverage::{CoverageMap, CoverageParameters, CoveragePlan, Tour, TourParameters};
 pub use cruise::{Cruise, CruiseParameters};
 pub use follow_me::{FollowMeObservation, FollowMeParameters, Follower, robots_in};
