@@ -33,6 +33,8 @@ mod localise;
 mod micromouse;
 #[path = "motion/mod.rs"]
 mod motion;
+#[path = "navigate/mod.rs"]
+mod navigate;
 #[path = "omni/mod.rs"]
 mod omni;
 #[path = "common/programs.rs"]

@@ -32,6 +32,8 @@ mod localise;
 mod micromouse;
 #[path = "../examples/motion/mod.rs"]
 mod motion;
+#[path = "../examples/navigate/mod.rs"]
+mod navigate;
 #[path = "../examples/omni/mod.rs"]
 mod omni;
 #[path = "../examples/common/programs.rs"]

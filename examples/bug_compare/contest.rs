@@ -4,9 +4,8 @@ use roverlab::world::generate::{Course, CourseFamily};
 use roverlab::world::{RobotSpec, Scene};
 
 use super::ride::{Conditions, Ride, ride, ride_with};
-use super::workers::share_out;
 use super::{Args, job};
-use crate::common::{Driven, Failure, StageTruth, Trip};
+use crate::common::{Driven, Failure, StageTruth, Trip, share_out};
 
 /// A world with a robot and a goal, and the truth about it.
 #[derive(Debug, Clone)]
@@ -61,7 +60,7 @@ pub(crate) fn entries(args: &Args) -> Result<Vec<Entry>, Failure> {
     let runs = args.runs.unwrap_or(10);
     let own = args.common.world.is_some().then(|| job::own_trip(args)).transpose()?;
     let families = if own.is_some() { 1 } else { args.families().len() as u64 };
-    share_out(families * runs, args.threads(), |index| {
+    share_out("courses", families * runs, args.threads(), |index| {
         let seed = args.common.seed.wrapping_add(index % runs);
         let setting = match &own {
             Some(trip) => Setting::new("world", seed, trip.clone())?,

@@ -62,6 +62,7 @@ mod stage;
 mod trip;
 mod values;
 mod wall_clock;
+mod workers;
 
 pub(crate) use args::CommonArgs;
 pub(crate) use failure::Failure;
@@ -69,8 +70,9 @@ pub(crate) use origin::Origin;
 pub(crate) use report::{Outcome, Report, millimetres, point_in_mm, rounded};
 pub(crate) use run::{Printed, main, run, run_printing};
 pub(crate) use stage::{Driven, Stage, StageTruth, StagedTroop};
-pub(crate) use trip::Trip;
+pub(crate) use trip::{StandIn, Trip};
 pub(crate) use values::{
     GoalOption, parse_goal, parse_noise, parse_picture, parse_point, parse_pose, parse_seconds,
 };
 pub(crate) use wall_clock::{Pacer, Progress, Stopwatch};
+pub(crate) use workers::share_out;

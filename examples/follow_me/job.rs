@@ -7,7 +7,7 @@ use super::campaign;
 use super::scene::{Mode, hall};
 use super::swarm::{SwarmRun, run};
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
-use crate::driving::{drawn, paced};
+use crate::driving::{counted, drawn, paced};
 
 /// The command line of the example `follow_me`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -161,7 +161,7 @@ fn corners(scene: &Scene) -> Vec<Point> {
 /// The ways of all robots, and where they end.
 fn picture(args: &Args, scene: &Scene, run: &SwarmRun, mode: Mode) -> Picture {
     let mut picture = Picture::new(&scene.world);
-    let followers = scene.robots.len() - 1;
+    let followers = counted(scene.robots.len() - 1, "follower");
     let ending = if run.contacts > 0 {
         "collided"
     } else if run.lost.is_empty() {
@@ -169,7 +169,7 @@ fn picture(args: &Args, scene: &Scene, run: &SwarmRun, mode: Mode) -> Picture {
     } else {
         "some lost"
     };
-    picture.title(format!("Follow me ({}): {followers} followers, {ending}", mode.name()));
+    picture.title(format!("Follow me ({}): {followers}, {ending}", mode.name()));
     picture.caption(format!(
         "mean gap {:.0} mm; {:.0} s, noise {}, seed {}",
         units::to_mm(run.mean_gap),
@@ -181,8 +181,7 @@ fn picture(args: &Args, scene: &Scene, run: &SwarmRun, mode: Mode) -> Picture {
         let points = path.iter().map(roverlab::geometry::Pose::position);
         match index {
             0 => picture.line(points, Style::true_path().width(3.0).labelled("leader")),
-            1 => picture.line(points, Style::plan().labelled("followers")),
-            _ => picture.line(points, Style::plan()),
+            _ => picture.line(points, Style::plan().labelled("followers")),
         };
     }
     for (robot, path) in scene.robots.iter().zip(&run.paths) {

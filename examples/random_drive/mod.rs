@@ -13,8 +13,8 @@ use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
 use roverlab::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
 
-use crate::common::{CommonArgs, Failure, GoalOption, Outcome, Report, Trip, rounded};
-use crate::driving::{Conditions, drawn, paced};
+use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
+use crate::driving::{Conditions, counted, drawn, paced};
 
 /// The command line of the example `random_drive`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -67,15 +67,16 @@ struct Outing {
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
-    let trip = trip(args)?;
+    let own = || scene(usize::from(args.robots));
+    let scene = common.placed_without_goal("the robots have none", own)?;
     let seconds = common.time_limit.unwrap_or(SECONDS);
-    let outing = if trip.scene.robots.len() == 1 {
-        alone(args, &trip.scene, seconds)?
+    let outing = if scene.robots.len() == 1 {
+        alone(args, &scene, seconds)?
     } else {
-        together(args, &trip.scene, seconds)?
+        together(args, &scene, seconds)?
     };
-    let share = covered(&trip.scene, &outing.paths);
-    let (file, trouble) = drawn(common, "random_drive.svg", || picture(args, &trip.scene, &outing, share));
+    let share = covered(&scene, &outing.paths);
+    let (file, trouble) = drawn(common, "random_drive.svg", || picture(args, &scene, &outing, share));
     let Outing { report, turns, contacts, paths, .. } = outing;
     Ok(Report { collisions: Some(contacts), trouble, ..report }
         .field("robots", paths.len())
@@ -83,16 +84,6 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         .field("coverage_percent", share.map(|share| rounded(100.0 * share)))
         .field("time_limit_s", seconds)
         .field("picture", file))
-}
-
-fn trip(args: &Args) -> Result<Trip, Failure> {
-    let mut common = args.common.clone();
-    if common.goal.is_some() {
-        return Err(Failure::input("--goal: the robots have none; expected a command line without --goal"));
-    }
-    // The shared reading of the options asks for a goal.
-    common.goal = Some(GoalOption { position: Point::origin(), heading: None });
-    common.trip(|| scene(usize::from(args.robots)))
 }
 
 /// A room with two crates and a can, and robots in it, larger and smaller ones, as in the book.
@@ -204,7 +195,7 @@ fn covered(scene: &Scene, paths: &[Vec<Pose>]) -> Option<f64> {
 fn picture(args: &Args, scene: &Scene, outing: &Outing, share: Option<f64>) -> Picture {
     let mut picture = Picture::new(&scene.world);
     let ending = if outing.contacts > 0 { "collided" } else { "no contact" };
-    picture.title(format!("Random drive: {} robots, {ending}", outing.paths.len()));
+    picture.title(format!("Random drive: {}, {ending}", counted(outing.paths.len(), "robot")));
     let share = share.map_or("-".into(), |share| format!("{:.0} %", 100.0 * share));
     picture.caption(format!(
         "{share} of the floor, {} turns, noise {}, seed {}",
@@ -214,8 +205,7 @@ fn picture(args: &Args, scene: &Scene, outing: &Outing, share: Option<f64>) -> P
         let points = path.iter().map(Pose::position);
         match number {
             0 => picture.true_path(points),
-            1 => picture.line(points, Style::plan().labelled("other robots")),
-            _ => picture.line(points, Style::plan()),
+            _ => picture.line(points, Style::plan().labelled("other robots")),
         };
     }
     for (robot, path) in scene.robots.iter().zip(&outing.paths) {
