@@ -4,9 +4,9 @@ use mcap::records::{Record, op};
 use mcap::write::NoSeek;
 use mcap::{McapError, Writer};
 
-use super::LogError;
 use super::reader::{self, Framed};
 use super::writer::write_options;
+use super::{Compression, LogError};
 
 /// What could be saved of a damaged recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -62,7 +62,7 @@ pub fn recover(bytes: &[u8]) -> Result<Recovery, LogError> {
             (op::DATA_END, _) => break,
             (op::HEADER, None) => {
                 if let Record::Header(header) = record.parse()? {
-                    saving = Some(Saving::new(&header.profile, &header.library)?);
+                    saving = Some(Saving::new(&header.profile, &header.library, compression(bytes, at))?);
                 }
             }
             (_, Some(saving)) => saving.add(&record)?,
@@ -74,11 +74,25 @@ pub fn recover(bytes: &[u8]) -> Result<Recovery, LogError> {
     saving.finish(lost)
 }
 
+/// How the first chunk from a place on is compressed.
+fn compression(bytes: &[u8], start: usize) -> Compression {
+    let records = reader::records(bytes, start).map_while(|record| record);
+    let chunks = records.filter(|record| record.opcode == op::CHUNK);
+    let named = chunks.filter_map(|chunk| match chunk.parse() {
+        Ok(Record::Chunk { header, .. }) => Some(Compression::named(&header.compression)),
+        _ => None,
+    });
+    named.flatten().next().unwrap_or_default()
+}
+
 /// Whether a record can be read, a chunk with all that it holds.
 fn is_sound(record: &Framed<'_>) -> bool {
     match record.opcode {
         op::CHUNK => {
-            reader::chunk(record).is_ok_and(|inner| inner.iter().all(|record| record.parse().is_ok()))
+            let contents = reader::contents(record);
+            let inner = contents.as_deref().map(reader::inner);
+            inner
+                .is_ok_and(|inner| inner.is_ok_and(|inner| inner.iter().all(|record| record.parse().is_ok())))
         }
         op::HEADER..=op::DATA_END => record.parse().is_ok(),
         // Kinds that future formats or other programs add.
@@ -103,8 +117,8 @@ struct Saving {
 }
 
 impl Saving {
-    fn new(profile: &str, library: &str) -> Result<Self, LogError> {
-        let options = write_options().profile(profile).library(library);
+    fn new(profile: &str, library: &str, compression: Compression) -> Result<Self, LogError> {
+        let options = write_options(compression)?.profile(profile).library(library);
         let file = options.create(NoSeek::new(Vec::new())).map_err(|error| damaged(&error))?;
         Ok(Self { file, chunks: 0, messages: 0 })
     }
@@ -121,7 +135,8 @@ impl Saving {
             }),
             Record::Chunk { .. } => {
                 self.chunks += 1;
-                reader::chunk(record)?.iter().try_for_each(|inner| self.add_inner(inner))?;
+                let contents = reader::contents(record)?;
+                reader::inner(&contents)?.iter().try_for_each(|inner| self.add_inner(inner))?;
                 self.file.flush()
             }
             _ => Ok(()),
