@@ -42,8 +42,8 @@ pub enum Compression {
 impl Compression {
     const ALL: [(Self, &'static str); 3] = [(Self::None, ""), (Self::Lz4, "lz4"), (Self::Zstd, "zstd")];
 
-    /// Its name in files.
-    fn name(self) -> &'static str {
+    /// Its name in files; empty for none.
+    pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(kind, _)| *kind == self).map_or("", |(_, name)| name)
     }
 
@@ -90,8 +90,8 @@ impl Header {
         }
     }
 
-    /// A digest of all attachments, their names included.
-    fn digest(&self) -> u64 {
+    /// A digest of all attachments, their names included: of the world and the robots.
+    pub fn digest(&self) -> u64 {
         let parts = self.attachments.iter().flat_map(|file| [file.name.as_bytes(), &file.data]);
         // The 64-bit FNV-1a digest (Fowler, Noll and Vo), with the length ahead of each part.
         let with_length =
