@@ -3,7 +3,7 @@
 set -eu
 cd "$(dirname "$0")"
 data=../tests/data
-for target in wld maz robi esobj sim ros_map; do mkdir -p "corpus/$target"; done
+for target in wld maz robi esobj sim ros_map movingai; do mkdir -p "corpus/$target"; done
 for target in wld maz robi; do
     for file in "$data"/formats/*."$target" "$data/broken/$target"/*."$target"; do
         [ "$(wc -c < "$file")" -gt 4096 ] || cp "$file" "corpus/$target/"
@@ -16,3 +16,5 @@ cp "$data"/broken/ros_map/*.yaml corpus/ros_map/
 for yaml in room.yaml scale.yml; do
     { cat "$data/formats/$yaml"; printf '\f'; cat "$data/formats/room.pgm"; } > "corpus/ros_map/$yaml"
 done
+cp "$data"/grids/*.map "$data"/grids/*.scen "$data"/broken/movingai_map/*.map "$data"/broken/movingai_scen/*.scen \
+    corpus/movingai/

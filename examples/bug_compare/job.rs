@@ -100,19 +100,18 @@ pub(super) fn own_trip(args: &Args) -> Result<Trip, Failure> {
 /// Draws the paths of all algorithms on one world, if asked for: those that were recorded, or new ones.
 fn drawn(args: &Args, recorded: Option<&Entry>) -> Result<(), Failure> {
     let Some(file) = &args.common.picture else { return Ok(()) };
-    let new = match recorded {
-        Some(_) => None,
-        None => {
-            let setting = contest::shown(args)?;
-            let conditions = setting.conditions(args);
-            let drive = |&kind| ride(&setting.trip, kind, conditions);
-            let rides = args.bugs().iter().map(drive).collect::<Result<_, Failure>>()?;
-            Some(Entry { setting, rides })
-        }
+    let new;
+    let Entry { setting, rides } = if let Some(recorded) = recorded {
+        recorded
+    } else {
+        let setting = contest::shown(args)?;
+        let conditions = setting.conditions(args);
+        let drive = |&kind| ride(&setting.trip, kind, conditions);
+        let rides = args.bugs().iter().map(drive).collect::<Result<_, Failure>>()?;
+        new = Entry { setting, rides };
+        &new
     };
-    if let Some(Entry { setting, rides }) = recorded.or(new.as_ref()) {
-        picture::of(setting, rides, setting.conditions(args)).save(file)?;
-        args.common.tell(format_args!("picture: {}", file.display()));
-    }
+    picture::of(setting, rides, setting.conditions(args)).save(file)?;
+    args.common.tell(format_args!("picture: {}", file.display()));
     Ok(())
 }

@@ -84,12 +84,11 @@ impl CommonArgs {
         options: &SimOptions,
         robots: usize,
     ) -> Result<Stage, Failure> {
-        let play = match self.player() {
-            Some(player) => Play::Recording(player),
-            None => {
-                let simulations = (0..robots).map(|_| Simulation::new(scene, options.clone()));
-                Play::Apart(simulations.collect::<io::Result<_>>().map_err(Failure::input)?)
-            }
+        let play = if let Some(player) = self.player() {
+            Play::Recording(player)
+        } else {
+            let simulations = (0..robots).map(|_| Simulation::new(scene, options.clone()));
+            Play::Apart(simulations.collect::<io::Result<_>>().map_err(Failure::input)?)
         };
         self.recorded(scene, Stage { play, faults: Vec::new(), recording: Recording::default() })
     }

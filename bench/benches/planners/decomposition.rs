@@ -1,0 +1,36 @@
+//! How long it takes to decompose maps into quadtrees.
+
+use std::time::Instant;
+
+use roverlab::nav::grid::Quadtree;
+use roverlab::world::BitGrid;
+
+use crate::maps;
+
+/// Decomposes the maps of a size that are made here.
+pub(crate) fn show(size: usize) {
+    println!("\ndecomposition of {size} x {size} cells, with all leaves listed (fastest of 9):");
+    for map in maps::own(size, 1) {
+        let (time, leaves) = decompose(&map.grid);
+        println!("  {:<32}{time:>10.1} us, {leaves} leaves", map.name);
+    }
+    println!();
+}
+
+/// Microseconds at best, and the number of leaves.
+#[allow(clippy::disallowed_methods, reason = "a benchmark measures time")]
+fn decompose(grid: &BitGrid) -> (f64, usize) {
+    let (mut fastest, mut leaves) = (f64::INFINITY, 0);
+    for _ in 0..9 {
+        let start = Instant::now();
+        let (mut count, mut area) = (0, 0);
+        std::hint::black_box(Quadtree::new(grid)).visit(|leaf, is_free| {
+            count += 1;
+            area += if is_free { leaf.size * leaf.size } else { 0 };
+        });
+        fastest = fastest.min(1e6 * start.elapsed().as_secs_f64());
+        assert_eq!(area, grid.count_free(), "free leaves cover the free cells");
+        leaves = count;
+    }
+    (fastest, leaves)
+}
