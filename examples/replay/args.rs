@@ -10,7 +10,7 @@ use crate::common::parse_picture;
     after_help = "\
 JSON fields: example, command, outcome;
   check     program, differences: null, or {robot, time_s, found, expected}
-  recover   chunks, messages, lost_bytes
+  recover   chunks, messages, header (whether it is saved), lost_bytes
   info      program, version, schema, seed, options, robots, start_s, end_s, bytes, chunks, topics, attachments,
             attachments_hash, compression
   export    rows, csv, picture

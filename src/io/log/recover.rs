@@ -4,9 +4,10 @@ use mcap::records::{Record, op};
 use mcap::write::NoSeek;
 use mcap::{McapError, Writer};
 
+use super::header::METADATA;
 use super::reader::{self, Framed};
 use super::writer::write_options;
-use super::{Compression, LogError};
+use super::{Compression, Header, LogError};
 
 /// What could be saved of a damaged recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,6 +18,8 @@ pub struct Recovery {
     pub chunks: usize,
     /// Messages that were saved.
     pub messages: u64,
+    /// Whether the header was saved. Without it what is left can be looked at, but not replayed.
+    pub header: bool,
     /// Bytes of the damaged file that hold nothing of use: the incomplete last chunk, say.
     pub lost: usize,
 }
@@ -114,18 +117,22 @@ struct Saving {
     file: Writer<NoSeek<Vec<u8>>>,
     chunks: usize,
     messages: u64,
+    header: bool,
 }
 
 impl Saving {
     fn new(profile: &str, library: &str, compression: Compression) -> Result<Self, LogError> {
         let options = write_options(compression)?.profile(profile).library(library);
         let file = options.create(NoSeek::new(Vec::new())).map_err(|error| damaged(&error))?;
-        Ok(Self { file, chunks: 0, messages: 0 })
+        Ok(Self { file, chunks: 0, messages: 0, header: false })
     }
 
     fn add(&mut self, record: &Framed<'_>) -> Result<(), LogError> {
         let written = match record.parse()? {
-            Record::Metadata(metadata) => self.file.write_metadata(&metadata),
+            Record::Metadata(metadata) => {
+                self.header |= metadata.name == METADATA && Header::read(&metadata.metadata).is_some();
+                self.file.write_metadata(&metadata)
+            }
             Record::Attachment { header, data, .. } => self.file.attach(&mcap::Attachment {
                 log_time: header.log_time,
                 create_time: header.create_time,
@@ -172,8 +179,8 @@ impl Saving {
 
     fn finish(mut self, lost: usize) -> Result<Recovery, LogError> {
         self.file.finish().map_err(|error| damaged(&error))?;
-        let Self { file, chunks, messages } = self;
-        Ok(Recovery { bytes: file.into_inner().into_inner(), chunks, messages, lost })
+        let Self { file, chunks, messages, header } = self;
+        Ok(Recovery { bytes: file.into_inner().into_inner(), chunks, messages, header, lost })
     }
 }
 
