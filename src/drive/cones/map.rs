@@ -13,13 +13,15 @@ pub struct ConeMapParameters {
     pub farthest: f64,
     /// Times that a cone has to be seen before it counts.
     pub confirmed: u32,
+    /// Metres from the car's origin to the sensor, ahead.
+    pub sensor: f64,
     /// How far odometry may be wrong after a step of one metre: metres, and radians.
     pub drift: [f64; 2],
 }
 
 impl Default for ConeMapParameters {
     fn default() -> Self {
-        Self { gate: 0.9, farthest: 15.0, confirmed: 4, drift: [0.03, 0.006] }
+        Self { gate: 0.9, farthest: 15.0, confirmed: 4, sensor: 2.15, drift: [0.03, 0.006] }
     }
 }
 
@@ -78,8 +80,8 @@ pub struct ConeMap {
 
 /// Sightings after which a cone moves no more slowly.
 const MEMORY: u32 = 80;
-/// Metres, and radians, within which a cone that is not seen is missed.
-const VIEW: (f64, f64) = (10.0, 1.35);
+/// Metres from the sensor, and radians from straight ahead, within which a cone that is not seen is missed.
+const VIEW: (f64, f64) = (9.0, 0.8);
 
 impl ConeMap {
     /// An empty map; the car is at its origin.
@@ -188,7 +190,8 @@ impl ConeMap {
                 matched.push(true);
             }
         }
-        let (ahead, eye) = (direction(self.pose.heading), self.pose.position());
+        let ahead = direction(self.pose.heading);
+        let eye = self.pose.position() + ahead * self.parameters.sensor;
         let mut index = 0;
         let confirmed = self.parameters.confirmed;
         self.landmarks.retain_mut(|landmark| {
@@ -196,7 +199,7 @@ impl ConeMap {
             let away = landmark.position - eye;
             let distance = away.norm();
             let angle = crate::geometry::math::atan2(cross(ahead, away), ahead.dot(&away));
-            let in_view = distance < VIEW.0 && distance > 3.0 && angle.abs() < VIEW.1;
+            let in_view = distance < VIEW.0 && distance > 1.0 && angle.abs() < VIEW.1;
             if matched[index - 1] || !(in_view || landmark.seen < confirmed) {
                 return true;
             }
