@@ -63,7 +63,7 @@ impl Route {
         self.cell = nearest_free(chart, self.planner.grid(), robot)?;
         let found = self.planner.move_to(self.cell).is_ok() && self.plan(chart);
         // The robot has moved on, so that a way that is as long as before has become longer.
-        found.then(|| self.length > before)
+        found.then_some(self.length > before)
     }
 
     fn plan(&mut self, chart: &Chart) -> bool {
