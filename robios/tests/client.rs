@@ -12,10 +12,7 @@ use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::robios::RobiosRobot;
 use roverlab::io::sim::Simulation;
 use roverlab::io::wrappers::{Quantised, Stamp, Traced};
-use roverlab::io::{
-    Camera, Clock, Display, DistanceSensors, Drive, Encoders, ErrorKind, Fill, Keys, Lidar, LidarSettings,
-    Motors, Picture, Psd, Radio, Resolution, Result, RobotIo, Servos, Viewport,
-};
+use roverlab::io::{ErrorKind, Fill, LidarSettings, Picture, Psd, Resolution, Result, RobotIo, Viewport};
 use roverlab::nav::{DistBug, DistBugParameters};
 use roverlab::random::Stream;
 use roverlab::world::Colour;

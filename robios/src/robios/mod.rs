@@ -49,8 +49,6 @@ pub struct Robios {
     /// The size of the images that the display takes, and where it puts them.
     lcd_image: Option<(usize, usize)>,
     window: Option<Viewport>,
-    /// Whether scans go all round.
-    full_turn: bool,
     /// Whether the last drive command was one for a turn on the spot.
     turns: bool,
     moving: Moving,
@@ -105,7 +103,6 @@ impl Robios {
             inbox: radio::Inbox::new(),
             lcd_image: None,
             window: None,
-            full_turn: identity.full_turn,
             turns: false,
             moving: Moving::No,
             standing_since: 0.0,
