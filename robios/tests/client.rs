@@ -57,7 +57,7 @@ fn tour(robot: &mut impl RobotIo) {
         robot.wait_done()?;
         robot.drive_to(0.2, 0.11, 0.2)?;
         robot.wait_done()?;
-        robot.set_pose(Pose::new(0.1234, 0.5, 3.14))?;
+        robot.set_pose(Pose::new(0.1234, 0.5, 3.1))?;
         robot.pose()?;
         robot.set_speed(Twist::new(0.1, 0.3333))?;
         robot.wait(1.234_567)?;

@@ -8,6 +8,7 @@ use std::time::Duration;
 use eyesim::ask::Seat;
 use eyesim::plan::{Plan, names};
 use eyesim::process;
+use eyesim::report::Report;
 use eyesim::wire::{Answer, LONGEST_REQUEST, Question, receive, send};
 use roverlab::geometry::Pose;
 use roverlab::io::sim::{SimOptions, Simulation, Truth as World};
@@ -99,15 +100,15 @@ fn truth(world: &World, robot: usize, time: f64) -> Truth {
 
 /// Answers a program until it ends, and waits for its end.
 fn attend(
-    seat: Seat,
+    mut seat: Seat,
     stream: UnixStream,
     running: Result<Running, String>,
     options: &Options,
-) -> (Served, (Ending, eyesim::report::Report)) {
+) -> (Served, (Ending, Report)) {
     match running {
         Err(message) => {
-            let time = { seat }.now();
-            (Served { time, offence: None }, (Ending::NotStarted(message), Default::default()))
+            let served = Served { time: seat.now(), offence: None };
+            (served, (Ending::NotStarted(message), Report::default()))
         }
         Ok(running) => {
             let served = serve(seat, stream, running.id(), options.hang_limit);
