@@ -5,13 +5,15 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use roverlab::world::formats::{FormatError, load_object, load_robot, load_scene};
+use roverlab::world::formats::{FormatError, load_object, load_robot, load_scene, movingai};
 
 fn message(path: &Path) -> Option<Result<(), FormatError>> {
     let ending = path.extension()?.to_str()?;
     Some(match ending {
         "robi" => load_robot(path).map(drop),
         "esObj" => load_object(path).map(drop),
+        "map" => movingai::load_map(path).map(drop),
+        "scen" => movingai::load_scenarios(path).map(drop),
         "sim" | "wld" | "maz" | "yaml" => load_scene(path).map(drop),
         _ => return None,
     })
@@ -44,7 +46,16 @@ fn every_broken_file_gives_its_message() {
         counts.push((folder.file_name().unwrap().to_str().unwrap().to_owned(), count));
     }
     // Exact, so that a file that gets lost is noticed.
-    let expected = [("esobj", 18), ("maz", 16), ("robi", 24), ("ros_map", 24), ("sim", 22), ("wld", 19)];
+    let expected = [
+        ("esobj", 18),
+        ("maz", 16),
+        ("movingai_map", 17),
+        ("movingai_scen", 13),
+        ("robi", 24),
+        ("ros_map", 24),
+        ("sim", 22),
+        ("wld", 19),
+    ];
     assert_eq!(counts, expected.map(|(format, count)| (format.to_owned(), count)));
     assert!(wrong.is_empty(), "{} other messages than expected:\n{}", wrong.len(), wrong.concat());
 }

@@ -10,38 +10,19 @@ mod common;
 mod driving;
 #[path = "../examples/omni/mod.rs"]
 mod omni;
+mod support;
 
-use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 
 use clap::Parser;
-use common::{CommonArgs, Failure, Report};
-use serde_json::Value;
+use support::{Ended, number, run};
 
-/// Runs an example with `--json`. Returns its status and its report, and what it said on standard error.
-fn run<A: Parser + AsRef<CommonArgs>>(
-    name: &'static str,
-    work: fn(&A) -> Result<Report, Failure>,
-    options: &[&str],
-) -> (u8, Value, String) {
-    let first = [name, "--json"];
-    let words = first.iter().chain(options).map(OsString::from);
-    let (mut out, mut err) = (Vec::new(), Vec::new());
-    let status = common::run(name, words, &mut out, &mut err, work);
-    let err = String::from_utf8(err).unwrap();
-    (status, serde_json::from_slice(&out).unwrap_or(Value::Null), err)
-}
-
-fn a_to_b(options: &[&str]) -> (u8, Value, String) {
+fn a_to_b(options: &[&str]) -> Ended {
     run("a_to_b", a_to_b::work, options)
 }
 
-fn number(report: &Value, name: &str) -> f64 {
-    report[name].as_f64().unwrap_or_else(|| panic!("{name} in {report}"))
-}
-
-fn assert_reached((status, report, err): &(u8, Value, String), most_mm: f64) {
+fn assert_reached((status, report, err): &Ended, most_mm: f64) {
     assert_eq!((*status, report["outcome"].as_str(), err.as_str()), (0, Some("reached"), ""), "{report}");
     assert!(number(report, "position_error_mm") <= most_mm, "{report}");
 }
@@ -68,6 +49,31 @@ fn the_table_of_a_campaign() {
     let rows = a_to_b::rows(&args).unwrap();
     insta::assert_snapshot!("a_to_b_forty_runs", a_to_b::text(&rows));
     assert!(rows.iter().all(a_to_b::Row::is_good));
+}
+
+#[test]
+fn waypoints_are_passed_and_a_moving_goal_is_caught() {
+    let chain = ["--via", "1500,2000", "--via", "2000,1000", "--goal", "3000,2500,90", "--noise", "0"];
+    for follower in ["cross-track", "pure-pursuit"] {
+        let ended = a_to_b(&[&chain[..], &["--follower", follower]].concat());
+        assert_reached(&ended, 6.0);
+        assert!(number(&ended.1, "heading_error_deg") <= 0.3, "{}", ended.1);
+        assert!(number(&ended.1, "path_length_mm") > 4000.0, "{}", ended.1);
+    }
+    for method in ["turn", "arc", "dog", "spline"] {
+        let (status, report, err) = a_to_b(&["--method", method, "--moving", "80,-6"]);
+        assert_eq!((status, report["outcome"].as_str()), (0, Some("caught")), "{method}: {report} {err}");
+        assert!(number(&report, "position_error_mm") < 150.0, "{method}: {report}");
+    }
+    for refused in [
+        &["--via", "1500,2000", "--method", "arc"][..],
+        &["--moving", "80", "--via", "1,1"],
+        &["--moving", "fast"],
+        &["--via", "1000,1000"],
+    ] {
+        let (status, _, err) = a_to_b(refused);
+        assert!(status == 2 && err.lines().count() == 1, "{refused:?}: {err}");
+    }
 }
 
 #[test]

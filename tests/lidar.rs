@@ -8,37 +8,20 @@ mod driving;
 mod lidar_scan;
 #[path = "../examples/localise/mod.rs"]
 mod localise;
+mod support;
 
-use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 
 use clap::Parser;
-use common::{CommonArgs, Failure, Report};
-use serde_json::Value;
+use support::{Ended, number, run};
 
-fn run<A: Parser + AsRef<CommonArgs>>(
-    name: &'static str,
-    work: fn(&A) -> Result<Report, Failure>,
-    options: &[&str],
-) -> (u8, Value, String) {
-    let words = [name, "--json"].iter().chain(options).map(OsString::from).collect::<Vec<_>>();
-    let (mut out, mut err) = (Vec::new(), Vec::new());
-    let status = common::run(name, words, &mut out, &mut err, work);
-    let err = String::from_utf8(err).unwrap();
-    (status, serde_json::from_slice(&out).unwrap_or(Value::Null), err)
-}
-
-fn lidar_scan(options: &[&str]) -> (u8, Value, String) {
+fn lidar_scan(options: &[&str]) -> Ended {
     run("lidar_scan", lidar_scan::work, options)
 }
 
-fn localise(options: &[&str]) -> (u8, Value, String) {
+fn localise(options: &[&str]) -> Ended {
     run("localise", localise::work, options)
-}
-
-fn number(report: &Value, name: &str) -> f64 {
-    report[name].as_f64().unwrap_or_else(|| panic!("{name} in {report}"))
 }
 
 #[test]
@@ -50,10 +33,10 @@ fn a_scan_shows_walls_corners_and_cans() {
         let (status, report, err) = lidar_scan(&["--seed", seed, "--lcd", lcd, "--picture", svg]);
         assert_eq!((status, report["outcome"].as_str(), err.as_str()), (0, Some("scanned"), ""), "{report}");
         assert_eq!(report["objects"].as_array().unwrap().len(), 2, "{report}");
-        // Of the six corners, one is hidden, one shows one wall only, and a can may stand before another.
-        assert!(report["corners"].as_array().unwrap().len() >= 3, "{report}");
+        // Of the six corners, one is hidden, and one shows one wall only.
+        assert_eq!(report["corners"].as_array().unwrap().len(), 4, "{report}");
         assert!(
-            number(&report, "corner_error_mm") < 40.0 && number(&report, "object_error_mm") < 25.0,
+            number(&report, "corner_error_mm") < 25.0 && number(&report, "object_error_mm") < 15.0,
             "{report}"
         );
     }

@@ -59,6 +59,19 @@ fn the_examples_own_maze_is_explored_and_raced() {
 }
 
 #[test]
+fn a_campaign_tells_of_every_maze() {
+    let (status, report, err) = run(&["--campaign", "tests/data/mazes", "--runs", "3"]);
+    assert_eq!((status, err.as_str()), (0, ""), "{report}");
+    assert_eq!((&report["outcome"], &report["mazes"]), (&"passed".into(), &2.into()));
+    let all = report["rows"].as_array().unwrap().last().unwrap();
+    assert_eq!((&all["size"], &all["runs"], &all["proved"]), (&"all".into(), &6.into(), &6.into()));
+    assert_eq!(report["failures"].as_array().map(Vec::len), Some(0));
+    let (status, _, err) = run(&["--campaign", "examples/micromouse"]);
+    assert_eq!(status, 2);
+    assert_eq!(err, "examples/micromouse: found no file that holds a maze; expected one or more\n");
+}
+
+#[test]
 fn a_file_that_is_missing_is_named() {
     let (status, report, err) = run(&["--plan", "--maze", "no/such.maze"]);
     assert_eq!((status, report), (2, Value::Null));

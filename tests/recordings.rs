@@ -4,18 +4,46 @@
 mod a_to_b;
 #[path = "../examples/ackermann/mod.rs"]
 mod ackermann;
+#[path = "../examples/bug_compare/mod.rs"]
+mod bug_compare;
+#[path = "../examples/camera/mod.rs"]
+mod camera;
+#[path = "../examples/color_tracking/mod.rs"]
+mod color_tracking;
 #[path = "../examples/common/mod.rs"]
 mod common;
+#[path = "../examples/coverage/mod.rs"]
+mod coverage;
 #[path = "../examples/distbug/mod.rs"]
 mod distbug;
 #[path = "../examples/driving/mod.rs"]
 mod driving;
+#[path = "../examples/edges/mod.rs"]
+mod edges;
+#[path = "../examples/follow_me/mod.rs"]
+mod follow_me;
+#[path = "../examples/genetic/mod.rs"]
+mod genetic;
+#[path = "../examples/lidar_scan/mod.rs"]
+mod lidar_scan;
+#[path = "../examples/localise/mod.rs"]
+mod localise;
+#[path = "../examples/micromouse/mod.rs"]
+mod micromouse;
+#[path = "../examples/motion/mod.rs"]
+mod motion;
+#[path = "../examples/navigate/mod.rs"]
+mod navigate;
 #[path = "../examples/omni/mod.rs"]
 mod omni;
 #[path = "../examples/common/programs.rs"]
 mod programs;
+#[path = "../examples/random_drive/mod.rs"]
+mod random_drive;
 #[path = "../examples/replay/mod.rs"]
 mod replay;
+#[path = "../examples/room/mod.rs"]
+mod room;
 #[path = "../examples/wall_following/mod.rs"]
 mod wall_following;
 
@@ -116,22 +144,98 @@ fn manage(words: &[&str]) -> (u8, Value, String) {
     (status, serde_json::from_slice(&out).unwrap_or(Value::Null), String::from_utf8(err).unwrap())
 }
 
-/// Runs every example that can be recorded, and checks its recording with `replay check`.
+/// Options for a short run of each example.
+fn short(program: &str) -> &'static [&'static str] {
+    match program {
+        "bug_compare" => &["--bugs", "bug1,tangentbug"],
+        "camera" => &["--images", "3"],
+        "color_tracking" => &["--job", "home"],
+        "edges" => &["--repeat", "3"],
+        "follow_me" => &["--followers", "3", "--mode", "radio"],
+        "genetic" => &["--task", "wall", "--generations", "1"],
+        "random_drive" => &["--robots", "3"],
+        _ => &[],
+    }
+}
+
+/// Records a short run of an example and checks the recording with `replay check`.
+fn assert_checks(program: &programs::Program, options: &[&str]) {
+    let log = file(&format!("check-{}{}.mcap", program.name, options.concat()));
+    let words = [&[program.name, "--json"], options, &["--time-limit", "6", "--record"]].concat();
+    let words = words.iter().map(OsString::from).chain([log.clone().into()]).collect();
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    (program.run)(words, &mut out, &mut err);
+    assert!(log.is_file(), "{}: {}", program.name, String::from_utf8_lossy(&err));
+    let (status, report, err) = manage(&["check", log.to_str().unwrap()]);
+    assert_eq!((status, report["outcome"].as_str()), (0, Some("same")), "{report} {err}");
+    fs::remove_file(log).unwrap();
+}
+
 #[test]
 fn every_program_checks() {
     for program in programs::PROGRAMS {
         for noise in ["0", "1", "2"] {
-            let log = file(&format!("check-{}-{noise}.mcap", program.name));
-            let words = [program.name, "--json", "--noise", noise, "--time-limit", "6", "--record"];
-            let words = words.iter().map(OsString::from).chain([log.clone().into()]).collect();
-            let (mut out, mut err) = (Vec::new(), Vec::new());
-            (program.run)(words, &mut out, &mut err);
-            assert!(log.is_file(), "{}: {}", program.name, String::from_utf8_lossy(&err));
-            let (status, report, err) = manage(&["check", log.to_str().unwrap()]);
-            assert_eq!((status, report["outcome"].as_str()), (0, Some("same")), "{report} {err}");
-            fs::remove_file(log).unwrap();
+            assert_checks(program, &[short(program.name), &["--noise", noise]].concat());
         }
     }
+}
+
+#[test]
+fn other_jobs_check() {
+    for (name, options) in [
+        ("follow_me", &["--followers", "1"][..]),
+        ("follow_me", &["--followers", "5"]),
+        ("random_drive", &[]),
+        ("micromouse", &["--doubled"]),
+        ("omni", &["--seed", "9"]),
+        ("wall_following", &["--seed", "9"]),
+    ] {
+        assert_checks(programs::named(name).unwrap(), options);
+    }
+}
+
+/// Every example with the shared command line is in the table, or drives no robot.
+#[test]
+fn no_program_is_forgotten() {
+    // A walker is no robot of `RobotIo`.
+    const NO_ROBOT: [&str; 1] = ["starman"];
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        let is_shared = path.is_file() && fs::read_to_string(&path).unwrap().contains("common::main(");
+        if is_shared && !NO_ROBOT.contains(&name) {
+            assert!(programs::named(name).is_some(), "{name} is missing in examples/common/programs.rs");
+        }
+    }
+}
+
+#[test]
+fn several_runs_are_no_recording() {
+    for (name, options) in [("a_to_b", ["--campaign", "--record"]), ("micromouse", ["--plan", "--record"])] {
+        let program = programs::named(name).unwrap();
+        let words = [&[name, "--json"], &options[..], &["x.mcap"]].concat();
+        let (mut out, mut err) = (Vec::new(), Vec::new());
+        let status = (program.run)(words.iter().map(OsString::from).collect(), &mut out, &mut err);
+        let err = String::from_utf8(err).unwrap();
+        assert!(status == 2 && err.contains("found no robot that drives"), "{err}");
+    }
+}
+
+/// A maze belongs to its recording.
+#[test]
+fn a_recorded_maze_is_replayed() {
+    let (maze, log) = (file("some.txt"), file("some-maze.mcap"));
+    fs::write(&maze, "o---o---o\n|     G |\no   o---o\n| S     |\no---o---o\n").unwrap();
+    let (maze_name, name) = (maze.to_str().unwrap(), log.to_str().unwrap());
+    let program = programs::named("micromouse").unwrap();
+    let words = ["micromouse", "--json", "--maze", maze_name, "--record", name].map(OsString::from).to_vec();
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    let status = (program.run)(words, &mut out, &mut err);
+    assert_eq!(status, 0, "{}", String::from_utf8_lossy(&err));
+    fs::remove_file(&maze).unwrap();
+    assert_eq!(manage(&["check", name]).0, 0);
+    assert_eq!(manage(&["info", name]).1["options"], serde_json::json!(["--maze=maze.txt"]));
 }
 
 #[test]

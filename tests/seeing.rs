@@ -14,40 +14,13 @@ mod edges;
 mod motion;
 #[path = "../examples/room/mod.rs"]
 mod room;
+mod support;
 
-use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use clap::{Parser, ValueEnum};
-use common::{CommonArgs, Failure, Report};
+use clap::ValueEnum;
 use image::RgbImage;
-use serde_json::Value;
-
-/// Runs an example with `--json`. Returns its status and its report, and what it said on standard error.
-fn run<A: Parser + AsRef<CommonArgs>>(
-    name: &'static str,
-    work: fn(&A) -> Result<Report, Failure>,
-    options: &[&str],
-) -> (u8, Value, String) {
-    let first = [name, "--json"];
-    let words = first.iter().chain(options).map(OsString::from);
-    let (mut out, mut err) = (Vec::new(), Vec::new());
-    let status = common::run(name, words, &mut out, &mut err, work);
-    let err = String::from_utf8(err).unwrap();
-    (status, serde_json::from_slice(&out).unwrap_or(Value::Null), err)
-}
-
-fn assert_outcome((status, report, err): &(u8, Value, String), outcome: &str) {
-    assert_eq!((*status, report["outcome"].as_str()), (0, Some(outcome)), "{report} {err}");
-}
-
-fn temporary(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
-}
+use support::{assert_outcome, run, temporary, text};
 
 /// An image of coloured squares with noise.
 fn squares(name: &str) -> PathBuf {

@@ -10,32 +10,15 @@ mod driving;
 mod follow_me;
 #[path = "../examples/random_drive/mod.rs"]
 mod random_drive;
+mod support;
 
-use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 
 use clap::Parser;
-use common::{CommonArgs, Failure, Report};
-use serde_json::Value;
+use support::{Ended, number, run};
 
-fn run<A: Parser + AsRef<CommonArgs>>(
-    name: &'static str,
-    work: fn(&A) -> Result<Report, Failure>,
-    options: &[&str],
-) -> (u8, Value, String) {
-    let words = [name, "--json"].iter().chain(options).map(OsString::from).collect::<Vec<_>>();
-    let (mut out, mut err) = (Vec::new(), Vec::new());
-    let status = common::run(name, words, &mut out, &mut err, work);
-    let err = String::from_utf8(err).unwrap();
-    (status, serde_json::from_slice(&out).unwrap_or(Value::Null), err)
-}
-
-fn number(report: &Value, name: &str) -> f64 {
-    report[name].as_f64().unwrap_or_else(|| panic!("{name} in {report}"))
-}
-
-fn assert_ended((status, report, err): &(u8, Value, String), outcome: &str) {
+fn assert_ended((status, report, err): &Ended, outcome: &str) {
     assert_eq!((*status, report["outcome"].as_str(), err.as_str()), (0, Some(outcome), ""), "{report}");
     assert_eq!(number(report, "collisions"), 0.0);
 }
@@ -68,6 +51,15 @@ fn the_whole_floor_is_covered() {
     assert!(fs::read_to_string(&file).unwrap().contains("% of the floor"));
     let (status, report, _) = run("coverage", coverage::work, &["--time-limit", "20"]);
     assert_eq!((status, report["outcome"].as_str()), (1, Some("timed_out")), "{report}");
+}
+
+#[test]
+fn the_table_of_covered_rooms() {
+    let args = coverage::Args::try_parse_from(["coverage", "--campaign", "--rooms", "3"]).unwrap();
+    let row = coverage::row(&args).unwrap();
+    let text = coverage::text(&row);
+    assert!(row.is_good() && row.random_most < row.least, "{text}");
+    assert!(text.contains("lanes        3") && text.contains("good: 98 % at least"), "{text}");
 }
 
 #[test]
@@ -109,7 +101,7 @@ fn letters_in_a_maze_stand_for_robots() {
 fn what_cannot_be_is_refused() {
     let world = Path::new(env!("CARGO_TARGET_TMPDIR")).join("alone.wld");
     fs::write(&world, "floor 3000 3000\nposition 500 500 0\n").unwrap();
-    for options in [&["--record", "x.mcap"][..], &["--followers", "0"], &["--world", world.to_str().unwrap()]]
+    for options in [&["--fault", "link@1"][..], &["--followers", "0"], &["--world", world.to_str().unwrap()]]
     {
         let (status, _, err) = run("follow_me", follow_me::work, options);
         assert!(status == 2 && err.lines().count() == 1, "{options:?}: {err}");

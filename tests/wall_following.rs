@@ -4,27 +4,20 @@
 mod common;
 #[path = "../examples/driving/mod.rs"]
 mod driving;
+mod support;
 #[path = "../examples/wall_following/mod.rs"]
 mod wall_following;
 
-use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 
 use clap::Parser;
 use serde_json::Value;
+use support::{Ended, number};
 use wall_following::{Args, Controller, Row};
 
-fn run(options: &[&str]) -> (u8, Value, String) {
-    let words = ["wall_following", "--json"].iter().chain(options).map(OsString::from);
-    let (mut out, mut err) = (Vec::new(), Vec::new());
-    let status = common::run("wall_following", words, &mut out, &mut err, wall_following::work);
-    let err = String::from_utf8(err).unwrap();
-    (status, serde_json::from_slice(&out).unwrap_or(Value::Null), err)
-}
-
-fn number(report: &Value, name: &str) -> f64 {
-    report[name].as_f64().unwrap_or_else(|| panic!("{name} in {report}"))
+fn run(options: &[&str]) -> Ended {
+    support::run("wall_following", wall_following::work, options)
 }
 
 #[test]

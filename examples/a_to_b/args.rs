@@ -1,6 +1,9 @@
-use roverlab::drive::{Method, Steering};
+use roverlab::drive::Steering;
+use roverlab::geometry::{Point, Twist};
 
-use crate::common::CommonArgs;
+use super::chase::parse_moving;
+use crate::common::{CommonArgs, parse_point};
+use crate::driving::Way;
 
 /// The command line of the example `a_to_b`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -13,6 +16,9 @@ it, the others turn at the end. An arc to a goal behind is driven backwards.
 
 With --landmark, poles whose places are known correct odometry by the lidar: the world's cylinders, or one beside the goal
 on the empty floor.
+
+With --via, a chain of splines through all these places. With --moving, the goal drives ahead from where it is, by its heading,
+and the robot, which is told where it is, begins anew at each step.
 
 With --campaign, random goals instead of one, by every method: errors without noise, with encoder ticks and without; how
 many of the runs with noise end inside the 95 % ellipse that odometry predicts; errors with a landmark.
@@ -27,7 +33,7 @@ JSON fields:
   landmark_scans              scans that showed a landmark
   time_limit_s, picture
   rows                        with --campaign only: the table
-Outcomes: reached, blocked, timed_out, collided, failed; with --campaign: passed, wrong."
+Outcomes: reached, caught (a moving goal), blocked, timed_out, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// How to get there.
@@ -41,6 +47,14 @@ pub(crate) struct Args {
     /// Length of a spline's tangents in terms of the distance to the goal: the book's k.
     #[arg(long, value_name = "K", default_value_t = 1.0, value_parser = parse_scale, allow_hyphen_values = true)]
     pub(crate) scale: f64,
+
+    /// A place that a spline passes on its way; may be repeated, in this order.
+    #[arg(long, value_name = "X,Y", value_parser = parse_point, allow_hyphen_values = true)]
+    pub(crate) via: Vec<Point>,
+
+    /// The goal moves at so many millimetres, and turns by so many degrees, a second.
+    #[arg(long, value_name = "MM[,DEG]", value_parser = parse_moving, allow_hyphen_values = true)]
+    pub(crate) moving: Option<Twist>,
 
     /// Encoders measure exactly instead of counting ticks.
     #[arg(long)]
@@ -65,41 +79,6 @@ pub(crate) struct Args {
 impl AsRef<CommonArgs> for Args {
     fn as_ref(&self) -> &CommonArgs {
         &self.common
-    }
-}
-
-/// A method by its name on the command line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Way {
-    /// Turn on the spot, then drive straight.
-    Turn,
-    /// One arc.
-    Arc,
-    /// Always turning towards the goal.
-    Dog,
-    /// A Hermite spline.
-    Spline,
-}
-
-impl Way {
-    pub(crate) const ALL: [Self; 4] = [Self::Turn, Self::Arc, Self::Dog, Self::Spline];
-
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Turn => "turn",
-            Self::Arc => "arc",
-            Self::Dog => "dog",
-            Self::Spline => "spline",
-        }
-    }
-
-    pub(crate) fn method(self) -> Method {
-        match self {
-            Self::Turn => Method::Turn,
-            Self::Arc => Method::Arc,
-            Self::Dog => Method::Dog,
-            Self::Spline => Method::Spline,
-        }
     }
 }
 

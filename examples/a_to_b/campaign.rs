@@ -7,9 +7,9 @@ use roverlab::world::{RobotSpec, Scene, World};
 
 use super::drive::drive;
 use super::job::{add_landmarks, heading_error, inside_ellipse, options};
-use super::{Args, Way, table};
+use super::{Args, table};
 use crate::common::{Failure, Outcome, Progress, Report, Trip};
-use crate::driving::Conditions;
+use crate::driving::{Conditions, Way};
 
 /// What a row of the table is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,5 +1,5 @@
 use roverlab::drive::{AToB, AToBOutcome, AToBParameters, Goal, Landmark, LandmarkFilter, Method, Path};
-use roverlab::geometry::Pose;
+use roverlab::geometry::{Point, Pose};
 use roverlab::io::{self, Clock, Drive, Lidar, LidarScan};
 use roverlab::kinematics::{Differential, OdometryErrors, OdometryUncertainty};
 
@@ -8,6 +8,8 @@ use roverlab::kinematics::{Differential, OdometryErrors, OdometryUncertainty};
 pub(crate) struct Options {
     pub(crate) method: Method,
     pub(crate) goal: Goal,
+    /// Places to pass on the way.
+    pub(crate) via: Vec<Point>,
     pub(crate) parameters: AToBParameters,
     /// Seconds.
     pub(crate) time_limit: f64,
@@ -17,6 +19,12 @@ pub(crate) struct Options {
     pub(crate) landmarks: Vec<Landmark>,
     /// The standard deviation of a lidar's beam, in metres.
     pub(crate) range_error: f64,
+}
+
+impl Options {
+    pub(crate) fn behaviour(&self) -> io::Result<AToB> {
+        AToB::new(self.method, self.goal, self.parameters)?.via(self.via.clone())
+    }
 }
 
 /// How a drive ended, as the robot takes it.
@@ -39,7 +47,7 @@ pub(crate) fn drive<R: Clock + Drive + Lidar + ?Sized>(
     options: &Options,
     mut watch: impl FnMut(),
 ) -> io::Result<Arrival> {
-    let mut behaviour = AToB::new(options.method, options.goal, options.parameters)?;
+    let mut behaviour = options.behaviour()?;
     let start = robot.pose()?;
     let plan = behaviour.plan(start)?;
     let mut odometry = OdometryUncertainty::new(start, options.drive, options.errors);

@@ -3,11 +3,11 @@ use roverlab::drive::{AToBOutcome, AToBParameters, FollowerParameters, Goal};
 use roverlab::geometry::{Point, Pose, angle_difference, normalize_angle, units};
 use roverlab::io::sim::NoiseModel;
 use roverlab::kinematics::Differential;
-use roverlab::world::DriveSpec;
+use roverlab::world::{DriveSpec, RobotSpec};
 
 use super::drive::{Arrival, Options, drive};
-use super::{Args, campaign, picture, scene};
-use crate::common::{Failure, Outcome, Report, Trip, millimetres, point_in_mm, rounded};
+use super::{Args, campaign, chase, picture, scene};
+use crate::common::{Failure, Outcome, Report, StandIn, Trip, millimetres, point_in_mm, rounded};
 use crate::driving::{self, Conditions, Run, check_drive, drawn, paced};
 
 /// Half of the robots' squared distances, in standard deviations, are below 1.39; 95 of 100 below this.
@@ -20,18 +20,26 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     let common = &args.common;
     common.check_picture()?;
-    let mut trip = common.trip_to_pose(|| scene::scene(common.goal))?;
-    let turns = !matches!(trip.spec().drive, DriveSpec::Ackermann { .. });
+    let turns = |spec: &RobotSpec| !matches!(spec.drive, DriveSpec::Ackermann { .. });
+    let stand_in = StandIn { suits: turns, ..StandIn::default() };
+    let mut trip = common.trip_to_pose_of(&stand_in, || scene::scene(common.goal))?;
     check_drive(
         common,
         trip.spec(),
-        turns,
+        turns(trip.spec()),
         "one that turns on the spot; the example `ackermann` drives cars",
     )?;
     let heading = scene::heading(common.goal, common.world.is_none());
-    let limit = 60.0 + 20.0 * trip.distance();
+    let limit = 60.0 + 20.0 * way(args, &trip);
     let conditions = Conditions { ideal_encoders: args.ideal_encoders, ..Conditions::new(common, limit)? };
     let mut options = options(args, &trip, heading, &conditions);
+    options.behaviour().and_then(|behaviour| behaviour.plan(Pose::default())).map_err(Failure::input)?;
+    if let Some(speed) = args.moving {
+        if args.landmark || !args.via.is_empty() {
+            return Err(Failure::input("--moving: found it with --landmark or --via; expected it alone"));
+        }
+        return chase::work(args, &trip, speed, &options, &conditions);
+    }
     if args.landmark {
         add_landmarks(args, &mut trip, &mut options)?;
     }
@@ -41,6 +49,14 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         drawn(common, "a_to_b.svg", || picture::of(args, &trip, &run, &conditions, heading));
     let report = report(args, &trip, &run, heading, conditions.time_limit).field("picture", file);
     Ok(Report { trouble, ..report })
+}
+
+/// Metres to the goal by way of all places on the way.
+fn way(args: &Args, trip: &Trip) -> f64 {
+    let start = trip.start().position();
+    let places: Vec<Point> =
+        std::iter::once(start).chain(args.via.iter().copied()).chain([trip.goal]).collect();
+    places.windows(2).map(|two| (two[1] - two[0]).norm()).sum()
 }
 
 /// What the robot is told, in the frame of its odometry.
@@ -57,6 +73,7 @@ pub(crate) fn options(args: &Args, trip: &Trip, heading: Option<f64>, conditions
             position: start.to_local(trip.goal),
             heading: heading.map(|heading| normalize_angle(heading - start.heading)),
         },
+        via: args.via.iter().map(|&place| start.to_local(place)).collect(),
         parameters,
         time_limit: conditions.time_limit,
         drive: Differential { track: driving::track(trip.spec()) },
@@ -70,7 +87,8 @@ pub(crate) fn options(args: &Args, trip: &Trip, heading: Option<f64>, conditions
 pub(crate) fn add_landmarks(args: &Args, trip: &mut Trip, options: &mut Options) -> Result<(), Failure> {
     let start = trip.start();
     if args.common.world.is_none() {
-        let plan = roverlab::drive::AToB::new(options.method, options.goal, options.parameters)
+        let plan = options
+            .behaviour()
             .and_then(|behaviour| behaviour.plan(Pose::default()))
             .map_err(Failure::input)?;
         let way: Vec<Point> = match plan {

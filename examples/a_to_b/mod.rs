@@ -4,13 +4,14 @@
 
 mod args;
 mod campaign;
+mod chase;
 mod drive;
 mod job;
 mod picture;
 mod scene;
 mod table;
 
-pub(crate) use args::{Args, Way};
+pub(crate) use args::Args;
 pub(crate) use campaign::{Kind, Row, campaign, rows};
 pub(crate) use drive::{Arrival, Options, drive};
 pub(crate) use job::work;

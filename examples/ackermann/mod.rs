@@ -8,9 +8,9 @@ use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, Marker, RobotSpec, Scene, World};
 
 use crate::common::{
-    CommonArgs, Failure, GoalOption, Outcome, Report, Trip, millimetres, point_in_mm, rounded,
+    CommonArgs, Failure, GoalOption, Outcome, Report, StandIn, Trip, millimetres, point_in_mm, rounded,
 };
-use crate::driving::{Conditions, Run, check_drive, drawn, paced};
+use crate::driving::{Conditions, Run, Way, check_drive, drawn, paced};
 
 /// The command line of the example `ackermann`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -42,30 +42,6 @@ pub(crate) struct Args {
 impl AsRef<CommonArgs> for Args {
     fn as_ref(&self) -> &CommonArgs {
         &self.common
-    }
-}
-
-/// A method by its name on the command line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Way {
-    /// Turn on the turning circle, then drive straight.
-    Turn,
-    /// One arc.
-    Arc,
-    /// Always turning towards the goal.
-    Dog,
-    /// A Hermite spline.
-    Spline,
-}
-
-impl Way {
-    fn named(self) -> (Method, &'static str) {
-        match self {
-            Self::Turn => (Method::Turn, "turn"),
-            Self::Arc => (Method::Arc, "arc"),
-            Self::Dog => (Method::Dog, "dog"),
-            Self::Spline => (Method::Spline, "spline"),
-        }
     }
 }
 
@@ -103,8 +79,12 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
     let trip = trip(common)?;
-    let car = matches!(trip.spec().drive, DriveSpec::Ackermann { .. });
-    check_drive(common, trip.spec(), car, "a car; the example `a_to_b` drives robots that turn on the spot")?;
+    check_drive(
+        common,
+        trip.spec(),
+        is_car(trip.spec()),
+        "a car; the example `a_to_b` drives robots that turn on the spot",
+    )?;
     let driver = driver(trip.spec())?;
     let heading = match common.goal {
         Some(goal) => goal.heading,
@@ -113,7 +93,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let conditions = Conditions::new(common, 90.0 + 30.0 * trip.distance())?;
     let start = trip.start();
     let options = Options {
-        method: args.method.named().0,
+        method: args.method.method(),
         goal: Goal {
             position: start.to_local(trip.goal),
             heading: heading.map(|heading| normalize_angle(heading - start.heading)),
@@ -133,14 +113,13 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 /// The heading at the goal of the example's own scene.
 const HEADING: f64 = std::f64::consts::FRAC_PI_2;
 
-/// The trip that the options describe. A car takes the place of the robot that a world without one gets.
+/// The trip that the options describe. A car takes the place of another robot.
 fn trip(common: &CommonArgs) -> Result<Trip, Failure> {
-    let mut trip = common.trip_to_pose(|| scene(common.goal))?;
-    let no_robot_of_its_own = common.robot.is_none() && *trip.spec() == RobotSpec::s4();
-    if no_robot_of_its_own {
-        trip.scene.robots[0].spec = RobotSpec::car().into();
-    }
-    Ok(trip)
+    common.trip_to_pose_of(&StandIn { spec: RobotSpec::car().into(), suits: is_car }, || scene(common.goal))
+}
+
+fn is_car(spec: &RobotSpec) -> bool {
+    matches!(spec.drive, DriveSpec::Ackermann { .. })
 }
 
 /// An empty floor of 5 m x 5 m with a marker at the goal, ahead to the left without one.
@@ -171,7 +150,7 @@ fn report(args: &Args, trip: &Trip, run: &Run<Arrival>, heading: Option<f64>) ->
     });
     let turned = heading.map(|heading| angle_difference(run.truth.pose.heading, heading).abs());
     report
-        .field("method", args.method.named().1)
+        .field("method", args.method.name())
         .field("goal", point_in_mm(trip.goal))
         .field("goal_heading_deg", heading.map(|heading| rounded(units::to_deg(heading))))
         .field("position_error_mm", millimetres(run.truth.pose.distance_to(trip.goal)))
@@ -194,7 +173,7 @@ fn picture(
         Ok(_) => "goal missed",
         Err(_) => "the robot failed",
     };
-    picture.title(format!("A car by {}: {ending}", args.method.named().1));
+    picture.title(format!("A car by {}: {ending}", args.method.name()));
     let off = units::to_mm(run.truth.pose.distance_to(trip.goal));
     let (seconds, noise, seed) = (run.sim_time, conditions.noise, conditions.seed);
     picture.caption(format!("{off:.0} mm off after {seconds:.0} s, noise {noise}, seed {seed}"));

@@ -11,8 +11,7 @@ use super::Args;
 use super::boundaries::Boundaries;
 use super::contest::Setting;
 use super::ride::{Ride, parameters, ride};
-use super::workers::share_out;
-use crate::common::{Failure, Outcome, Report, rounded};
+use crate::common::{Failure, Outcome, Report, rounded, share_out};
 
 /// What is left of one run in the campaign.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,8 +33,9 @@ const TOLERANCE: f64 = 0.02;
 /// The work of the campaign.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
     let courses = args.runs.unwrap_or(1000);
-    let checked =
-        share_out(courses, args.threads(), |index| check(args, args.common.seed.wrapping_add(index)))?;
+    let checked = share_out("courses", courses, args.threads(), |index| {
+        check(args, args.common.seed.wrapping_add(index))
+    })?;
     let checked: Vec<Checked> = checked.into_iter().flatten().collect();
     args.common.tell(text(args.bugs(), &checked));
     let good = checked.iter().all(|run| (run.correct || !run.complete) && !breaks(run));

@@ -3,10 +3,9 @@ use roverlab::random::Stream;
 use roverlab::world::generate::{Course, CourseFamily};
 use roverlab::world::{RobotSpec, Scene};
 
-use super::ride::{Conditions, Ride, ride};
-use super::workers::share_out;
+use super::ride::{Conditions, Ride, ride, ride_with};
 use super::{Args, job};
-use crate::common::{Failure, Trip};
+use crate::common::{Driven, Failure, StageTruth, Trip, share_out};
 
 /// A world with a robot and a goal, and the truth about it.
 #[derive(Debug, Clone)]
@@ -61,7 +60,7 @@ pub(crate) fn entries(args: &Args) -> Result<Vec<Entry>, Failure> {
     let runs = args.runs.unwrap_or(10);
     let own = args.common.world.is_some().then(|| job::own_trip(args)).transpose()?;
     let families = if own.is_some() { 1 } else { args.families().len() as u64 };
-    share_out(families * runs, args.threads(), |index| {
+    share_out("courses", families * runs, args.threads(), |index| {
         let seed = args.common.seed.wrapping_add(index % runs);
         let setting = match &own {
             Some(trip) => Setting::new("world", seed, trip.clone())?,
@@ -69,6 +68,26 @@ pub(crate) fn entries(args: &Args) -> Result<Vec<Entry>, Failure> {
         };
         enter(args, setting)
     })
+}
+
+/// The setting that is shown and recorded: the world of `--world`, or else the first course of the first family.
+pub(crate) fn shown(args: &Args) -> Result<Setting, Failure> {
+    if args.common.world.is_some() {
+        return Setting::new("world", args.common.seed, job::own_trip(args)?);
+    }
+    of_family(args.families()[0], args.common.seed)
+}
+
+/// Lets all algorithms drive in the setting that is shown, side by side in one recording.
+pub(crate) fn recorded(args: &Args) -> Result<Entry, Failure> {
+    let setting = shown(args)?;
+    let (trip, conditions, bugs) = (&setting.trip, setting.conditions(args), args.bugs());
+    let stage = args.common.stage_apart(&trip.scene, &conditions.sim_options(), bugs.len())?;
+    let robots = (0..bugs.len()).map(|index| Ok((stage.robot(index)?, stage.truth(index)?)));
+    let robots: Vec<(Driven, StageTruth)> = robots.collect::<Result<_, Failure>>()?;
+    let drive = |(&kind, (robot, mut truth))| ride_with(trip, kind, conditions, robot, &mut truth);
+    let rides = bugs.iter().zip(robots).map(drive).collect::<Result<_, Failure>>()?;
+    Ok(Entry { setting, rides })
 }
 
 /// The course of a family and a seed.

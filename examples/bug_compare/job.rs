@@ -3,8 +3,8 @@ use std::f64::consts::TAU;
 use roverlab::geometry::{Pose, units};
 use roverlab::world::{DriveSpec, RobotSpec, Scene, World};
 
-use super::contest::{self, Entry, Setting, of_family};
-use super::ride::{Ride, ride};
+use super::contest::{self, Entry};
+use super::ride::ride;
 use super::{Args, campaign, picture, table};
 use crate::common::{CommonArgs, Failure, Outcome, Report, Trip};
 
@@ -14,13 +14,15 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if args.campaign {
         return campaign::campaign(args);
     }
-    let entries = contest::entries(args)?;
+    let is_recorded = args.common.record.is_some() || args.common.replay.is_some();
+    let entries = if is_recorded { vec![contest::recorded(args)?] } else { contest::entries(args)? };
     let rows = table::rows(&entries, args.common.noise);
     args.common.tell(table::text(&rows));
     // Errors of odometry can lead any algorithm astray: verdicts are judged without noise alone.
     let good = args.common.noise > 0.0 || table::all_correct(&rows);
     let outcome = if good { Outcome::verdict("compared") } else { Outcome::failure("wrong") };
-    let trouble = drawn(args).err().map(|failure| failure.to_string());
+    let trouble =
+        drawn(args, entries.first().filter(|_| is_recorded)).err().map(|failure| failure.to_string());
     Ok(summed(outcome, &entries, trouble)
         .field("rows", table::json(&rows))
         .field("runs", table::json_runs(&rows))
@@ -51,12 +53,7 @@ fn check(args: &Args) -> Result<(), Failure> {
     if let Some((option, _)) = alone.iter().find(|(_, given)| *given && common.world.is_none()) {
         return Err(Failure::input(format!("{option}: found no --world; expected both, or neither")));
     }
-    let never = [
-        ("--fault", !common.fault.is_empty()),
-        ("--realtime", common.realtime),
-        ("--record", common.record.is_some()),
-        ("--replay", common.replay.is_some()),
-    ];
+    let never = [("--fault", !common.fault.is_empty()), ("--realtime", common.realtime)];
     if let Some((option, _)) = never.iter().find(|(_, given)| *given) {
         return Err(Failure::input(format!(
             "{option}: found it for a comparison of many runs; expected a command line without it, or the example \
@@ -100,18 +97,21 @@ pub(super) fn own_trip(args: &Args) -> Result<Trip, Failure> {
     }
 }
 
-/// Draws the paths of all algorithms on one world, if asked for.
-fn drawn(args: &Args) -> Result<(), Failure> {
+/// Draws the paths of all algorithms on one world, if asked for: those that were recorded, or new ones.
+fn drawn(args: &Args, recorded: Option<&Entry>) -> Result<(), Failure> {
     let Some(file) = &args.common.picture else { return Ok(()) };
-    let setting = if args.common.world.is_some() {
-        Setting::new("world", args.common.seed, own_trip(args)?)?
+    let new;
+    let Entry { setting, rides } = if let Some(recorded) = recorded {
+        recorded
     } else {
-        of_family(args.families()[0], args.common.seed)?
+        let setting = contest::shown(args)?;
+        let conditions = setting.conditions(args);
+        let drive = |&kind| ride(&setting.trip, kind, conditions);
+        let rides = args.bugs().iter().map(drive).collect::<Result<_, Failure>>()?;
+        new = Entry { setting, rides };
+        &new
     };
-    let conditions = setting.conditions(args);
-    let drive = |&kind| ride(&setting.trip, kind, conditions);
-    let rides: Vec<Ride> = args.bugs().iter().map(drive).collect::<Result<_, Failure>>()?;
-    picture::of(&setting, &rides, conditions).save(file)?;
+    picture::of(setting, rides, setting.conditions(args)).save(file)?;
     args.common.tell(format_args!("picture: {}", file.display()));
     Ok(())
 }

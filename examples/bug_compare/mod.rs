@@ -11,7 +11,6 @@ mod picture;
 mod ride;
 mod statistics;
 mod table;
-mod workers;
 
 pub(crate) use args::Args;
 pub(crate) use boundaries::{Boundaries, Boundary};

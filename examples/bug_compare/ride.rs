@@ -1,9 +1,10 @@
 use roverlab::geometry::{Point, Pose};
-use roverlab::io::sim::{SimOptions, Simulation};
+use roverlab::io::log::Witness;
+use roverlab::io::sim::SimOptions;
 use roverlab::io::{self, ErrorKind};
 use roverlab::nav::{BugEvent, BugKind, BugOutcome, BugParameters, Guarantee, run_bug};
 
-use crate::common::{Failure, Trip};
+use crate::common::{Driven, Failure, Stage, StageTruth, Trip};
 
 /// How to drive.
 #[derive(Debug, Clone, Copy)]
@@ -73,19 +74,33 @@ pub(crate) fn parameters(trip: &Trip, noise: f64) -> BugParameters {
     BugParameters { match_scans: noise > 0.0, ..BugParameters::for_radius(radius) }
 }
 
+impl Conditions {
+    /// How the simulator runs.
+    pub(crate) fn sim_options(self) -> SimOptions {
+        let time_limit = Some(self.time_limit + 1.0);
+        SimOptions { time_limit, ..SimOptions::with_noise(self.noise, self.seed) }
+    }
+}
+
 /// Drives the first robot of a scene to a goal by one algorithm.
 ///
 /// Fails if the robot cannot be simulated or the algorithm cannot run. What goes wrong on the way is part of the result.
 pub(crate) fn ride(trip: &Trip, kind: BugKind, conditions: Conditions) -> Result<Ride, Failure> {
-    let options = SimOptions {
-        time_limit: Some(conditions.time_limit + 1.0),
-        ..SimOptions::with_noise(conditions.noise, conditions.seed)
-    };
-    let simulation = Simulation::new(&trip.scene, options).map_err(Failure::input)?;
-    let (start, truth) = (trip.start(), simulation.truth());
+    let stage = Stage::simulated(&trip.scene, conditions.sim_options(), Vec::new())?;
+    ride_with(trip, kind, conditions, stage.robot(0)?, &mut stage.truth(0)?)
+}
+
+/// The same with the robot, and with what is true about it.
+pub(crate) fn ride_with(
+    trip: &Trip,
+    kind: BugKind,
+    conditions: Conditions,
+    mut robot: Driven,
+    truth: &mut StageTruth,
+) -> Result<Ride, Failure> {
+    let start = trip.start();
     let parameters = parameters(trip, conditions.noise);
     let mut bug = kind.with(start.to_local(trip.goal), parameters).map_err(Failure::input)?;
-    let mut robot = simulation.robot(0).map_err(Failure::input)?;
     let (mut hits, mut path) = (Vec::new(), vec![start.position()]);
     let result = run_bug(bug.as_mut(), &mut robot, conditions.time_limit, |bug, _| {
         path.extend(truth.pose(0).ok().as_ref().map(Pose::position));
@@ -96,7 +111,7 @@ pub(crate) fn ride(trip: &Trip, kind: BugKind, conditions: Conditions) -> Result
     });
     // The robot lets go of the world, so that what is true stays as it is.
     drop(robot);
-    let (sim_time, truth) = (truth.time(), truth.robot(0).map_err(Failure::run)?);
+    let (sim_time, truth) = (truth.time().map_err(Failure::run)?, truth.robot(0).map_err(Failure::run)?);
     Ok(Ride {
         kind,
         guarantee: bug.guarantee(),

@@ -13,7 +13,7 @@ use super::{Failure, Origin};
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Options of all examples (millimetres and degrees)")]
 pub(crate) struct CommonArgs {
-    /// World or scene to run in: .sim, .wld, .maz, or a ROS map.yaml.
+    /// World or scene to run in: .sim, .wld, .maz, a ROS map.yaml, or a MovingAI .map.
     #[arg(long, value_name = "FILE")]
     pub(crate) world: Option<PathBuf>,
 

@@ -11,10 +11,14 @@ use super::origin::Facts;
 use super::{CommonArgs, Failure};
 
 /// Options that do not affect a run.
-const NOT_RECORDED: [&str; 6] = ["record", "replay", "picture", "json", "realtime", "robios"];
+const NOT_RECORDED: [&str; 8] =
+    ["record", "replay", "picture", "output", "lcd", "json", "realtime", "robios"];
 
 /// Options that name files which a run reads.
-const FILES: [&str; 2] = ["world", "robot"];
+const FILES: [&str; 3] = ["world", "robot", "maze"];
+
+/// Options with which nothing drives that could be recorded: many runs at once, or none.
+const UNRECORDED: [&str; 3] = ["campaign", "plan", "input"];
 
 /// Why a command line is not one to run.
 pub(crate) enum Refusal {
@@ -40,11 +44,27 @@ where
     }
     let mut command = A::command();
     let mut matches = command.try_get_matches_from_mut(words).map_err(Refusal::Parser)?;
+    check_recorded(&matches).map_err(Refusal::Recording)?;
     let options = options(&command, &matches);
     let args =
         A::from_arg_matches_mut(&mut matches).map_err(|error| Refusal::Parser(error.format(&mut command)))?;
     args.as_ref().origin.set(Facts { program: example.into(), options, log });
     Ok(args)
+}
+
+/// Fails if there is to be a recording of what cannot be recorded.
+fn check_recorded(matches: &ArgMatches) -> Result<(), Failure> {
+    let given = |name: &&&str| {
+        matches.try_contains_id(name).is_ok_and(|known| known)
+            && matches.value_source(name) == Some(ValueSource::CommandLine)
+    };
+    let unrecorded = UNRECORDED.iter().find(given);
+    match (["record", "replay"].iter().find(given), unrecorded) {
+        (Some(option), Some(other)) => Err(Failure::input(format!(
+            "--{option}: found no robot that drives with --{other}; expected a run that can be recorded"
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// The file behind `--replay`.

@@ -41,7 +41,8 @@
 //! With `--record` the stage writes down what robot and truth are asked and answer, with `--replay` they are made of
 //! a recording, and without either it is the simulator alone. Several robots in threads: take all of them before the
 //! first one drives, and give each thread a truth of its own, `stage.truth(index)`. What goes wrong with a recording
-//! reaches the report by itself. Runs that nobody records, as those of a campaign, use `Stage::simulated`.
+//! reaches the report by itself. Runs that nobody records, as those of a campaign, use `Stage::simulated`. Robots that are
+//! stepped in one thread come from `common.troop(&scene, options)`, which is used as a `Fleet` is.
 //!
 //! The command line of a recorded run is in the recording, but for what does not affect the run; `--replay` reads it
 //! from there. In place of the names of files are those that the files have in the recording, so an example reads the
@@ -61,15 +62,17 @@ mod stage;
 mod trip;
 mod values;
 mod wall_clock;
+mod workers;
 
 pub(crate) use args::CommonArgs;
 pub(crate) use failure::Failure;
 pub(crate) use origin::Origin;
 pub(crate) use report::{Outcome, Report, millimetres, point_in_mm, rounded};
 pub(crate) use run::{Printed, main, run, run_printing};
-pub(crate) use stage::{Driven, Stage, StageTruth};
-pub(crate) use trip::Trip;
+pub(crate) use stage::{Driven, Stage, StageTruth, StagedTroop};
+pub(crate) use trip::{StandIn, Trip};
 pub(crate) use values::{
     GoalOption, parse_goal, parse_noise, parse_picture, parse_point, parse_pose, parse_seconds,
 };
 pub(crate) use wall_clock::{Pacer, Progress, Stopwatch};
+pub(crate) use workers::share_out;

@@ -4,7 +4,10 @@ use std::ffi::OsString;
 use std::io::Write;
 
 use crate::common::run;
-use crate::{a_to_b, ackermann, distbug, omni, wall_following};
+use crate::{
+    a_to_b, ackermann, bug_compare, camera, color_tracking, coverage, distbug, edges, follow_me, genetic,
+    lidar_scan, localise, micromouse, motion, navigate, omni, random_drive, wall_following,
+};
 
 /// Runs a program with a command line and its two outputs. Returns the exit status.
 type Run = fn(Vec<OsString>, &mut dyn Write, &mut dyn Write) -> u8;
@@ -16,16 +19,37 @@ pub(crate) struct Program {
     pub(crate) run: Run,
 }
 
-pub(crate) const PROGRAMS: &[Program] = &[
-    Program { name: "a_to_b", run: |words, out, err| run("a_to_b", words, out, err, a_to_b::work) },
-    Program { name: "ackermann", run: |words, out, err| run("ackermann", words, out, err, ackermann::work) },
-    Program { name: "distbug", run: |words, out, err| run("distbug", words, out, err, distbug::work) },
-    Program { name: "omni", run: |words, out, err| run("omni", words, out, err, omni::work) },
-    Program {
-        name: "wall_following",
-        run: |words, out, err| run("wall_following", words, out, err, wall_following::work),
-    },
-];
+/// A table of programs from the names of their modules.
+macro_rules! programs {
+    ($($name:ident),* $(,)?) => {
+        /// All programs, in the order of their names.
+        pub(crate) const PROGRAMS: &[Program] = &[$(Program {
+            name: stringify!($name),
+            run: |words, out, err| run(stringify!($name), words, out, err, $name::work),
+        }),*];
+    };
+}
+
+programs!(
+    a_to_b,
+    ackermann,
+    bug_compare,
+    camera,
+    color_tracking,
+    coverage,
+    distbug,
+    edges,
+    follow_me,
+    genetic,
+    lidar_scan,
+    localise,
+    micromouse,
+    motion,
+    navigate,
+    omni,
+    random_drive,
+    wall_following
+);
 
 /// A program by its name.
 pub(crate) fn named(name: &str) -> Option<&'static Program> {

@@ -1,10 +1,10 @@
 use std::fs::File;
 use std::io::BufWriter;
+use std::ops::{Deref, DerefMut};
 use std::path::Path;
 
-use roverlab::geometry::Point;
-use roverlab::io::log::{Attachment, Header, LogError, LogWriter, Player, Witness};
-use roverlab::io::sim::{SimOptions, Simulation};
+use roverlab::io::log::{Attachment, Header, LogError, LogWriter, Player, Troop, Witness};
+use roverlab::io::sim::{Fleet, SimOptions, Simulation};
 use roverlab::io::wrappers::{Fault, Faulty};
 use roverlab::io::{self, Key, RobotIo};
 use roverlab::world::{Scene, formats};
@@ -24,50 +24,124 @@ pub(crate) type StageTruth = Box<dyn Witness + Send>;
 pub(crate) struct Stage {
     play: Play,
     faults: Vec<Fault>,
-    writer: Option<LogWriter<BufWriter<File>>>,
-    origin: Origin,
+    recording: Recording,
 }
 
 #[derive(Debug)]
 enum Play {
     Simulation(Simulation),
+    /// Each robot alone in a world of its own.
+    Apart(Vec<Simulation>),
     Recording(Player),
+}
+
+/// Where a run is recorded, and what it replays.
+#[derive(Debug, Default)]
+struct Recording {
+    writer: Option<LogWriter<BufWriter<File>>>,
+    player: Option<Player>,
+    origin: Origin,
+}
+
+/// Robots that are stepped in one thread: simulated or replayed, and recorded if the options ask for it. For all else as
+/// a [`Stage`].
+pub(crate) struct StagedTroop<'a> {
+    // Let go before the recording is finished.
+    troop: Box<dyn Troop<'a> + 'a>,
+    _recording: Recording,
+}
+
+impl<'a> Deref for StagedTroop<'a> {
+    type Target = dyn Troop<'a> + 'a;
+
+    fn deref(&self) -> &Self::Target {
+        self.troop.as_ref()
+    }
+}
+
+impl DerefMut for StagedTroop<'_> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        self.troop.as_mut()
+    }
 }
 
 impl CommonArgs {
     /// The stage that the options describe: a simulation of a scene, or the recording that `--replay` names.
     pub(crate) fn stage(&self, scene: &Scene, options: SimOptions) -> Result<Stage, Failure> {
-        let facts = self.origin.facts();
-        let mut stage = match &facts.log {
-            Some(log) => Stage {
-                play: Play::Recording(Player::new(log)),
-                faults: Vec::new(),
-                writer: None,
-                origin: Origin::default(),
-            },
+        let stage = match self.player() {
+            Some(player) => {
+                Stage { play: Play::Recording(player), faults: Vec::new(), recording: Recording::default() }
+            }
             None => Stage::simulated(scene, options, self.faults()?)?,
         };
-        stage.origin = self.origin.clone();
-        stage.origin.set_staged();
-        if let Some(file) = &self.record {
-            let header = facts.log.as_ref().map_or_else(
-                || Header {
-                    seed: Some(self.seed),
-                    attachments: texts(scene).into_iter().chain(self.origin.files()).collect(),
-                    ..Header::new(&facts.program, &facts.options)
-                },
-                |log| log.header().clone(),
-            );
-            let writer = create(file, &header).map_err(|error| {
-                Failure::input(format!(
-                    "--record {}: {error}; expected a file that can be written",
-                    file.display()
-                ))
-            })?;
-            writer.show(scene);
-            stage.writer = Some(writer);
-        }
-        Ok(stage)
+        self.recorded(scene, stage)
+    }
+
+    /// As [`stage`](Self::stage), with copies of the scene's first robot that drive each alone in a copy of its world.
+    pub(crate) fn stage_apart(
+        &self,
+        scene: &Scene,
+        options: &SimOptions,
+        robots: usize,
+    ) -> Result<Stage, Failure> {
+        let play = if let Some(player) = self.player() {
+            Play::Recording(player)
+        } else {
+            let simulations = (0..robots).map(|_| Simulation::new(scene, options.clone()));
+            Play::Apart(simulations.collect::<io::Result<_>>().map_err(Failure::input)?)
+        };
+        self.recorded(scene, Stage { play, faults: Vec::new(), recording: Recording::default() })
+    }
+
+    fn recorded(&self, scene: &Scene, stage: Stage) -> Result<Stage, Failure> {
+        let player = match &stage.play {
+            Play::Recording(player) => Some(player.clone()),
+            _ => None,
+        };
+        Ok(Stage { recording: self.recording(scene, player)?, ..stage })
+    }
+
+    /// As [`stage`](Self::stage), with all robots stepped in one thread.
+    pub(crate) fn troop<'a>(&self, scene: &Scene, options: SimOptions) -> Result<StagedTroop<'a>, Failure> {
+        let player = self.player();
+        let troop: Box<dyn Troop<'a> + 'a> = match &player {
+            Some(player) => Box::new(player.troop()),
+            None => Box::new(Fleet::new(scene, options).map_err(Failure::input)?),
+        };
+        let recording = self.recording(scene, player)?;
+        let troop = match &recording.writer {
+            Some(writer) => Box::new(writer.troop(troop)),
+            None => troop,
+        };
+        Ok(StagedTroop { troop, _recording: recording })
+    }
+
+    /// What plays the recording that `--replay` names.
+    fn player(&self) -> Option<Player> {
+        self.origin.facts().log.as_ref().map(Player::new)
+    }
+
+    /// Begins the recording that `--record` asks for.
+    fn recording(&self, scene: &Scene, player: Option<Player>) -> Result<Recording, Failure> {
+        let mut recording = Recording { writer: None, player, origin: self.origin.clone() };
+        self.origin.set_staged();
+        let Some(file) = &self.record else { return Ok(recording) };
+        let facts = self.origin.facts();
+        let header = facts.log.as_ref().map_or_else(
+            || Header {
+                seed: Some(self.seed),
+                attachments: texts(scene).into_iter().chain(self.origin.files()).collect(),
+                ..Header::new(&facts.program, &facts.options)
+            },
+            |log| log.header().clone(),
+        );
+        let writer = create(file, &header).map_err(|error| {
+            let file = file.display();
+            Failure::input(format!("--record {file}: {error}; expected a file that can be written"))
+        })?;
+        writer.show(scene);
+        recording.writer = Some(writer);
+        Ok(recording)
     }
 }
 
@@ -97,17 +171,18 @@ impl Stage {
     /// A simulation that nobody records, with faults of the first robot.
     pub(crate) fn simulated(scene: &Scene, options: SimOptions, faults: Vec<Fault>) -> Result<Self, Failure> {
         let simulation = Simulation::new(scene, options).map_err(Failure::input)?;
-        Ok(Self { play: Play::Simulation(simulation), faults, writer: None, origin: Origin::default() })
+        Ok(Self { play: Play::Simulation(simulation), faults, recording: Recording::default() })
     }
 
     /// A robot, by its index in the scene. Take all robots that drive at once before the first one does.
     pub(crate) fn robot(&self, index: usize) -> Result<Driven, Failure> {
+        let simulated = |simulation: &Simulation, index| simulation.robot(index).map_err(Failure::input);
         match &self.play {
             Play::Simulation(simulation) => {
                 let faults = if index == 0 { self.faults.clone() } else { Vec::new() };
-                let robot = simulation.robot(index).map_err(Failure::input)?;
-                Ok(self.recorded(Faulty::new(robot, faults), index))
+                Ok(self.recorded(Faulty::new(simulated(simulation, index)?, faults), index))
             }
+            Play::Apart(simulations) => Ok(self.recorded(simulated(&simulations[index], 0)?, index)),
             Play::Recording(player) => {
                 Ok(self.recorded(player.robot(index).map_err(|error| foreign(&error))?, index))
             }
@@ -115,16 +190,17 @@ impl Stage {
     }
 
     fn recorded(&self, robot: impl RobotIo + Send + 'static, index: usize) -> Driven {
-        match &self.writer {
+        match &self.recording.writer {
             Some(writer) => Box::new(writer.recorder(robot, index)),
             None => Box::new(robot),
         }
     }
 
-    /// What is true, for the program that drives or watches a robot.
+    /// What is true, for the program that drives or watches a robot. Of robots apart, each is the first one of its world.
     pub(crate) fn truth(&self, index: usize) -> Result<StageTruth, Failure> {
         match &self.play {
             Play::Simulation(simulation) => Ok(self.witnessed(simulation.truth(), index)),
+            Play::Apart(simulations) => Ok(self.witnessed(simulations[index].truth(), index)),
             Play::Recording(player) => {
                 Ok(self.witnessed(player.truth(index).map_err(|error| foreign(&error))?, index))
             }
@@ -132,24 +208,17 @@ impl Stage {
     }
 
     fn witnessed(&self, witness: impl Witness + Send + 'static, index: usize) -> StageTruth {
-        match &self.writer {
+        match &self.recording.writer {
             Some(writer) => Box::new(writer.witness(witness, index)),
             None => Box::new(witness),
         }
-    }
-
-    /// Where the scene's objects are now; a recording does not tell.
-    pub(crate) fn objects(&self) -> Option<Vec<Point>> {
-        let Play::Simulation(simulation) = &self.play else { return None };
-        let truth = simulation.truth();
-        let poses = (0..).map_while(|index| truth.object(index).ok());
-        Some(poses.map(|pose| pose.position()).collect())
     }
 
     /// Schedules a key press, in seconds since the start. A replayed robot's keys are in the recording.
     pub(crate) fn press_key(&self, index: usize, time: f64, key: Key) -> io::Result<()> {
         match &self.play {
             Play::Simulation(simulation) => simulation.press_key(index, time, key),
+            Play::Apart(simulations) => simulations[index].press_key(0, time, key),
             Play::Recording(_) => Ok(()),
         }
     }
@@ -160,14 +229,12 @@ fn foreign(error: &LogError) -> Failure {
     Failure::input(format!("--replay: {error}"))
 }
 
-impl Drop for Stage {
+impl Drop for Recording {
     fn drop(&mut self) {
         if let Some(Err(error)) = self.writer.take().map(LogWriter::finish) {
             self.origin.note(format!("--record: the recording is incomplete: {error}"));
         }
-        if let Play::Recording(player) = &self.play
-            && let Some((time, call)) = player.rest()
-        {
+        if let Some((time, call)) = self.player.as_ref().and_then(Player::rest) {
             self.origin.note(format!(
                 "--replay: the run has ended; expected the call {call} at {time} s, as recorded"
             ));

@@ -44,6 +44,21 @@ impl Trip {
     }
 }
 
+/// The robot that drives where a world has none, or one that an example has no use for.
+#[derive(Debug, Clone)]
+pub(crate) struct StandIn {
+    pub(crate) spec: Arc<RobotSpec>,
+    /// Whether the example has a use for a robot.
+    pub(crate) suits: fn(&RobotSpec) -> bool,
+}
+
+impl Default for StandIn {
+    /// An S4, and any robot will do.
+    fn default() -> Self {
+        Self { spec: Arc::new(RobotSpec::s4()), suits: |_| true }
+    }
+}
+
 impl CommonArgs {
     /// The trip that the options describe: `--world`, or `own` without it, with the robot, the start and the goal
     /// that the options give, or else the world.
@@ -60,7 +75,16 @@ impl CommonArgs {
 
     /// The same for an example that takes a heading at the goal, which is in `self.goal`.
     pub(crate) fn trip_to_pose(&self, own: impl FnOnce() -> Scene) -> Result<Trip, Failure> {
-        let scene = self.placed(own)?;
+        self.trip_to_pose_of(&StandIn::default(), own)
+    }
+
+    /// The same for an example that not every robot can drive in.
+    pub(crate) fn trip_to_pose_of(
+        &self,
+        stand_in: &StandIn,
+        own: impl FnOnce() -> Scene,
+    ) -> Result<Trip, Failure> {
+        let scene = self.placed_of(stand_in, own)?;
         let goal = self.destination(&scene)?;
         Ok(Trip { scene, goal })
     }
@@ -68,13 +92,28 @@ impl CommonArgs {
     /// The scene that the options describe, for an example without a goal: `--world`, or `own` without it, with the
     /// robot and the start that the options give, or else the world.
     pub(crate) fn placed(&self, own: impl FnOnce() -> Scene) -> Result<Scene, Failure> {
+        self.placed_of(&StandIn::default(), own)
+    }
+
+    /// The same for an example that not every robot can drive in.
+    pub(crate) fn placed_of(
+        &self,
+        stand_in: &StandIn,
+        own: impl FnOnce() -> Scene,
+    ) -> Result<Scene, Failure> {
         let mut scene = match &self.world {
             Some(file) => Self::parsed(self.load_scene("world", file))?,
             None => own(),
         };
-        let mut robot = self.driver(&scene)?;
+        let mut robot = self.driver(&scene, stand_in)?;
         if let Some(file) = &self.robot {
             robot.spec = Arc::new(Self::parsed(self.load_robot("robot", file))?);
+        } else if !(stand_in.suits)(&robot.spec) {
+            let (world, found, other) = (self.world_name(), &robot.spec.name, &stand_in.spec.name);
+            Self::warn(format_args!(
+                "{world}: found robot {found}; expected another drive: {other} takes its place"
+            ));
+            robot.spec = Arc::clone(&stand_in.spec);
         }
         match scene.robots.first_mut() {
             Some(first) => *first = robot,
@@ -82,6 +121,18 @@ impl CommonArgs {
         }
         self.check_start(&scene)?;
         Ok(scene)
+    }
+
+    /// The same, and whoever gives a goal is told why there is none.
+    pub(crate) fn placed_without_goal(
+        &self,
+        why: &str,
+        own: impl FnOnce() -> Scene,
+    ) -> Result<Scene, Failure> {
+        match self.goal {
+            Some(_) => Err(Failure::input(format!("--goal: {why}; expected a command line without --goal"))),
+            None => self.placed(own),
+        }
     }
 
     /// The world's name in messages.
@@ -99,11 +150,11 @@ impl CommonArgs {
     }
 
     /// The robot that drives, at its start.
-    fn driver(&self, scene: &Scene) -> Result<RobotPlacement, Failure> {
+    fn driver(&self, scene: &Scene, stand_in: &StandIn) -> Result<RobotPlacement, Failure> {
         let mut robot = match (scene.robots.first(), scene.world.start, self.start) {
             (Some(robot), ..) => robot.clone(),
             (None, Some(pose), _) | (None, None, Some(pose)) => {
-                RobotPlacement::new(Arc::new(RobotSpec::s4()), pose)
+                RobotPlacement::new(Arc::clone(&stand_in.spec), pose)
             }
             (None, None, None) => {
                 return Err(Failure::input(format!(

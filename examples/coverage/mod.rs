@@ -1,5 +1,12 @@
 //! What the example `coverage` is made of.
 
+#![allow(dead_code, unused_imports, reason = "the program and its test each use their own part of this")]
+
+mod campaign;
+mod rooms;
+
+pub(crate) use campaign::{Row, campaign, row, text};
+
 use std::sync::Arc;
 
 use roverlab::drive::{
@@ -13,8 +20,8 @@ use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
-use crate::common::{CommonArgs, Failure, GoalOption, Outcome, Report, Trip, rounded};
-use crate::driving::{Conditions, Run, drawn, paced};
+use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
+use crate::driving::{Conditions, Run, check_lidar, drawn, paced, world_with_others};
 
 /// The command line of the example `coverage`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -25,6 +32,8 @@ use crate::driving::{Conditions, Run, drawn, paced};
 Without --world, the room has a wall that juts in and two crates. The robot knows the world and its start, and keeps track of
 itself by matching scans. What it can cover is the floor under it wherever it can get 15 mm away from everything.
 
+With --campaign, rooms of many sizes with walls that jut in, crates and cans.
+
 JSON fields:
   coverage_percent            share of that floor that it has truly passed over
   area_m2                     that floor
@@ -32,9 +41,18 @@ JSON fields:
   path_ratio                  true path length in terms of area over the robot's width
   random_drive_percent        what a random drive of the same duration covers
   time_limit_s, picture
-Outcomes: covered (98 % or more), incomplete, timed_out, collided, failed."
+  rows                        with --campaign only: the table
+Outcomes: covered (98 % or more), incomplete, timed_out, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
+    /// Cover many rooms and print a table.
+    #[arg(long)]
+    pub(crate) campaign: bool,
+
+    /// Rooms in a campaign.
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub(crate) rooms: u64,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }
@@ -54,34 +72,15 @@ const EVERY: u32 = 3;
 /// The work of the example.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
+    if args.campaign {
+        return campaign(args);
+    }
     common.check_picture()?;
-    let trip = trip(common)?;
-    let scene = &trip.scene;
-    let start = trip.start();
-    let radius = trip.spec().footprint.bounding_radius();
-    let parameters = CoverageParameters { radius, ..CoverageParameters::default() };
-    let mut map = CoverageMap::new(&scene.world, start.position(), parameters).map_err(Failure::input)?;
-    let plan = CoveragePlan::new(&map, start.position()).map_err(Failure::input)?;
-    let tour = TourParameters::default();
-    let limit = 60.0 + 3.0 * plan.length() / tour.speed + 4.0 * plan.points().len() as f64;
-    let conditions = Conditions::new(common, limit.ceil())?;
-    let localisation = LocaliserParameters {
-        range_error: NoiseModel::real().scaled(conditions.noise).range,
-        radius,
-        ..LocaliserParameters::default()
-    };
-    let mut localiser = LocalisationMap::new(&scene.world)
-        .and_then(|map| Localiser::new(map, localisation))
-        .map_err(Failure::input)?;
-    localiser.start_at(start);
-    let mut tour = Tour::new(plan.points(), tour).map_err(Failure::input)?;
-    let run =
-        conditions.run(scene, paced(common), |robot, step| drive(robot, &mut localiser, &mut tour, step))?;
-    run.positions().for_each(|place| map.cover(place));
-    let random = random_share(args, scene, &map, run.sim_time)?;
-    let width = 2.0 * radius;
-    let ratio = run.truth.path_length * width / map.area();
-    let (file, trouble) = drawn(common, "coverage.svg", || picture(args, scene, &plan, &run, &map, ratio));
+    let scene = &common.placed_without_goal("the robot goes everywhere", scene)?;
+    check_lidar(scene)?;
+    let done = cover(scene, |limit| Conditions::new(common, limit), paced(common))?;
+    let Covered { plan, run, map, ratio, .. } = &done;
+    let (file, trouble) = drawn(common, "coverage.svg", || picture(args, scene, &done));
     let report = run.report(|()| {
         if map.share() >= ENOUGH { Outcome::verdict("covered") } else { Outcome::failure("incomplete") }
     });
@@ -89,26 +88,53 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         .field("coverage_percent", rounded(100.0 * map.share()))
         .field("area_m2", rounded(map.area()))
         .field("planned_length_mm", rounded(units::to_mm(plan.length())))
-        .field("path_ratio", rounded(ratio))
-        .field("random_drive_percent", rounded(100.0 * random))
-        .field("time_limit_s", conditions.time_limit)
+        .field("path_ratio", rounded(*ratio))
+        .field("random_drive_percent", rounded(100.0 * done.random))
+        .field("time_limit_s", done.time_limit)
         .field("picture", file))
 }
 
-fn trip(common: &CommonArgs) -> Result<Trip, Failure> {
-    let mut common = common.clone();
-    if common.goal.is_some() {
-        return Err(Failure::input(
-            "--goal: the robot goes everywhere; expected a command line without --goal",
-        ));
-    }
-    // The shared reading of the options asks for a goal.
-    common.goal = Some(GoalOption { position: Point::origin(), heading: None });
-    let trip = common.trip(scene)?;
-    if trip.spec().lidar.is_none() {
-        return Err(Failure::input("found a robot without a lidar; expected one with a lidar"));
-    }
-    Ok(trip)
+/// What came of a room.
+pub(crate) struct Covered {
+    pub(crate) plan: CoveragePlan,
+    pub(crate) run: Run<()>,
+    /// What the robot has covered, and what share of it a random drive covers in the same time.
+    pub(crate) map: CoverageMap,
+    pub(crate) random: f64,
+    /// The path's length in terms of area over width.
+    pub(crate) ratio: f64,
+    pub(crate) time_limit: f64,
+}
+
+/// Lets the robot cover its floor, and measures. `conditions` are for a time limit.
+pub(crate) fn cover(
+    scene: &Scene,
+    conditions: impl FnOnce(f64) -> Result<Conditions, Failure>,
+    pace: impl FnMut(f64),
+) -> Result<Covered, Failure> {
+    let (start, radius) = (scene.robots[0].pose, scene.robots[0].spec.footprint.bounding_radius());
+    let parameters = CoverageParameters { radius, ..CoverageParameters::default() };
+    let world = world_with_others(scene);
+    let mut map = CoverageMap::new(&world, start.position(), parameters).map_err(Failure::input)?;
+    let plan = CoveragePlan::new(&map, start.position()).map_err(Failure::input)?;
+    let tour = TourParameters::default();
+    let limit = 60.0 + 3.0 * plan.length() / tour.speed + 4.0 * plan.points().len() as f64;
+    let conditions = conditions(limit.ceil())?;
+    let localisation = LocaliserParameters {
+        range_error: NoiseModel::real().scaled(conditions.noise).range,
+        radius,
+        ..LocaliserParameters::default()
+    };
+    let mut localiser = LocalisationMap::new(&world)
+        .and_then(|map| Localiser::new(map, localisation))
+        .map_err(Failure::input)?;
+    localiser.start_at(start);
+    let mut tour = Tour::new(plan.points(), tour).map_err(Failure::input)?;
+    let run = conditions.run(scene, pace, |robot, step| drive(robot, &mut localiser, &mut tour, step))?;
+    run.positions().for_each(|place| map.cover(place));
+    let random = random_share(&conditions, scene, &map, run.sim_time)?;
+    let ratio = run.truth.path_length * 2.0 * radius / map.area();
+    Ok(Covered { plan, run, map, random, ratio, time_limit: conditions.time_limit })
 }
 
 /// A room with a wall that juts in and two crates.
@@ -146,15 +172,20 @@ fn drive<R: Clock + Drive + Lidar + ?Sized>(
 }
 
 /// What a random drive covers in the same time.
-fn random_share(args: &Args, scene: &Scene, map: &CoverageMap, seconds: f64) -> Result<f64, Failure> {
+fn random_share(
+    conditions: &Conditions,
+    scene: &Scene,
+    map: &CoverageMap,
+    seconds: f64,
+) -> Result<f64, Failure> {
     let parameters = *map.parameters();
     let start = scene.robots[0].pose.position();
-    let mut map = CoverageMap::new(&scene.world, start, parameters).map_err(Failure::input)?;
-    let options = SimOptions::with_noise(args.common.noise, args.common.seed);
+    let mut map = CoverageMap::new(&world_with_others(scene), start, parameters).map_err(Failure::input)?;
+    let options = SimOptions::with_noise(conditions.noise, conditions.seed);
     let simulation = Simulation::new(scene, options).map_err(Failure::input)?;
     let truth = simulation.truth();
     let random = RandomDriveParameters { radius: parameters.radius, ..RandomDriveParameters::default() };
-    let stream = Stream::new(args.common.seed).child("random drive", 0);
+    let stream = Stream::new(conditions.seed).child("random drive", 0);
     let mut drive = RandomDrive::new(random, stream).map_err(Failure::input)?;
     let mut robot = simulation.robot(0).map_err(Failure::input)?;
     drive.run(&mut robot, seconds, |_| {
@@ -166,14 +197,8 @@ fn random_share(args: &Args, scene: &Scene, map: &CoverageMap, seconds: f64) -> 
 }
 
 /// The plan, the way, and what was left out.
-fn picture(
-    args: &Args,
-    scene: &Scene,
-    plan: &CoveragePlan,
-    run: &Run<()>,
-    map: &CoverageMap,
-    ratio: f64,
-) -> Picture {
+fn picture(args: &Args, scene: &Scene, done: &Covered) -> Picture {
+    let Covered { plan, run, map, ratio, .. } = done;
     let mut picture = Picture::new(&scene.world);
     picture.title(format!("Coverage: {:.1} % of the floor", 100.0 * map.share()));
     picture.caption(format!(

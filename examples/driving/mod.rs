@@ -1,8 +1,11 @@
 //! What the driving examples share: a simulated robot that is watched, and what is said about its run.
 
-#![allow(dead_code, reason = "each example uses its own part of this")]
+#![allow(dead_code, unused_imports, reason = "each example uses its own part of this")]
+
+mod way;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::log::Witness;
@@ -10,9 +13,11 @@ use roverlab::io::sim::{NoiseModel, RobotTruth, SimOptions};
 use roverlab::io::{self, Drive, Key};
 use roverlab::kinematics::OdometryErrors;
 use roverlab::picture::{Picture, SaveError};
-use roverlab::world::{DriveSpec, RobotSpec, Scene};
+use roverlab::world::{Colour, DriveSpec, Object, ObjectKind, RobotSpec, Scene, Shape, World};
 
 use crate::common::{CommonArgs, Driven, Failure, Outcome, Pacer, Report, Stage, StageTruth};
+
+pub(crate) use way::Way;
 
 /// How the simulator runs.
 #[derive(Debug, Clone)]
@@ -48,7 +53,7 @@ pub(crate) struct Run<T> {
     pub(crate) sim_time: f64,
     pub(crate) true_path: Vec<Pose>,
     pub(crate) odometry_path: Vec<Point>,
-    /// Where the scene's objects are at the end; none if they may have been pushed and a recording does not tell.
+    /// Where the scene's objects are at the end.
     pub(crate) objects: Vec<Point>,
 }
 
@@ -131,8 +136,12 @@ impl Conditions {
         });
         // The robot lets go of the world, so that what is true stays as it is.
         drop(robot);
-        let known = || scene.world.objects.iter().map(|object| object.pose.position()).collect();
-        let objects = stage.objects().unwrap_or_else(|| if self.pushing { Vec::new() } else { known() });
+        let objects = scene.world.objects.iter().enumerate().map(|(index, object)| {
+            // What nobody pushes stays where it was.
+            let moved = if self.pushing { truth.object(index).ok() } else { None };
+            moved.unwrap_or(object.pose).position()
+        });
+        let objects = objects.collect();
         let run = finish(result, &mut truth, start, true_path, odometry_path)?;
         Ok(Run { objects, ..run })
     }
@@ -215,6 +224,11 @@ fn save(picture: &Picture, file: &Path) -> Result<(), SaveError> {
     picture.save(file)
 }
 
+/// Some things by their number.
+pub(crate) fn counted(number: usize, thing: &str) -> String {
+    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
+}
+
 /// Metres between a robot's left and right wheels.
 pub(crate) fn track(spec: &RobotSpec) -> f64 {
     match spec.drive {
@@ -222,6 +236,26 @@ pub(crate) fn track(spec: &RobotSpec) -> f64 {
         | DriveSpec::Ackermann { track, .. }
         | DriveSpec::Omni { track, .. } => track,
         _ => f64::NAN,
+    }
+}
+
+/// The world as the first robot of a scene finds it: the others stand in it.
+pub(crate) fn world_with_others(scene: &Scene) -> World {
+    let mut world = scene.world.clone();
+    for other in &scene.robots[1..] {
+        let radius = other.spec.footprint.bounding_radius();
+        let shape = Shape::Cylinder { radius, height: other.spec.height };
+        let kind = ObjectKind { fixed: true, ..ObjectKind::new(&other.spec.name, shape, Colour::BLUE) };
+        world.objects.push(Object::new(Arc::new(kind), other.pose));
+    }
+    world
+}
+
+/// Refuses a robot without a lidar.
+pub(crate) fn check_lidar(scene: &Scene) -> Result<(), Failure> {
+    match scene.robots[0].spec.lidar {
+        Some(_) => Ok(()),
+        None => Err(Failure::input("found a robot without a lidar; expected one with a lidar")),
     }
 }
 

@@ -1,7 +1,7 @@
 use std::fmt::Write as _;
 
 use roverlab::geometry::units::to_mm;
-use roverlab::io::sim::SimOptions;
+use roverlab::io::sim::{Fleet, SimOptions};
 use serde_json::{Value, json};
 
 use super::Args;
@@ -92,7 +92,8 @@ fn add_run(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
     let (scene, waypoints) = hall(row.mode, row.followers, row.obstacles, seed);
     let options = SimOptions::with_noise(args.common.noise, seed);
     let seconds = args.common.time_limit.unwrap_or(SECONDS);
-    let run = run(&scene, &waypoints, row.mode, options, seconds, |_| {})?;
+    let mut fleet = Fleet::new(&scene, options)?;
+    let run = run(&mut fleet, &scene, &waypoints, row.mode, seconds, |_| {})?;
     row.lost += run.lost.len() as u64;
     row.contacts += run.contacts;
     row.mean_gap += run.mean_gap;

@@ -2,13 +2,12 @@ use roverlab::geometry::{Point, units};
 use roverlab::io::sim::SimOptions;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::Scene;
-use roverlab::world::formats;
 
 use super::campaign;
 use super::scene::{Mode, hall};
 use super::swarm::{SwarmRun, run};
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
-use crate::driving::{drawn, paced};
+use crate::driving::{counted, drawn, paced};
 
 /// The command line of the example `follow_me`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -20,7 +19,7 @@ Without --world, a LabBot leads round a hall that is another one for each seed. 
 and all others follow; letters in a maze stand for robots there. It leads past the world's markers, or past the corners of
 the floor without any.
 
-The robots are driven in one thread, which is not recorded: --record, --replay, --robios and --fault are refused.
+--robios and --fault are for one robot alone, and refused.
 
 With --campaign, many seeds for one follower, for five, for five among obstacles, for five by radio, and for a chain of 20.
 
@@ -82,7 +81,9 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let mode = args.mode.unwrap_or(Mode::for_followers(followers));
     let seconds = common.time_limit.unwrap_or(SECONDS);
     let options = SimOptions::with_noise(common.noise, common.seed);
-    let run = run(&scene, &waypoints, mode, options, seconds, paced(common))?;
+    let mut troop = common.troop(&scene, options)?;
+    let run = run(&mut *troop, &scene, &waypoints, mode, seconds, paced(common))?;
+    drop(troop);
     let (file, trouble) = drawn(common, "follow_me.svg", || picture(args, &scene, &run, mode));
     let outcome = if run.lost.is_empty() { Outcome::verdict("followed") } else { Outcome::failure("lost") };
     let leader = run.paths[0].last().copied();
@@ -108,8 +109,6 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 /// What the robots of a fleet cannot do.
 fn refuse(common: &CommonArgs) -> Result<(), Failure> {
     let given = [
-        ("--record", common.record.is_some()),
-        ("--replay", common.replay.is_some()),
         ("--fault", !common.fault.is_empty()),
         ("--goal", common.goal.is_some()),
         ("--start", common.start.is_some() && common.world.is_none()),
@@ -130,7 +129,7 @@ fn scene(args: &Args) -> Result<(Scene, Vec<Point>), Failure> {
         let mode = args.mode.unwrap_or(Mode::for_followers(followers));
         return Ok(hall(mode, followers, usize::from(args.obstacles), args.common.seed));
     };
-    let parsed = formats::load_scene(file).map_err(Failure::input)?;
+    let parsed = args.common.load_scene("world", file).map_err(Failure::input)?;
     for warning in &parsed.warnings {
         CommonArgs::warn(warning);
     }
@@ -162,7 +161,7 @@ fn corners(scene: &Scene) -> Vec<Point> {
 /// The ways of all robots, and where they end.
 fn picture(args: &Args, scene: &Scene, run: &SwarmRun, mode: Mode) -> Picture {
     let mut picture = Picture::new(&scene.world);
-    let followers = scene.robots.len() - 1;
+    let followers = counted(scene.robots.len() - 1, "follower");
     let ending = if run.contacts > 0 {
         "collided"
     } else if run.lost.is_empty() {
@@ -170,7 +169,7 @@ fn picture(args: &Args, scene: &Scene, run: &SwarmRun, mode: Mode) -> Picture {
     } else {
         "some lost"
     };
-    picture.title(format!("Follow me ({}): {followers} followers, {ending}", mode.name()));
+    picture.title(format!("Follow me ({}): {followers}, {ending}", mode.name()));
     picture.caption(format!(
         "mean gap {:.0} mm; {:.0} s, noise {}, seed {}",
         units::to_mm(run.mean_gap),
@@ -182,8 +181,7 @@ fn picture(args: &Args, scene: &Scene, run: &SwarmRun, mode: Mode) -> Picture {
         let points = path.iter().map(roverlab::geometry::Pose::position);
         match index {
             0 => picture.line(points, Style::true_path().width(3.0).labelled("leader")),
-            1 => picture.line(points, Style::plan().labelled("followers")),
-            _ => picture.line(points, Style::plan()),
+            _ => picture.line(points, Style::plan().labelled("followers")),
         };
     }
     for (robot, path) in scene.robots.iter().zip(&run.paths) {

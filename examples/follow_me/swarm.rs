@@ -1,14 +1,15 @@
-use std::cell::RefCell;
+use std::cell::Cell;
 use std::collections::VecDeque;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::ops::ControlFlow;
+use std::rc::Rc;
 
 use roverlab::drive::{
     Cruise, CruiseParameters, FollowMeObservation, FollowMeParameters, Follower, Formation, robots_in,
 };
 use roverlab::geometry::{Point, Pose, direction, units};
-use roverlab::io::sim::{Fleet, FleetRobot, SimOptions};
-use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar, LidarScan, Psd, Radio};
+use roverlab::io::log::Troop;
+use roverlab::io::{self, LidarScan, Psd, RobotIo};
 use roverlab::world::{Footprint, Scene};
 
 use super::scene::Mode;
@@ -51,7 +52,7 @@ impl Eyes {
     }
 
     /// What a lidar that looks over the floor sees.
-    fn look_round(&mut self, robot: &mut FleetRobot<'_>) -> io::Result<()> {
+    fn look_round(&mut self, robot: &mut dyn RobotIo) -> io::Result<()> {
         robot.scan_into(&mut self.scan)?;
         self.points.clear();
         self.points.extend(self.scan.points());
@@ -59,12 +60,7 @@ impl Eyes {
     }
 
     /// What eight distance sensors see, and have seen in the last moments; the lidar looks over the other followers.
-    fn look_by_rays(
-        &mut self,
-        robot: &mut FleetRobot<'_>,
-        rays: &[(u8, Pose)],
-        pose: Pose,
-    ) -> io::Result<()> {
+    fn look_by_rays(&mut self, robot: &mut dyn RobotIo, rays: &[(u8, Pose)], pose: Pose) -> io::Result<()> {
         /// Points that are remembered, and metres beyond which they do not matter.
         const REMEMBERED: usize = 48;
         const NEAR: f64 = 1.0;
@@ -115,23 +111,22 @@ pub(crate) fn gap_of(scene: &Scene, mode: Mode, follower: usize) -> f64 {
 }
 
 /// Lets a leader drive past waypoints and the others follow, for so many seconds.
-pub(crate) fn run(
+pub(crate) fn run<'a>(
+    fleet: &mut (dyn Troop<'a> + 'a),
     scene: &Scene,
     waypoints: &[Point],
     mode: Mode,
-    options: SimOptions,
     seconds: f64,
     mut watch: impl FnMut(f64),
 ) -> io::Result<SwarmRun> {
     let robots = scene.robots.len();
-    let last_seen: Vec<RefCell<f64>> = (0..robots).map(|_| RefCell::new(0.0)).collect();
-    let mut fleet = Fleet::new(scene, options)?;
-    control_leader(&mut fleet, scene, waypoints, mode)?;
+    let last_seen: Vec<Rc<Cell<f64>>> = (0..robots).map(|_| Rc::default()).collect();
+    control_leader(fleet, scene, waypoints, mode)?;
     for (follower, last_seen) in last_seen.iter().enumerate().skip(1) {
         if mode == Mode::Radio {
-            control_by_radio(&mut fleet, scene, follower)?;
+            control_by_radio(fleet, scene, follower)?;
         } else {
-            control_follower(&mut fleet, scene, mode, follower, last_seen)?;
+            control_follower(fleet, scene, mode, follower, Rc::clone(last_seen))?;
         }
     }
     let mut run = SwarmRun {
@@ -146,13 +141,13 @@ pub(crate) fn run(
         leader_path: 0.0,
     };
     let mut gaps = 0_u64;
-    while fleet.time() + 0.5 * PERIOD < seconds {
+    while fleet.time()? + 0.5 * PERIOD < seconds {
         fleet.run_for(PERIOD)?;
         for (path, robot) in run.paths.iter_mut().zip(0..) {
-            path.extend(fleet.pose(robot));
+            path.push(fleet.pose(robot)?);
         }
-        watch(fleet.time());
-        if fleet.time() < FORMING {
+        watch(fleet.time()?);
+        if fleet.time()? < FORMING {
             continue;
         }
         for follower in 1..robots {
@@ -165,7 +160,7 @@ pub(crate) fn run(
     run.mean_gap /= gaps.max(1) as f64;
     for (follower, last_seen) in last_seen.iter().enumerate().skip(1) {
         let far = gap_now(&run.paths, mode, follower) > TOO_FAR * gap_of(scene, mode, follower).max(0.3);
-        let unseen = mode != Mode::Radio && fleet.time() - *last_seen.borrow() > 3.0;
+        let unseen = mode != Mode::Radio && fleet.time()? - last_seen.get() > 3.0;
         if far || unseen {
             run.lost.push(follower);
         }
@@ -179,7 +174,7 @@ pub(crate) fn run(
             run.leader_path = truth.path_length;
         }
     }
-    run.sim_time = fleet.time();
+    run.sim_time = fleet.time()?;
     Ok(run)
 }
 
@@ -188,13 +183,18 @@ fn gap_now(paths: &[Vec<Pose>], mode: Mode, follower: usize) -> f64 {
     last(follower).distance_to(last(ahead_of(mode, follower)).position())
 }
 
-fn control_leader(fleet: &mut Fleet<'_>, scene: &Scene, waypoints: &[Point], mode: Mode) -> io::Result<()> {
+fn control_leader<'a>(
+    fleet: &mut (dyn Troop<'a> + 'a),
+    scene: &Scene,
+    waypoints: &[Point],
+    mode: Mode,
+) -> io::Result<()> {
     let start = scene.robots[0].pose;
     let local = waypoints.iter().map(|&point| start.to_local(point)).collect();
     let parameters = CruiseParameters { radius: radius_of(scene, 0), ..CruiseParameters::default() };
     let mut cruise = Cruise::new(local, parameters)?;
     let mut eyes = Eyes::new();
-    fleet.control(0, PERIOD, move |robot| {
+    let step = move |robot: &mut dyn RobotIo| {
         eyes.look_round(robot)?;
         let pose = robot.pose()?;
         // What is behind follows, and does not matter.
@@ -209,15 +209,16 @@ fn control_leader(fleet: &mut Fleet<'_>, scene: &Scene, waypoints: &[Point], mod
             }
         }
         Ok(ControlFlow::Continue(()))
-    })
+    };
+    fleet.control(0, PERIOD, Box::new(step))
 }
 
 fn control_follower<'a>(
-    fleet: &mut Fleet<'a>,
+    fleet: &mut (dyn Troop<'a> + 'a),
     scene: &Scene,
     mode: Mode,
     follower: usize,
-    last_seen: &'a RefCell<f64>,
+    last_seen: Rc<Cell<f64>>,
 ) -> io::Result<()> {
     let leader_radius = radius_of(scene, ahead_of(mode, follower));
     let parameters = FollowMeParameters {
@@ -229,7 +230,7 @@ fn control_follower<'a>(
     let mut behaviour = Follower::new(parameters)?;
     let rays = rays_of(scene, follower);
     let mut eyes = Eyes::new();
-    fleet.control(follower, PERIOD, move |robot| {
+    let step = move |robot: &mut dyn RobotIo| {
         let (time, pose) = (robot.now()?, robot.pose()?);
         if mode == Mode::Raised {
             eyes.look_by_rays(robot, &rays, pose)?;
@@ -240,19 +241,20 @@ fn control_follower<'a>(
         let seen = FollowMeObservation { time, pose, candidates: &candidates, obstacles: &eyes.points };
         let twist = behaviour.step(&seen)?;
         robot.set_speed(twist)?;
-        *last_seen.borrow_mut() = time - behaviour.unseen(time).min(time);
+        last_seen.set(time - behaviour.unseen(time).min(time));
         Ok(ControlFlow::Continue(()))
-    })
+    };
+    fleet.control(follower, PERIOD, Box::new(step))
 }
 
-fn control_by_radio(fleet: &mut Fleet<'_>, scene: &Scene, follower: usize) -> io::Result<()> {
+fn control_by_radio<'a>(fleet: &mut (dyn Troop<'a> + 'a), scene: &Scene, follower: usize) -> io::Result<()> {
     let start = scene.robots[follower].pose;
     let place = scene.robots[0].pose.to_local(start.position());
     let formation = Formation { radius: radius_of(scene, follower), ..Formation::at(place) };
     formation.validate()?;
     let mut eyes = Eyes::new();
     let mut leader = None;
-    fleet.control(follower, PERIOD, move |robot| {
+    let step = move |robot: &mut dyn RobotIo| {
         eyes.look_round(robot)?;
         while let Some(message) = robot.receive()? {
             leader = Some(Formation::read(&message.data)?);
@@ -262,5 +264,6 @@ fn control_by_radio(fleet: &mut Fleet<'_>, scene: &Scene, follower: usize) -> io
             robot.set_speed(twist)?;
         }
         Ok(ControlFlow::Continue(()))
-    })
+    };
+    fleet.control(follower, PERIOD, Box::new(step))
 }

@@ -20,7 +20,8 @@ use wall::Wall;
     about = "Evolves the scale of a spline's tangents, or the gains of a wall follower",
     after_help = "\
 A spline leads from --start to --goal X,Y,DEG: it shall be short and not bend sharply. A wall follower shall keep its
-distance in the simulator, with noise. Fitness is minus the cost.
+distance in the simulator, with noise. Fitness is minus the cost. --record is for --task wall: it records a drive with the
+best gains.
 
 JSON fields:
   task, method, evaluations, fitness          what was asked, and the best that was found with how many trials
@@ -77,7 +78,7 @@ pub(crate) enum Method {
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
-    check(common)?;
+    check(args)?;
     let (spline, wall, seed) = (Spline::new(common), Wall::new(common), common.seed);
     let population = match args.task {
         Task::Spline => {
@@ -96,7 +97,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let genes = inside(&best.genome);
     let (fields, picture) = match args.task {
         Task::Spline => (spline.found(&genes)?, spline.picture(&population, &genes)),
-        Task::Wall => (Wall::found(&genes), wall.picture(seed, &genes)?),
+        Task::Wall => (Wall::found(&genes), wall.picture(common, &genes)?),
     };
     let (file, trouble) = draw(common, &picture);
     let report = Report::new(Outcome::verdict("evolved"))
@@ -113,13 +114,15 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 }
 
 /// Fails when an option has no meaning here.
-fn check(common: &CommonArgs) -> Result<(), Failure> {
+fn check(args: &Args) -> Result<(), Failure> {
+    let common = &args.common;
+    let drives = args.task == Task::Wall;
     let given = [
         ("--world", common.world.is_some()),
         ("--robot", common.robot.is_some()),
         ("--fault", !common.fault.is_empty()),
-        ("--record", common.record.is_some()),
-        ("--replay", common.replay.is_some()),
+        ("--record", common.record.is_some() && !drives),
+        ("--replay", common.replay.is_some() && !drives),
     ];
     let refused = |option: &str| {
         Failure::input(format!("{option}: has no meaning for evolution; expected a command line without it"))

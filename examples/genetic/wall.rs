@@ -3,13 +3,14 @@ use std::ops::ControlFlow;
 use roverlab::drive::{PidParameters, PidWallFollower, PidWallParameters, run_along_wall};
 use roverlab::evolve::Trial;
 use roverlab::geometry::{Point, Pose, math};
-use roverlab::io::Result;
+use roverlab::io::log::Witness;
 use roverlab::io::sim::{SimOptions, Simulation};
+use roverlab::io::{Clock, DistanceSensors, Drive, Result};
 use roverlab::picture::{Mark, Picture};
 use roverlab::world::{RobotSpec, Scene, World};
 use serde_json::{Map, Value, json};
 
-use crate::common::{CommonArgs, rounded};
+use crate::common::{CommonArgs, Failure, rounded};
 
 /// A wall to follow, for which the gains of a PID controller are to be found.
 #[derive(Debug, Clone, Copy)]
@@ -44,36 +45,13 @@ impl Wall {
 
     /// The root of the mean squared distance from the line, in metres.
     pub(crate) fn cost(self, genes: &[f64], trial: Trial) -> Result<f64> {
-        Ok(self.drive(genes, trial.random().bits())?.0)
+        let simulation = Simulation::new(&scene(), self.options(trial.random().bits()))?;
+        let (mut robot, mut truth) = (simulation.robot(0)?, simulation.truth());
+        Ok(drive(genes, &mut robot, &mut truth)?.0)
     }
 
-    /// Drives along the wall: what it costs, and where the robot was.
-    fn drive(self, genes: &[f64], seed: u64) -> Result<(f64, Vec<Point>)> {
-        let start = Pose::new(0.5, FLOOR.1 - 0.35, 0.2);
-        let scene = Scene::with_robot(World::walled(FLOOR.0, FLOOR.1), RobotSpec::s4(), start);
-        let simulation = Simulation::new(&scene, SimOptions::with_noise(self.noise, seed))?;
-        let (mut robot, truth) = (simulation.robot(0)?, simulation.truth());
-        let parameters = Self::parameters(genes);
-        let mut controller = PidWallFollower::new(parameters)?;
-        let (mut squares, mut count, mut way, mut lost) = (0.0, 0.0, Vec::new(), Ok(()));
-        run_along_wall(&mut robot, &mut controller, SECONDS, |time, _| match truth.pose(0) {
-            Ok(pose) => {
-                let error = FLOOR.1 - pose.y - parameters.distance;
-                if time > SETTLING {
-                    squares += error * error;
-                    count += 1.0;
-                }
-                way.push(pose.position());
-                ControlFlow::Continue(())
-            }
-            Err(error) => {
-                lost = Err(error);
-                ControlFlow::Break(())
-            }
-        })?;
-        lost?;
-        let contacts = truth.robot(0)?.contacts;
-        Ok((math::hypot((squares / f64::max(count, 1.0)).sqrt(), CONTACT * f64::from(contacts)), way))
+    fn options(self, seed: u64) -> SimOptions {
+        SimOptions::with_noise(self.noise, seed)
     }
 
     pub(crate) fn found(genes: &[f64]) -> Map<String, Value> {
@@ -82,10 +60,11 @@ impl Wall {
         fields.as_object().cloned().unwrap_or_default()
     }
 
-    /// The way with the best gains.
-    pub(crate) fn picture(self, seed: u64, best: &[f64]) -> Result<Picture> {
+    /// Drives with the best gains, which is recorded if the options ask for it, and draws the way.
+    pub(crate) fn picture(self, common: &CommonArgs, best: &[f64]) -> std::result::Result<Picture, Failure> {
         let mut picture = Picture::new(&World::walled(FLOOR.0, FLOOR.1));
-        let (_, way) = self.drive(best, seed)?;
+        let stage = common.stage(&scene(), self.options(common.seed))?;
+        let (_, way) = drive(best, &mut stage.robot(0)?, &mut stage.truth(0)?)?;
         picture.title("The gains of a wall follower, evolved");
         if let Some(start) = way.first() {
             picture.mark(Mark::Start, *start);
@@ -93,6 +72,40 @@ impl Wall {
         picture.true_path(way);
         Ok(picture)
     }
+}
+
+fn scene() -> Scene {
+    let start = Pose::new(0.5, FLOOR.1 - 0.35, 0.2);
+    Scene::with_robot(World::walled(FLOOR.0, FLOOR.1), RobotSpec::s4(), start)
+}
+
+/// Drives along the wall: what it costs, and where the robot was.
+fn drive<R: Clock + DistanceSensors + Drive>(
+    genes: &[f64],
+    robot: &mut R,
+    truth: &mut impl Witness,
+) -> Result<(f64, Vec<Point>)> {
+    let parameters = Wall::parameters(genes);
+    let mut controller = PidWallFollower::new(parameters)?;
+    let (mut squares, mut count, mut way, mut lost) = (0.0, 0.0, Vec::new(), Ok(()));
+    run_along_wall(robot, &mut controller, SECONDS, |time, _| match truth.pose(0) {
+        Ok(pose) => {
+            let error = FLOOR.1 - pose.y - parameters.distance;
+            if time > SETTLING {
+                squares += error * error;
+                count += 1.0;
+            }
+            way.push(pose.position());
+            ControlFlow::Continue(())
+        }
+        Err(error) => {
+            lost = Err(error);
+            ControlFlow::Break(())
+        }
+    })?;
+    lost?;
+    let contacts = truth.robot(0)?.contacts;
+    Ok((math::hypot((squares / f64::max(count, 1.0)).sqrt(), CONTACT * f64::from(contacts)), way))
 }
 
 /// Gains that are tried: 0 to 20, 0 to 4, 0 to 30.

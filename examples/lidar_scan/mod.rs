@@ -10,12 +10,12 @@ use roverlab::io::{self, Clock, Display, Lidar, LidarScan};
 use roverlab::nav::{
     ExtractionParameters, Extremum, ExtremumKind, ScanFeatures, extract_features, local_extrema, plot_scan,
 };
-use roverlab::picture::{Mark, Picture, Style};
+use roverlab::picture::{Picture, Style};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, World};
 use serde_json::{Value, json};
 
-use crate::common::{CommonArgs, Failure, GoalOption, Outcome, Report, millimetres, rounded};
-use crate::driving::{Conditions, Run, drawn, paced};
+use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
+use crate::driving::{Conditions, Run, check_lidar, drawn, paced};
 
 /// The command line of the example `lidar_scan`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -81,29 +81,25 @@ pub(crate) fn scan<R: Clock + Lidar + Display + ?Sized>(
 
 /// The work of the example.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
-    let mut common = args.common.clone();
+    let common = &args.common;
     common.check_picture()?;
-    if common.goal.is_some() {
-        return Err(Failure::input("--goal: the robot stands still; expected a command line without --goal"));
-    }
-    // The shared reading of the options asks for a goal.
-    common.goal = Some(GoalOption { position: Point::origin(), heading: None });
-    let trip = common.trip(scene)?;
-    let conditions = Conditions::new(&args.common, 5.0)?;
+    let scene = common.placed_without_goal("the robot stands still", scene)?;
+    check_lidar(&scene)?;
+    let conditions = Conditions::new(common, 5.0)?;
     let parameters = ExtractionParameters {
         range_error: NoiseModel::real().scaled(conditions.noise).range,
         ..ExtractionParameters::default()
     };
-    let run = conditions.run(&trip.scene, paced(&common), |robot, step| {
+    let run = conditions.run(&scene, paced(common), |robot, step| {
         let seen = scan(robot, &parameters);
         step();
         seen
     })?;
     let (file, trouble) =
-        drawn(&common, "lidar_scan.svg", || picture(&trip.scene, &run, conditions.noise, conditions.seed));
+        drawn(common, "lidar_scan.svg", || picture(&scene, &run, conditions.noise, conditions.seed));
     let report = run.report(|_| Outcome::verdict("scanned"));
     let report = match &run.ending {
-        Ok(seen) => fields(report, seen, &trip.scene),
+        Ok(seen) => fields(report, seen, &scene),
         Err(_) => report,
     };
     let (lcd, lcd_trouble) = save_display(args, &run);
@@ -203,8 +199,10 @@ fn picture(scene: &Scene, run: &Run<Seen>, noise: f64, seed: u64) -> Picture {
             let style = if index == 0 { style.labelled("wall") } else { style };
             picture.line(wall.ends.map(|end| pose.to_world(end)), style);
         }
-        for corner in corners {
-            picture.mark_named(Mark::Waypoint, pose.to_world(corner.position), "corner");
+        for (index, corner) in corners.iter().enumerate() {
+            let style = Style::new(Colour::from_hex(0x20_80_40)).width(3.0);
+            let style = if index == 0 { style.labelled("corner") } else { style };
+            picture.disc(pose.to_world(corner.position), 0.04, style);
         }
         for (index, object) in objects.iter().enumerate() {
             let style = Style::new(Colour::from_hex(0x80_20_a0)).filled(0.3);

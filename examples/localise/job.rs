@@ -1,5 +1,5 @@
 use roverlab::drive::RandomDriveParameters;
-use roverlab::geometry::{Point, angle_difference, units};
+use roverlab::geometry::{angle_difference, units};
 use roverlab::io::sim::NoiseModel;
 use roverlab::nav::{Localisation, LocalisationMap, LocaliserParameters};
 use roverlab::world::{RobotSpec, Scene};
@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 
 use super::drive::{Finding, Options, drive};
 use super::{campaign, picture, worlds};
-use crate::common::{CommonArgs, Failure, GoalOption, Outcome, Report, Trip, millimetres, rounded};
-use crate::driving::{Conditions, Run, drawn, paced};
+use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
+use crate::driving::{Conditions, Run, check_lidar, drawn, paced, world_with_others};
 
 /// The command line of the example `localise`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -67,32 +67,21 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     let common = &args.common;
     common.check_picture()?;
-    let trip = trip(common)?;
+    let scene = common.placed_without_goal("the robot goes nowhere", || own_scene(common.seed))?;
+    check_lidar(&scene)?;
     let conditions = Conditions::new(common, args.patience + 30.0)?;
-    let run = run(args, &trip.scene, &conditions, paced(common))?;
+    let run = run(args, &scene, &conditions, paced(common))?;
     let (file, trouble) =
-        drawn(common, "localise.svg", || picture::of(&trip.scene, &run, conditions.noise, conditions.seed));
+        drawn(common, "localise.svg", || picture::of(&scene, &run, conditions.noise, conditions.seed));
     let report = report(&run).field("time_limit_s", conditions.time_limit).field("picture", file);
     Ok(Report { trouble, ..report })
 }
 
-fn trip(common: &CommonArgs) -> Result<Trip, Failure> {
-    let mut common = common.clone();
-    if common.goal.is_some() {
-        return Err(Failure::input("--goal: the robot goes nowhere; expected a command line without --goal"));
-    }
-    // The shared reading of the options asks for a goal.
-    common.goal = Some(GoalOption { position: Point::origin(), heading: None });
-    let seed = common.seed;
-    let trip = common.trip(|| {
-        let (world, spec) = (worlds::office(), RobotSpec::s4());
-        let start = worlds::start(&world, spec.footprint.bounding_radius(), seed);
-        Scene::with_robot(world, spec, start.expect("the office has free floor"))
-    })?;
-    if trip.spec().lidar.is_none() {
-        return Err(Failure::input("found a robot without a lidar; expected one with a lidar"));
-    }
-    Ok(trip)
+/// The office, with a robot somewhere in it.
+fn own_scene(seed: u64) -> Scene {
+    let (world, spec) = (worlds::office(), RobotSpec::s4());
+    let start = worlds::start(&world, spec.footprint.bounding_radius(), seed);
+    Scene::with_robot(world, spec, start.expect("the office has free floor"))
 }
 
 /// Lets the robot find out.
@@ -104,7 +93,7 @@ pub(super) fn run(
 ) -> Result<Run<Finding>, Failure> {
     let radius = scene.robots[0].spec.footprint.bounding_radius();
     let options = Options {
-        map: LocalisationMap::new(&scene.world).map_err(Failure::input)?,
+        map: LocalisationMap::new(&world_with_others(scene)).map_err(Failure::input)?,
         localiser: LocaliserParameters {
             range_error: NoiseModel::real().scaled(conditions.noise).range,
             radius,

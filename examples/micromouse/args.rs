@@ -1,3 +1,4 @@
+use std::num::NonZero;
 use std::path::PathBuf;
 
 use crate::common::CommonArgs;
@@ -38,7 +39,14 @@ With a drive instead of the last six:
   localisation_error_mm       true error of where the robot takes itself to be in the end
   cell_mm
   picture                     always
-Outcomes: planned, raced, unreachable, timed_out, collided, failed."
+With --campaign:
+  folder
+  mazes                       files that hold a maze
+  rows                        a row for each size and for all: mazes, runs, proved, collided, with the best plan, raced within
+                              2 percent of the plan, the worst relative difference, the largest localisation error in mm
+  failures                    maze, seed, and what went wrong, of each run that is not good
+A run is good if it proves its maze without a contact, plans the fastest run of the true maze, and keeps to that plan.
+Outcomes: planned, raced, unreachable, timed_out, collided, failed; of a campaign passed, wrong."
 )]
 pub(crate) struct Args {
     /// The maze.
@@ -57,8 +65,28 @@ pub(crate) struct Args {
     #[arg(long)]
     pub(crate) doubled: bool,
 
+    /// Explore and race through all mazes in a folder and those below it, and print a table.
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["maze", "plan", "explore", "world"])]
+    pub(crate) campaign: Option<PathBuf>,
+
+    /// Runs through each maze of a campaign, with seeds from --seed on.
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "campaign")]
+    pub(crate) runs: u64,
+
+    /// How many threads drive a campaign [default: one for each core].
+    #[arg(long, value_name = "N", requires = "campaign")]
+    pub(crate) threads: Option<NonZero<usize>>,
+
     #[command(flatten)]
     pub(crate) common: CommonArgs,
+}
+
+impl Args {
+    /// How many threads drive.
+    pub(crate) fn threads(&self) -> usize {
+        let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
+        self.threads.map_or_else(cores, NonZero::get)
+    }
 }
 
 impl AsRef<CommonArgs> for Args {

@@ -45,8 +45,7 @@ pub(crate) fn explore(args: &Args) -> Result<Report, Failure> {
         args.common.tell(format_args!("defect: {defect}"));
     }
     let scene = stage(&file, &spec, scale);
-    let limit = 600.0 + 40.0 * file.maze.cell_count() as f64;
-    let conditions = Conditions::new(&args.common, limit)?;
+    let conditions = Conditions::new(&args.common, limit(&file.maze))?;
     let run = conditions.run(&scene, paced(&args.common), |robot, step| {
         drive(robot, args, &file.maze, conditions.noise, conditions.odometry_errors(), step)
     })?;
@@ -60,13 +59,18 @@ pub(crate) fn explore(args: &Args) -> Result<Report, Failure> {
     Ok(Report { trouble, ..with_run(report, &run, scale).field("picture", drawing) })
 }
 
-fn stage(file: &MazeFile, spec: &RobotSpec, scale: Scale) -> Scene {
+/// Simulated seconds that are more than any maze needs.
+pub(crate) fn limit(maze: &Maze) -> f64 {
+    600.0 + 40.0 * maze.cell_count() as f64
+}
+
+pub(crate) fn stage(file: &MazeFile, spec: &RobotSpec, scale: Scale) -> Scene {
     let start = scale.pose(file.maze.start(), file.maze.heading());
     Scene::with_robot(scale.world(&file.maze), spec.clone(), start)
 }
 
 /// The robot's program: it knows the size of the maze, its start and its goal.
-fn drive(
+pub(crate) fn drive(
     robot: &mut crate::common::Driven,
     args: &Args,
     truth: &Maze,

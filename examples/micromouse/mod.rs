@@ -3,6 +3,7 @@
 #![allow(dead_code, unused_imports, reason = "example and tests use their own parts of this")]
 
 mod args;
+mod campaign;
 mod explore;
 mod picture;
 mod plan;
@@ -15,5 +16,9 @@ use crate::common::{Failure, Report};
 /// The work of the example.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     args.common.check_picture()?;
-    if args.plan { plan::plan(args) } else { explore::explore(args) }
+    match &args.campaign {
+        Some(folder) => campaign::campaign(args, folder),
+        None if args.plan => plan::plan(args),
+        None => explore::explore(args),
+    }
 }

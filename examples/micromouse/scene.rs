@@ -26,9 +26,12 @@ o---o---o---o---o---o---o---o---o
 
 /// The maze that the options name, or the example's own.
 pub(crate) fn maze(args: &Args) -> Result<MazeFile, Failure> {
-    let named = args.maze.as_ref().or(args.common.world.as_ref());
-    let file = match named {
-        Some(file) => files::load(file),
+    let named = args.maze.as_ref().map(|file| ("maze", file));
+    let file = match named.or(args.common.world.as_ref().map(|file| ("world", file))) {
+        Some((option, file)) => {
+            let bytes = args.common.read(option, file);
+            bytes.and_then(|bytes| files::parse(&bytes, &file.display().to_string()))
+        }
         None => files::parse(OWN.as_bytes(), "the example's own maze"),
     };
     file.map_err(Failure::input)

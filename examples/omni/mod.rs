@@ -7,7 +7,7 @@ use roverlab::kinematics::Omni;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, RobotSpec, Scene, World};
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, Trip, millimetres, point_in_mm, rounded};
+use crate::common::{CommonArgs, Failure, Outcome, Report, StandIn, Trip, millimetres, point_in_mm, rounded};
 use crate::driving::{Conditions, Run, check_drive, drawn, paced};
 
 /// The command line of the example `omni`.
@@ -111,26 +111,21 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(Report { trouble, ..report })
 }
 
-/// The trip that the options describe. An Omni takes the place of the robot that a world without one gets.
+/// The trip that the options describe. An Omni takes the place of a robot on other wheels.
 fn trip(args: &Args) -> Result<Trip, Failure> {
     let common = &args.common;
     let (side, square) = (units::from_mm(args.side), args.task == Task::Square);
     if square && common.goal.is_some() {
         return Err(Failure::input("--goal: a square ends where it starts; expected --task spin"));
     }
-    let mut common = common.clone();
-    let given = common.goal;
-    // The shared reading of the options asks for a goal; it is put right below.
-    common.goal = given.or(Some(crate::common::GoalOption { position: Point::origin(), heading: None }));
-    let mut trip = common.trip(|| scene(side))?;
-    if common.robot.is_none() && *trip.spec() == RobotSpec::s4() {
-        trip.scene.robots[0].spec = RobotSpec::omni().into();
+    if common.goal.is_some_and(|goal| goal.heading.is_some()) {
+        return Err(Failure::input("--goal: found a heading; expected X,Y: the robot turns as --spin says"));
     }
-    if given.is_none() {
-        let ahead = if square { 0.0 } else { side };
-        trip.goal = trip.start().to_world(Point::new(ahead, 0.0));
-    }
-    Ok(trip)
+    let scene =
+        common.placed_of(&StandIn { spec: RobotSpec::omni().into(), suits: is_omni }, || scene(side))?;
+    let ahead = Point::new(if square { 0.0 } else { side }, 0.0);
+    let goal = common.goal.map_or_else(|| scene.robots[0].pose.to_world(ahead), |goal| goal.position);
+    Ok(Trip { scene, goal })
 }
 
 /// An empty floor with room for the square.
@@ -151,9 +146,13 @@ fn route(args: &Args, goal: Point) -> Vec<Point> {
     }
 }
 
+fn is_omni(spec: &RobotSpec) -> bool {
+    matches!(spec.drive, DriveSpec::Omni { .. })
+}
+
 fn driver(common: &CommonArgs, spec: &RobotSpec) -> Result<OmniDriver, Failure> {
     let expected = "one on Mecanum wheels";
-    check_drive(common, spec, matches!(spec.drive, DriveSpec::Omni { .. }), expected)?;
+    check_drive(common, spec, is_omni(spec), expected)?;
     let DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, .. } = spec.drive else {
         return Err(Failure::input(format!("found another robot; expected {expected}")));
     };

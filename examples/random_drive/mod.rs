@@ -2,18 +2,19 @@
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
+use std::rc::Rc;
 use std::sync::Arc;
 
 use roverlab::drive::{CoverageMap, CoverageParameters, RandomDrive, RandomDriveParameters};
 use roverlab::geometry::{Point, Pose, units};
-use roverlab::io::sim::{Fleet, SimOptions};
-use roverlab::io::{Drive, LidarScan};
+use roverlab::io::sim::SimOptions;
+use roverlab::io::{LidarScan, RobotIo};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
 use roverlab::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
 
-use crate::common::{CommonArgs, Failure, GoalOption, Outcome, Report, Trip, rounded};
-use crate::driving::{Conditions, drawn, paced};
+use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
+use crate::driving::{Conditions, counted, drawn, paced};
 
 /// The command line of the example `random_drive`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -22,7 +23,7 @@ use crate::driving::{Conditions, drawn, paced};
     about = "Drives straight on, turns by a random angle where something is ahead, and so on; one robot or several",
     after_help = "\
 Without --world, the robots drive in a room with two crates and a can. With a .sim, all of its robots drive, and --robots is
-not looked at. Several robots are driven in one thread, which is not recorded: --record, --replay and --fault are for one.
+not looked at. --fault is for one robot alone.
 
 JSON fields:
   robots                      how many drive
@@ -66,15 +67,16 @@ struct Outing {
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
-    let trip = trip(args)?;
+    let own = || scene(usize::from(args.robots));
+    let scene = common.placed_without_goal("the robots have none", own)?;
     let seconds = common.time_limit.unwrap_or(SECONDS);
-    let outing = if trip.scene.robots.len() == 1 {
-        alone(args, &trip.scene, seconds)?
+    let outing = if scene.robots.len() == 1 {
+        alone(args, &scene, seconds)?
     } else {
-        together(args, &trip.scene, seconds)?
+        together(args, &scene, seconds)?
     };
-    let share = covered(&trip.scene, &outing.paths);
-    let (file, trouble) = drawn(common, "random_drive.svg", || picture(args, &trip.scene, &outing, share));
+    let share = covered(&scene, &outing.paths);
+    let (file, trouble) = drawn(common, "random_drive.svg", || picture(args, &scene, &outing, share));
     let Outing { report, turns, contacts, paths, .. } = outing;
     Ok(Report { collisions: Some(contacts), trouble, ..report }
         .field("robots", paths.len())
@@ -82,16 +84,6 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         .field("coverage_percent", share.map(|share| rounded(100.0 * share)))
         .field("time_limit_s", seconds)
         .field("picture", file))
-}
-
-fn trip(args: &Args) -> Result<Trip, Failure> {
-    let mut common = args.common.clone();
-    if common.goal.is_some() {
-        return Err(Failure::input("--goal: the robots have none; expected a command line without --goal"));
-    }
-    // The shared reading of the options asks for a goal.
-    common.goal = Some(GoalOption { position: Point::origin(), heading: None });
-    common.trip(|| scene(usize::from(args.robots)))
 }
 
 /// A room with two crates and a can, and robots in it, larger and smaller ones, as in the book.
@@ -125,7 +117,7 @@ fn behaviour(scene: &Scene, robot: usize, seed: u64) -> Result<RandomDrive, Fail
     RandomDrive::new(parameters, stream).map_err(Failure::input)
 }
 
-/// One robot, which can be recorded.
+/// One robot.
 fn alone(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
     let conditions = Conditions::new(&args.common, seconds)?;
     let mut drive = behaviour(scene, 0, args.common.seed)?;
@@ -145,34 +137,33 @@ fn alone(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
 /// Several robots in one thread.
 fn together(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
     let common = &args.common;
-    if common.record.is_some() || common.replay.is_some() || !common.fault.is_empty() {
-        return Err(Failure::input(
-            "--record, --replay or --fault: found it for several robots; expected it for one robot alone",
-        ));
+    if !common.fault.is_empty() {
+        return Err(Failure::input("--fault: found it for several robots; expected it for one robot alone"));
     }
     let options = SimOptions::with_noise(common.noise, common.seed);
-    let turns: Vec<Cell<u32>> = scene.robots.iter().map(|_| Cell::new(0)).collect();
-    let mut fleet = Fleet::new(scene, options).map_err(Failure::input)?;
-    for (robot, turns) in turns.iter().enumerate() {
+    let turns: Vec<Rc<Cell<u32>>> = scene.robots.iter().map(|_| Rc::default()).collect();
+    let mut fleet = common.troop(scene, options)?;
+    for (robot, turns) in turns.iter().cloned().enumerate() {
         let mut drive = behaviour(scene, robot, common.seed)?;
         let (mut scan, mut points) = (LidarScan::default(), Vec::new());
         let period = RandomDriveParameters::default().period;
-        fleet.control(robot, period, move |robot| {
+        let step = move |robot: &mut dyn RobotIo| {
             RandomDrive::look(robot, &mut scan, &mut points)?;
             let twist = drive.step(robot.pose()?, &points)?;
             robot.set_speed(twist)?;
             turns.set(drive.turns());
             Ok(ControlFlow::Continue(()))
-        })?;
+        };
+        fleet.control(robot, period, Box::new(step))?;
     }
     let mut paths: Vec<Vec<Pose>> = scene.robots.iter().map(|robot| vec![robot.pose]).collect();
     let mut pace = paced(common);
-    while fleet.time() + 0.5 * STEP < seconds {
+    while fleet.time()? + 0.5 * STEP < seconds {
         fleet.run_for(STEP)?;
         for (robot, path) in paths.iter_mut().enumerate() {
-            path.extend(fleet.pose(robot));
+            path.push(fleet.pose(robot)?);
         }
-        pace(fleet.time());
+        pace(fleet.time()?);
     }
     let first = fleet.truth(0)?;
     let (mut contacts, mut contact_places) = (0, Vec::new());
@@ -182,13 +173,13 @@ fn together(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure>
         contact_places.extend(truth.contact_places);
     }
     let report = Report {
-        sim_time: Some(fleet.time()),
+        sim_time: Some(fleet.time()?),
         path_length: Some(first.path_length),
         pose: Some(first.pose),
         odometry: Some(scene.robots[0].pose.compose(&first.odometry)),
         ..Report::new(Outcome::verdict("driven"))
     };
-    Ok(Outing { turns: turns.iter().map(Cell::get).sum(), contacts, contact_places, report, paths })
+    Ok(Outing { turns: turns.iter().map(|turns| turns.get()).sum(), contacts, contact_places, report, paths })
 }
 
 /// The share of the floor that the robots have passed over.
@@ -204,7 +195,7 @@ fn covered(scene: &Scene, paths: &[Vec<Pose>]) -> Option<f64> {
 fn picture(args: &Args, scene: &Scene, outing: &Outing, share: Option<f64>) -> Picture {
     let mut picture = Picture::new(&scene.world);
     let ending = if outing.contacts > 0 { "collided" } else { "no contact" };
-    picture.title(format!("Random drive: {} robots, {ending}", outing.paths.len()));
+    picture.title(format!("Random drive: {}, {ending}", counted(outing.paths.len(), "robot")));
     let share = share.map_or("-".into(), |share| format!("{:.0} %", 100.0 * share));
     picture.caption(format!(
         "{share} of the floor, {} turns, noise {}, seed {}",
@@ -214,8 +205,7 @@ fn picture(args: &Args, scene: &Scene, outing: &Outing, share: Option<f64>) -> P
         let points = path.iter().map(Pose::position);
         match number {
             0 => picture.true_path(points),
-            1 => picture.line(points, Style::plan().labelled("other robots")),
-            _ => picture.line(points, Style::plan()),
+            _ => picture.line(points, Style::plan().labelled("other robots")),
         };
     }
     for (robot, path) in scene.robots.iter().zip(&outing.paths) {

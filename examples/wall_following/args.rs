@@ -11,8 +11,8 @@ use crate::common::CommonArgs;
 Without --world, the room is drawn with the seed: corners of 60 to 300 degrees, curves, doors. The run ends when the robot
 has been all the way round as often as --laps says.
 
-Errors are those of the true distance between the nearest wall and the robot's middle, once it has driven 300 mm along the
-wall. Away from corners means: farther from a corner than the robot's path round it plus 150 mm.
+Errors are those of the true distance from the robot's middle to the nearest wall on the side where it follows walls, once
+it has driven 300 mm along one. Away from corners means: farther from a corner than the robot's path round it plus 150 mm.
 
 With --campaign, many rooms instead of one, by the book's controller as well, and a table.
 

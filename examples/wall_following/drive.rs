@@ -33,11 +33,18 @@ pub(crate) struct Walk {
     pub(crate) side: Option<WallSide>,
 }
 
-/// Lets a robot follow a wall. `watch` is called after each step with whether the robot takes itself to be beside a wall.
+/// Whether the robot takes itself to be beside a wall, and on which side walls are to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Beside {
+    pub(crate) wall: bool,
+    pub(crate) side: Option<WallSide>,
+}
+
+/// Lets a robot follow a wall. `watch` is called after each step.
 pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
     robot: &mut R,
     options: &Options,
-    watch: &mut dyn FnMut(bool) -> ControlFlow<()>,
+    watch: &mut dyn FnMut(Beside) -> ControlFlow<()>,
 ) -> io::Result<Walk> {
     let Options { side, distance, speed, sensors, time_limit, .. } = *options;
     let one_side = side.unwrap_or(WallSide::Left);
@@ -87,7 +94,9 @@ fn walk<R: Clock + Drive + ?Sized, C: FollowsWalls<R>>(
     robot: &mut R,
     controller: &mut C,
     time_limit: f64,
-    watch: &mut dyn FnMut(bool) -> ControlFlow<()>,
+    watch: &mut dyn FnMut(Beside) -> ControlFlow<()>,
 ) -> io::Result<WallOutcome> {
-    run_along_wall(robot, controller, time_limit, |_, controller| watch(controller.is_beside_wall()))
+    run_along_wall(robot, controller, time_limit, |_, controller| {
+        watch(Beside { wall: controller.is_beside_wall(), side: controller.wall_side() })
+    })
 }

@@ -1,5 +1,5 @@
 use roverlab::drive::{WallOutcome, WallSensors, WallSide};
-use roverlab::geometry::{Point, units};
+use roverlab::geometry::units;
 use roverlab::io::sim::NoiseModel;
 use roverlab::random::Stream;
 use roverlab::world::generate::{self, RoomOptions};
@@ -7,7 +7,7 @@ use roverlab::world::{RobotSpec, Scene};
 
 use super::drive::{Options, Walk, drive};
 use super::{Args, Watch, campaign, picture};
-use crate::common::{CommonArgs, Failure, GoalOption, Outcome, Report, Trip, millimetres, rounded};
+use crate::common::{Failure, Outcome, Report, millimetres, rounded};
 use crate::driving::{Conditions, Run, drawn, paced};
 
 /// The work of the example.
@@ -17,27 +17,15 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     let common = &args.common;
     common.check_picture()?;
-    let trip = trip(args)?;
-    let conditions = Conditions::new(common, time_limit(args, &trip.scene))?;
-    let (run, watch) = run(args, &trip.scene, &conditions, paced(common))?;
+    let own = || scene(common.seed);
+    let scene = common.placed_without_goal("following a wall leads round it", own)?;
+    let conditions = Conditions::new(common, time_limit(args, &scene))?;
+    let (run, watch) = run(args, &scene, &conditions, paced(common))?;
     let (file, trouble) =
-        drawn(common, "wall_following.svg", || picture::of(args, &trip.scene, &run, &watch, &conditions));
+        drawn(common, "wall_following.svg", || picture::of(args, &scene, &run, &watch, &conditions));
     let report =
         report(args, &run, &watch).field("time_limit_s", conditions.time_limit).field("picture", file);
     Ok(Report { trouble, ..report })
-}
-
-/// The robot in its room.
-fn trip(args: &Args) -> Result<Trip, Failure> {
-    let mut common: CommonArgs = args.common.clone();
-    if common.goal.is_some() {
-        return Err(Failure::input(
-            "--goal: following a wall leads round it; expected a command line without --goal",
-        ));
-    }
-    // The shared reading of the options asks for a goal.
-    common.goal = Some(GoalOption { position: Point::origin(), heading: None });
-    common.trip(|| scene(args.common.seed))
 }
 
 /// The room of a seed, with an S4.

@@ -1,10 +1,13 @@
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::ControlFlow;
 
+use roverlab::drive::WallSide;
 use roverlab::geometry::{Pose, angle_difference};
-use roverlab::world::space::{Solid, Space, Span};
-use roverlab::world::{Footprint, Scene};
+use roverlab::world::Scene;
+use roverlab::world::space::{Scanner, Solid, Space};
 
 use super::corners::{Corner, corners};
+use super::drive::Beside;
 
 /// The errors of many distances.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -38,7 +41,10 @@ impl Errors {
 #[derive(Debug)]
 pub(crate) struct Watch {
     space: Space,
-    span: Span,
+    /// Looks to the left, where distances are measured, or to the right.
+    scanner: Scanner,
+    ranges: Vec<f64>,
+    side: Option<WallSide>,
     corners: Vec<Corner>,
     distance: f64,
     wanted: u32,
@@ -54,6 +60,13 @@ pub(crate) struct Watch {
     pub(crate) worst_place: Option<Pose>,
 }
 
+/// Radians to either side of the robot's left or right in which the wall is looked for, and how closely: the shortest of the
+/// beams is at most 0.02 % longer than the distance.
+const HALF: f64 = 80.0 * STEP;
+const STEP: f64 = PI / 180.0;
+const BEAMS: usize = 161;
+/// Distances beyond so many of those that are wanted count as that.
+const FARTHEST: f64 = 4.0;
 /// Metres behind the place where the wall was found from which errors count.
 const SETTLING: f64 = 0.3;
 /// A lap ends within so many metres of its begin, with a heading like then, and not before so many metres.
@@ -68,7 +81,16 @@ impl Watch {
         let robot = Solid::from(&scene.robots[0]);
         Self {
             space,
-            span: Span { bottom: robot.bottom, top: robot.top },
+            scanner: Scanner::new(
+                -HALF,
+                STEP,
+                BEAMS,
+                0.5 * (robot.bottom + robot.top),
+                0.0,
+                FARTHEST * distance,
+            ),
+            ranges: vec![0.0; BEAMS],
+            side: None,
             corners: corners(&scene.world, distance),
             distance,
             wanted: laps,
@@ -84,7 +106,9 @@ impl Watch {
     }
 
     /// Takes in where the robot is. Breaks after the last lap.
-    pub(crate) fn see(&mut self, pose: Pose, beside_wall: bool) -> ControlFlow<()> {
+    pub(crate) fn see(&mut self, pose: Pose, beside: Beside) -> ControlFlow<()> {
+        let beside_wall = beside.wall;
+        self.side = beside.side.or(self.side);
         self.driven += pose.distance_to(self.last.position());
         self.last = pose;
         let Some((begin, since)) = self.begin else {
@@ -112,10 +136,11 @@ impl Watch {
     }
 
     fn measure(&mut self, pose: Pose) {
-        const POINT: f64 = 1e-6;
-        let limit = 4.0 * self.distance;
-        let point = Footprint::Disc { radius: POINT };
-        let error = self.space.clearance(&point, &pose, self.span, limit, None) + POINT - self.distance;
+        let turn = if self.side == Some(WallSide::Right) { -FRAC_PI_2 } else { FRAC_PI_2 };
+        let eye = Pose { heading: pose.heading + turn, ..pose };
+        self.space.scan(&mut self.scanner, &eye, None, &mut self.ranges);
+        let nearest = self.ranges.iter().copied().fold(FARTHEST * self.distance, f64::min);
+        let error = nearest - self.distance;
         self.everywhere.add(error);
         if self.corners.iter().any(|corner| pose.distance_to(corner.place) < corner.reach) {
             return;

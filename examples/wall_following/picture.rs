@@ -41,7 +41,8 @@ pub(crate) fn of(
     let pale = Style::new(Colour::from_hex(0x8a_90_9c)).opacity(0.5);
     picture.robot_with(start, &outline, pale);
     if let Some(worst) = watch.worst_place {
-        picture.mark_named(Mark::Waypoint, worst.position(), "largest error");
+        let style = Style::new(Colour::from_hex(0xd0_20_20)).width(2.5).labelled("largest error");
+        picture.disc(worst.position(), 0.05, style);
     }
     picture.robot(run.truth.pose, &outline);
     picture.mark(Mark::Start, start.position());

@@ -1,6 +1,6 @@
 use std::f64::consts::FRAC_PI_2;
 
-use super::{FollowerParameters, Path, PathFollower};
+use super::{FollowerParameters, Path, PathFollower, Waypoint};
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::error::require_positive;
 use crate::io::{Error, Result};
@@ -163,6 +163,8 @@ pub enum AToBOutcome {
 pub struct AToB {
     method: Method,
     goal: Goal,
+    /// Places that a spline passes on its way.
+    via: Vec<Point>,
     pub(super) parameters: AToBParameters,
     phase: Phase,
     corrections: u32,
@@ -192,7 +194,19 @@ impl AToB {
     pub fn new(method: Method, goal: Goal, parameters: AToBParameters) -> Result<Self> {
         parameters.validate()?;
         goal.check()?;
-        Ok(Self { method, goal, parameters, phase: Phase::Begin, corrections: 0 })
+        Ok(Self { method, goal, via: Vec::new(), parameters, phase: Phase::Begin, corrections: 0 })
+    }
+
+    /// The same by way of some points, in this order: a chain of splines without a kink. Fails for another method.
+    pub fn via(self, points: Vec<Point>) -> Result<Self> {
+        if self.method != Method::Spline && !points.is_empty() {
+            let found = format!("{:?} by way of {} points", self.method, points.len());
+            return Err(Error::invalid_input("method", found, "a spline, which alone has waypoints"));
+        }
+        if let Some(point) = points.iter().find(|point| !(point.x.is_finite() && point.y.is_finite())) {
+            return Err(Error::invalid_input("waypoint", format!("{point:?}"), "finite numbers"));
+        }
+        Ok(Self { via: points, ..self })
     }
 
     /// The next command.
@@ -223,7 +237,7 @@ impl AToB {
     }
 
     fn begin(&mut self, pose: Pose) -> Result<AToBCommand> {
-        if pose.distance_to(self.goal.position) <= HANDOVER {
+        if self.is_at_goal(pose) {
             self.phase = Phase::Correcting;
             return Ok(self.correct(pose));
         }
@@ -236,22 +250,37 @@ impl AToB {
                 self.phase = Phase::Homing;
                 Ok(self.home(pose))
             }
-            Method::Arc => {
-                let behind = pose.bearing_to(self.goal.position).abs() > FRAC_PI_2;
-                let path = Self::arc(pose, self.goal.position, behind)?;
-                self.follow(path, behind, pose)
-            }
-            Method::Spline => {
-                let goal = self.goal.pose_from(pose.position());
-                let path = Path::hermite(pose, goal, self.parameters.spline_scale)?;
-                self.follow(path, false, pose)
-            }
+            Method::Arc => self.follow(self.arc(pose)?, self.is_behind(pose), pose),
+            Method::Spline => self.follow(self.spline(pose)?, false, pose),
         }
     }
 
-    fn arc(pose: Pose, goal: Point, behind: bool) -> Result<Path> {
-        let heading = if behind { pose.heading + std::f64::consts::PI } else { pose.heading };
-        Path::arc(Pose { heading, ..pose }, goal)
+    /// Whether nothing is left but to correct the last bit.
+    fn is_at_goal(&self, pose: Pose) -> bool {
+        self.via.is_empty() && pose.distance_to(self.goal.position) <= HANDOVER
+    }
+
+    fn is_behind(&self, pose: Pose) -> bool {
+        pose.bearing_to(self.goal.position).abs() > FRAC_PI_2
+    }
+
+    /// The arc to the goal, backwards to one behind.
+    fn arc(&self, pose: Pose) -> Result<Path> {
+        let heading = if self.is_behind(pose) { pose.heading + std::f64::consts::PI } else { pose.heading };
+        Path::arc(Pose { heading, ..pose }, self.goal.position)
+    }
+
+    /// The spline to the goal, or the chain of them by way of the waypoints.
+    fn spline(&self, pose: Pose) -> Result<Path> {
+        if self.via.is_empty() {
+            let goal = self.goal.pose_from(pose.position());
+            return Path::hermite(pose, goal, self.parameters.spline_scale);
+        }
+        let start = Waypoint { position: pose.position(), heading: Some(pose.heading) };
+        let goal = Waypoint { position: self.goal.position, heading: self.goal.heading };
+        let between = self.via.iter().map(|&position| Waypoint { position, heading: None });
+        let waypoints: Vec<Waypoint> = std::iter::once(start).chain(between).chain([goal]).collect();
+        Path::through(&waypoints)
     }
 
     fn follow(&mut self, path: Path, reverse: bool, pose: Pose) -> Result<AToBCommand> {
@@ -320,18 +349,14 @@ impl AToB {
 
     /// The path that would be followed from a pose; none for a dog curve, which has no plan.
     pub fn plan(&self, pose: Pose) -> Result<Option<Path>> {
-        let goal = self.goal.position;
-        if pose.distance_to(goal) <= HANDOVER {
+        if self.is_at_goal(pose) {
             return Ok(None);
         }
         match self.method {
             Method::Dog => Ok(None),
-            Method::Turn => Path::straight(pose.position(), goal).map(Some),
-            Method::Arc => Self::arc(pose, goal, pose.bearing_to(goal).abs() > FRAC_PI_2).map(Some),
-            Method::Spline => {
-                Path::hermite(pose, self.goal.pose_from(pose.position()), self.parameters.spline_scale)
-                    .map(Some)
-            }
+            Method::Turn => Path::straight(pose.position(), self.goal.position).map(Some),
+            Method::Arc => self.arc(pose).map(Some),
+            Method::Spline => self.spline(pose).map(Some),
         }
     }
 }
@@ -389,6 +414,38 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn waypoints_are_passed_on_the_way_and_only_by_splines() {
+        let (goal, via) = (Goal::pose(Pose::new(2.0, 0.0, 0.5)), [(0.6, 0.5), (1.3, -0.4)]);
+        let via = via.map(|(x, y)| Point::new(x, y));
+        let drive = |method| AToB::new(method, goal, AToBParameters::default()).unwrap();
+        let mut behaviour = drive(Method::Spline).via(via.to_vec()).unwrap();
+        let (mut pose, mut least) = (Pose::default(), [f64::INFINITY; 2]);
+        loop {
+            let motion = match behaviour.step(&AToBObservation { pose, done: true }).unwrap() {
+                AToBCommand::Speed(twist) => {
+                    Displacement { length: 0.02 * twist.linear, angle: 0.02 * twist.angular }
+                }
+                AToBCommand::Straight(length) => Displacement { length, angle: 0.0 },
+                AToBCommand::Turn(angle) => Displacement { length: 0.0, angle },
+                AToBCommand::Continue => Displacement::default(),
+                AToBCommand::Stop => break,
+            };
+            pose = advance(pose, motion);
+            for (least, point) in least.iter_mut().zip(via) {
+                *least = least.min(pose.distance_to(point));
+            }
+        }
+        assert!(least.iter().all(|&least| least < 0.02), "{least:?}");
+        assert!(pose.distance_to(goal.position) < 1e-3 && (pose.heading - 0.5).abs() < 2e-3, "{pose:?}");
+        // A round trip begins where it ends.
+        let round = AToB::new(Method::Spline, Goal::point(Point::origin()), AToBParameters::default());
+        let plan = round.unwrap().via(via.to_vec()).unwrap().plan(Pose::default()).unwrap().unwrap();
+        assert!(plan.length() > 2.0);
+        assert!(drive(Method::Arc).via(via.to_vec()).is_err());
+        assert!(drive(Method::Spline).via(vec![Point::new(f64::NAN, 0.0)]).is_err());
     }
 
     #[test]

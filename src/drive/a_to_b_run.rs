@@ -1,6 +1,7 @@
+use super::beat::Beat;
 use super::{AToB, AToBCommand, AToBObservation, AToBOutcome};
 use crate::geometry::{Pose, Twist};
-use crate::io::{Clock, Drive, Error, ErrorKind, Result};
+use crate::io::{Clock, Drive, Result};
 
 impl AToB {
     /// Drives a robot to the goal by its odometry, within `time_limit` seconds. `observe` is called after every step with
@@ -22,20 +23,14 @@ impl AToB {
         mut estimate: impl FnMut(&mut R) -> Result<Pose>,
         mut observe: impl FnMut(&Self, Pose),
     ) -> Result<AToBOutcome> {
-        let begin = robot.now()?;
-        let mut next = begin;
-        let mut last = f64::NEG_INFINITY;
+        let mut beat = Beat::start(robot, self.parameters.period)?;
         loop {
-            let now = robot.now()?;
-            if now <= last {
-                return Err(Error::new(ErrorKind::Other, "the robot's clock stands still"));
-            }
-            last = now;
+            let time = beat.step(robot)?;
             let pose = estimate(robot)?;
             let observation = AToBObservation { pose, done: robot.is_done()? };
             let command = self.step(&observation)?;
             observe(self, pose);
-            let outcome = if now - begin >= time_limit {
+            let outcome = if time >= time_limit {
                 Some(AToBOutcome::TimedOut)
             } else if robot.is_stalled()? {
                 Some(AToBOutcome::Blocked)
@@ -47,9 +42,7 @@ impl AToB {
                 return Ok(outcome);
             }
             self.tell(robot, command)?;
-            next += self.parameters.period;
-            let pause = next - robot.now()?;
-            robot.wait(pause)?;
+            beat.rest(robot)?;
         }
     }
 

@@ -1,8 +1,9 @@
 use super::a_to_b::dog_twist;
+use super::beat::Beat;
 use super::{FollowerParameters, Goal, Method, Path, PathFollower, Steering};
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::error::require_positive;
-use crate::io::{Clock, Drive, Error, ErrorKind, Motors, Result, Servos};
+use crate::io::{Clock, Drive, Error, Motors, Result, Servos};
 use crate::kinematics::{Ackermann, CarState};
 
 /// Speed and steering of a car as commands of its motor and its servo (book, program 7.1).
@@ -290,19 +291,13 @@ impl CarToB {
         time_limit: f64,
         mut observe: impl FnMut(&Self, Pose),
     ) -> Result<CarOutcome> {
-        let begin = robot.now()?;
-        let mut next = begin;
-        let mut last = f64::NEG_INFINITY;
+        let mut beat = Beat::start(robot, self.parameters.period)?;
         loop {
-            let now = robot.now()?;
-            if now <= last {
-                return Err(Error::new(ErrorKind::Other, "the robot's clock stands still"));
-            }
-            last = now;
+            let time = beat.step(robot)?;
             let pose = robot.pose()?;
             let state = self.step(pose)?;
             observe(self, pose);
-            let outcome = if now - begin >= time_limit {
+            let outcome = if time >= time_limit {
                 Some(CarOutcome::TimedOut)
             } else if robot.is_stalled()? {
                 Some(CarOutcome::Blocked)
@@ -314,9 +309,7 @@ impl CarToB {
                 return Ok(outcome);
             }
             self.driver.drive(robot, state.unwrap_or_default())?;
-            next += self.parameters.period;
-            let pause = next - robot.now()?;
-            robot.wait(pause)?;
+            beat.rest(robot)?;
         }
     }
 

@@ -1,10 +1,11 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::a_to_b::dog_twist;
+use super::beat::Beat;
 use super::{FollowerParameters, Hermite, Method};
 use crate::geometry::{Pose, Twist};
 use crate::io::error::require_positive;
-use crate::io::{Error, Result};
+use crate::io::{Clock, Drive, Error, Result};
 
 /// What [`Chase`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,6 +18,8 @@ pub struct ChaseParameters {
     pub spline_scale: f64,
     /// The bearing in radians beyond which [`Method::Turn`] stops and turns on the spot.
     pub turn_threshold: f64,
+    /// Seconds from one control step to the next.
+    pub period: f64,
 }
 
 impl Default for ChaseParameters {
@@ -26,8 +29,21 @@ impl Default for ChaseParameters {
             distance: 0.05,
             spline_scale: 1.0,
             turn_threshold: 0.2,
+            period: 0.05,
         }
     }
+}
+
+/// How a chase ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ChaseOutcome {
+    /// The goal is at hand.
+    Caught,
+    /// Something holds the robot.
+    Blocked,
+    /// The time was over first.
+    TimedOut,
 }
 
 /// Drives towards a goal that moves: each method of chapter 3 begins anew from where robot and goal are at each step, and
@@ -56,6 +72,7 @@ impl Chase {
         require_positive("distance", parameters.distance)?;
         require_positive("spline scale", parameters.spline_scale)?;
         require_positive("turn threshold", parameters.turn_threshold)?;
+        require_positive("control period", parameters.period)?;
         Ok(Self { method, parameters, turning: true })
     }
 
@@ -85,6 +102,37 @@ impl Chase {
                 self.along(spline.curvature(0.0))
             }
         }))
+    }
+
+    /// Drives a robot after a goal for at most so many seconds. `goal` says, for a time since the start, where it is in the
+    /// frame of the robot's odometry, by whatever way the robot learns of it. `observe` is called after every step.
+    pub fn run<R: Clock + Drive + ?Sized>(
+        &mut self,
+        robot: &mut R,
+        time_limit: f64,
+        mut goal: impl FnMut(&mut R, f64) -> Result<Pose>,
+        mut observe: impl FnMut(&Self, Pose),
+    ) -> Result<ChaseOutcome> {
+        let mut beat = Beat::start(robot, self.parameters.period)?;
+        loop {
+            let time = beat.step(robot)?;
+            let pose = robot.pose()?;
+            let place = goal(robot, time)?;
+            let twist = self.step(pose.inverse().compose(&place))?;
+            observe(self, pose);
+            let outcome = if time >= time_limit {
+                Some(ChaseOutcome::TimedOut)
+            } else if robot.is_stalled()? {
+                Some(ChaseOutcome::Blocked)
+            } else {
+                twist.is_none().then_some(ChaseOutcome::Caught)
+            };
+            robot.set_speed(twist.filter(|_| outcome.is_none()).unwrap_or(Twist::STOP))?;
+            match outcome {
+                Some(outcome) => return Ok(outcome),
+                None => beat.rest(robot)?,
+            }
+        }
     }
 
     fn turn_or_drive(&mut self, bearing: f64, distance: f64) -> Twist {
@@ -139,6 +187,33 @@ mod tests {
                 }
                 prop_assert!(caught, "{method:?}: {robot:?} {goal:?}");
             }
+        }
+    }
+
+    #[test]
+    fn a_robot_with_noise_catches_a_goal_on_a_circle() {
+        use crate::io::sim::{SimOptions, Simulation};
+        use crate::world::{RobotSpec, Scene, World};
+        let scene = Scene::with_robot(World::empty(6.0, 6.0), RobotSpec::s4(), Pose::default());
+        for method in [Method::Turn, Method::Arc, Method::Dog, Method::Spline] {
+            let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 3)).unwrap();
+            let goal = |time: f64| {
+                let begin = Pose::new(1.0, 0.8, 0.4);
+                advance(begin, Displacement { length: 0.08 * time, angle: 0.05 * time })
+            };
+            let mut chase = Chase::new(method, ChaseParameters::default()).unwrap();
+            let (mut robot, mut seconds) = (simulation.robot(0).unwrap(), 0.0);
+            let told = |_: &mut _, time| {
+                seconds = time;
+                Ok(goal(time))
+            };
+            let outcome = chase.run(&mut robot, 60.0, told, |_, _| {}).unwrap();
+            assert_eq!(outcome, ChaseOutcome::Caught, "{method:?}");
+            let truth = simulation.truth().robot(0).unwrap();
+            assert!(truth.pose.distance_to(goal(seconds).position()) < 0.15, "{method:?}: {:?}", truth.pose);
+            // One that is faster gets away.
+            let away = |_: &mut _, time| Ok(Pose::new(1.0 + time, 0.0, 0.0));
+            assert_eq!(chase.run(&mut robot, 5.0, away, |_, _| {}).unwrap(), ChaseOutcome::TimedOut);
         }
     }
 

@@ -102,7 +102,8 @@ const OF_VELOCITY: f64 = 0.15;
 const PULL: f64 = 1.2;
 /// Metres that are looked ahead for a free way.
 const AHEAD: f64 = 0.3;
-/// Radians per second with which it looks round for a robot that it has lost.
+/// Metres to where a lost robot was seen last at which it looks round, and with how many radians per second.
+const LOOKING_PLACE: f64 = 0.3;
 const LOOKING_RATE: f64 = 1.0;
 /// Seconds in which the free way ahead is driven.
 const BRAKING: f64 = 0.7;
@@ -138,14 +139,14 @@ impl Follower {
         self.track(seen);
         let parameters = &self.parameters;
         let Some(target) = self.target else { return Ok(Twist::STOP) };
-        if self.is_lost(seen.time) {
-            // It looks round for the robot ahead, first to where that was.
-            let bearing = seen.pose.bearing_to(target.place);
-            return Ok(Twist::new(0.0, LOOKING_RATE.min(parameters.turn_rate).copysign(bearing)));
-        }
         let away = seen.pose.to_local(target.place);
         let distance = away.coords.norm();
         let bearing = math::atan2(away.y, away.x);
+        let lost = self.is_lost(seen.time);
+        if lost && distance < parameters.gap.min(LOOKING_PLACE) {
+            // It looks round for the robot ahead.
+            return Ok(Twist::new(0.0, LOOKING_RATE.min(parameters.turn_rate).copysign(bearing)));
+        }
         // The robot ahead is no obstacle on the way to its gap.
         let near_target = parameters.leader_radius + 0.05;
         let obstacles: Vec<Point> =
@@ -153,7 +154,8 @@ impl Follower {
         let way = Way { radius: parameters.radius, margin: parameters.margin };
         let (towards, free) = way.towards(&obstacles, bearing, AHEAD.min(distance));
         let along = crate::geometry::direction(seen.pose.heading + bearing).dot(&target.velocity);
-        let closing = PULL * (distance - parameters.gap) + along;
+        // A robot that is out of sight is looked for where it was seen last.
+        let closing = if lost { parameters.speed } else { PULL * (distance - parameters.gap) + along };
         let turn = normalize_angle(towards);
         let facing = math::cos(turn).max(0.0);
         // What stands straight ahead of the robot as it points now limits its speed as well.
@@ -170,18 +172,21 @@ impl Follower {
             let candidates = seen.candidates.iter().map(|&candidate| seen.pose.to_world(candidate));
             candidates.min_by(|a, b| (a - place).norm().total_cmp(&(b - place).norm()))
         };
-        let Some(target) = self.target.filter(|_| !self.is_lost(seen.time)) else {
-            // At first, and when it was lost, it is the nearest one ahead.
+        let begin = |place: Point| Target { place, velocity: Vector::zeros(), seen: seen.time };
+        let Some(target) = self.target else {
+            // At first it is the nearest one ahead.
             let ahead = seen.candidates.iter().filter(|point| math::atan2(point.y, point.x).abs() < 0.3 * PI);
             let first = ahead.min_by(|a, b| a.coords.norm().total_cmp(&b.coords.norm()));
-            let found = first.map(|&point| Target {
-                place: seen.pose.to_world(point),
-                velocity: Vector::zeros(),
-                seen: seen.time,
-            });
-            self.target = found.or(self.target);
+            self.target = first.map(|&point| begin(seen.pose.to_world(point)));
             return;
         };
+        if self.is_lost(seen.time) {
+            // When it was lost, it is the one nearest to where it was, if it can have come so far.
+            let reach = GATE + self.parameters.speed * (seen.time - target.seen);
+            let found = nearest_to(target.place).filter(|found| (found - target.place).norm() < reach);
+            self.target = found.map(begin).or(self.target);
+            return;
+        }
         let since = (seen.time - target.seen).max(1e-3);
         let moved = target.velocity * since.min(1.0);
         let expected = target.place + moved;
@@ -199,13 +204,11 @@ impl Follower {
 
 /// The middles of the things in a scan that may be a robot of some radius, in the robot's frame.
 ///
-/// Neighbouring beams whose points are near each other make a thing; it counts if it is no wider than the robot, and what is
-/// beside it is farther away. What is seen of a round robot is its front.
+/// Neighbouring beams whose points are near each other make a thing; it counts if as many beams hit it as would hit the robot,
+/// and what is beside it is farther away. What is seen of a round robot is its front.
 pub fn robots_in(scan: &LidarScan, radius: f64) -> Vec<Point> {
-    /// Metres between neighbouring points of one thing, beyond what the angle between beams makes, and the least part of
-    /// the robot's width that has to be seen.
+    /// Metres between neighbouring points of one thing, beyond what the angle between beams makes.
     const STEP: f64 = 0.07;
-    const LEAST: f64 = 0.8;
     let beams = scan.ranges.len();
     let all_round = (scan.angle_increment.abs() * beams as f64 - std::f64::consts::TAU).abs() < 1e-6;
     let joined = |a: usize, b: usize| {
@@ -230,7 +233,7 @@ pub fn robots_in(scan: &LidarScan, radius: f64) -> Vec<Point> {
             beside.is_none_or(|beside| scan.ranges[beside] > scan.ranges[end] + STEP)
         };
         if farther(before, at(start)) && farther(after, at(step - 1)) {
-            found.extend(middle_of(scan, &thing, radius, LEAST));
+            found.extend(middle_of(scan, &thing, radius));
         }
         start = step;
     }
@@ -238,20 +241,26 @@ pub fn robots_in(scan: &LidarScan, radius: f64) -> Vec<Point> {
 }
 
 /// The middle of the disc that a row of beams hits, if it may be one.
-fn middle_of(scan: &LidarScan, beams: &[usize], radius: f64, least: f64) -> Option<Point> {
+fn middle_of(scan: &LidarScan, beams: &[usize], radius: f64) -> Option<Point> {
+    /// The least and the greatest part of the robot's width that may seem to be seen, and beams more or less.
+    const SEEN: [f64; 2] = [0.9, 1.25];
+    const BEAMS: [f64; 2] = [1.0, 2.0];
     let ranges = || beams.iter().map(|&beam| scan.ranges[beam]).filter(|range| range.is_finite());
     let count = ranges().count();
     if count != beams.len() || count == 0 {
         return None;
     }
     let mean = ranges().sum::<f64>() / count as f64;
-    let width = mean * scan.angle_increment.abs() * count as f64;
-    let middle = scan.angle(beams[0]) + 0.5 * scan.angle_increment * (count - 1) as f64;
-    if width > 2.6 * radius + 0.03 || width < least * radius {
+    // What is seen of a disc is on average pi/4 of its radius before its middle.
+    let distance = mean + radius * std::f64::consts::FRAC_PI_4;
+    let expected = 2.0 * math::asin((radius / distance).min(1.0)) / scan.angle_increment.abs();
+    let likely = SEEN[0] * expected - BEAMS[0]..=SEEN[1] * expected + BEAMS[1];
+    if !likely.contains(&(count as f64)) {
         return None;
     }
+    let middle = scan.angle(beams[0]) + 0.5 * scan.angle_increment * (count - 1) as f64;
     let ray = crate::geometry::direction(scan.mount.heading + middle);
-    Some(scan.mount.position() + ray * (mean + radius * std::f64::consts::FRAC_PI_4))
+    Some(scan.mount.position() + ray * distance)
 }
 
 #[cfg(test)]
@@ -301,11 +310,37 @@ mod tests {
         assert!(twist.angular.abs() < 0.2 && twist.linear > 0.0);
         // The robot ahead is gone: first it is expected to be there still, then it is lost.
         assert!(step(&mut follower, 0.2, &[Point::new(0.2, 0.9)]).linear > 0.0);
-        let twist = step(&mut follower, 9.0, &[Point::new(-0.9, 0.9)]);
+        let twist = step(&mut follower, 5.0, &[Point::new(-1.9, 0.9)]);
+        assert!(follower.is_lost(5.0) && twist.linear > 0.0, "it drives to where the robot was");
+        // Once there, it looks round.
+        let there = Pose::new(0.75, 0.0, 0.0);
+        let seen = FollowMeObservation { time: 9.0, pose: there, candidates: &[], obstacles: &[] };
+        let twist = follower.step(&seen).unwrap();
         assert!(follower.is_lost(9.0) && twist.linear == 0.0 && twist.angular != 0.0);
         // It is found again.
         step(&mut follower, 9.1, &[Point::new(0.9, 0.3)]);
         assert!(!follower.is_lost(9.1) && step(&mut follower, 9.2, &[Point::new(0.9, 0.3)]).linear > 0.0);
+    }
+
+    #[test]
+    fn only_what_is_as_wide_as_the_robot_may_be_it() {
+        use crate::io::Lidar;
+        use crate::io::sim::{SimOptions, Simulation};
+        use crate::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
+        use std::sync::Arc;
+        let can = Arc::new(ObjectKind::predefined("can").unwrap());
+        for (seed, distance) in [0.35, 0.6, 1.0, 1.5, 2.0, 2.5, 3.0].into_iter().enumerate() {
+            let mut world = World::walled(8.0, 4.0);
+            world.objects.push(Object::new(Arc::clone(&can), Pose::new(2.0, 2.0 + distance, 0.0)));
+            let mut scene = Scene::with_robot(world, RobotSpec::s4(), Pose::new(2.0, 2.0, 0.0));
+            let leader = Pose::new(2.0 + distance, 2.0, 1.0);
+            scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::labbot()), leader));
+            let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, seed as u64)).unwrap();
+            let scan = simulation.robot(0).unwrap().scan().unwrap();
+            let found = robots_in(&scan, 0.09);
+            assert_eq!(found.len(), 1, "{distance}: {found:?}");
+            assert!((found[0] - Point::new(distance, 0.0)).norm() < 0.04, "{distance}: {found:?}");
+        }
     }
 
     #[test]

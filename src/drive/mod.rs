@@ -16,12 +16,16 @@
 //!   (chapter 5);
 //! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6); [`PidWallFollower`],
 //!   [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`] beside it;
+//! - [`cones`]: racing between cones (chapter 14): tracks, the way between cones, racing lines, speed profiles;
+//! - [`safety`]: the safety system of a car that drives by wire (chapter 14);
 //! - [`Pid`] and [`RelayTuner`]: a PID controller and how to find its gains.
 
 mod a_to_b;
 mod a_to_b_run;
+mod beat;
 mod car;
 mod chase;
+pub mod cones;
 mod coverage;
 mod cruise;
 mod dubins;
@@ -41,7 +45,7 @@ mod way;
 
 pub use a_to_b::{AToB, AToBCommand, AToBObservation, AToBOutcome, AToBParameters, Goal, Method};
 pub use car::{CarCommand, CarDriver, CarOutcome, CarParameters, CarToB};
-pub use chase::{Chase, ChaseParameters};
+pub use chase::{Chase, ChaseOutcome, ChaseParameters};
 pub use coverage::{CoverageMap, CoverageParameters, CoveragePlan, Tour, TourParameters};
 pub use cruise::{Cruise, CruiseParameters};
 pub use follow_me::{FollowMeObservation, FollowMeParameters, Follower, robots_in};

@@ -1,6 +1,7 @@
+use super::beat::Beat;
 use crate::geometry::{Point, Pose, Vector, angle_difference, direction, normalize_angle};
 use crate::io::error::require_positive;
-use crate::io::{Clock, Drive, Error, ErrorKind, Motors, Result};
+use crate::io::{Clock, Drive, Error, Motors, Result};
 use crate::kinematics::{Omni, PlanarTwist};
 
 /// Velocities of a robot on four wheels with rollers as commands of its motors (book, section 7.4: an interface from a
@@ -189,25 +190,17 @@ impl OmniTracker {
         driver: &OmniDriver,
         mut observe: impl FnMut(f64, Pose),
     ) -> Result<()> {
-        let begin = robot.now()?;
-        let mut next = begin;
-        let mut last = f64::NEG_INFINITY;
+        let mut beat = Beat::start(robot, self.parameters.period)?;
         loop {
-            let now = robot.now()?;
-            if now <= last {
-                return Err(Error::new(ErrorKind::Other, "the robot's clock stands still"));
-            }
-            last = now;
+            let time = beat.step(robot)?;
             let pose = robot.pose()?;
-            let twist = self.step(now - begin, pose)?;
-            observe(now - begin, pose);
+            let twist = self.step(time, pose)?;
+            observe(time, pose);
             driver.drive(robot, twist.unwrap_or(PlanarTwist::STOP))?;
             if twist.is_none() {
                 return Ok(());
             }
-            next += self.parameters.period;
-            let pause = next - robot.now()?;
-            robot.wait(pause)?;
+            beat.rest(robot)?;
         }
     }
 }

@@ -26,6 +26,12 @@ impl BitGrid {
         *word = if bit { *word | mask } else { *word & !mask };
     }
 
+    /// The first 64 columns of a row.
+    #[inline]
+    pub(super) fn row(&self, row: usize) -> u64 {
+        self.words[row * self.words_per_row]
+    }
+
     pub(super) fn count(&self) -> usize {
         self.words.iter().map(|word| word.count_ones() as usize).sum()
     }

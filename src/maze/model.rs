@@ -77,6 +77,13 @@ impl Layer {
         }
     }
 
+    /// The first 64 walls of a row that stand, a bit each.
+    #[inline]
+    fn closed_row(&self, row: usize, unknown: Unknown) -> u64 {
+        let doubtful = if unknown == Unknown::Closed { self.unknown.row(row) } else { 0 };
+        self.present.row(row) | doubtful
+    }
+
     fn set(&mut self, (column, row): (usize, usize), wall: Wall) {
         self.unknown.set(column, row, wall == Wall::Unknown);
         self.present.set(column, row, wall == Wall::Present);
@@ -217,6 +224,18 @@ impl Maze {
             Wall::Unknown => unknown == Unknown::Open,
         };
         self.neighbour(cell, direction).filter(|_| open)
+    }
+
+    /// The cells of a row that are open to the east and to the north, a bit each; of a maze that is less than 64 cells wide.
+    #[inline]
+    pub(super) fn open_row(&self, row: usize, unknown: Unknown) -> (u64, u64) {
+        debug_assert!(self.width < 64);
+        let inner = |cells: usize| (1u64 << cells) - 1;
+        let east = !self.vertical.closed_row(row, unknown) >> 1 & inner(self.width() - 1);
+        if row + 1 == self.height() {
+            return (east, 0);
+        }
+        (east, !self.horizontal.closed_row(row + 1, unknown) & inner(self.width()))
     }
 
     /// Whether all four walls of a cell are known.

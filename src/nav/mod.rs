@@ -8,6 +8,7 @@ pub mod grid;
 mod lidar;
 mod localisation;
 mod log_odds;
+mod navigate;
 mod reachability;
 mod scan_filter;
 mod scan_matcher;
@@ -26,6 +27,9 @@ pub use lidar::{
 };
 pub use localisation::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
 pub use log_odds::{LogOddsError, LogOddsMap, LogOddsParameters};
+pub use navigate::{
+    NavigateEvent, NavigateObservation, NavigateOutcome, NavigateParameters, NavigatePhase, Navigator,
+};
 pub use reachability::Reachability;
 pub use scan_filter::ScanFilter;
 pub use scan_matcher::ScanMatcher;

@@ -143,6 +143,15 @@ impl ScanMatcher {
         }
     }
 
+    /// Takes in what is to be seen from a pose by what is known of the world, in place of all earlier references.
+    pub(super) fn know(&mut self, pose: Pose, points: &[Point]) {
+        self.references.clear();
+        self.references.push(Reference::new(pose, points));
+        self.active.clear();
+        self.active.push(0);
+        self.chosen_at = pose.position();
+    }
+
     /// Moves pose and covariance on by odometry.
     fn predict(&mut self, odometry: Pose) -> Pose {
         let measured = self.odometry.inverse().compose(&odometry);

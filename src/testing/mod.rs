@@ -24,6 +24,8 @@ mod checks;
 mod strategies;
 #[cfg(test)]
 mod tests;
+mod tracks;
 
 pub use checks::{Movement, PlanWith, Violation, collision_free, complete, optimal, triangle_inequality};
 pub use strategies::{Maze, grid_queries, grids, mazes, worlds};
+pub use tracks::cone_tracks;

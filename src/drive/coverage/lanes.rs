@@ -16,11 +16,10 @@ struct Run {
 }
 
 /// Parts the places of a map into blocks (boustrophedon decomposition after H. Choset and P. Pignon, "Coverage path planning:
-/// the boustrophedon cellular decomposition", 1997): lanes along the longer side of the floor, which begin a new block where
-/// an obstacle parts or joins them.
-pub(super) fn blocks(map: &CoverageMap) -> Vec<Block> {
+/// the boustrophedon cellular decomposition", 1997): lanes along x or along y, which begin a new block where an obstacle parts
+/// or joins them.
+pub(super) fn blocks(map: &CoverageMap, along_x: bool) -> Vec<Block> {
     let raster = map.raster();
-    let along_x = raster.columns() >= raster.rows();
     let (length, count) =
         if along_x { (raster.columns(), raster.rows()) } else { (raster.rows(), raster.columns()) };
     let cell = |along: usize, lane: usize| {

@@ -57,7 +57,13 @@ pub struct CoverageMap {
     /// Cells of the floor, and those that are covered.
     cells: usize,
     done: usize,
+    /// How many cells of the floor are not covered in each square of [`TILE`] cells: where there are none nobody needs to
+    /// look.
+    tiles: Vec<u32>,
 }
+
+/// Cells along an edge of a tile.
+const TILE: usize = 16;
 
 impl CoverageMap {
     /// The map of a world for a robot at a start. Fails for a start where the robot cannot be, and for a world that is too
@@ -88,6 +94,7 @@ impl CoverageMap {
             parameters,
             cells: 0,
             done: 0,
+            tiles: Vec::new(),
         };
         map.find_floor();
         Ok(map)
@@ -103,6 +110,32 @@ impl CoverageMap {
             }
         }
         self.cells = self.floor.iter().filter(|&&floor| floor).count();
+        self.count_tiles();
+    }
+
+    fn count_tiles(&mut self) {
+        self.tiles = vec![0; self.raster.columns().div_ceil(TILE) * self.raster.rows().div_ceil(TILE)];
+        for cell in (0..self.floor.len()).filter(|&cell| self.floor[cell] && !self.covered[cell]) {
+            let tile = self.tile(cell);
+            self.tiles[tile] += 1;
+        }
+    }
+
+    fn tile(&self, cell: usize) -> usize {
+        let (column, row) = (cell % self.raster.columns(), cell / self.raster.columns());
+        row / TILE * self.raster.columns().div_ceil(TILE) + column / TILE
+    }
+
+    /// Whether all is covered in the tiles about a cell that lie within so many cells.
+    fn is_done_about(&self, cell: usize, reach: usize) -> bool {
+        let (columns, rows) = (self.raster.columns(), self.raster.rows());
+        let (column, row) = (cell % columns, cell / columns);
+        let tiles = |middle: usize, most: usize| {
+            middle.saturating_sub(reach) / TILE..=(middle + reach).min(most - 1) / TILE
+        };
+        tiles(row, rows).all(|row| {
+            tiles(column, columns).all(|column| self.tiles[row * columns.div_ceil(TILE) + column] == 0)
+        })
     }
 
     /// Steps in columns and rows from a cell to those whose middles lie within a radius.
@@ -134,6 +167,8 @@ impl CoverageMap {
             if self.floor[under] && !self.covered[under] {
                 self.covered[under] = true;
                 self.done += 1;
+                let tile = self.tile(under);
+                self.tiles[tile] -= 1;
             }
         }
     }
@@ -183,11 +218,16 @@ impl CoverageMap {
     pub(super) fn uncovered(mut self) -> Self {
         self.covered.fill(false);
         self.done = 0;
+        self.count_tiles();
         self
     }
 
     /// How many cells that are not covered yet a robot at a cell would cover.
     pub(super) fn gain(&self, cell: usize, disc: &[(i64, i64)]) -> usize {
+        let reach = (self.parameters.radius / self.raster.resolution()).ceil() as usize;
+        if self.is_done_about(cell, reach) {
+            return 0;
+        }
         self.under(cell, disc).filter(|&under| self.floor[under] && !self.covered[under]).count()
     }
 

@@ -1,3 +1,5 @@
+use std::collections::BTreeSet;
+
 use super::CoverageMap;
 use super::lanes::{Block, blocks};
 use super::route::{Routes, is_free};
@@ -25,40 +27,44 @@ pub struct CoveragePlan {
 
 /// Metres by which the robot may miss its way without leaving a gap that the plan does not know of.
 const ERROR: f64 = 0.004;
-/// Of the cells under the robot, the share that has to be gained for a place to be worth a visit.
-const WORTH: f64 = 0.12;
-/// The share of the floor at which the plan is content.
-const ENOUGH: f64 = 0.995;
+/// Of the cells under the robot, the share that has to be gained for a place to be worth a visit, and the share of the floor
+/// at which no more such visits are made: small gains count where the floor is small or has many corners.
+const WORTH: [(f64, f64); 3] = [(0.12, 0.995), (0.05, 0.96), (0.02, 0.95)];
+/// The share of the floor below which a plan is worse than another one, however short.
+const ENOUGH: f64 = 0.98;
 /// The most visits beside the lanes.
 const VISITS: usize = 2000;
 
 impl CoveragePlan {
-    /// A plan for a robot at a start. What the map says to be covered is not looked at. Takes time in proportion to the
-    /// cells times the blocks and the visits beside them.
+    /// A plan for a robot at a start, in lanes along the one side of the floor or along the other, whichever is shorter. What
+    /// the map says to be covered is not looked at. Takes time in proportion to the cells times, at worst, the blocks and
+    /// the visits beside them.
     pub fn new(map: &CoverageMap, start: Point) -> Result<Self> {
+        let [one, other] = [true, false].map(|along_x| Self::in_lanes(map, start, along_x));
+        // A plan that leaves out more is no better for being shorter.
+        let is_better = match (one.share < ENOUGH, other.share < ENOUGH) {
+            (false, true) => true,
+            (true, false) => false,
+            _ => one.length() <= other.length(),
+        };
+        Ok(if is_better { one } else { other })
+    }
+
+    fn in_lanes(map: &CoverageMap, start: Point, along_x: bool) -> Self {
         let mut planned = CoverageMap::clone(map).uncovered();
         let mut points = vec![start];
-        let mut blocks = blocks(map);
-        let cell_of = |place: Point| map.raster().cell_at(place).unwrap_or(0);
-        while !blocks.is_empty() {
-            let here = points[points.len() - 1];
-            let (routes, _) = Routes::from(map, cell_of(here), |_| false);
-            let Some((index, lanes)) = nearest(&blocks, |place| f64::from(routes.lengths[cell_of(place)]))
-            else {
-                break;
-            };
-            blocks.swap_remove(index);
-            for lane in lanes {
-                for place in lane {
-                    connect(map, &mut points, place);
-                }
+        let mut blocks = blocks(map, along_x);
+        let mut routes = Routes::new(map);
+        while let Some(lanes) = take_nearest(map, &mut routes, &mut blocks, points[points.len() - 1]) {
+            for place in lanes.into_iter().flatten() {
+                connect(map, &mut routes, &mut points, place);
             }
         }
         for two in points.windows(2) {
             planned.cover_line(two[0], two[1], ERROR);
         }
-        visit_the_rest(map, &mut planned, &mut points);
-        Ok(Self { points, share: planned.share() })
+        visit_the_rest(map, &mut routes, &mut planned, &mut points);
+        Self { points, share: planned.share() }
     }
 
     /// The corners of the way, from the start on.
@@ -77,63 +83,72 @@ impl CoveragePlan {
     }
 }
 
-/// The block that begins nearest, and its lanes in the order and in the directions in which they are to be driven.
-fn nearest(blocks: &[Block], length_to: impl Fn(Point) -> f64) -> Option<(usize, Vec<[Point; 2]>)> {
-    let mut best: Option<(f64, usize, bool, bool)> = None;
-    for (index, block) in blocks.iter().enumerate() {
-        let ends = [block.lanes.first(), block.lanes.last()];
-        for (backwards, lane) in ends.into_iter().enumerate() {
-            let Some(lane) = lane else { continue };
-            for (flipped, &end) in lane.iter().enumerate() {
-                let length = length_to(end);
-                if length.is_finite() && best.is_none_or(|(least, ..)| length < least) {
-                    best = Some((length, index, backwards == 1, flipped == 1));
-                }
-            }
-        }
-    }
-    let (_, index, backwards, flipped) = best?;
-    let mut lanes = blocks[index].lanes.clone();
-    if backwards {
+/// Takes the block that begins nearest: its lanes in the order and in the directions in which they are to be driven.
+fn take_nearest(
+    map: &CoverageMap,
+    routes: &mut Routes,
+    blocks: &mut Vec<Block>,
+    here: Point,
+) -> Option<Vec<[Point; 2]>> {
+    let from = map.raster().cell_at(here)?;
+    let ends: BTreeSet<usize> = blocks
+        .iter()
+        .flat_map(|block| [block.lanes.first(), block.lanes.last()])
+        .flatten()
+        .flatten()
+        .filter_map(|&end| map.raster().cell_at(end))
+        .collect();
+    let nearest = routes.search(map, from, |cell| ends.contains(&cell))?;
+    let is_there = |end: &Point| map.raster().cell_at(*end) == Some(nearest);
+    let begins = |lane: Option<&[Point; 2]>| lane.is_some_and(|lane| lane.iter().any(is_there));
+    let index = blocks.iter().position(|block| begins(block.lanes.first()) || begins(block.lanes.last()))?;
+    let mut lanes = blocks.swap_remove(index).lanes;
+    if !begins(lanes.first()) {
         lanes.reverse();
     }
+    let flipped = !is_there(&lanes[0][0]);
     for (number, lane) in lanes.iter_mut().enumerate() {
         if (number % 2 == 1) != flipped {
             lane.reverse();
         }
     }
-    Some((index, lanes))
+    Some(lanes)
 }
 
 /// Adds a place to a way, straight or round what is between.
-fn connect(map: &CoverageMap, points: &mut Vec<Point>, place: Point) {
+fn connect(map: &CoverageMap, routes: &mut Routes, points: &mut Vec<Point>, place: Point) {
     let here = points[points.len() - 1];
     if is_free(map, here, place) {
         points.push(place);
         return;
     }
     let (Some(from), Some(to)) = (map.raster().cell_at(here), map.raster().cell_at(place)) else { return };
-    let (routes, found) = Routes::from(map, from, |cell| cell == to);
-    if found.is_some() {
+    if routes.search(map, from, |cell| cell == to).is_some() {
         points.extend(routes.to(map, to).into_iter().skip(1));
     }
 }
 
 /// Drives to the nearest places that are worth it, until the floor is covered.
-fn visit_the_rest(map: &CoverageMap, planned: &mut CoverageMap, points: &mut Vec<Point>) {
+fn visit_the_rest(
+    map: &CoverageMap,
+    routes: &mut Routes,
+    planned: &mut CoverageMap,
+    points: &mut Vec<Point>,
+) {
     let robot = planned.robot();
-    let worth = ((robot.len() as f64 * WORTH) as usize).max(1);
-    for _ in 0..VISITS {
-        let here = points[points.len() - 1];
-        let Some(from) = map.raster().cell_at(here) else { return };
-        if planned.share() >= ENOUGH {
-            return;
-        }
-        let (routes, found) = Routes::from(map, from, |cell| planned.gain(cell, &robot) >= worth);
-        let Some(goal) = found.filter(|&goal| goal != from) else { return };
-        for place in routes.to(map, goal).into_iter().skip(1) {
-            planned.cover_line(points[points.len() - 1], place, ERROR);
-            points.push(place);
+    let mut visits = 0;
+    for (share, enough) in WORTH {
+        let worth = ((robot.len() as f64 * share) as usize).max(1);
+        while planned.share() < enough && visits < VISITS {
+            visits += 1;
+            let here = points[points.len() - 1];
+            let Some(from) = map.raster().cell_at(here) else { return };
+            let found = routes.search(map, from, |cell| planned.gain(cell, &robot) >= worth);
+            let Some(goal) = found.filter(|&goal| goal != from) else { break };
+            for place in routes.to(map, goal).into_iter().skip(1) {
+                planned.cover_line(points[points.len() - 1], place, ERROR);
+                points.push(place);
+            }
         }
     }
 }

@@ -3,13 +3,15 @@ use std::collections::BinaryHeap;
 use super::CoverageMap;
 use crate::geometry::Point;
 
-/// Shortest ways of a robot's middle over the cells where it may be, from one cell to all others.
+/// Shortest ways of a robot's middle over the cells where it may be, from one cell to others.
 #[derive(Debug, Clone)]
 pub(super) struct Routes {
     /// The cell before each on the way from the start.
     before: Vec<u32>,
-    /// The length of the way in cells; infinite where there is none.
-    pub(super) lengths: Vec<f32>,
+    /// The length of the way in cells; infinite where none is known.
+    lengths: Vec<f32>,
+    /// Cells that the last search came to.
+    touched: Vec<u32>,
     start: usize,
 }
 
@@ -32,24 +34,37 @@ impl Ord for Open {
 }
 
 impl Routes {
-    /// All ways from a cell, until one is found that `is_goal` accepts. Returns that, too.
-    pub(super) fn from(
+    /// No ways yet over a map.
+    pub(super) fn new(map: &CoverageMap) -> Self {
+        let cells = map.places.len();
+        let (before, lengths) = (vec![u32::MAX; cells], vec![f32::INFINITY; cells]);
+        Self { before, lengths, touched: Vec::new(), start: 0 }
+    }
+
+    /// Finds ways from a cell until it comes to the nearest one that `is_goal` accepts, and returns that.
+    pub(super) fn search(
+        &mut self,
         map: &CoverageMap,
         start: usize,
         mut is_goal: impl FnMut(usize) -> bool,
-    ) -> (Self, Option<usize>) {
+    ) -> Option<usize> {
         let columns = map.raster().columns() as i64;
         let cells = map.places.len();
-        let mut routes = Self { before: vec![u32::MAX; cells], lengths: vec![f32::INFINITY; cells], start };
-        routes.lengths[start] = 0.0;
+        for cell in self.touched.drain(..) {
+            self.before[cell as usize] = u32::MAX;
+            self.lengths[cell as usize] = f32::INFINITY;
+        }
+        self.start = start;
+        self.lengths[start] = 0.0;
+        self.touched.push(start as u32);
         let mut open = BinaryHeap::from([Open(0.0, start as u32)]);
         while let Some(Open(length, cell)) = open.pop() {
             let here = cell as usize;
-            if length > routes.lengths[here] {
+            if length > self.lengths[here] {
                 continue;
             }
             if is_goal(here) {
-                return (routes, Some(here));
+                return Some(here);
             }
             for (x, y, step) in STEPS {
                 let next = here as i64 + y * columns + x;
@@ -58,14 +73,17 @@ impl Routes {
                 else {
                     continue;
                 };
-                if length + step < routes.lengths[next] {
-                    routes.lengths[next] = length + step;
-                    routes.before[next] = cell;
+                if length + step < self.lengths[next] {
+                    if self.lengths[next].is_infinite() {
+                        self.touched.push(next as u32);
+                    }
+                    self.lengths[next] = length + step;
+                    self.before[next] = cell;
                     open.push(Open(length + step, next as u32));
                 }
             }
         }
-        (routes, None)
+        None
     }
 
     /// The way to a cell as few straight lines, both ends included.

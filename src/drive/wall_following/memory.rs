@@ -1,6 +1,6 @@
 use std::collections::VecDeque;
 
-use crate::geometry::{FittedLine, Point, Pose, direction};
+use crate::geometry::{FittedLine, Point, Pose, Vector, direction};
 
 /// The last points that a sensor has seen, in the frame of odometry, in order.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +31,18 @@ impl Memory {
 
     pub(super) fn iter(&self) -> impl Iterator<Item = Point> + Clone + '_ {
         self.points.iter().copied()
+    }
+
+    /// The mean of a few points in a row that is nearest to a place. Points farther from each other than `spread` metres are
+    /// not of one surface, and are not averaged.
+    pub(super) fn nearest(&self, to: Point, spread: f64) -> Option<Point> {
+        const FEW: usize = 5;
+        let points: Vec<Point> = self.iter().collect();
+        points
+            .windows(FEW)
+            .filter(|few| (few[FEW - 1] - few[0]).norm() < spread)
+            .map(|few| Point::from(few.iter().map(|point| point.coords).sum::<Vector>() / FEW as f64))
+            .min_by(|a, b| (a - to).norm().total_cmp(&(b - to).norm()))
     }
 
     /// The line through some points and the last ones, as seen from a pose.

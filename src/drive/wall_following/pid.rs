@@ -126,6 +126,10 @@ impl<R: Drive + DistanceSensors + ?Sized> FollowsWalls<R> for PidWallFollower {
     fn is_beside_wall(&self) -> bool {
         self.met && !self.turning
     }
+
+    fn wall_side(&self) -> Option<WallSide> {
+        Some(self.parameters.side)
+    }
 }
 
 #[cfg(test)]

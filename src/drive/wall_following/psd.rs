@@ -114,6 +114,8 @@ const CORNER_WEIGHT: usize = 8;
 const NEW_WALL_ANGLE: f64 = 0.3;
 /// Metres around the nearest point that was swept over in which points belong to the same wall.
 const SAME_WALL: f64 = 0.13;
+/// Points in a row within so many metres are taken for one surface.
+const ONE_SURFACE: f64 = 0.06;
 /// The heading error, in radians, at which a turn ends.
 const ALIGNED: f64 = 0.08;
 /// Turning proportionally to the rest of the angle, in 1/s.
@@ -297,26 +299,18 @@ impl WallFollower {
     /// The line through the points that were swept over near to the nearest one, in the robot's frame, its direction that
     /// in which the robot is to drive.
     fn swept_wall(&self, pose: &Pose) -> Option<FittedLine> {
-        let position = pose.position();
-        let window = 5;
-        if self.swept.len() < 3 * window {
+        /// Points that a line needs.
+        const LEAST: usize = 15;
+        if self.swept.len() < LEAST {
             return None;
         }
-        let points: Vec<Point> = self.swept.iter().collect();
-        let nearest = points
-            .windows(window)
-            .map(|some| {
-                let sum: nalgebra::Vector2<f64> = some.iter().map(|point| point.coords).sum();
-                Point::from(sum / window as f64)
-            })
-            .min_by(|a, b| (a - position).norm().total_cmp(&(b - position).norm()))?;
-        let near = points.iter().copied().filter(|point| (point - nearest).norm() < SAME_WALL);
+        let nearest = self.swept.nearest(pose.position(), f64::INFINITY)?;
+        let near = self.swept.iter().filter(|point| (point - nearest).norm() < SAME_WALL);
         let line = FittedLine::through(near.map(|point| pose.to_local(point)))?;
         // Seen from inside, a wall to the left runs the way in which the robot drives.
         let left_of_robot = line.distance_to(Point::origin()) < 0.0;
         let direction = if left_of_robot { line.direction } else { -line.direction };
-        (line.length > 0.4 * SAME_WALL && line.points >= 3 * window)
-            .then_some(FittedLine { direction, ..line })
+        (line.length > 0.4 * SAME_WALL && line.points >= LEAST).then_some(FittedLine { direction, ..line })
     }
 
     /// The wall that was swept over, with its curvature.
@@ -450,14 +444,26 @@ impl WallFollower {
         } else if self.driven - since > 1.3 * TAU * distance {
             self.state = State::Searching { heading: pose.heading, since: self.driven };
         }
-        let away = corner - pose.position();
-        let beside = Pose::new(corner.x, corner.y, along);
+        let beside = Pose::new(corner.x, corner.y, along).to_local(pose.position());
         // Before the corner the robot keeps to the wall that it knows, behind it to a circle.
-        let behind = beside.to_local(pose.position()).x;
-        let direction = if behind < 0.0 { along } else { math::atan2(away.y, away.x) - FRAC_PI_2 };
-        let gap = if behind < 0.0 { -beside.to_local(pose.position()).y } else { away.norm() };
-        let curvature = if behind + lag * speed > 0.0 { 1.0 / distance } else { 0.0 };
-        self.steer(gap - distance, angle_difference(direction, pose.heading), curvature)
+        if beside.x < 0.0 {
+            let curvature = if beside.x + lag * speed > 0.0 { 1.0 / distance } else { 0.0 };
+            return self.steer(-beside.y - distance, angle_difference(along, pose.heading), curvature);
+        }
+        let (pivot, curvature) = self.pivot(pose, corner);
+        let away = pivot - pose.position();
+        let direction = math::atan2(away.y, away.x) - FRAC_PI_2;
+        self.steer(away.norm() - distance, angle_difference(direction, pose.heading), curvature)
+    }
+
+    /// What the robot drives round, and the curvature of its path: the end of the wall, or whatever it has seen behind that and
+    /// is nearer now. The end of a wall may be thick, with another corner before a new wall is known.
+    fn pivot(&self, pose: &Pose, corner: Point) -> (Point, f64) {
+        let round = 1.0 / self.parameters.distance;
+        let gap = |point: Point| (point - pose.position()).norm();
+        let seen = self.beside.nearest(pose.position(), ONE_SURFACE);
+        // Along a surface the path is straight, round its end it is not: which of the two is not known.
+        seen.filter(|&seen| gap(seen) < gap(corner)).map_or((corner, round), |seen| (seen, 0.5 * round))
     }
 
     /// The wall behind a corner, once the robot drives nearly along it.

@@ -1,6 +1,6 @@
 use std::ops::ControlFlow;
 
-use super::{WallFollower, WallObservation, WallPhase};
+use super::{WallFollower, WallObservation, WallPhase, WallSide};
 use crate::geometry::Twist;
 use crate::io::{Clock, DistanceSensors, Drive, Psd, Result};
 
@@ -14,6 +14,9 @@ pub trait FollowsWalls<R: ?Sized> {
 
     /// Whether the robot drives along a wall that it has found.
     fn is_beside_wall(&self) -> bool;
+
+    /// On which side of the robot the wall is, once that is decided.
+    fn wall_side(&self) -> Option<WallSide>;
 }
 
 /// How a drive along walls ended.
@@ -91,5 +94,9 @@ impl<R: Drive + DistanceSensors + ?Sized> FollowsWalls<R> for WallFollower {
 
     fn is_beside_wall(&self) -> bool {
         self.phase() == WallPhase::Following
+    }
+
+    fn wall_side(&self) -> Option<WallSide> {
+        self.side()
     }
 }

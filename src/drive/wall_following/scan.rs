@@ -169,4 +169,8 @@ impl<R: Lidar + ?Sized> FollowsWalls<R> for LidarWallFollower {
     fn is_beside_wall(&self) -> bool {
         self.met && self.aligned
     }
+
+    fn wall_side(&self) -> Option<WallSide> {
+        Some(self.parameters.side)
+    }
 }

@@ -1,5 +1,5 @@
 use super::run::observe;
-use super::{FollowsWalls, WallObservation};
+use super::{FollowsWalls, WallObservation, WallSide};
 use crate::geometry::{Twist, units};
 use crate::io::{DistanceSensors, Drive, Result};
 
@@ -70,6 +70,10 @@ impl<R: Drive + DistanceSensors + ?Sized> FollowsWalls<R> for TwoLevelWallFollow
 
     fn is_beside_wall(&self) -> bool {
         self.met && !self.turning
+    }
+
+    fn wall_side(&self) -> Option<WallSide> {
+        Some(WallSide::Left)
     }
 }
 

@@ -21,13 +21,13 @@
 //!
 //! Robots are numbered from 1 in topics. A metadata record named `roverlab` holds the [`Header`].
 
+mod answers;
 mod call;
 mod determinism;
 mod difference;
 mod entry;
 mod error;
 mod header;
-
 mod open_loop;
 mod parts;
 mod player;
@@ -40,6 +40,7 @@ mod replay;
 mod scene;
 mod schema;
 mod shadow;
+mod troop;
 mod truth;
 mod values;
 mod wire;
@@ -56,6 +57,7 @@ pub use recorder::Recorder;
 pub use recording::Log;
 pub use recover::{Recovery, recover};
 pub use replay::Replay;
+pub use troop::{Behaviour, RecordedTroop, ReplayTroop, Troop};
 pub use truth::{RecordedTruth, ReplayTruth, Witness};
 pub use writer::LogWriter;
 

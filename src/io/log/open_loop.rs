@@ -1,21 +1,13 @@
 use std::collections::BTreeMap;
 
-use image::RgbImage;
-
+use super::answers::Answers;
 use super::call::{self, Call};
-use super::parts::{ScanHead, Size};
 use super::player::seconds;
 use super::recording::Kind;
-use super::values::{self, Put, Take, Values};
+use super::values::Values;
 use super::writer::nanoseconds;
-use super::{Log, LogError, wire};
-use crate::geometry::{Pose, Twist};
-use crate::io::{
-    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
-    Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution,
-    Result, Servos, Viewport,
-};
-use crate::world::Colour;
+use super::{Log, LogError};
+use crate::io::{Clock, Error, ErrorKind, Key, Result};
 
 /// A robot made of a recording that answers by time, whatever the program does: for trying another algorithm on
 /// recorded inputs.
@@ -253,15 +245,20 @@ impl OpenLoop {
         events.first().filter(|event| event.time <= now || method == "wait_key")?;
         Some(events.remove(0))
     }
+}
 
-    fn plain<T: Take>(&mut self, method: &str, arguments: &Values) -> Result<T> {
-        if is_command(method) {
-            self.obey(method, arguments)?;
-            return Values::default()
-                .take()
-                .ok_or_else(|| Error::new(ErrorKind::Other, "a command has no answer"));
+impl Answers for OpenLoop {
+    fn answer<T>(
+        &mut self,
+        method: &str,
+        arguments: &Values,
+        take: impl FnOnce(&Values, &[u8]) -> Option<T>,
+    ) -> Result<T> {
+        if !is_command(method) {
+            return self.ask(method, arguments, take);
         }
-        self.ask(method, arguments, |result, _| result.take())
+        self.obey(method, arguments)?;
+        take(&Values::default(), &[]).ok_or_else(|| Error::new(ErrorKind::Other, "a command has no answer"))
     }
 }
 
@@ -296,57 +293,3 @@ impl Clock for OpenLoop {
         Ok(seconds(self.time))
     }
 }
-
-impl Lidar for OpenLoop {
-    fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()> {
-        self.ask("scan_into", &Values::default(), |head, bulk| {
-            let head: ScanHead = head.take()?;
-            head.fill(scan, wire::doubles(wire::bytes_of(bulk, 6).unwrap_or_default())?);
-            Some(())
-        })
-    }
-
-    fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
-        self.obey("configure_lidar", &Values::of(&settings))
-    }
-}
-
-impl Camera for OpenLoop {
-    fn set_resolution(&mut self, resolution: Resolution) -> Result<()> {
-        self.obey("set_resolution", &Values::of(&resolution))
-    }
-
-    fn resolution(&mut self) -> Result<Resolution> {
-        self.plain("resolution", &Values::default())
-    }
-
-    fn image_into(&mut self, image: &mut RgbImage) -> Result<()> {
-        self.ask("image_into", &Values::default(), |size, bulk| {
-            let Size(width, height) = size.take()?;
-            *image = values::image(width, height, wire::bytes_of(bulk, 6).unwrap_or_default().to_vec())?;
-            Some(())
-        })
-    }
-}
-
-macro_rules! by_time {
-    ($capability:ident { $( fn $name:ident($($arg:ident: $type:ty),*) -> $result:ty; )* }) => {
-        impl $capability for OpenLoop {
-            $( fn $name(&mut self $(, $arg: $type)*) -> Result<$result> {
-                #[allow(unused_mut, reason = "some calls have no arguments")]
-                let mut arguments = Values::default();
-                $( $arg.put(&mut arguments); )*
-                self.plain(stringify!($name), &arguments)
-            } )*
-        }
-    };
-}
-
-signatures! { Drive => by_time!() }
-signatures! { DistanceSensors => by_time!() }
-signatures! { Display => by_time!() }
-signatures! { Keys => by_time!() }
-signatures! { Radio => by_time!() }
-signatures! { Motors => by_time!() }
-signatures! { Servos => by_time!() }
-signatures! { Encoders => by_time!() }

@@ -1,3 +1,5 @@
+use image::RgbImage;
+
 use super::values::{Put, Take, Taking, Values};
 use crate::geometry::Pose;
 use crate::io::LidarScan;
@@ -48,6 +50,12 @@ impl Take for ScanHead {
 /// An image without its pixels, which are on the camera's topic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Size(pub(super) u32, pub(super) u32);
+
+impl Size {
+    pub(super) fn of(image: &RgbImage) -> Self {
+        Self(image.width(), image.height())
+    }
+}
 
 impl Put for Size {
     fn put(&self, out: &mut Values) {

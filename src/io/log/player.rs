@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::call::{self, Call};
 use super::recording::{Event, Kind};
 use super::writer::{Nanoseconds, nanoseconds};
-use super::{Log, LogError, Replay, ReplayTruth};
+use super::{Log, LogError, Replay, ReplayTroop, ReplayTruth};
 
 /// Plays a recording: hands out its robots, and what was true about them.
 #[derive(Debug, Clone)]
@@ -28,6 +28,16 @@ impl Player {
     /// A robot, by its index.
     pub fn robot(&self, robot: usize) -> Result<Replay, LogError> {
         self.position(robot).map(Replay::at)
+    }
+
+    /// The robots of a recorded troop, which are stepped in one thread.
+    pub fn troop<'a>(&self) -> ReplayTroop<'a> {
+        ReplayTroop::new(self)
+    }
+
+    /// How far each robot has come.
+    pub(super) fn positions(&self) -> impl Iterator<Item = Position> + '_ {
+        self.positions.iter().cloned()
     }
 
     /// What was true while a robot drove, as somebody asked who watched it.

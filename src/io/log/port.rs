@@ -1,6 +1,8 @@
 use std::fmt;
 use std::io::Write;
 
+use image::RgbImage;
+
 use super::call;
 use super::schema::Schema;
 use super::shadow::Shadow;
@@ -93,25 +95,25 @@ impl<W: Write> Port<W> {
     fn show_display(&mut self) {
         let mut shadow = std::mem::take(&mut self.shadow);
         if let Some(image) = shadow.take() {
-            self.show(LCD, |out, frames| raw_image(out, frames, image.dimensions(), image.as_raw()));
+            self.show(LCD, |out, frames| raw_image(out, frames, image));
         }
         self.shadow = shadow;
     }
 
-    pub(super) fn argument(&mut self, argument: &impl Put) {
+    pub(super) fn argument(&mut self, argument: &dyn Put) {
         argument.put(&mut self.arguments);
     }
 
     /// Writes the call that has begun.
     pub(super) fn end<T: Put>(&mut self, channel: Channel, method: &str, result: &Result<T>) {
-        self.end_with(channel, method, result.as_ref().map(|value| value as &dyn PutAny));
+        self.end_with(channel, method, result.as_ref().map(|value| value as &dyn Put));
     }
 
-    fn end_with(&mut self, channel: Channel, method: &str, result: std::result::Result<&dyn PutAny, &Error>) {
+    fn end_with(&mut self, channel: Channel, method: &str, result: std::result::Result<&dyn Put, &Error>) {
         self.result.clear();
         let result = match result {
             Ok(value) => {
-                value.put_any(&mut self.result);
+                value.put(&mut self.result);
                 Ok(&self.result)
             }
             Err(error) => Err(error),
@@ -139,16 +141,6 @@ pub(super) struct Frames<'a> {
     pub(super) odometry: &'a str,
 }
 
-trait PutAny {
-    fn put_any(&self, out: &mut Values);
-}
-
-impl<T: Put> PutAny for T {
-    fn put_any(&self, out: &mut Values) {
-        self.put(out);
-    }
-}
-
 /// A `foxglove.LaserScan`.
 pub(super) fn laser_scan(out: &mut Fields<'_>, frames: &Frames<'_>, scan: &LidarScan) {
     let gaps = scan.ranges.len().saturating_sub(1) as f64;
@@ -161,14 +153,15 @@ pub(super) fn laser_scan(out: &mut Fields<'_>, frames: &Frames<'_>, scan: &Lidar
 }
 
 /// A `foxglove.RawImage` of 8 bits a channel.
-pub(super) fn raw_image(out: &mut Fields<'_>, frames: &Frames<'_>, (width, height): (u32, u32), data: &[u8]) {
+pub(super) fn raw_image(out: &mut Fields<'_>, frames: &Frames<'_>, image: &RgbImage) {
+    let (width, height) = image.dimensions();
     out.time(1, frames.time);
     out.fixed32(2, width);
     out.fixed32(3, height);
     out.text(4, "rgb8");
     out.fixed32(5, 3 * width);
     out.text(7, frames.robot);
-    out.bytes(6, data);
+    out.bytes(6, image.as_raw());
 }
 
 /// A `foxglove.PoseInFrame` of odometry.

@@ -3,8 +3,10 @@ use std::io::Write;
 use image::RgbImage;
 
 use super::parts::{ScanHead, Size};
-use super::port::{self, CALLS, CAMERA, LIDAR, ODOMETRY, Port, TRANSFORMS};
-use super::writer::nanoseconds;
+use super::port::{self, CALLS, CAMERA, Frames, LIDAR, ODOMETRY, Port, TRANSFORMS};
+use super::values::Put;
+use super::wire::Fields;
+use super::writer::{Channel, nanoseconds};
 use crate::geometry::{Pose, Twist};
 use crate::io::{
     Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys, Lidar,
@@ -39,29 +41,62 @@ impl<R, W: Write> Recorder<R, W> {
     pub fn into_inner(self) -> R {
         self.inner
     }
+
+    /// The way into the recording, for the robot's next recorder.
+    pub(super) fn into_port(self) -> Port<W> {
+        self.port
+    }
 }
 
 impl<R: Clock, W: Write> Recorder<R, W> {
-    fn begin(&mut self) {
+    /// Asks the robot inside, and writes down what it was asked and what it answered.
+    fn record<T: Put>(
+        &mut self,
+        method: &str,
+        arguments: &[&dyn Put],
+        ask: impl FnOnce(&mut R) -> Result<T>,
+    ) -> Result<T> {
+        self.begin(arguments);
+        let result = ask(&mut self.inner);
+        self.port.end(CALLS, method, &result);
+        result
+    }
+
+    /// The same for an answer whose bulk is on a channel of its own, before the call, which holds the rest of it.
+    fn record_bulk<B, T: Put>(
+        &mut self,
+        (method, channel): (&str, Channel),
+        bulk: &mut B,
+        ask: impl FnOnce(&mut R, &mut B) -> Result<()>,
+        fill: impl FnOnce(&mut Fields<'_>, &Frames<'_>, &B),
+        rest: impl FnOnce(&B) -> T,
+    ) -> Result<()> {
+        self.begin(&[]);
+        let result = ask(&mut self.inner, bulk);
+        if result.is_ok() {
+            self.port.show(channel, |out, frames| fill(out, frames, bulk));
+        }
+        let result = result.map(|()| rest(bulk));
+        self.port.end(CALLS, method, &result);
+        result.map(|_| ())
+    }
+
+    fn begin(&mut self, arguments: &[&dyn Put]) {
         let time = self.inner.peek_time().ok();
         self.port.begin(time.map(nanoseconds));
+        for argument in arguments {
+            self.port.argument(*argument);
+        }
     }
 }
 
 impl<R: Clock, W: Write> Clock for Recorder<R, W> {
     fn now(&mut self) -> Result<f64> {
-        self.begin();
-        let result = self.inner.now();
-        self.port.end(CALLS, "now", &result);
-        result
+        self.record("now", &[], R::now)
     }
 
     fn wait(&mut self, seconds: f64) -> Result<()> {
-        self.begin();
-        self.port.argument(&seconds);
-        let result = self.inner.wait(seconds);
-        self.port.end(CALLS, "wait", &result);
-        result
+        self.record("wait", &[&seconds], |inner| inner.wait(seconds))
     }
 
     fn peek_time(&mut self) -> Result<f64> {
@@ -69,106 +104,55 @@ impl<R: Clock, W: Write> Clock for Recorder<R, W> {
     }
 }
 
-impl<R: Lidar + Clock, W: Write> Lidar for Recorder<R, W> {
-    fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()> {
-        self.begin();
-        let result = self.inner.scan_into(scan);
-        if result.is_ok() {
-            self.port.show(LIDAR, |out, frames| port::laser_scan(out, frames, scan));
-        }
-        let head = result.map(|()| ScanHead::of(scan));
-        self.port.end(CALLS, "scan_into", &head);
-        head.map(|_| ())
-    }
-
-    fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
-        self.begin();
-        self.port.argument(&settings);
-        let result = self.inner.configure_lidar(settings);
-        self.port.end(CALLS, "configure_lidar", &result);
-        result
-    }
-}
-
-impl<R: Camera + Clock, W: Write> Camera for Recorder<R, W> {
-    fn set_resolution(&mut self, resolution: Resolution) -> Result<()> {
-        self.begin();
-        self.port.argument(&resolution);
-        let result = self.inner.set_resolution(resolution);
-        self.port.end(CALLS, "set_resolution", &result);
-        result
-    }
-
-    fn resolution(&mut self) -> Result<Resolution> {
-        self.begin();
-        let result = self.inner.resolution();
-        self.port.end(CALLS, "resolution", &result);
-        result
-    }
-
-    fn image_into(&mut self, image: &mut RgbImage) -> Result<()> {
-        self.begin();
-        let result = self.inner.image_into(image);
-        if result.is_ok() {
-            self.port
-                .show(CAMERA, |out, frames| port::raw_image(out, frames, image.dimensions(), image.as_raw()));
-        }
-        let size = result.map(|()| Size(image.width(), image.height()));
-        self.port.end(CALLS, "image_into", &size);
-        size.map(|_| ())
-    }
-}
-
 macro_rules! recorded {
     ($capability:ident { $( fn $name:ident($($arg:ident: $type:ty),*) -> $result:ty; )* }) => {
         impl<R: $capability + Clock, W: Write> $capability for Recorder<R, W> {
             $( fn $name(&mut self $(, $arg: $type)*) -> Result<$result> {
-                self.begin();
-                $( self.port.argument(&$arg); )*
-                let result = self.inner.$name($($arg),*);
-                self.port.end(CALLS, stringify!($name), &result);
-                recorded!(@show self $name result);
-                result
+                recorded!(@$capability self $name($($arg),*))
             } )*
         }
     };
-    (@show $self:ident pose $result:ident) => {
-        if let Ok(pose) = &$result {
+    (@Lidar $self:ident scan_into($scan:ident)) => {{
+        let (call, ask) = (("scan_into", LIDAR), |inner: &mut R, scan: &mut LidarScan| inner.scan_into(scan));
+        $self.record_bulk(call, $scan, ask, port::laser_scan, ScanHead::of)
+    }};
+    (@Camera $self:ident image_into($image:ident)) => {{
+        let (call, ask) = (("image_into", CAMERA), |inner: &mut R, image: &mut RgbImage| inner.image_into(image));
+        $self.record_bulk(call, $image, ask, port::raw_image, Size::of)
+    }};
+    (@Drive $self:ident pose()) => {{
+        let result = recorded!(@ $self pose());
+        if let Ok(pose) = &result {
             $self.port.show(ODOMETRY, |out, frames| port::pose_in_frame(out, frames, pose));
             $self.port.show(TRANSFORMS, |out, frames| port::frame_transform(out, frames, pose));
         }
-    };
-    (@show $self:ident $name:ident $result:ident) => {};
-}
-
-/// As `recorded`, for calls that change what the display shows.
-macro_rules! drawn {
-    ($capability:ident { $( fn $name:ident($($arg:ident: $type:ty),*) -> $result:ty; )* }) => {
-        impl<R: $capability + Clock, W: Write> $capability for Recorder<R, W> {
-            $( fn $name(&mut self $(, $arg: $type)*) -> Result<$result> {
-                self.begin();
-                $( self.port.argument(&$arg); )*
-                let result = self.inner.$name($($arg),*);
-                self.port.end(CALLS, stringify!($name), &result);
-                if result.is_ok() {
-                    drawn!(@draw self $name($($arg),*));
-                }
-                result
-            } )*
+        result
+    }};
+    // What changes nothing on the display.
+    (@Display $self:ident cursor()) => { recorded!(@ $self cursor()) };
+    (@Display $self:ident display_size()) => { recorded!(@ $self display_size()) };
+    (@Display $self:ident pixel($at:ident)) => { recorded!(@ $self pixel($at)) };
+    (@Display $self:ident screenshot()) => { recorded!(@ $self screenshot()) };
+    (@Display $self:ident $name:ident($($arg:ident),*)) => {{
+        let result = recorded!(@ $self $name($($arg),*));
+        if result.is_ok() {
+            $self.port.draw(|lcd| lcd.$name($($arg),*));
         }
+        result
+    }};
+    (@ $self:ident $name:ident($($arg:ident),*)) => {
+        $self.record(stringify!($name), &[$(&$arg),*], |inner| inner.$name($($arg),*))
     };
-    (@draw $self:ident cursor()) => {};
-    (@draw $self:ident display_size()) => {};
-    (@draw $self:ident pixel($at:ident)) => {};
-    (@draw $self:ident screenshot()) => {};
-    (@draw $self:ident $name:ident($($arg:ident),*)) => {
-        $self.port.draw(|lcd| lcd.$name($($arg),*));
+    (@$capability:ident $self:ident $name:ident($($arg:ident),*)) => {
+        recorded!(@ $self $name($($arg),*))
     };
 }
 
 signatures! { Drive => recorded!() }
 signatures! { DistanceSensors => recorded!() }
-signatures! { Display => drawn!() }
+signatures! { Lidar => recorded!() }
+signatures! { Camera => recorded!() }
+signatures! { Display => recorded!() }
 signatures! { Keys => recorded!() }
 signatures! { Radio => recorded!() }
 signatures! { Motors => recorded!() }

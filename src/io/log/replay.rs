@@ -1,18 +1,10 @@
-use image::RgbImage;
-
+use super::answers::Answers;
 use super::call::{self, Call};
-use super::parts::{ScanHead, Size};
 use super::player::{Player, Position, seconds};
 use super::recording::Kind;
-use super::values::{self, Put, Take, Values};
-use super::{Log, LogError, wire};
-use crate::geometry::{Pose, Twist};
-use crate::io::{
-    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
-    Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution,
-    Result, Servos, Viewport,
-};
-use crate::world::Colour;
+use super::values::Values;
+use super::{Log, LogError};
+use crate::io::{Clock, Error, ErrorKind, Result};
 
 /// A robot made of a recording: it answers as the recorded one did.
 ///
@@ -37,7 +29,14 @@ impl Replay {
         Self { position, difference: None }
     }
 
-    /// What the recording answers to a call. `take` makes it of the recorded result and the bulk before it.
+    fn diverge(&mut self, difference: String) -> Error {
+        let error = Error::new(ErrorKind::Diverged, &difference);
+        self.difference = Some(difference);
+        error
+    }
+}
+
+impl Answers for Replay {
     fn answer<T>(
         &mut self,
         method: &str,
@@ -73,17 +72,6 @@ impl Replay {
             Err(failure) => Err(failure.error()),
         }
     }
-
-    fn diverge(&mut self, difference: String) -> Error {
-        let error = Error::new(ErrorKind::Diverged, &difference);
-        self.difference = Some(difference);
-        error
-    }
-
-    /// A call whose result holds all of its answer.
-    fn plain<T: Take>(&mut self, method: &str, arguments: &Values) -> Result<T> {
-        self.answer(method, arguments, |result, _| result.take())
-    }
 }
 
 fn unreadable(time: f64) -> Error {
@@ -92,11 +80,11 @@ fn unreadable(time: f64) -> Error {
 
 impl Clock for Replay {
     fn now(&mut self) -> Result<f64> {
-        self.plain("now", &Values::default())
+        self.answer("now", &Values::default(), |result, _| result.take())
     }
 
     fn wait(&mut self, seconds: f64) -> Result<()> {
-        self.plain("wait", &Values::of(&seconds))
+        self.answer("wait", &Values::of(&seconds), |result, _| result.take())
     }
 
     fn peek_time(&mut self) -> Result<f64> {
@@ -105,60 +93,3 @@ impl Clock for Replay {
             .ok_or_else(|| Error::new(ErrorKind::EndOfLog, "the recording has ended"))
     }
 }
-
-impl Lidar for Replay {
-    fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()> {
-        self.answer("scan_into", &Values::default(), |head, bulk| {
-            let head: ScanHead = head.take()?;
-            head.fill(scan, wire::doubles(wire::bytes_of(bulk, 6).unwrap_or_default())?);
-            Some(())
-        })
-    }
-
-    fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
-        self.plain("configure_lidar", &Values::of(&settings))
-    }
-}
-
-impl Camera for Replay {
-    fn set_resolution(&mut self, resolution: Resolution) -> Result<()> {
-        self.plain("set_resolution", &Values::of(&resolution))
-    }
-
-    fn resolution(&mut self) -> Result<Resolution> {
-        self.plain("resolution", &Values::default())
-    }
-
-    fn image_into(&mut self, image: &mut RgbImage) -> Result<()> {
-        self.answer("image_into", &Values::default(), |size, bulk| {
-            let Size(width, height) = size.take()?;
-            let mut data = std::mem::take(image).into_raw();
-            data.clear();
-            data.extend_from_slice(wire::bytes_of(bulk, 6).unwrap_or_default());
-            *image = values::image(width, height, data)?;
-            Some(())
-        })
-    }
-}
-
-macro_rules! replayed {
-    ($capability:ident { $( fn $name:ident($($arg:ident: $type:ty),*) -> $result:ty; )* }) => {
-        impl $capability for Replay {
-            $( fn $name(&mut self $(, $arg: $type)*) -> Result<$result> {
-                #[allow(unused_mut, reason = "some calls have no arguments")]
-                let mut arguments = Values::default();
-                $( $arg.put(&mut arguments); )*
-                self.plain(stringify!($name), &arguments)
-            } )*
-        }
-    };
-}
-
-signatures! { Drive => replayed!() }
-signatures! { DistanceSensors => replayed!() }
-signatures! { Display => replayed!() }
-signatures! { Keys => replayed!() }
-signatures! { Radio => replayed!() }
-signatures! { Motors => replayed!() }
-signatures! { Servos => replayed!() }
-signatures! { Encoders => replayed!() }

@@ -6,6 +6,7 @@ use super::player::Position;
 use super::port::{Port, TRUTH};
 use super::recording::Kind;
 use super::values::{Put, Take, Taking, Values};
+use super::writer::Nanoseconds;
 use crate::geometry::{Point, Pose};
 use crate::io::sim::{RobotTruth, TrailPoint, Truth};
 use crate::io::{Error, ErrorKind, Result};
@@ -20,6 +21,9 @@ pub trait Witness {
 
     /// All that is true about a robot.
     fn robot(&mut self, robot: usize) -> Result<RobotTruth>;
+
+    /// An object's pose in the world, by its index in the scene: robots may have pushed it.
+    fn object(&mut self, object: usize) -> Result<Pose>;
 }
 
 impl Witness for Truth {
@@ -33,6 +37,10 @@ impl Witness for Truth {
 
     fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
         Truth::robot(self, robot)
+    }
+
+    fn object(&mut self, object: usize) -> Result<Pose> {
+        Truth::object(self, object)
     }
 }
 
@@ -48,50 +56,90 @@ impl<T: Witness + ?Sized> Witness for Box<T> {
     fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
         (**self).robot(robot)
     }
+
+    fn object(&mut self, object: usize) -> Result<Pose> {
+        (**self).object(object)
+    }
 }
 
 /// A witness whose answers are recorded, made by [`LogWriter::witness`](super::LogWriter::witness).
 #[derive(Debug)]
 pub struct RecordedTruth<T, W: Write> {
     inner: T,
-    port: Port<W>,
-    /// How much of each robot's lists the recording holds already.
-    known: BTreeMap<usize, (usize, usize)>,
+    notes: Notes<W>,
 }
 
 impl<T: Witness, W: Write> RecordedTruth<T, W> {
     pub(super) fn new(inner: T, port: Port<W>) -> Self {
-        Self { inner, port, known: BTreeMap::new() }
+        Self { inner, notes: Notes::new(port) }
     }
 }
 
 impl<T: Witness, W: Write> Witness for RecordedTruth<T, W> {
     fn time(&mut self) -> Result<f64> {
-        self.port.begin(None);
         let result = self.inner.time();
-        self.port.end(TRUTH, "time", &result);
+        self.notes.note("time", &(), &result);
         result
     }
 
     fn pose(&mut self, robot: usize) -> Result<Pose> {
-        self.port.begin(None);
-        self.port.argument(&robot);
         let result = self.inner.pose(robot);
-        self.port.end(TRUTH, "pose", &result);
+        self.notes.note("pose", &robot, &result);
         result
     }
 
     fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
-        self.port.begin(None);
-        self.port.argument(&robot);
         let result = self.inner.robot(robot);
+        self.notes.note_robot(robot, &result);
+        result
+    }
+
+    fn object(&mut self, object: usize) -> Result<Pose> {
+        let result = self.inner.object(object);
+        self.notes.note("object", &object, &result);
+        result
+    }
+}
+
+/// What is recorded beside the calls of a robot: questions about the truth, and their answers.
+#[derive(Debug)]
+pub(super) struct Notes<W: Write> {
+    port: Port<W>,
+    /// How much of each robot's lists the recording holds already.
+    known: BTreeMap<usize, (usize, usize)>,
+}
+
+impl<W: Write> Notes<W> {
+    pub(super) fn new(port: Port<W>) -> Self {
+        Self { port, known: BTreeMap::new() }
+    }
+
+    /// Writes a question and its answer, at the time of the robot's last call.
+    pub(super) fn note<T: Put>(&mut self, method: &str, argument: &impl Put, result: &Result<T>) {
+        self.note_at(None, method, argument, result);
+    }
+
+    /// The same at a time of its own.
+    pub(super) fn note_at<T: Put>(
+        &mut self,
+        time: Option<Nanoseconds>,
+        method: &str,
+        argument: &impl Put,
+        result: &Result<T>,
+    ) {
+        self.port.begin(time);
+        self.port.argument(argument);
+        self.port.end(TRUTH, method, result);
+    }
+
+    /// Writes what is true about a robot and was not written before.
+    pub(super) fn note_robot(&mut self, robot: usize, result: &Result<RobotTruth>) {
         let known = self.known.entry(robot).or_default();
         let news = result.as_ref().map(|truth| News::since(*known, truth)).map_err(copy);
-        if let Ok(truth) = &result {
+        if let Ok(truth) = result {
             *known = (truth.contact_places.len(), truth.trail.len());
         }
-        self.port.end(TRUTH, "robot", &news);
-        result
+        self.note("robot", &robot, &news);
     }
 }
 
@@ -191,6 +239,7 @@ pub struct ReplayTruth {
     next: usize,
     time: Option<f64>,
     poses: BTreeMap<usize, Pose>,
+    objects: BTreeMap<usize, Pose>,
     robots: BTreeMap<usize, RobotTruth>,
 }
 
@@ -199,7 +248,8 @@ type Question<'a> = (&'a str, Option<usize>);
 
 impl ReplayTruth {
     pub(super) fn new(position: Position) -> Self {
-        Self { position, next: 0, time: None, poses: BTreeMap::new(), robots: BTreeMap::new() }
+        let (poses, objects, robots) = Default::default();
+        Self { position, next: 0, time: None, poses, objects, robots }
     }
 
     /// Takes in the recorded answers up to the next one to a question; all those before the robot's next call if there
@@ -233,6 +283,11 @@ impl ReplayTruth {
             ("pose", Some(robot)) => {
                 if let Some(pose) = result.take() {
                     self.poses.insert(robot, pose);
+                }
+            }
+            ("object", Some(object)) => {
+                if let Some(pose) = result.take() {
+                    self.objects.insert(object, pose);
                 }
             }
             ("robot", Some(robot)) => {
@@ -269,5 +324,10 @@ impl Witness for ReplayTruth {
     fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
         self.catch_up(("robot", Some(robot)));
         self.robots.get(&robot).cloned().ok_or_else(|| untold("what was true about the robot"))
+    }
+
+    fn object(&mut self, object: usize) -> Result<Pose> {
+        self.catch_up(("object", Some(object)));
+        self.objects.get(&object).copied().ok_or_else(|| untold("where the object was"))
     }
 }

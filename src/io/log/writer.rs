@@ -13,7 +13,7 @@ use super::port::{Port, SCENE, TRANSFORMS, transform};
 use super::scene::{WORLD, scene_update};
 use super::schema::Schema;
 use super::wire::Fields;
-use super::{Header, RecordedTruth, Recorder, Witness};
+use super::{Header, RecordedTroop, RecordedTruth, Recorder, Troop, Witness};
 use crate::world::Scene;
 
 /// A channel of a recording: the part of its topic behind the robot's name, and what it carries.
@@ -146,8 +146,18 @@ impl<W: Write> LogWriter<W> {
     /// Records a robot under an index of its own, from 0. When several robots drive at once, call this for all of
     /// them before the first one does.
     pub fn recorder<R>(&self, robot: R, index: usize) -> Recorder<R, W> {
+        Recorder::new(robot, self.port(index))
+    }
+
+    /// A way into the recording for a robot that drives from now on.
+    pub(super) fn port(&self, index: usize) -> Port<W> {
         self.lock().track(index).open = true;
-        Recorder::new(robot, Port::new(self.clone(), index))
+        Port::new(self.clone(), index)
+    }
+
+    /// Records robots that are stepped in one thread, under the indices that they have.
+    pub fn troop<'a, T: Troop<'a>>(&self, troop: T) -> RecordedTroop<T, W> {
+        RecordedTroop::new(troop, self.clone())
     }
 
     /// Writes what stands in a scene, and where its robots start, for viewers. It belongs at the beginning.
@@ -192,15 +202,15 @@ impl<W: Write> LogWriter<W> {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Writes a message of a robot, at the time of the one before if there is none. Its messages stay in the order in
-    /// which they come.
+    /// Writes a message of a robot, at the time of the one before if there is none or it is earlier. Its messages stay in
+    /// the order in which they come.
     pub(super) fn push(&self, track: usize, time: Option<Nanoseconds>, channel: Channel, data: &[u8]) {
         let mut shared = self.lock();
         if shared.file.is_none() || shared.failure.is_some() {
             return;
         }
         let last = &mut shared.track(track).last;
-        let time = time.unwrap_or(*last);
+        let time = time.unwrap_or(*last).max(*last);
         *last = time;
         let alone = shared
             .tracks

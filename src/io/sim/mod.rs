@@ -38,6 +38,7 @@ mod noise;
 mod omni;
 mod options;
 mod pushing;
+pub mod race;
 mod robot;
 mod robot_traits;
 mod shared;

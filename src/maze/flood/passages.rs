@@ -29,8 +29,16 @@ impl<const N: usize> Boards<N> {
     /// Bits of a row, with which `N` words hold as many rows.
     pub(super) const ROW: usize = if N == 4 { 16 } else { 32 };
 
-    const fn empty() -> Self {
-        Self { east: [0; N], north: [0; N] }
+    /// The boards of a maze that is no wider and no higher than a row is long.
+    fn read(maze: &Maze, unknown: Unknown) -> Self {
+        let mut boards = Self { east: [0; N], north: [0; N] };
+        for row in 0..maze.height() {
+            let (word, shift) = (row * Self::ROW / 64, row * Self::ROW % 64);
+            let (east, north) = maze.open_row(row, unknown);
+            boards.east[word] |= east << shift;
+            boards.north[word] |= north << shift;
+        }
+        boards
     }
 
     fn set(&mut self, (x, y): (usize, usize), eastward: bool, open: bool) {
@@ -47,11 +55,17 @@ impl Passages {
     pub fn new(maze: &Maze, unknown: Unknown) -> Self {
         let (width, height) = (maze.width(), maze.height());
         let grid = match width.max(height) {
-            0..=16 => Grid::Small(Boards::empty()),
-            17..=32 => Grid::Medium(Box::new(Boards::empty())),
-            _ => Grid::Large(vec![0; width * height]),
+            0..=16 => Grid::Small(Boards::read(maze, unknown)),
+            17..=32 => Grid::Medium(Box::new(Boards::read(maze, unknown))),
+            _ => return Self::listed(maze, unknown),
         };
-        let mut passages = Self { width, height, grid };
+        Self { width, height, grid }
+    }
+
+    /// As [`new`](Self::new), but always in the form of large mazes, which are filled from a queue: for comparisons.
+    pub fn listed(maze: &Maze, unknown: Unknown) -> Self {
+        let (width, height) = (maze.width(), maze.height());
+        let mut passages = Self { width, height, grid: Grid::Large(vec![0; width * height]) };
         for cell in maze.cells() {
             for direction in [Direction::North, Direction::East] {
                 if maze.passage(cell, direction, unknown).is_some() {

@@ -9,8 +9,9 @@ use crate::maze::{Maze, Scale, Wall};
 ///
 /// An extended Kalman filter estimates the pose together with what is systematic about the robot: how far it really goes for
 /// a metre of odometry, how far it really turns, and how it bends to one side. Each reading is compared with the known wall
-/// that it should come from, which centres the robot between walls and tells how far it is from one ahead. Where a wall ends
-/// beside the robot, a reading from the wrong side of the end tells how far along the robot is (*wall-edge correction*).
+/// that it should come from, which centres the robot between walls and tells how far it is from one ahead. Where a wall
+/// begins or ends beside the robot, be it known or not, the change of the readings tells how far along the robot is
+/// (*wall-edge correction*).
 #[derive(Debug, Clone)]
 pub struct MazeLocaliser {
     rig: Rig,
@@ -19,6 +20,17 @@ pub struct MazeLocaliser {
     state: SVector<f64, 6>,
     covariance: SMatrix<f64, 6, 6>,
     odometry: Pose,
+    /// What each sensor saw last.
+    seen: [Option<Seen>; 3],
+}
+
+/// Whether a sensor saw something on the nearest line of walls, and where along it.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    upright: bool,
+    line: i64,
+    along: f64,
+    near: bool,
 }
 
 /// What is systematic about a robot's odometry.
@@ -42,12 +54,16 @@ const BEND: usize = 5;
 /// and radians at the start.
 const LEAST_RANGE: f64 = 1e-3;
 const START: [f64; 2] = [1e-3, 4e-3];
+/// How many times as much as it is said to the robot may slip: the filter's own errors are no other.
+const SLIP: f64 = 2.0;
 /// Innovations beyond so many standard deviations come from something else than the wall.
 const GATE: f64 = 4.0;
 /// Metres from a corner within which a ray may meet something else than a wall's face.
 const CORNER: f64 = 0.012;
-/// Metres beyond, within which a reading as from a post is taken for one.
-const STRAY: f64 = 0.015;
+/// Beams square to a wall, up to 14 degrees: others may see what stands behind an opening beside it.
+const SQUARE: f64 = 0.97;
+/// How sharply a beam sees an edge, in metres.
+const EDGE: f64 = 0.004;
 
 impl MazeLocaliser {
     /// A robot at a known pose in the maze, at rest, whose odometry reads `odometry`.
@@ -62,6 +78,7 @@ impl MazeLocaliser {
             state: SVector::from([pose.x, pose.y, pose.heading, 1.0, 1.0, 0.0]),
             covariance: SMatrix::from_diagonal(&SVector::from(deviations)),
             odometry,
+            seen: [None; 3],
         }
     }
 
@@ -120,7 +137,7 @@ impl MazeLocaliser {
     /// Slip of both wheels, which grows with the square root of the way.
     fn add_slip(&mut self, length: f64, turned: f64, (sin, cos): (f64, f64)) {
         let aside = 0.5 * self.rig.track * turned;
-        let slip = self.rig.errors.slip * self.rig.errors.slip + 1e-10;
+        let slip = SLIP * SLIP * self.rig.errors.slip * self.rig.errors.slip + 1e-8;
         let wheels = [length - aside, length + aside].map(|way| slip * way.abs());
         let along = 0.25 * (wheels[0] + wheels[1]);
         let around = (wheels[0] + wheels[1]) / (self.rig.track * self.rig.track);
@@ -140,30 +157,29 @@ impl MazeLocaliser {
         let offset = Vector::new(x * cos - y * sin, x * sin + y * cos);
         let ray = direction(yaw);
         let deviation = self.rig.range_error.max(LEAST_RANGE);
-        for crossing in Crossings::new(maze, self.scale, pose.position() + offset, ray) {
+        for (passed, crossing) in Crossings::new(maze, self.scale, pose.position() + offset, ray).enumerate()
+        {
             // A blunt angle onto the walls tells little about where the robot is.
             let straight_on = if crossing.upright { ray.x } else { ray.y };
             if crossing.distance > sensor.max_range || straight_on.abs() < 0.5 {
                 return;
             }
             let model = Model { crossing, offset, ray };
+            if passed == 0 && straight_on.abs() > SQUARE {
+                self.notice_edge(sensor, &model, reading);
+            }
             let slack = GATE * (deviation + self.deviation(&model.range_slope()));
             let agrees = (reading - crossing.distance).abs() < slack.min(0.3 * self.scale.cell);
             // How far along the wall the ray may be from where it seems to be.
             let margin = CORNER + 2.0 * self.deviation(&model.along_slope());
-            let edge = self.edge(&crossing, agrees, reading, deviation);
-            if let Some(edge) = edge.filter(|_| straight_on.abs() > 0.9) {
-                self.correct_edge(&model, edge);
-                return;
-            }
+            let differs = reading - crossing.distance;
             match crossing.wall {
                 Wall::Unknown => return,
                 Wall::Absent => {
                     // A post may be in the way.
                     let post = margin + 0.5 * self.scale.wall;
-                    if agrees && crossing.corner_distance() < post + STRAY {
-                        self.correct_post(&model, reading, deviation);
-                        return;
+                    if agrees && straight_on.abs() > SQUARE && crossing.corner_distance() < post {
+                        self.update(&model.range_slope(), differs, deviation * deviation);
                     }
                     if crossing.corner_distance() < post {
                         return;
@@ -172,8 +188,7 @@ impl MazeLocaliser {
                 Wall::Present => {
                     let firm = crossing.beyond == Wall::Present || crossing.corner_distance() > margin;
                     if agrees && firm {
-                        let (slope, variance) = (model.range_slope(), deviation * deviation);
-                        self.update(&slope, reading - crossing.distance, variance);
+                        self.update(&model.range_slope(), differs, deviation * deviation);
                     }
                     return;
                 }
@@ -181,46 +196,32 @@ impl MazeLocaliser {
         }
     }
 
+    /// Compares what a sensor sees on the nearest line of walls with what it saw last. Where that changes, a wall or a post
+    /// begins or ends, and that is at a corner of the maze.
+    fn notice_edge(&mut self, sensor: &Sensor, model: &Model, reading: f64) {
+        let Some(index) = self.rig.sensors.iter().position(|other| other.id == sensor.id) else { return };
+        let Crossing { upright, line, along, distance, corner, .. } = model.crossing;
+        let near = reading < distance + 0.35 * self.scale.cell;
+        let last = self.seen[index].replace(Seen { upright, line, along, near });
+        let Some(last) = last.filter(|last| (last.upright, last.line) == (upright, line)) else { return };
+        let step = along - last.along;
+        if near == last.near || step.abs() < 1e-5 || step.abs() > 0.3 * self.scale.cell {
+            return;
+        }
+        // Going this way, a wall ends behind the corner and begins before it.
+        let side = if near { -step.signum() } else { step.signum() };
+        let edge = corner + side * 0.5 * self.scale.wall;
+        // It changed at some time since the last reading.
+        let innovation = edge - (along - 0.5 * step);
+        let variance = step * step / 12.0 + EDGE * EDGE;
+        if innovation.abs() < 0.3 * self.scale.cell {
+            self.update(&model.along_slope(), innovation, variance);
+        }
+    }
+
     /// The standard deviation of something that depends on the state with a slope.
     fn deviation(&self, slope: &SVector<f64, 6>) -> f64 {
         slope.dot(&(self.covariance * slope)).max(0.0).sqrt()
-    }
-
-    /// Where the end of a wall must be that the reading has seen on the other side of the ray than it should be: a wall that
-    /// is not there any more, or one that is still there.
-    fn edge(&self, crossing: &Crossing, agrees: bool, reading: f64, deviation: f64) -> Option<f64> {
-        let ends = (crossing.wall, crossing.beyond);
-        let outward = (crossing.corner - crossing.along).signum();
-        let post = 0.5 * self.scale.wall;
-        let longer = reading > crossing.distance + 0.3 * self.scale.cell + GATE * deviation;
-        match ends {
-            // The wall ends, its post included, behind the corner.
-            (Wall::Present, Wall::Absent) if longer => Some(crossing.corner + outward * post),
-            (Wall::Absent, Wall::Present) if agrees => Some(crossing.corner - outward * post),
-            _ => None,
-        }
-    }
-
-    /// Moves the robot to where the ray meets a post.
-    fn correct_post(&mut self, model: &Model, reading: f64, deviation: f64) {
-        let width = self.scale.wall;
-        self.update(&model.range_slope(), reading - model.crossing.distance, deviation * deviation);
-        // Anywhere on the face of the post.
-        let off = model.crossing.corner - model.crossing.along;
-        self.update(&model.along_slope(), off, width * width / 12.0 + 1e-5);
-    }
-
-    /// Moves the robot along a wall to where its end is.
-    fn correct_edge(&mut self, model: &Model, edge: f64) {
-        let innovation = edge - model.crossing.along;
-        let slope = model.along_slope();
-        let own = (slope.transpose() * self.covariance * slope)[0];
-        // Half of a tick's way, and how sharply a beam sees an edge.
-        let deviation = 0.004;
-        let variance = deviation * deviation;
-        if innovation * innovation < GATE * GATE * (own + variance) {
-            self.update(&slope, innovation, variance);
-        }
     }
 
     /// A measurement of one number: its slope by the state, by how much it differs, and its variance.

@@ -10,6 +10,8 @@ pub(super) struct Crossing {
     pub(super) distance: f64,
     /// Whether the walls run along y, so that the face is at one x.
     pub(super) upright: bool,
+    /// The number of the line, from the left or from below.
+    pub(super) line: i64,
     /// Where along the walls the ray crosses.
     pub(super) along: f64,
     /// What stands there.
@@ -100,6 +102,7 @@ impl Iterator for Crossings<'_> {
         Some(Crossing {
             distance,
             upright: axis == 0,
+            line,
             along,
             wall,
             corner: corner * self.scale.cell,

@@ -1,5 +1,6 @@
 use super::body::Body;
 use super::family::{Bug, family, run_bug};
+use super::progress::LapRule;
 use super::report::{BugEvent, BugObservation, BugOutcome, BugPhase};
 use super::strategy::{Decision, Sight, Strategy};
 use crate::geometry::{Point, Pose, Twist};
@@ -53,8 +54,8 @@ impl Strategy for DistRule {
     /// It turns the nearer way, which leads past.
     const SLOW_TO_PASS: bool = false;
 
-    /// A boundary begun anew costs it a part of a lap at the most.
-    const LOST_TURNS: f64 = 2.0;
+    /// By its free ranges it knows the last piece of a boundary beforehand.
+    const LAPS: LapRule = LapRule { lost_turns: 2.0, to_the_end: false };
 
     /// Takes in how near to the goal the boundary of a new obstacle begins. If the last leave has not brought the
     /// robot as much nearer as it promised, free ranges are relied upon less from now on; so the robot cannot go back

@@ -14,8 +14,19 @@ pub(super) struct LoopProgress {
     turned: f64,
     /// Steps without a free heading.
     boxed_in: u32,
-    /// Full turns after which the place where the loop began should have been found.
-    lost_turns: f64,
+    /// How near the robot was to the loop's begin at the last step, if it was as good as there.
+    closing: Option<f64>,
+    rule: LapRule,
+}
+
+/// When a boundary counts as gone round.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LapRule {
+    /// Full turns after which the place where the loop began should have been found; if not, the robot has been wrong
+    /// about it, and the loop begins anew.
+    pub(super) lost_turns: f64,
+    /// Whether the loop is followed to its very end, rather than until that is near.
+    pub(super) to_the_end: bool,
 }
 
 /// What the latest step has shown.
@@ -33,9 +44,18 @@ pub(super) enum Lap {
 const BOXED_IN_STEPS: u32 = 40;
 
 impl LoopProgress {
-    /// A loop that begins about here, unless it is lost: not found again in some full turns.
-    pub(super) fn new(pose: Pose, lost_turns: f64) -> Self {
-        Self { begin: None, last: pose, approach: 0.0, travelled: 0.0, turned: 0.0, boxed_in: 0, lost_turns }
+    /// A loop that begins about here.
+    pub(super) fn new(pose: Pose, rule: LapRule) -> Self {
+        Self {
+            begin: None,
+            last: pose,
+            approach: 0.0,
+            travelled: 0.0,
+            turned: 0.0,
+            boxed_in: 0,
+            closing: None,
+            rule,
+        }
     }
 
     /// Takes in where the robot is and the heading that it takes; whether it is back where the loop began.
@@ -64,11 +84,26 @@ impl LoopProgress {
         let been_away = self.travelled > 6.0 * radius || self.turned.abs() > 1.1 * TAU;
         // Once round a closed curve, the heading turns by one full turn, whatever the curve; back and forth, by none.
         let all_round = self.turned.abs() > 0.6 * TAU;
-        if self.turned.abs() > self.lost_turns * TAU {
+        if self.turned.abs() > self.rule.lost_turns * TAU {
             // It has been round without finding the place, so its pose there was wrong. The loop begins anew here.
-            *self = Self { begin: Some(pose), ..Self::new(pose, self.lost_turns) };
+            *self = Self { begin: Some(pose), ..Self::new(pose, self.rule) };
             return Lap::Open;
         }
-        if near && same_way && been_away && all_round { Lap::Closed(self.travelled) } else { Lap::Open }
+        let there = near && same_way && been_away && all_round;
+        if self.is_over(there, pose.distance_to(begin.position())) {
+            Lap::Closed(self.travelled)
+        } else {
+            Lap::Open
+        }
+    }
+
+    /// Whether the loop is over for a robot that is, or is not, as good as at its begin.
+    fn is_over(&mut self, there: bool, distance: f64) -> bool {
+        if !self.rule.to_the_end {
+            return there;
+        }
+        let before = self.closing;
+        self.closing = there.then_some(distance);
+        before.is_some_and(|before| !there || distance >= before)
     }
 }

@@ -1,6 +1,7 @@
 use std::fmt::Debug;
 
 use super::body::{Body, GoalView};
+use super::progress::LapRule;
 use crate::geometry::{Point, angle_difference};
 use crate::nav::boundary::WallSide;
 
@@ -12,9 +13,9 @@ pub(super) trait Strategy: Debug + Clone {
     /// Whoever may turn either way then must, since a robot rolls on while it turns.
     const SLOW_TO_PASS: bool = true;
 
-    /// Full turns, one way, after which the robot should have come back to where it began to follow a boundary; if not,
-    /// it has been wrong about the place. Along a spiral it turns several times before it unwinds.
-    const LOST_TURNS: f64 = 4.0;
+    /// When a boundary counts as gone round. Along a spiral the robot turns several times before it unwinds, and the
+    /// place to leave may lie right before the end.
+    const LAPS: LapRule = LapRule { lost_turns: 4.0, to_the_end: true };
 
     /// While the goal is driven at: another heading than straight to it, if the algorithm has one.
     fn detour(&mut self, _body: &Body, _view: &GoalView) -> Option<f64> {

@@ -34,8 +34,6 @@ pub struct DStarLite {
     queue: BinaryHeap<Reverse<Entry>>,
     /// By how much keys have grown since the beginning, as the robot has moved.
     shift: u64,
-    /// Where the robot was when cells changed last.
-    before: GridCell,
     statistics: SearchStatistics,
 }
 
@@ -71,7 +69,6 @@ impl DStarLite {
             goal,
             queue: BinaryHeap::new(),
             shift: 0,
-            before: robot,
             statistics: SearchStatistics::default(),
         };
         for (end, cell) in [(End::Start, robot), (End::Goal, goal)] {
@@ -91,6 +88,9 @@ impl DStarLite {
     /// Tells where the robot is.
     pub fn move_to(&mut self, robot: GridCell) -> Result<(), PlanError> {
         self.check_inside(End::Start, robot)?;
+        // What is on the queue has keys from the old place: no more than they are from the new one, once those grow by
+        // the way between.
+        self.shift += between(self.robot, robot);
         self.robot = robot;
         Ok(())
     }
@@ -100,8 +100,6 @@ impl DStarLite {
         if !self.grid.contains(cell) || self.grid.is_free(cell) == free {
             return;
         }
-        self.shift += between(self.before, self.robot);
-        self.before = self.robot;
         self.grid.set_free(cell, free);
         // All steps that the cell is part of, or beside, begin and end around it.
         for row in cell.row.saturating_sub(1)..(cell.row + 2).min(self.grid.height()) {
@@ -129,7 +127,9 @@ impl DStarLite {
         while at != self.goal {
             let next = self.steps(at).into_iter().flatten();
             let best = next.min_by_key(|&(cell, cost)| cost + self.cells[self.index(cell)].settled);
-            at = best.ok_or(unreachable)?.0;
+            let next = best.ok_or(unreachable)?.0;
+            debug_assert!(self.cells[self.index(next)].settled < self.cells[self.index(at)].implied);
+            at = next;
             cells.push(at);
         }
         Ok(GridPath::through(&cells, self.statistics))
@@ -253,8 +253,13 @@ mod tests {
                 } else {
                     prop_assert_eq!(expected.as_ref().err(), found.as_ref().err());
                 }
-                if let Some(next) = found.ok().and_then(|path| path.points.get(1).copied()) {
-                    robot = GridCell::at(next).unwrap();
+                // A step, several steps, or to any free cell.
+                let ahead = 1 + stream.below(5);
+                let next = found.ok().and_then(|path| path.points.get(ahead).copied());
+                let next = next.and_then(GridCell::at).unwrap_or_else(|| any(&mut stream));
+                let next = if stream.chance(0.2) { any(&mut stream) } else { next };
+                if grid.is_free(next) {
+                    robot = next;
                     planner.move_to(robot).unwrap();
                 }
                 for _ in 0..stream.below(4) {

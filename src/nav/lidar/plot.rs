@@ -2,7 +2,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::{ExtremumKind, local_extrema};
 use crate::geometry::{normalize_angle, units};
-use crate::io::{Display, DisplayOption, Fill, LidarScan, Result};
+use crate::io::{Display, DisplayOption, Fill, Font, LidarScan, Result};
 use crate::world::Colour;
 
 /// The height of the plot in pixels, as in the book: what is left below is for text and the soft keys.
@@ -47,10 +47,26 @@ pub fn plot_scan(display: &mut (impl Display + ?Sized), scan: &LidarScan, range:
         };
         display.draw_circle(at, 9, colour, Fill::Solid)?;
     }
-    display.set_cursor(19, 0)?;
-    display.print(&format!("-180    -90      0      +90    +180   full {:.0} mm", units::to_mm(full)))?;
+    print_scale(display, full)?;
     display.refresh()?;
     display.set_display_option(DisplayOption::AutoRefresh, true)
+}
+
+/// Directions under the columns where they are, and what the full height stands for.
+fn print_scale(display: &mut (impl Display + ?Sized), full: f64) -> Result<()> {
+    /// The row below the plot, and how many letters of the default font are as wide as the display.
+    const LINE: i32 = 19;
+    const LETTERS: i32 = 80;
+    display.set_font(Font::default())?;
+    let width = (display.display_size()?.0 / LETTERS).max(1);
+    for (label, bearing) in [("180", PI), ("90", 0.5 * PI), ("0", 0.0), ("-90", -0.5 * PI)] {
+        let text = label.len() as i32;
+        let column = (column_of(bearing) / width - text / 2).max(0);
+        display.set_cursor(LINE, column)?;
+        display.print(label)?;
+    }
+    display.set_cursor(LINE, WIDTH / width + 1)?;
+    display.print(&format!("full {:.0} mm", units::to_mm(full)))
 }
 
 /// The column of a direction in radians counter-clockwise from straight ahead.

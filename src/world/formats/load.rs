@@ -4,10 +4,11 @@ use super::error::{FormatError, Location, Notes, Parsed};
 use super::lexer::shown;
 use super::limits::MAX_TEXT_BYTES;
 use super::source::{DiskFiles, FileSource, decode, read_limited, unreadable};
-use super::{esobj, maz, robi, ros_map, sim, wld};
+use super::{esobj, maz, movingai, robi, ros_map, sim, wld};
 use crate::world::{ObjectKind, RobotSpec, Scene, World};
 
-/// Reads a scene from disk: a `.sim`, or the `.wld`, `.maz` or ROS map (`.yaml`, `.yml`) of one without robots.
+/// Reads a scene from disk: a `.sim`, or the `.wld`, `.maz`, ROS map (`.yaml`, `.yml`) or MovingAI map (`.map`) of one
+/// without robots.
 ///
 /// ```no_run
 /// let scene = roverlab::world::formats::load_scene("worlds/soccer.sim")?;
@@ -31,7 +32,7 @@ pub fn parse_scene(
     decoded(bytes, file, |text, file| match kind(file) {
         Kind::Script => sim::parse(text, file, files),
         Kind::Other => {
-            let expected = "a file that ends in .sim, .wld, .maz, .yaml or .yml";
+            let expected = "a file that ends in .sim, .wld, .maz, .yaml, .yml or .map";
             Err(FormatError::new(file, Location::START, shown(file), expected))
         }
         _ => Ok(parse_world(text, file, files, file, Location::START)?.map(Scene::new)),
@@ -85,7 +86,7 @@ pub(super) fn read_world(
     files: &mut dyn FileSource,
 ) -> Result<Parsed<World>, FormatError> {
     // A script that names a script, itself for one, is no world: say so before reading it.
-    if !matches!(kind(reference), Kind::World | Kind::Maze | Kind::Map) {
+    if !matches!(kind(reference), Kind::World | Kind::Maze | Kind::Map | Kind::Grid) {
         return Err(not_a_world(reference, referrer, at));
     }
     let source = files
@@ -113,12 +114,17 @@ fn parse_world(
             let world = ros_map::to_world(&map.value, file)?;
             Ok(map.map(|_| world))
         }
+        Kind::Grid => {
+            let map = movingai::parse_map(text, file)?;
+            let world = ros_map::grid_to_world(&map.value.occupancy(), file)?;
+            Ok(map.map(|_| world))
+        }
         Kind::Script | Kind::Other => Err(not_a_world(file, referrer, at)),
     }
 }
 
 fn not_a_world(name: &str, referrer: &str, at: Location) -> FormatError {
-    FormatError::new(referrer, at, shown(name), "a file that ends in .wld, .maz, .yaml or .yml")
+    FormatError::new(referrer, at, shown(name), "a file that ends in .wld, .maz, .yaml, .yml or .map")
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,6 +133,7 @@ enum Kind {
     World,
     Maze,
     Map,
+    Grid,
     Other,
 }
 
@@ -138,6 +145,7 @@ fn kind(name: &str) -> Kind {
         "wld" => Kind::World,
         "maz" => Kind::Maze,
         "yaml" | "yml" => Kind::Map,
+        "map" => Kind::Grid,
         _ => Kind::Other,
     }
 }

@@ -26,7 +26,8 @@ use super::lexer::{self, shown};
 use super::limits::{MAX_GRID_BYTES, MAX_QUERIES};
 use super::number;
 use super::source::{decode, read_limited, unreadable};
-use crate::world::{BitGrid, GridCell};
+use crate::geometry::{Pose, units};
+use crate::world::{BitGrid, Cell, GridCell, OccupancyGrid};
 
 /// A map, character by character.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -67,6 +68,31 @@ impl Map {
         // A map has no more cells than a grid may have.
         BitGrid::from_fn(self.width, self.height, free)
             .unwrap_or_else(|_| unreachable!("checked by the reader"))
+    }
+}
+
+/// Millimetres along an edge of a cell where a map stands for a floor: a maze's narrowest way then is one that a robot of
+/// 120 mm has room in.
+pub const CELL_MM: f64 = 200.0;
+
+impl Map {
+    /// The map as a floor: cells of [`CELL_MM`], the lower left corner of the map at the origin, and all around it, as outside
+    /// of every map, no way. So the grid has one more column or row of occupied cells on each side.
+    pub fn occupancy(&self) -> OccupancyGrid {
+        let (width, height) = (self.width + 2, self.height + 2);
+        let cell = units::from_mm(CELL_MM);
+        let mut grid = OccupancyGrid::unknown(width, height, cell, Pose::new(-cell, -cell, 0.0))
+            .or_else(|_| OccupancyGrid::unknown(0, 0, cell, Pose::default()))
+            .unwrap_or_else(|_| unreachable!("an empty grid"));
+        let free = self.grid();
+        for row in 0..grid.height() {
+            for column in 0..grid.width() {
+                // Rows count downwards in the map and upwards on the floor.
+                let from = GridCell::new(column.wrapping_sub(1), self.height.wrapping_sub(row));
+                grid.set(column, row, if free.is_free(from) { Cell::Free } else { Cell::Occupied });
+            }
+        }
+        grid
     }
 }
 

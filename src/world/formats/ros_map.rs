@@ -127,9 +127,14 @@ pub fn parse(text: &str, file: &str, files: &mut dyn FileSource) -> Result<Parse
 
 /// The world of a map: the outlines of its occupied cells.
 pub(super) fn to_world(map: &RosMap, file: &str) -> Result<World, FormatError> {
-    let walls = map.grid.count_walls();
+    grid_to_world(&map.grid, file)
+}
+
+/// The world of a grid, unless it has too many walls.
+pub(super) fn grid_to_world(grid: &OccupancyGrid, file: &str) -> Result<World, FormatError> {
+    let walls = grid.count_walls();
     if walls <= MAX_WALLS {
-        return Ok(map.grid.to_world());
+        return Ok(grid.to_world());
     }
     let (found, expected) = (format!("a map of {walls} walls"), format!("at most {MAX_WALLS} walls"));
     Err(FormatError::new(file, Location::START, found, expected))

@@ -1,6 +1,6 @@
 //! The line of walls around a room.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::round;
 use crate::geometry::{Aabb, Point, Segment, Vector, cross, math, normalize_angle};
@@ -129,14 +129,21 @@ impl Contour {
         }
         (0..self.pieces.len()).all(|i| {
             let others: Vec<usize> = strangers(i, &lengths, 1.5 * distance);
+            let nearby = |j: usize| j != i && !others.contains(&j);
+            // In corners the robot keeps its distance to the next wall as well, and does not come to all places.
+            let is_used = |place: Point| {
+                let near = (0..self.pieces.len()).filter(|&j| nearby(j));
+                near.map(|j| (self.pieces[j].nearest(place) - place).norm()).all(|gap| gap > 0.95 * distance)
+            };
             self.pieces[i].segments().all(|segment| {
                 samples(&segment, 0.25 * distance).all(|(point, inward)| {
                     let place = point + inward * distance;
+                    let used = is_used(place);
                     others.iter().all(|&j| {
                         let other = self.pieces[j].nearest(place);
                         let behind = (other - point).dot(&inward) < 0.0;
                         // Behind the wall there may be another room, but the walls must not cross.
-                        if behind {
+                        if behind || !used {
                             (other - point).norm() > 0.05
                         } else {
                             (other - place).norm() > 1.5 * distance
@@ -176,8 +183,17 @@ impl Contour {
                 let (a, b) = (points[i], points[(i + 1) % n]);
                 let along = (b - a) / (b - a).norm();
                 let outward = Vector::new(along.y, -along.x) * half;
-                // Where the room's corner is less than a half turn the outer faces have to be longer to meet.
-                let more = |turn: f64| if turn > 0.0 { half * math::tan(0.5 * turn.min(2.0)) } else { 0.0 };
+                // Where the room's corner is less than a half turn the outer faces have to be longer to meet; where it
+                // is more than three right angles they would come out on the other side.
+                let more = |turn: f64| {
+                    if turn > 0.0 {
+                        half * math::tan(0.5 * turn.min(2.0))
+                    } else if turn < -FRAC_PI_2 {
+                        -2.0 * half / math::tan(PI + turn)
+                    } else {
+                        0.0
+                    }
+                };
                 let (a, b) = (a - along * more(turn(i)), b + along * more(turn((i + 1) % n)));
                 Wall::new(a + outward, b + outward)
             })

@@ -14,6 +14,7 @@ mod bent;
 mod border;
 mod contour;
 mod course;
+mod decor;
 mod enclosure;
 mod family;
 mod figure;

@@ -1,7 +1,8 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::contour::{Contour, Piece};
-use crate::geometry::{Aabb, Point, Pose, Vector, direction, math, units};
+use super::contour::Contour;
+use super::decor::decorated;
+use crate::geometry::{Aabb, Point, Pose, direction, units};
 use crate::random::Stream;
 use crate::world::World;
 
@@ -72,6 +73,10 @@ pub enum RoomFeature {
     Door,
     /// A closed door, which lies somewhat back in the wall.
     ClosedDoor,
+    /// A point that juts in, with a corner of far more than three right angles.
+    Wedge,
+    /// A pointed niche, with two corners of more than a half turn beside a sharp one.
+    Nook,
 }
 
 /// A room with one wall all round.
@@ -159,126 +164,6 @@ fn base(stream: &mut Stream, options: &RoomOptions) -> Vec<Point> {
         .collect()
 }
 
-/// The wall with curves and doors along the sides and at the corners.
-fn decorated(stream: &mut Stream, options: &RoomOptions, corners: &[Point]) -> (Contour, Vec<RoomFeature>) {
-    let n = corners.len();
-    let mut features = Vec::new();
-    let rounded: Vec<Option<(Piece, Point, Point)>> = (0..n)
-        .map(|i| {
-            let [before, corner, after] = [corners[(i + n - 1) % n], corners[i], corners[(i + 1) % n]];
-            stream.chance(0.2).then(|| rounding(stream, options, before, corner, after)).flatten()
-        })
-        .collect();
-    features.extend(rounded.iter().flatten().map(|_| RoomFeature::Rounding));
-    let mut contour = Contour::default();
-    for i in 0..n {
-        let j = (i + 1) % n;
-        let from = match &rounded[i] {
-            Some((piece, _, end)) => {
-                contour.add(piece.clone());
-                *end
-            }
-            None => corners[i],
-        };
-        let to = rounded[j].as_ref().map_or(corners[j], |(_, start, _)| *start);
-        features.extend(side(stream, options, &mut contour, from, to));
-    }
-    (contour, features)
-}
-
-/// The arc that rounds a corner, from its first point to its last.
-fn rounding(
-    stream: &mut Stream,
-    options: &RoomOptions,
-    before: Point,
-    corner: Point,
-    after: Point,
-) -> Option<(Piece, Point, Point)> {
-    let (into, out) = (corner - before, after - corner);
-    let (u, v) = (into / into.norm(), out / out.norm());
-    let turn = math::atan2(crate::geometry::cross(u, v), u.dot(&v));
-    let radius = options.least_radius + stream.between(0.0, 0.7);
-    let tangent = radius * math::tan(0.5 * turn.abs());
-    if turn.abs() < 0.3 || tangent > 0.4 * into.norm().min(out.norm()) {
-        return None;
-    }
-    let (start, end) = (corner - u * tangent, corner + v * tangent);
-    let left = Vector::new(-u.y, u.x) * radius.copysign(turn);
-    Some((Piece::arc(start, start + left, turn), start, end))
-}
-
-/// One side of the room, perhaps with something special in its middle.
-fn side(
-    stream: &mut Stream,
-    options: &RoomOptions,
-    contour: &mut Contour,
-    from: Point,
-    to: Point,
-) -> Option<RoomFeature> {
-    let length = (to - from).norm();
-    let along = (to - from) / length.max(1e-9);
-    // The room lies to the left of the line.
-    let inward = Vector::new(-along.y, along.x);
-    let margin = 2.5 * options.distance;
-    let room = length - 2.0 * margin;
-    let mut through = |points: &[(f64, f64)]| {
-        let corners: Vec<Point> = points.iter().map(|&(x, y)| from + along * x + inward * y).collect();
-        contour.lines(from, &corners, to);
-    };
-    match stream.below(7) {
-        0 | 1 => {
-            let radius = options.least_radius + stream.between(0.0, 0.8);
-            let half = stream.between(0.6, 1.45);
-            let chord = 2.0 * radius * math::sin(half);
-            if chord > room {
-                through(&[]);
-                return None;
-            }
-            let begin = margin + stream.uniform() * (room - chord);
-            let bulge = stream.chance(0.5);
-            let depth = radius * math::cos(half) * if bulge { -1.0 } else { 1.0 };
-            let middle = from + along * (begin + 0.5 * chord) + inward * depth;
-            let turn = if bulge { -2.0 * half } else { 2.0 * half };
-            let (a, b) = (from + along * begin, from + along * (begin + chord));
-            contour.lines(from, &[], a);
-            contour.add(Piece::arc(a, middle, turn));
-            contour.lines(b, &[], to);
-            Some(if bulge { RoomFeature::Bulge } else { RoomFeature::Bay })
-        }
-        2 | 3 => {
-            let width = 2.0 * options.distance + stream.between(0.25, 0.6);
-            if width > room {
-                through(&[]);
-                return None;
-            }
-            let x = margin + stream.uniform() * (room - width);
-            if stream.chance(0.4) {
-                let depth = stream.between(0.02, 0.05);
-                through(&[(x, 0.0), (x, -depth), (x + width, -depth), (x + width, 0.0)]);
-                return Some(RoomFeature::ClosedDoor);
-            }
-            let thickness = stream.between(0.1, 0.25);
-            let [left, right] = [0, 1].map(|_| 3.0 * options.distance + stream.between(0.0, 0.5));
-            let depth = thickness + 4.0 * options.distance + stream.between(0.0, 0.6);
-            through(&[
-                (x, 0.0),
-                (x, -thickness),
-                (x - left, -thickness),
-                (x - left, -depth),
-                (x + width + right, -depth),
-                (x + width + right, -thickness),
-                (x + width, -thickness),
-                (x + width, 0.0),
-            ]);
-            Some(RoomFeature::Door)
-        }
-        _ => {
-            through(&[]);
-            None
-        }
-    }
-}
-
 fn finish(contour: &Contour, start: Pose, features: Vec<RoomFeature>) -> Room {
     const MARGIN: f64 = 0.2;
     let bounds = contour.bounds().inflated(MARGIN);
@@ -307,11 +192,15 @@ mod tests {
         let mut features: Vec<RoomFeature> = rooms.iter().flat_map(|room| room.features.clone()).collect();
         features.sort_unstable();
         features.dedup();
-        assert_eq!(features.len(), 5, "{features:?}");
+        assert_eq!(features.len(), 7, "{features:?}");
+        let with = |feature| rooms.iter().filter(|room: &&Room| room.features.contains(&feature)).count();
+        for feature in [RoomFeature::Door, RoomFeature::Wedge, RoomFeature::Nook] {
+            assert!(with(feature) >= 20, "{feature:?} in {} of 400 rooms", with(feature));
+        }
         let angles: Vec<f64> = rooms.iter().flat_map(|room| &room.corners).map(|&(_, angle)| angle).collect();
         let (least, most) = options.corners;
         assert!(angles.iter().all(|angle| (least..=most).contains(angle)));
-        for range in [60.0..90.0, 100.0..170.0, 190.0..260.0] {
+        for range in [60.0..90.0, 100.0..170.0, 190.0..260.0, 260.0..280.0, 285.0..300.0] {
             assert!(angles.iter().any(|&angle| range.contains(&units::to_deg(angle))), "{range:?}");
         }
     }

@@ -144,8 +144,22 @@ impl Quadtree {
         if self.is_solid(level, x, y) {
             return found(leaf, false);
         }
+        if level == 1 && self.smallest == 0 {
+            return self.visit_cells(x, y, found);
+        }
         for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
             self.divide(level - 1, 2 * x + dx, 2 * y + dy, found);
+        }
+    }
+
+    /// The four cells of the smallest square that is divided.
+    #[inline]
+    fn visit_cells(&self, x: usize, y: usize, found: &mut impl FnMut(Leaf, bool)) {
+        for row in 2 * y..(2 * y + 2).min(self.height) {
+            let bits = self.free[0].row(row)[x / 32] >> (2 * x % 64);
+            for column in 2 * x..(2 * x + 2).min(self.width) {
+                found(Leaf { column, row, size: 1 }, bits >> (column & 1) & 1 != 0);
+            }
         }
     }
 

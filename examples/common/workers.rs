@@ -1,11 +1,12 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use crate::common::{Failure, Progress};
+use super::{Failure, Progress};
 
 /// The results of some pieces of work in their order, done by several threads. The number of threads makes no difference
-/// to them. The first failure ends it.
-pub(super) fn share_out<T: Send>(
+/// to them. The first failure ends it. `things` is what progress counts.
+pub(crate) fn share_out<T: Send>(
+    things: &str,
     count: u64,
     threads: usize,
     work: impl Fn(u64) -> Result<T, Failure> + Sync,
@@ -29,7 +30,7 @@ pub(super) fn share_out<T: Send>(
             scope.spawn(|| drive(Box::new(|_| {})));
         }
         let mut progress = Progress::start();
-        drive(Box::new(|done| progress.show(|| format!("{done} of {count} courses"))));
+        drive(Box::new(|done| progress.show(|| format!("{done} of {count} {things}"))));
     });
     let mut results = results.into_inner().expect("no thread has panicked");
     results.sort_by_key(|(index, _)| *index);

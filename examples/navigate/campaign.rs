@@ -1,0 +1,141 @@
+use std::num::NonZero;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use roverlab::geometry::units;
+use roverlab::nav::NavigateOutcome;
+
+use super::Args;
+use super::course;
+use super::drive::{Arrival, drive};
+use crate::common::{Failure, Outcome, Progress, Report, rounded};
+use crate::driving::Conditions;
+
+/// A generated world and what came of it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Trial {
+    pub(crate) seed: u64,
+    /// The verdict, or none if the robot failed.
+    pub(crate) outcome: Option<NavigateOutcome>,
+    pub(crate) contacts: u32,
+    /// Metres, in truth.
+    pub(crate) goal_distance: f64,
+    pub(crate) unmapped: u32,
+    pub(crate) replans: usize,
+    pub(crate) recoveries: usize,
+    pub(crate) sim_time: f64,
+    pub(crate) path_length: f64,
+}
+
+/// So many metres from the goal, in truth, it still counts as reached.
+const NEAR: f64 = 0.1;
+/// The share of worlds whose goal is to be reached.
+const SHARE: f64 = 0.99;
+
+impl Trial {
+    /// Whether the robot really is at the goal.
+    pub(crate) fn is_reached(&self) -> bool {
+        self.outcome == Some(NavigateOutcome::Reached) && self.goal_distance <= NEAR
+    }
+}
+
+/// The campaign's work.
+pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
+    let trials = trials(args)?;
+    let count = |is: &dyn Fn(&Trial) -> bool| trials.iter().filter(|trial| is(trial)).count();
+    let reached = count(&Trial::is_reached);
+    let contacts: u64 = trials.iter().map(|trial| u64::from(trial.contacts)).sum();
+    let wrong: Vec<u64> = trials
+        .iter()
+        .filter(|trial| !trial.is_reached() || trial.contacts > 0)
+        .map(|trial| trial.seed)
+        .collect();
+    let mean = |of: &dyn Fn(&Trial) -> f64| trials.iter().map(of).sum::<f64>() / trials.len() as f64;
+    for trial in trials.iter().filter(|trial| wrong.contains(&trial.seed)) {
+        let off = units::to_mm(trial.goal_distance);
+        args.common.tell(format_args!(
+            "seed {}: {:?}, {off:.0} mm from the goal, {} contacts, {} recoveries",
+            trial.seed, trial.outcome, trial.contacts, trial.recoveries
+        ));
+    }
+    args.common.tell(format_args!("{reached} of {} goals reached, {contacts} contacts", trials.len()));
+    let good = reached as f64 >= SHARE * trials.len() as f64 && contacts == 0;
+    let outcome = if good { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
+    Ok(Report {
+        sim_time: Some(trials.iter().map(|trial| trial.sim_time).sum()),
+        collisions: Some(contacts),
+        ..Report::new(outcome)
+    }
+    .field("runs", trials.len())
+    .field("reached", reached)
+    .field("contacts", contacts)
+    .field("mean_unmapped", rounded(mean(&|trial| f64::from(trial.unmapped))))
+    .field("mean_replans", rounded(mean(&|trial| trial.replans as f64)))
+    .field("mean_recoveries", rounded(mean(&|trial| trial.recoveries as f64)))
+    .field("mean_time_s", rounded(mean(&|trial| trial.sim_time)))
+    .field("mean_path_mm", rounded(units::to_mm(mean(&|trial| trial.path_length))))
+    .field("wrong_seeds", wrong))
+}
+
+/// All trials in the order of their seeds, whatever the number of threads.
+pub(crate) fn trials(args: &Args) -> Result<Vec<Trial>, Failure> {
+    let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
+    let threads = args.threads.map_or_else(cores, NonZero::get);
+    let (next, results) = (AtomicU64::new(0), Mutex::new(Vec::new()));
+    let work = |told: &mut dyn FnMut(u64)| {
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            if index >= args.runs {
+                return;
+            }
+            told(index);
+            let result = trial(args, args.common.seed.wrapping_add(index));
+            results.lock().expect("no thread has panicked").push((index, result));
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..threads {
+            scope.spawn(|| work(&mut |_| {}));
+        }
+        let mut progress = Progress::start();
+        work(&mut |index| progress.show(|| format!("{index} of {} worlds", args.runs)));
+    });
+    let mut results = results.into_inner().expect("no thread has panicked");
+    results.sort_by_key(|(index, _)| *index);
+    results.into_iter().map(|(_, result)| result).collect()
+}
+
+fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {
+    let course = course::generated(seed)?;
+    let trip = &course.trip;
+    let parameters = args.parameters(trip.spec().footprint)?;
+    let conditions = Conditions {
+        seed,
+        noise: args.common.noise,
+        light: 1.0,
+        keys: Vec::new(),
+        pushing: false,
+        others: Vec::new(),
+        ideal_encoders: false,
+        time_limit: args.common.time_limit.unwrap_or(600.0),
+        common: None,
+    };
+    let places = (&course.known, trip.start(), trip.goal);
+    let run = conditions.run(
+        &trip.scene,
+        |_| {},
+        |robot, step| drive(robot, places, parameters, conditions.time_limit, |_| step()),
+    )?;
+    let arrival = run.ending.as_ref().ok();
+    Ok(Trial {
+        seed,
+        outcome: arrival.map(|arrival| arrival.outcome),
+        contacts: run.truth.contacts,
+        goal_distance: run.truth.pose.distance_to(trip.goal),
+        unmapped: course.unmapped,
+        replans: arrival.map_or(0, Arrival::replans),
+        recoveries: arrival.map_or(0, Arrival::recoveries),
+        sim_time: run.sim_time,
+        path_length: run.truth.path_length,
+    })
+}

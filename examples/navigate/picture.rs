@@ -1,0 +1,44 @@
+use roverlab::geometry::units;
+use roverlab::picture::{Mark, Picture, Style};
+use roverlab::world::Colour;
+
+use super::course::Course;
+use super::drive::Arrival;
+use super::job::verdict;
+use crate::driving::{Conditions, Run};
+
+/// A picture of a run: the first plan, where the robot was and believed to be, and what it has seen that it was not told of.
+pub(crate) fn of(course: &Course, run: &Run<Arrival>, conditions: &Conditions) -> Picture {
+    let trip = &course.trip;
+    let spec = trip.spec();
+    let mut picture = Picture::new(&trip.scene.world);
+    let title = run.ending.as_ref().map_or("the robot failed", |arrival| verdict(arrival.outcome));
+    let contacts = if run.truth.contacts == 0 { "" } else { ", with contacts" };
+    picture.title(format!("Navigation: {title}{contacts}")).caption(caption(course, run, conditions));
+    if let Ok(arrival) = &run.ending {
+        picture.line(arrival.plan.iter().copied(), Style::plan());
+        let style = Style::new(Colour::from_hex(0xc0_40_20)).labelled("seen, not told of");
+        picture.points(arrival.seen.iter().copied(), style);
+    }
+    picture.true_path(run.positions());
+    picture.odometry_path(run.odometry_path.iter().copied());
+    for other in &trip.scene.robots[1..] {
+        picture.robot_with(other.pose, &other.spec.footprint, Style::new(Colour::from_hex(0x8a_90_9c)));
+    }
+    picture.robot(run.truth.pose, &spec.footprint);
+    picture.mark(Mark::Start, trip.start().position());
+    picture.mark(Mark::Goal, trip.goal);
+    for &point in &run.truth.contact_places {
+        picture.mark(Mark::Contact, point);
+    }
+    picture
+}
+
+fn caption(course: &Course, run: &Run<Arrival>, conditions: &Conditions) -> String {
+    let (metres, seconds) = (run.truth.path_length, run.sim_time);
+    let off = units::to_mm(run.truth.pose.distance_to(course.trip.goal));
+    let (noise, seed, unmapped) = (conditions.noise, conditions.seed, course.unmapped);
+    format!(
+        "{metres:.1} m in {seconds:.0} s, {off:.0} mm from the goal, {unmapped} obstacles unmapped, noise {noise}, seed {seed}"
+    )
+}

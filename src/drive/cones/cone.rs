@@ -1,0 +1,122 @@
+use crate::geometry::{Point, Pose};
+
+/// The colour of a cone: blue stands on the left of the track, yellow on the right.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum ConeColour {
+    /// Left edge.
+    Blue,
+    /// Right edge.
+    Yellow,
+    /// Entries, exits and braking zones.
+    Orange,
+    /// The large ones beside the start line.
+    BigOrange,
+    /// Not known, as by a lidar.
+    #[default]
+    Unknown,
+}
+
+impl ConeColour {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Blue, Self::Yellow, Self::Orange, Self::BigOrange, Self::Unknown];
+
+    /// Metres from the axis to the edge of the foot: that of the circle with the area of the square foot, 228 mm or, for the
+    /// large ones, 285 mm wide.
+    pub const fn radius(self) -> f64 {
+        if matches!(self, Self::BigOrange) { 0.161 } else { 0.129 }
+    }
+
+    /// Metres from the ground to the tip.
+    pub const fn height(self) -> f64 {
+        if matches!(self, Self::BigOrange) { 0.505 } else { 0.325 }
+    }
+
+    /// On which side of the track it belongs: 1 for the left, -1 for the right, 0 for either.
+    pub const fn side(self) -> i8 {
+        match self {
+            Self::Blue => 1,
+            Self::Yellow => -1,
+            _ => 0,
+        }
+    }
+}
+
+/// A cone on the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cone {
+    /// Where its axis meets the ground.
+    pub position: Point,
+    /// Its colour.
+    pub colour: ConeColour,
+}
+
+impl Cone {
+    /// A cone of a colour at a place.
+    pub const fn new(position: Point, colour: ConeColour) -> Self {
+        Self { position, colour }
+    }
+
+    /// A cone whose colour is not known.
+    pub const fn unknown(position: Point) -> Self {
+        Self::new(position, ConeColour::Unknown)
+    }
+}
+
+/// What is driven on a track of cones.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Event {
+    /// Laps of a closed course.
+    #[default]
+    Laps,
+    /// Straight on for 75 m.
+    Acceleration,
+    /// Two circles to the right, then two to the left.
+    Skidpad,
+}
+
+/// Cones, and where the car starts between them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ConeTrack {
+    /// The cones, in any order.
+    pub cones: Vec<Cone>,
+    /// Where the car stands at first, if that is given.
+    pub start: Option<Pose>,
+    /// The ends of the lines where time is taken, if they are given.
+    pub gates: Vec<[Point; 2]>,
+}
+
+impl ConeTrack {
+    /// The cones of a colour.
+    pub fn of(&self, colour: ConeColour) -> impl Iterator<Item = Point> + Clone + '_ {
+        self.cones.iter().filter(move |cone| cone.colour == colour).map(|cone| cone.position)
+    }
+
+    /// The event that the cones stand for, by the book of rules: an acceleration strip ends in a box of orange cones, and a
+    /// skidpad's blue and yellow cones stand on two circles of the same centres.
+    pub fn event(&self) -> Event {
+        let orange = self.of(ConeColour::Orange).count();
+        if orange == 0 {
+            return Event::Laps;
+        }
+        // The strip is straight: what is blue lies on a line, within the width of the track.
+        let fitted = crate::geometry::FittedLine::through(self.of(ConeColour::Blue));
+        if fitted.is_some_and(|line| line.rms < 1.0) { Event::Acceleration } else { Event::Skidpad }
+    }
+
+    /// Where the car starts: what is given, or halfway between a blue cone and the yellow one opposite, looking so that blue
+    /// is left. `None` without these.
+    pub fn start_pose(&self) -> Option<Pose> {
+        if self.start.is_some() {
+            return self.start;
+        }
+        let left = self.of(ConeColour::Blue).next()?;
+        let right = self.of(ConeColour::Yellow).min_by(|a, b| {
+            let (a, b) = ((a - left).norm_squared(), (b - left).norm_squared());
+            a.total_cmp(&b)
+        })?;
+        let across = left - right;
+        let heading = crate::geometry::math::atan2(-across.x, across.y);
+        let middle = left + (right - left) * 0.5;
+        Some(Pose::new(middle.x, middle.y, heading))
+    }
+}

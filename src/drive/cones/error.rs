@@ -1,0 +1,50 @@
+/// Why no line could be planned.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// Too few points for a line.
+    #[error("{found} points; expected at least {needed}")]
+    TooFew {
+        /// How many there are.
+        found: usize,
+        /// How many it takes.
+        needed: usize,
+    },
+    /// Two neighbours are the same point, or one is no number.
+    #[error("point {index} is no number or the same as its neighbour; expected distinct points")]
+    Degenerate {
+        /// Which one, from 0.
+        index: usize,
+    },
+    /// A car of this width does not fit through.
+    #[error("{free} m are free at station {index}; expected {needed} m")]
+    TooNarrow {
+        /// Which station, from 0.
+        index: usize,
+        /// Metres between the edges.
+        free: f64,
+        /// Metres that the car takes.
+        needed: f64,
+    },
+    /// No way between cones leads on from where the car is.
+    #[error("no way between cones leads on from the car")]
+    NoWay,
+    /// A parameter is out of range.
+    #[error("{name} is {value}; expected {expected}")]
+    Parameter {
+        /// Its name.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is accepted.
+        expected: &'static str,
+    },
+}
+
+/// Fails unless the value is a finite number above zero.
+pub(super) fn positive(name: &'static str, value: f64) -> Result<(), PlanError> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(());
+    }
+    Err(PlanError::Parameter { name, value, expected: "a positive, finite number" })
+}

@@ -1,0 +1,348 @@
+use std::f64::consts::TAU;
+
+use super::corridor::Corridor;
+use super::error::PlanError;
+use super::racing_line::curvature;
+use super::{ClosedSpline, Cone, ConeColour, ConeTrack};
+use crate::geometry::{Point, Pose, Vector, direction, math};
+use crate::random::Stream;
+
+/// What a generated track looks like. The defaults are within the rules of Formula Student: laps of 200 to 500 m, at least
+/// 3 m wide, straights of at most 80 m, hairpins of at least 9 m outside diameter, at most 5 m from cone to cone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrackOptions {
+    /// Metres of a lap along the middle, from least to most.
+    pub length: [f64; 2],
+    /// Metres from edge to edge, from least to most.
+    pub width: [f64; 2],
+    /// Metres from cone to cone along an edge: in the tightest bends, and on the straight.
+    pub spacing: [f64; 2],
+    /// Tight turns that are tried to be built in.
+    pub hairpins: usize,
+    /// The least radius of the middle in metres.
+    pub radius: f64,
+}
+
+impl Default for TrackOptions {
+    fn default() -> Self {
+        Self { length: [200.0, 500.0], width: [3.0, 4.5], spacing: [2.2, 4.8], hairpins: 2, radius: 4.0 }
+    }
+}
+
+impl TrackOptions {
+    /// Options drawn from a seed: all that the rules allow.
+    pub fn drawn(seed: u64) -> Self {
+        let mut random = Stream::new(seed).child("track options", 0);
+        let narrow = random.between(3.0, 3.8);
+        let tight = random.between(2.0, 3.2);
+        Self {
+            length: [200.0, 500.0],
+            width: [narrow, narrow + random.between(0.0, 1.5)],
+            spacing: [tight, random.between(tight + 0.5, 5.0)],
+            hairpins: random.below(4),
+            radius: random.between(3.6, 6.0),
+        }
+    }
+
+    fn check(&self) -> Result<(), PlanError> {
+        let range = |name, [low, high]: [f64; 2], least: f64, most: f64, expected| {
+            let good = least <= low && low <= high && high <= most;
+            if good { Ok(()) } else { Err(PlanError::Parameter { name, value: low, expected }) }
+        };
+        range("length", self.length, 100.0, 5000.0, "100 to 5000 m, least before most")?;
+        range("width", self.width, 2.0, 20.0, "2 to 20 m, least before most")?;
+        range("spacing", self.spacing, 0.5, 20.0, "0.5 to 20 m, in bends before straights")?;
+        range(
+            "radius",
+            [self.radius; 2],
+            0.5 * self.width[1] + 0.5,
+            100.0,
+            "more than half the width, up to 100 m",
+        )
+    }
+}
+
+/// A track of cones, and the corridor that they stand around.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GeneratedTrack {
+    /// The cones and the start.
+    pub track: ConeTrack,
+    /// The middle, about every metre, with the widths; it begins at the start line.
+    pub corridor: Corridor,
+}
+
+/// Metres from the nose's place at the start to the start line.
+const RUN_UP: f64 = 6.0;
+/// Metres between the edges of two parts of a track that pass each other.
+const APART: f64 = 2.5;
+
+/// A closed track of cones. The same seed and options give the same track, to the bit.
+///
+/// Fails where the options contradict each other, so that no track is found.
+///
+/// ```
+/// use roverlab::drive::cones::{TrackOptions, generate};
+/// let generated = generate(3, &TrackOptions::default())?;
+/// assert!((200.0..500.0).contains(&generated.corridor.length()));
+/// # Ok::<(), roverlab::drive::cones::PlanError>(())
+/// ```
+pub fn generate(seed: u64, options: &TrackOptions) -> Result<GeneratedTrack, PlanError> {
+    options.check()?;
+    for attempt in 0..400 {
+        let mut random = Stream::new(seed).child("track", attempt);
+        // What does not work out is tried with fewer hairpins.
+        let hairpins = options.hairpins.saturating_sub(attempt as usize / 12);
+        if let Some(track) = attempt_track(&mut random, options, hairpins) {
+            return Ok(track);
+        }
+    }
+    Err(PlanError::Parameter {
+        name: "radius",
+        value: options.radius,
+        expected: "options that a track can meet",
+    })
+}
+
+/// Puts cones along both edges of a closed corridor with stations about every metre, at most so many metres apart.
+pub fn lined(corridor: Corridor, spacing: f64) -> GeneratedTrack {
+    let options = TrackOptions { spacing: [0.6 * spacing, spacing], ..TrackOptions::default() };
+    let track = place_cones(&mut Stream::new(0), &corridor, &options);
+    GeneratedTrack { track, corridor }
+}
+
+fn attempt_track(random: &mut Stream, options: &TrackOptions, hairpins: usize) -> Option<GeneratedTrack> {
+    let wanted = random.between(options.length[0], options.length[1]);
+    let corners = outline(random, hairpins);
+    let rough = ClosedSpline::through(&corners).ok()?;
+    let scale = wanted / rough.length();
+    let mut middle: Vec<Point> = rough.resample(1.0 / scale).iter().map(|p| p.position * scale).collect();
+    relax(&mut middle, options.radius);
+    middle = ClosedSpline::through(&middle).ok()?.resample(1.0).iter().map(|p| p.position).collect();
+    if random.chance(0.5) {
+        middle.reverse();
+    }
+    let begin = straightest(&middle);
+    middle.rotate_left(begin);
+    let widths = widths(random, &middle, options);
+    if !is_legal(&middle, options) {
+        return None;
+    }
+    let rows: Vec<_> = middle.iter().zip(&widths).map(|(&p, &w)| (p, 0.5 * w, 0.5 * w)).collect();
+    let corridor = Corridor::closed(&rows).ok()?;
+    let track = place_cones(random, &corridor, options);
+    Some(GeneratedTrack { track, corridor })
+}
+
+/// Corners of a rough shape around the origin; a hairpin is a narrow bay in it.
+fn outline(random: &mut Stream, hairpins: usize) -> Vec<Point> {
+    let count = 7 + random.below(5);
+    let bays: Vec<usize> = (0..hairpins).map(|_| random.below(count)).collect();
+    let mut corners = Vec::new();
+    for k in 0..count {
+        let angle = TAU * (k as f64 + random.between(-0.25, 0.25)) / count as f64;
+        let radius = random.between(0.6, 1.1);
+        if bays.contains(&k) {
+            let half = random.between(0.16, 0.24);
+            let depth = random.between(0.25, 0.5);
+            let outer = random.between(1.0, 1.2);
+            for (turn, reach) in
+                [(-1.6, outer), (-0.9, 0.7 * outer), (0.0, depth * outer), (0.9, 0.7 * outer), (1.6, outer)]
+            {
+                corners.push(Point::origin() + direction(angle + turn * half) * reach);
+            }
+        } else {
+            corners.push(Point::origin() + direction(angle) * radius);
+        }
+    }
+    corners
+}
+
+/// Rounds what bends more tightly than a radius.
+fn relax(points: &mut [Point], radius: f64) {
+    let n = points.len();
+    let most = 0.93 / radius;
+    for _ in 0..600 {
+        let sharp: Vec<bool> = (0..n)
+            .map(|i| curvature([points[(i + n - 2) % n], points[i], points[(i + 2) % n]]).abs() > most)
+            .collect();
+        if !sharp.contains(&true) {
+            return;
+        }
+        let old = points.to_vec();
+        for i in 0..n {
+            if (0..7).any(|k| sharp[(i + n + k - 3) % n]) {
+                let between = nalgebra::center(&old[(i + n - 1) % n], &old[(i + 1) % n]);
+                points[i] += (between - old[i]) * 0.5;
+            }
+        }
+    }
+}
+
+/// Where the start line lies: in the middle of the straightest piece.
+fn straightest(points: &[Point]) -> usize {
+    let n = points.len();
+    let bends: Vec<f64> =
+        (0..n).map(|i| curvature([points[(i + n - 2) % n], points[i], points[(i + 2) % n]]).abs()).collect();
+    let sum = |i: usize| (0..24).map(|k| bends[(i + n + k - 12) % n]).sum::<f64>();
+    (0..n).min_by(|&a, &b| sum(a).total_cmp(&sum(b))).unwrap_or(0)
+}
+
+/// Widths that change slowly, and none so wide that an inner edge would fold.
+fn widths(random: &mut Stream, points: &[Point], options: &TrackOptions) -> Vec<f64> {
+    let n = points.len();
+    let [low, high] = options.width;
+    let waves: [(f64, f64); 3] = std::array::from_fn(|k| ((k + 1) as f64, TAU * random.uniform()));
+    (0..n)
+        .map(|i| {
+            let at = TAU * i as f64 / n as f64;
+            let sum: f64 = waves.iter().map(|(k, phase)| math::sin(k * at + phase)).sum();
+            low + (high - low) * (0.5 + sum / 6.0)
+        })
+        .collect()
+}
+
+fn is_legal(points: &[Point], options: &TrackOptions) -> bool {
+    let n = points.len();
+    let length: f64 = (0..n).map(|i| (points[(i + 1) % n] - points[i]).norm()).sum();
+    if length < options.length[0] || length > options.length[1] {
+        return false;
+    }
+    let bend = |i: usize| curvature([points[(i + n - 1) % n], points[i], points[(i + 1) % n]]);
+    if (0..n).any(|i| bend(i).abs() > 1.0 / options.radius) {
+        return false;
+    }
+    // A straight is what turns by less than a degree in 2 m.
+    let mut straight = 0;
+    for i in 0..2 * n {
+        straight = if bend(i % n).abs() < 0.008 { straight + 1 } else { 0 };
+        if straight > 80 {
+            return false;
+        }
+    }
+    let apart = options.width[1] + APART;
+    // Points nearer along the track than the arc of a hairpin may be near each other.
+    let along = (2.0 * apart + 4.0) as usize;
+    for i in 0..n {
+        for j in i + 1..n {
+            let distance = (j - i).min(n - (j - i));
+            if distance > along && (points[i] - points[j]).norm_squared() < apart * apart {
+                return false;
+            }
+        }
+    }
+    turns_once(points)
+}
+
+/// Whether the loop does not cross itself: its headings turn by one full turn.
+fn turns_once(points: &[Point]) -> bool {
+    let n = points.len();
+    let leg = |i: usize| points[(i + 1) % n] - points[i % n];
+    let turned: f64 = (0..n)
+        .map(|i| {
+            let (a, b) = (leg(i), leg(i + 1));
+            math::atan2(crate::geometry::cross(a, b), a.dot(&b))
+        })
+        .sum();
+    (turned.abs() - TAU).abs() < 1e-6
+}
+
+fn place_cones(random: &mut Stream, corridor: &Corridor, options: &TrackOptions) -> ConeTrack {
+    let mut track = ConeTrack::default();
+    for left in [true, false] {
+        let colour = if left { ConeColour::Blue } else { ConeColour::Yellow };
+        let edge = corridor.edge(left);
+        let n = edge.len();
+        let total: f64 = (0..n).map(|i| (edge[(i + 1) % n] - edge[i]).norm()).sum();
+        let tip = |i: usize| edge[i % n];
+        // Two large cones at the line, half a metre from it.
+        for offset in [-0.5, 0.5] {
+            let along = (tip(1) - tip(0)).normalize();
+            track.cones.push(Cone::new(tip(0) + along * offset, ConeColour::BigOrange));
+        }
+        let (mut passed, mut next) = (0.0, 3.0);
+        for i in 0..n {
+            let piece = tip(i + 1) - tip(i);
+            let length = piece.norm();
+            while next < passed + length && next < total - 2.0 {
+                let place = tip(i) + piece * ((next - passed) / length);
+                let jitter = Vector::new(random.between(-0.05, 0.05), random.between(-0.05, 0.05));
+                track.cones.push(Cone::new(place + jitter, colour));
+                let bend = curvature([tip(i + n - 3), tip(i), tip(i + 3)]).abs();
+                let share = (1.0 - 8.0 * bend).clamp(0.0, 1.0);
+                let gap = options.spacing[0] + (options.spacing[1] - options.spacing[0]) * share;
+                next += gap * random.between(0.9, 1.0);
+            }
+            passed += length;
+        }
+    }
+    let n = corridor.stations().len();
+    let behind = corridor.stations()[n - RUN_UP as usize];
+    let heading = math::atan2(-behind.normal.x, behind.normal.y);
+    track.start = Some(Pose::new(behind.position.x, behind.position.y, heading));
+    let line = corridor.stations()[0];
+    track.gates = vec![[line.aside(line.left), line.aside(-line.right)]];
+    track
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drawn_tracks_are_legal() {
+        let tracks = if cfg!(debug_assertions) { 40 } else { 1000 };
+        for seed in 0..tracks {
+            let options = TrackOptions::drawn(seed);
+            let GeneratedTrack { track, corridor } = generate(seed, &options).unwrap();
+            let length = corridor.length();
+            assert!((200.0..=500.0).contains(&length), "{seed}: {length}");
+            let start = track.start.unwrap();
+            for left in [true, false] {
+                let edge = corridor.edge(left);
+                let colour = if left { ConeColour::Blue } else { ConeColour::Yellow };
+                for cone in track.of(colour) {
+                    let nearest = edge.iter().map(|p| (p - cone).norm()).fold(f64::INFINITY, f64::min);
+                    assert!(nearest < 1.0, "{seed}: a cone {nearest} m off its edge");
+                    assert!(start.distance_to(cone) > 1.2);
+                }
+                // No cone is farther than 5 m from the next one of its edge.
+                let on_edge: Vec<Point> = track
+                    .cones
+                    .iter()
+                    .filter(|c| c.colour == colour || c.colour == ConeColour::BigOrange)
+                    .map(|c| c.position)
+                    .collect();
+                for cone in &on_edge {
+                    let second = on_edge.iter().filter(|other| *other != cone).map(|o| (o - cone).norm());
+                    assert!(second.fold(f64::INFINITY, f64::min) <= 5.2);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn seeds_differ_and_repeat() {
+        let options = TrackOptions::default();
+        let [a, again, b] = [1, 1, 2].map(|seed| generate(seed, &options).unwrap());
+        assert!(a == again && a != b);
+    }
+
+    #[test]
+    fn hairpins_are_tight() {
+        let options = TrackOptions { hairpins: 3, radius: 4.0, ..TrackOptions::default() };
+        let tight = (0..20).filter(|&seed| {
+            let corridor = generate(seed, &options).unwrap().corridor;
+            let p: Vec<Point> = corridor.stations().iter().map(|s| s.position).collect();
+            let n = p.len();
+            (0..n).any(|i| curvature([p[(i + n - 2) % n], p[i], p[(i + 2) % n]]).abs() > 1.0 / 5.5)
+        });
+        assert!(tight.count() > 10);
+    }
+
+    #[test]
+    fn contradictions_are_named() {
+        let options = TrackOptions { width: [6.0, 9.0], ..TrackOptions::default() };
+        let error = generate(1, &options).unwrap_err();
+        assert_eq!(error.to_string(), "radius is 4; expected more than half the width, up to 100 m");
+    }
+}

@@ -1,0 +1,43 @@
+//! Racing between cones (book, section 14.5).
+//!
+//! - [`parse_track`]: reads tracks of FSSIM, EUFS and the TUM race track database; [`write_fssim`], [`write_eufs`] and
+//!   [`write_tum`] write them;
+//! - [`generate`]: legal tracks by the rules of Formula Student, from a seed;
+//! - [`CentreLine`]: the way between cones, by a triangulation, with or without colours;
+//! - [`GapDriver`]: the book's driver, which steers for the nearest gap in one scan;
+//! - [`sightings`]: finds cones in scans; a [`Referee`] takes the time and counts penalties;
+//! - [`minimum_curvature`]: the racing line within a [`Corridor`], and [`SpeedProfile`]: how fast a car goes along it.
+
+mod banded;
+mod box_qp;
+mod centre_line;
+mod cone;
+mod corridor;
+mod error;
+mod files;
+mod gap;
+mod generate;
+mod profile;
+mod racing_line;
+mod referee;
+mod sight;
+mod spline;
+#[cfg(test)]
+mod tests;
+mod walk;
+
+pub use centre_line::{CentreLine, CentreLineParameters};
+pub use cone::{Cone, ConeColour, ConeTrack, Event};
+pub use corridor::{Corridor, Station};
+pub use error::PlanError;
+pub use files::{
+    TrackFile, parse_eufs, parse_fssim, parse_line, parse_track, parse_tum, write_eufs, write_fssim,
+    write_tum,
+};
+pub use gap::GapDriver;
+pub use generate::{GeneratedTrack, TrackOptions, generate, lined};
+pub use profile::{CarLimits, SpeedProfile};
+pub use racing_line::{LineSolver, RacingLine, RacingLineParameters, minimum_curvature};
+pub use referee::{Referee, Verdict};
+pub use sight::{Sighting, sightings};
+pub use spline::{ClosedSpline, SplinePoint};

@@ -1,0 +1,206 @@
+use super::error::{PlanError, positive};
+use super::racing_line::curvature;
+use crate::geometry::Point;
+
+/// What a car's tyres and motors do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CarLimits {
+    /// The greatest acceleration of the tyres in any direction, the radius of the friction circle, in m/s².
+    pub grip: f64,
+    /// The greatest acceleration of the motors, in m/s².
+    pub drive: f64,
+    /// The greatest deceleration of the brakes, in m/s².
+    pub brake: f64,
+    /// Metres per second that are never exceeded.
+    pub top_speed: f64,
+}
+
+impl CarLimits {
+    fn check(&self) -> Result<(), PlanError> {
+        positive("grip", self.grip)?;
+        positive("drive", self.drive)?;
+        positive("brake", self.brake)?;
+        positive("top speed", self.top_speed)
+    }
+
+    /// What is left of the friction circle along the way at a speed and a curvature.
+    fn along(&self, squared_speed: f64, curvature: f64) -> f64 {
+        let across = squared_speed * curvature;
+        (self.grip * self.grip - across * across).max(0.0).sqrt()
+    }
+}
+
+/// How fast each point of a closed line is passed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpeedProfile {
+    /// Metres per second at each point.
+    pub speeds: Vec<f64>,
+    /// The curvature at each point, in 1/m, positive to the left.
+    pub curvatures: Vec<f64>,
+    /// Metres from each point to the next.
+    pub lengths: Vec<f64>,
+    /// Seconds for one lap.
+    pub lap_time: f64,
+}
+
+impl SpeedProfile {
+    /// The fastest way around a closed line within the friction circle, for a point mass in balance at each moment (the
+    /// quasi-steady optimum): the speed of each bend, limited forwards by what the motors give and backwards by what the
+    /// brakes take. O(n).
+    ///
+    /// ```
+    /// use roverlab::drive::cones::{CarLimits, SpeedProfile};
+    /// use roverlab::geometry::{Point, direction};
+    /// let limits = CarLimits { grip: 10.0, drive: 5.0, brake: 8.0, top_speed: 30.0 };
+    /// let circle: Vec<_> = (0..100).map(|i| Point::origin() + direction(f64::from(i) * 0.0628318) * 9.0).collect();
+    /// let profile = SpeedProfile::closed(&circle, &limits)?;
+    /// // The root of grip times radius.
+    /// assert!((profile.speeds[50] - 90.0_f64.sqrt()).abs() < 0.01);
+    /// # Ok::<(), roverlab::drive::cones::PlanError>(())
+    /// ```
+    pub fn closed(points: &[Point], limits: &CarLimits) -> Result<Self, PlanError> {
+        let n = points.len();
+        if n < 4 {
+            return Err(PlanError::TooFew { found: n, needed: 4 });
+        }
+        let curvatures: Vec<f64> =
+            (0..n).map(|i| curvature([points[(i + n - 1) % n], points[i], points[(i + 1) % n]])).collect();
+        Self::of(points, curvatures, limits, true)
+    }
+
+    /// The same for a line with two ends, from a speed at the first point to at most another one at the last.
+    pub fn open(points: &[Point], limits: &CarLimits, first: f64, last: f64) -> Result<Self, PlanError> {
+        let n = points.len();
+        if n < 3 {
+            return Err(PlanError::TooFew { found: n, needed: 3 });
+        }
+        let curvatures: Vec<f64> = (0..n)
+            .map(|i| {
+                let middle = i.clamp(1, n - 2);
+                curvature([points[middle - 1], points[middle], points[middle + 1]])
+            })
+            .collect();
+        let mut profile = Self::of(points, curvatures, limits, false)?;
+        profile.speeds[0] = profile.speeds[0].min(first.max(0.0));
+        profile.speeds[n - 1] = profile.speeds[n - 1].min(last.max(0.0));
+        profile.limit(limits, false);
+        Ok(profile)
+    }
+
+    fn of(
+        points: &[Point],
+        curvatures: Vec<f64>,
+        limits: &CarLimits,
+        closed: bool,
+    ) -> Result<Self, PlanError> {
+        limits.check()?;
+        let n = points.len();
+        let lengths: Vec<f64> = (0..n).map(|i| (points[(i + 1) % n] - points[i]).norm()).collect();
+        let lengths_used = if closed { &lengths[..] } else { &lengths[..n - 1] };
+        if let Some(index) = lengths_used.iter().position(|&length| !(length > 1e-9 && length.is_finite())) {
+            return Err(PlanError::Degenerate { index });
+        }
+        let speed = |curvature: &f64| (limits.grip / curvature.abs().max(1e-9)).sqrt().min(limits.top_speed);
+        let speeds = curvatures.iter().map(speed).collect();
+        let mut profile = Self { speeds, curvatures, lengths, lap_time: 0.0 };
+        profile.limit(limits, closed);
+        Ok(profile)
+    }
+
+    fn limit(&mut self, limits: &CarLimits, closed: bool) {
+        let n = self.speeds.len();
+        // Twice around, so that the beginning knows of the end.
+        let steps = if closed { 2 * n } else { n - 1 };
+        for k in 0..steps {
+            let i = k % n;
+            self.pass(limits, limits.drive, i, (i + 1) % n, i);
+        }
+        for k in 0..steps {
+            let i = steps - 1 - k;
+            self.pass(limits, limits.brake, (i + 1) % n, i % n, i % n);
+        }
+        let count = if closed { n } else { n - 1 };
+        self.lap_time = (0..count)
+            .map(|i| 2.0 * self.lengths[i] / (self.speeds[i] + self.speeds[(i + 1) % n]).max(1e-6))
+            .sum();
+    }
+
+    /// Limits the speed at `to` by an acceleration from `from` over a length, with Heun's rule.
+    fn pass(&mut self, limits: &CarLimits, most: f64, from: usize, to: usize, length: usize) {
+        let length = self.lengths[length];
+        let squared = self.speeds[from] * self.speeds[from];
+        let begin = limits.along(squared, self.curvatures[from]).min(most);
+        let guess = (squared + 2.0 * length * begin).min(self.speeds[to] * self.speeds[to]);
+        let end = limits.along(guess, self.curvatures[to]).min(most);
+        let reached = (squared + length * (begin + end)).sqrt();
+        self.speeds[to] = self.speeds[to].min(reached);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::cones::ClosedSpline;
+    use crate::geometry::direction;
+    use proptest::prelude::*;
+    use std::f64::consts::TAU;
+
+    const LIMITS: CarLimits = CarLimits { grip: 12.0, drive: 6.0, brake: 11.0, top_speed: 25.0 };
+
+    fn ellipse(n: u32, a: f64, b: f64) -> Vec<Point> {
+        (0..n)
+            .map(|i| {
+                let unit = direction(TAU * f64::from(i) / f64::from(n));
+                Point::new(a * unit.x, b * unit.y)
+            })
+            .collect()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(40))]
+        #[test]
+        fn the_tyres_hold_everywhere(a in 8.0..60.0f64, b in 8.0..60.0f64) {
+            let points: Vec<Point> =
+                ClosedSpline::through(&ellipse(80, a, b)).unwrap().resample(0.5).iter().map(|p| p.position).collect();
+            let profile = SpeedProfile::closed(&points, &LIMITS).unwrap();
+            let n = points.len();
+            for i in 0..n {
+                let (v, w) = (profile.speeds[i], profile.speeds[(i + 1) % n]);
+                let along = (w * w - v * v) / (2.0 * profile.lengths[i]);
+                let across = v * v * profile.curvatures[i];
+                prop_assert!((-11.0 - 1e-6..=6.0 + 1e-6).contains(&along) && v <= 25.0);
+                prop_assert!(crate::geometry::math::hypot(along, across) < 12.0 * 1.1, "{i}: {along} {across}");
+            }
+        }
+
+        #[test]
+        fn finer_steps_change_little(a in 8.0..60.0f64, b in 8.0..60.0f64) {
+            let spline = ClosedSpline::through(&ellipse(80, a, b)).unwrap();
+            let time = |step| {
+                let points: Vec<Point> = spline.resample(step).iter().map(|p| p.position).collect();
+                SpeedProfile::closed(&points, &LIMITS).unwrap().lap_time
+            };
+            prop_assert!((time(1.0) / time(0.05) - 1.0).abs() < 0.01);
+        }
+    }
+
+    #[test]
+    fn a_strip_from_standing_to_standing() {
+        let strip: Vec<Point> = (0..=150).map(|i| Point::new(0.5 * f64::from(i), 0.0)).collect();
+        let limits = CarLimits { top_speed: 100.0, ..LIMITS };
+        let profile = SpeedProfile::open(&strip, &limits, 0.0, 0.0).unwrap();
+        // Up with 6, down with 11 m/s²: v² (1/12 + 1/22) = 75.
+        let top = (75.0_f64 / (1.0 / 12.0 + 1.0 / 22.0)).sqrt();
+        let reached = profile.speeds.iter().copied().fold(0.0, f64::max);
+        assert!((reached - top).abs() < 0.2 && profile.speeds[0] == 0.0 && profile.speeds[150] == 0.0);
+        assert!((profile.lap_time - (top / 6.0 + top / 11.0)).abs() < 0.1);
+    }
+
+    #[test]
+    fn what_is_no_car() {
+        let points = ellipse(20, 9.0, 9.0);
+        let limits = CarLimits { grip: f64::NAN, ..LIMITS };
+        let error = SpeedProfile::closed(&points, &limits).unwrap_err();
+        assert_eq!(error.to_string(), "grip is NaN; expected a positive, finite number");
+    }
+}

@@ -1,0 +1,153 @@
+use super::corridor::Corridor;
+use crate::geometry::{Point, Pose};
+
+/// The times of a race, by the rules of Formula Student: two seconds more for every cone, ten for leaving the course.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Verdict {
+    /// Seconds of each lap that was completed.
+    pub lap_times: Vec<f64>,
+    /// Times that the car left the course: all four wheels were outside.
+    pub off_course: usize,
+    /// Cones that were knocked over.
+    pub cones_hit: usize,
+}
+
+impl Verdict {
+    /// Seconds for a cone, and for leaving the course.
+    pub const PENALTIES: [f64; 2] = [2.0, 10.0];
+
+    /// The sum of the lap times with what is added for cones and for leaving the course.
+    pub fn total(&self) -> f64 {
+        let [cone, course] = Self::PENALTIES;
+        self.lap_times.iter().sum::<f64>() + cone * self.cones_hit as f64 + course * self.off_course as f64
+    }
+}
+
+/// Takes the time and looks whether a car stays on its track.
+#[derive(Debug, Clone)]
+pub struct Referee {
+    corridor: Corridor,
+    wheels: [Point; 4],
+    verdict: Verdict,
+    nearest: Option<usize>,
+    outside: bool,
+    /// When the line was crossed last.
+    started: Option<f64>,
+    /// Stations passed since.
+    passed: i64,
+    last: f64,
+}
+
+impl Referee {
+    /// A referee for a closed track whose line is at the first station, and for a car with wheels at these places of its
+    /// frame.
+    pub fn new(corridor: Corridor, wheels: [Point; 4]) -> Self {
+        let verdict = Verdict::default();
+        Self { corridor, wheels, verdict, nearest: None, outside: false, started: None, passed: 0, last: 0.0 }
+    }
+
+    /// What was seen so far.
+    pub fn verdict(&self) -> &Verdict {
+        &self.verdict
+    }
+
+    /// Where a car is at a time, and how many cones it has knocked over up to then.
+    pub fn see(&mut self, time: f64, pose: Pose, cones_hit: usize) {
+        let n = self.corridor.stations().len();
+        let middle = nalgebra::center(&self.wheels[0], &self.wheels[3]);
+        let place = pose.to_world(middle);
+        let before = self.nearest.unwrap_or_else(|| self.search(place, 0, n));
+        // A car does not leave a window of some metres between two looks.
+        let now = self.search(place, before + n - WINDOW.min(n / 3), 2 * WINDOW.min(n / 3) + 1);
+        self.nearest = Some(now);
+        let step = (now + n + n / 2 - before) % n;
+        let step = step as i64 - (n / 2) as i64;
+        self.passed += step;
+        let crossed = step > 0 && now < before;
+        if crossed && (self.started.is_none() || self.passed > (n / 2) as i64) {
+            let share = (n - before) as f64 / step as f64;
+            let instant = self.last + (time - self.last) * share.clamp(0.0, 1.0);
+            if let Some(started) = self.started.replace(instant) {
+                self.verdict.lap_times.push(instant - started);
+            }
+            self.passed = now as i64;
+        }
+        self.last = time;
+        let outside = self.wheels.iter().all(|wheel| self.is_outside(pose.to_world(*wheel), now));
+        self.verdict.off_course += usize::from(outside && !self.outside);
+        self.outside = outside;
+        self.verdict.cones_hit = cones_hit;
+    }
+
+    /// The station nearest to a place among some.
+    fn search(&self, place: Point, from: usize, count: usize) -> usize {
+        let stations = self.corridor.stations();
+        let n = stations.len();
+        let away = |i: usize| (stations[i % n].position - place).norm_squared();
+        (from..from + count).min_by(|&a, &b| away(a).total_cmp(&away(b))).unwrap_or(from) % n
+    }
+
+    fn is_outside(&self, wheel: Point, near: usize) -> bool {
+        let n = self.corridor.stations().len();
+        let at = self.search(wheel, near + n - 4.min(n / 3), 9.min(n));
+        let station = self.corridor.stations()[at];
+        let aside = (wheel - station.position).dot(&station.normal);
+        aside > station.left || aside < -station.right
+    }
+}
+
+/// Stations to both sides in which a car is looked for.
+const WINDOW: usize = 20;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::direction;
+    use std::f64::consts::TAU;
+
+    fn ring() -> Referee {
+        let rows: Vec<_> = (0..120)
+            .map(|i| (Point::origin() + direction(f64::from(i) * TAU / 120.0) * 20.0, 2.0, 2.0))
+            .collect();
+        let wheels = [(0.0, 0.6), (0.0, -0.6), (1.5, 0.6), (1.5, -0.6)].map(|(x, y)| Point::new(x, y));
+        Referee::new(Corridor::closed(&rows).unwrap(), wheels)
+    }
+
+    fn drive(referee: &mut Referee, from: f64, to: f64, radius: impl Fn(f64) -> f64) {
+        let mut angle = from;
+        while angle < to {
+            let place = direction(angle) * radius(angle);
+            // One radian in ten seconds.
+            referee.see(10.0 * (angle - from), Pose::new(place.x, place.y, angle + 0.25 * TAU), 0);
+            angle += 0.01;
+        }
+    }
+
+    #[test]
+    fn laps_are_timed_at_the_line() {
+        let mut referee = ring();
+        drive(&mut referee, -0.3, 2.5 * TAU, |_| 20.0);
+        let times = &referee.verdict().lap_times;
+        assert!(times.len() == 2 && times.iter().all(|time| (time - 10.0 * TAU).abs() < 0.5), "{times:?}");
+        assert_eq!(referee.verdict().off_course, 0);
+    }
+
+    #[test]
+    fn leaving_is_counted_once_for_each_time() {
+        let mut referee = ring();
+        drive(
+            &mut referee,
+            -0.3,
+            3.0,
+            |angle| if (1.0..1.5).contains(&angle) || angle > 2.5 { 24.0 } else { 21.0 },
+        );
+        assert_eq!(referee.verdict().off_course, 2);
+        assert!(referee.verdict().lap_times.is_empty());
+    }
+
+    #[test]
+    fn penalties() {
+        let verdict = Verdict { lap_times: vec![20.0, 21.0], off_course: 1, cones_hit: 3 };
+        assert_eq!(verdict.total(), 57.0);
+    }
+}

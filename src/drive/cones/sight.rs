@@ -1,0 +1,125 @@
+use crate::geometry::{Point, direction, math};
+use crate::io::LidarScan;
+
+/// Something that a scan shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sighting {
+    /// Its middle in the robot's frame.
+    pub position: Point,
+    /// Metres from its first point to its last.
+    pub size: f64,
+    /// How many of the beams that a cone would stop it has stopped, 0 to 1.
+    pub confidence: f64,
+    /// Metres from the scanner.
+    pub range: f64,
+}
+
+impl Sighting {
+    /// Metres that no cone is wide.
+    pub const WIDEST_CONE: f64 = 0.35;
+
+    /// Whether it is as small as a cone.
+    pub fn is_cone(&self) -> bool {
+        self.size < Self::WIDEST_CONE
+    }
+}
+
+/// A cone's radius where a low scanner sees it, in metres.
+const RADIUS: f64 = 0.065;
+/// Metres from point to point within one thing.
+const STEP: f64 = 0.3;
+
+/// The things in a scan: runs of beams whose ends are near each other. One beam in between may miss. O(n).
+///
+/// ```
+/// use roverlab::drive::cones::sightings;
+/// use roverlab::io::LidarScan;
+/// let mut ranges = vec![f64::INFINITY; 181];
+/// ranges[89..92].copy_from_slice(&[5.01, 4.94, 5.01]);
+/// let step = 1.0_f64.to_radians();
+/// let scan = LidarScan { angle_min: -90.0 * step, angle_increment: step, range_max: 20.0, ranges, ..LidarScan::default() };
+/// let found = sightings(&scan);
+/// assert!(found.len() == 1 && found[0].is_cone() && (found[0].position.x - 5.05).abs() < 0.02);
+/// ```
+pub fn sightings(scan: &LidarScan) -> Vec<Sighting> {
+    let mut found = Vec::new();
+    let mut run: Vec<(f64, f64)> = Vec::new();
+    let mut misses = 0;
+    for (beam, &range) in scan.ranges.iter().enumerate() {
+        if !(range.is_finite() && range > 0.05) {
+            misses += 1;
+            continue;
+        }
+        let near = run.last().is_some_and(|&(_, last)| (last - range).abs() < STEP && misses <= 1);
+        if !near {
+            found.extend(finish(scan, &run));
+            run.clear();
+        }
+        run.push((scan.angle(beam), range));
+        misses = 0;
+    }
+    found.extend(finish(scan, &run));
+    found
+}
+
+fn finish(scan: &LidarScan, run: &[(f64, f64)]) -> Option<Sighting> {
+    let (first, last) = (run.first()?, run.last()?);
+    let count = run.len() as f64;
+    let angle = run.iter().map(|(angle, _)| angle).sum::<f64>() / count;
+    let mean = run.iter().map(|(_, range)| range).sum::<f64>() / count;
+    let place = |&(angle, range): &(f64, f64)| direction(angle) * range;
+    let size = (place(last) - place(first)).norm();
+    // Beams meet a disc at a quarter of pi of its radius before its middle, in the mean.
+    let range = mean + 0.785 * RADIUS;
+    let half = math::asin((RADIUS / range).min(1.0));
+    let expected = (2.0 * half / scan.angle_increment.abs().max(1e-9)).floor().max(1.0);
+    let local = Point::origin() + direction(angle) * range;
+    Some(Sighting {
+        position: scan.mount.to_world(local),
+        size,
+        confidence: (count / expected).min(1.0),
+        range,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn scan_of(discs: &[Point]) -> LidarScan {
+        let step = std::f64::consts::PI / 900.0;
+        let ranges = (0..901)
+            .map(|beam| {
+                let ray = direction(-0.5 * std::f64::consts::PI + step * f64::from(beam));
+                let hits = discs.iter().filter_map(|disc| {
+                    let along = disc.coords.dot(&ray);
+                    let aside = disc.coords.norm_squared() - along * along;
+                    let deep = RADIUS * RADIUS - aside;
+                    (deep >= 0.0 && along > 0.0).then(|| along - deep.sqrt())
+                });
+                hits.fold(f64::INFINITY, f64::min)
+            })
+            .collect();
+        let angle_min = -0.5 * std::f64::consts::PI;
+        LidarScan { angle_min, angle_increment: step, range_max: 25.0, ranges, ..LidarScan::default() }
+    }
+
+    proptest! {
+        #[test]
+        fn a_cone_is_found_where_it_stands(x in 0.5..14.0f64, y in -8.0..8.0f64) {
+            let found = sightings(&scan_of(&[Point::new(x, y)]));
+            prop_assert_eq!(found.len(), 1);
+            prop_assert!((found[0].position - Point::new(x, y)).norm() < 0.03, "{:?}", found);
+            prop_assert!(found[0].is_cone() && found[0].confidence > 0.4);
+        }
+    }
+
+    #[test]
+    fn neighbours_are_told_apart() {
+        let found = sightings(&scan_of(&[Point::new(5.0, 0.0), Point::new(5.0, 0.4), Point::new(9.0, 0.1)]));
+        // The third one stands in the shadow of the first.
+        assert_eq!(found.len(), 3);
+        assert!(sightings(&LidarScan::default()).is_empty());
+    }
+}

@@ -1,0 +1,232 @@
+//! Files of the wild, whole plans, and how long they take.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use super::*;
+use crate::geometry::{Point, Pose, Segment};
+
+/// The folder of published tracks, if there is one.
+fn published() -> Option<PathBuf> {
+    let folder = std::env::var_os("ROVERLAB_DATA").map(|data| PathBuf::from(data).join("tracks"));
+    let folder = folder.filter(|folder| folder.is_dir());
+    if folder.is_none() {
+        eprintln!("ROVERLAB_DATA names no folder with tracks: left out");
+    }
+    folder
+}
+
+fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
+    let Some(root) = published() else { return Vec::new() };
+    let mut names: Vec<PathBuf> = std::fs::read_dir(root.join(folder))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|e| e == ending))
+        .collect();
+    names.sort();
+    names
+}
+
+fn read(path: &std::path::Path) -> TrackFile {
+    parse_track(&std::fs::read_to_string(path).unwrap(), &path.display().to_string()).unwrap()
+}
+
+fn name(path: &std::path::Path) -> String {
+    path.file_stem().unwrap().to_string_lossy().into_owned()
+}
+
+#[test]
+fn published_cone_maps_have_a_way_between_their_cones() {
+    let mut paths = files("fssim/fssim_gazebo/models/track/tracks_yaml", "yaml");
+    paths.extend(files("eufs/eufs_tracks/csv", "csv"));
+    let mut open = Vec::new();
+    for path in &paths {
+        let TrackFile::Cones(track) = read(path) else { panic!("{path:?} has no cones") };
+        if track.event() != Event::Laps {
+            continue;
+        }
+        let start = track.start_pose().unwrap();
+        let cones: Vec<Cone> = track.cones.iter().map(|cone| Cone::unknown(cone.position)).collect();
+        for (cones, how) in [(&track.cones, "colours"), (&cones, "blind")] {
+            let line = CentreLine::from_cones(cones, start, &CentreLineParameters::default());
+            if !line.as_ref().is_ok_and(|line| line.corridor.is_closed()) {
+                let length = line.map(|line| line.corridor.length());
+                open.push(format!("{} {how}: {length:?}", name(path)));
+            }
+        }
+    }
+    assert!(open.is_empty(), "{open:#?}");
+}
+
+#[test]
+fn published_circuits_bend_no_more_than_the_published_lines() {
+    // That of the car of `io::sim::race`, 1.4 m wide.
+    const HALF_WIDTH: f64 = 0.7;
+    let mut table = String::new();
+    let mut worst = (0.0_f64, f64::INFINITY);
+    for path in files("tum/tracks", "csv") {
+        let TrackFile::Corridor(corridor) = read(&path) else { panic!("{path:?}") };
+        let line = path.parent().unwrap().with_file_name("racelines").join(path.file_name().unwrap());
+        let TrackFile::Line(published) = read(&line) else { panic!("{line:?}") };
+        let parameters =
+            RacingLineParameters { margin: HALF_WIDTH + 0.06, ..RacingLineParameters::default() };
+        let fine = corridor.resampled(2.5).unwrap();
+        let ours = minimum_curvature(&fine, &parameters).unwrap();
+        let spline = ClosedSpline::through(&ours.points).unwrap();
+        let theirs = ClosedSpline::through(&published).unwrap();
+        let ratio = spline.bending_energy() / theirs.bending_energy();
+        let n = published.len();
+        let squares: f64 = spline
+            .resample(1.0)
+            .iter()
+            .map(|p| {
+                let away =
+                    |i: usize| Segment::new(published[i], published[(i + 1) % n]).distance_to(p.position);
+                let least = (0..n).map(away).fold(f64::INFINITY, f64::min);
+                least * least
+            })
+            .sum();
+        let rms = (squares / spline.resample(1.0).len() as f64).sqrt();
+        // The spline itself, between its points as well, keeps the car within both edges.
+        let stations = fine.stations();
+        let least = (0..stations.len())
+            .flat_map(|i| (0..4).map(move |k| (i, 0.25 * f64::from(k))))
+            .map(|(i, share)| {
+                let place = spline.at(i, share).position;
+                let (a, b) = (&stations[i], &stations[(i + 1) % stations.len()]);
+                let mix = |a: f64, b: f64| a + (b - a) * share;
+                let normal = (a.normal + (b.normal - a.normal) * share).normalize();
+                let middle = a.position + (b.position - a.position) * share;
+                let aside = (place - middle).dot(&normal);
+                (mix(a.left, b.left) - aside).min(mix(a.right, b.right) + aside)
+            })
+            .fold(f64::INFINITY, f64::min);
+        let _ = writeln!(
+            table,
+            "{:15} {:.5} {:.5} ratio {ratio:.4} rms {rms:.2} m, {least:.3} m to an edge, {} programs",
+            name(&path),
+            spline.bending_energy(),
+            theirs.bending_energy(),
+            ours.iterations
+        );
+        worst = (f64::max(worst.0, ratio), f64::min(worst.1, least));
+    }
+    eprint!("{table}");
+    assert!(worst.0 <= 1.02 && worst.1 >= HALF_WIDTH, "{worst:?}");
+}
+
+#[test]
+fn what_is_written_is_read_again() {
+    for seed in 0..5 {
+        let GeneratedTrack { track, corridor } = generate(seed, &TrackOptions::drawn(seed)).unwrap();
+        let again = parse_fssim(&write_fssim(&track), "a.yaml").unwrap();
+        for colour in ConeColour::ALL {
+            assert!(track.of(colour).eq(again.of(colour)));
+        }
+        assert_eq!((again.start, again.gates), (track.start, track.gates.clone()));
+        let again = parse_eufs(&write_eufs(&track), "a.csv").unwrap();
+        assert_eq!((&again.cones, again.start), (&track.cones, track.start));
+        let again = parse_tum(&write_tum(&corridor), "a.csv").unwrap();
+        assert_eq!(again, corridor);
+    }
+}
+
+#[test]
+fn broken_files_are_told_where() {
+    let eufs = "tag,x,y,direction,x_variance,y_variance,xy_covariance\n";
+    let tum = "# x_m,y_m,w_tr_right_m,w_tr_left_m\n";
+    for (text, message) in [
+        (String::new(), "t:1:1: found the end of the file; expected keys with lists"),
+        (
+            format!("{eufs}pink,1,2,0"),
+            "t:2:1: found 'pink'; expected blue, yellow, orange, big_orange, unknown, car_start or midpoint",
+        ),
+        (format!("{eufs}blue,1"), "t:2:7: found the end of the line; expected a number of metres"),
+        (format!("{eufs}blue,1,NaN,0"), "t:2:8: found 'NaN'; expected a number of metres"),
+        (format!("{eufs}blue,1,1e9,0"), "t:2:8: found '1e9'; expected a number of metres"),
+        (
+            format!("{eufs}car_start,0,0,0\ncar_start,0,0,0"),
+            "t:3:1: found a second start; expected one start",
+        ),
+        (eufs.into(), "t:1:1: found no cones; expected at least one cone"),
+        (
+            "tag,x\n".into(),
+            "t:1:1: found 'tag'; expected the line tag,x,y,direction,x_variance,y_variance,xy_covariance",
+        ),
+        (format!("{tum}1,2,3\n"), "t:2:6: found the end of the line; expected a number of metres"),
+        (format!("{tum}1,2,3,4,5\n"), "t:2:9: found '5'; expected the end of the line"),
+        (format!("{tum}1,2,3,4\n"), "t:1:1: found 1 points; expected at least 4 points"),
+        (
+            format!("{tum}0,0,1,1\n9,0,1,1\n9,9,-1,1\n0,9,1,1\n"),
+            "t:4:1: found -1; expected a positive width to the right",
+        ),
+        (
+            format!("{tum}0,0,1,1\n9,0,1,1\n9,0,1,1\n9,9,1,1\n0,9,1,1\n"),
+            "t:1:1: found point 1 is no number or the same as its neighbour; expected distinct points; expected a closed centre line",
+        ),
+        (
+            "cones_left:\n- - 1.0\n  - here\n".into(),
+            "t:3:5: found 'here'; expected a number of metres or radians",
+        ),
+        ("cones_left:\n- 1.0\n".into(), "t:2:3: found '1.0'; expected a list of x and y"),
+        ("cones_left:\n- [1, 2, 3]\n".into(), "t:2:10: found '3'; expected the end of the list"),
+        ("cones_left: []\n".into(), "t:1:1: found no cones; expected at least one cone"),
+        ("cones_left: 3\n".into(), "t:1:13: found '3'; expected a list"),
+        ("- 3\n".into(), "t:1:1: found a list; expected keys with lists"),
+        (
+            "cones_left: []\ncones_left: []\n".into(),
+            "t:2:1: found a second 'cones_left'; expected each key once",
+        ),
+        (
+            "starting_pose_front_wing: [1, 2]\n".into(),
+            "t:1:1: found 2 numbers; expected x, y and the heading",
+        ),
+    ] {
+        assert_eq!(parse_track(&text, "t").unwrap_err().to_string(), message);
+    }
+    assert!(parse_track("cones_left: [[[[[[\n", "t").is_err());
+    assert!(parse_track("a: &a [1]\nb: *a\n", "t").is_err());
+}
+
+#[test]
+fn events_are_told_by_their_cones() {
+    let cone = |x: f64, y: f64, colour| Cone::new(Point::new(x, y), colour);
+    let mut strip = ConeTrack::default();
+    for i in 0..15 {
+        strip.cones.push(cone(5.0 * f64::from(i), 1.5, ConeColour::Blue));
+        strip.cones.push(cone(5.0 * f64::from(i), -1.5, ConeColour::Yellow));
+    }
+    assert_eq!(strip.event(), Event::Laps);
+    assert_eq!(strip.start_pose(), Some(Pose::new(0.0, 0.0, 0.0)));
+    strip.cones.push(cone(80.0, 0.0, ConeColour::Orange));
+    assert_eq!(strip.event(), Event::Acceleration);
+    assert_eq!(ConeTrack::default().start_pose(), None);
+}
+
+#[test]
+#[ignore = "prints times"]
+#[allow(clippy::disallowed_methods, reason = "measures")]
+fn times() {
+    let (mut lines, mut racing) = (Vec::new(), Vec::new());
+    let mut solver = LineSolver::default();
+    for seed in 0..200 {
+        let GeneratedTrack { track, .. } = generate(seed, &TrackOptions::drawn(seed)).unwrap();
+        let cones: Vec<Cone> =
+            track.cones.iter().map(|cone| Cone::unknown(cone.position)).take(2000).collect();
+        let begin = std::time::Instant::now();
+        let line = CentreLine::from_cones(&cones, track.start.unwrap(), &CentreLineParameters::default());
+        let Ok(line) = line else {
+            eprintln!("{seed}: {line:?} {:?}", cones.iter().position(|c| !c.position.x.is_finite()));
+            continue;
+        };
+        let middle = std::time::Instant::now();
+        let found = solver.solve(&line.corridor, &RacingLineParameters { margin: 0.9, ..Default::default() });
+        let end = std::time::Instant::now();
+        lines.push(((middle - begin).as_secs_f64() * 1e3, cones.len()));
+        racing.push(((end - middle).as_secs_f64() * 1e3, found.map(|l| l.iterations)));
+    }
+    lines.sort_by(|a, b| b.0.total_cmp(&a.0));
+    racing.sort_by(|a, b| b.0.total_cmp(&a.0));
+    eprintln!("{:?} {:?}", &lines[..5], lines[100]);
+    eprintln!("{:?} {:?}", &racing[..5], racing[100]);
+}

@@ -1,0 +1,413 @@
+//! From triangle to triangle between cones.
+
+use super::centre_line::CentreLineParameters;
+use super::cone::Cone;
+use super::error::PlanError;
+use crate::geometry::{Point, Pose, Segment, Vector, cross};
+
+/// Indices of a left and a right cone with the way between them.
+pub(super) type Pair = [usize; 2];
+
+/// A way between cones.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Way {
+    pub(super) pairs: Vec<Pair>,
+    pub(super) closed: bool,
+}
+
+/// Ways that are followed at a time.
+const BEAM: usize = 8;
+/// Edges at which a way may begin.
+const STARTS: usize = 5;
+/// What a step as on a track is worth where loops are compared.
+const GOOD_STEP: f64 = 0.15;
+/// Triangles back to which a way may not return.
+const MEMORY: usize = 16;
+
+/// The triangulation of some cones.
+pub(super) struct Walker<'c> {
+    cones: &'c [Cone],
+    parameters: &'c CentreLineParameters,
+    triangles: Vec<usize>,
+    twins: Vec<usize>,
+    /// Whether the triangles turn counter-clockwise.
+    counter_clockwise: bool,
+    /// What each half-edge costs for lying off the way that was driven before, if there is one.
+    astray: Vec<f64>,
+}
+
+/// The best way so far: how bad it is, and its last node.
+type Best = Option<(f64, usize)>;
+
+/// A step of a way: an edge that is crossed, and how it got there.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    /// The half-edge of the triangle that is entered.
+    edge: usize,
+    pair: Pair,
+    /// The cones of both sides before these.
+    before: [Option<usize>; 2],
+    parent: Option<usize>,
+    root: usize,
+    cost: f64,
+    length: f64,
+    /// Steps from cone to cone as on a track.
+    good: u32,
+}
+
+impl<'c> Walker<'c> {
+    pub(super) fn new(cones: &'c [Cone], parameters: &'c CentreLineParameters) -> Result<Self, PlanError> {
+        if cones.len() < 3 {
+            return Err(PlanError::TooFew { found: cones.len(), needed: 3 });
+        }
+        if let Some(index) =
+            cones.iter().position(|c| !(c.position.x.is_finite() && c.position.y.is_finite()))
+        {
+            return Err(PlanError::Degenerate { index });
+        }
+        let points: Vec<_> =
+            cones.iter().map(|c| delaunator::Point { x: c.position.x, y: c.position.y }).collect();
+        let triangulation = delaunator::triangulate(&points);
+        let triangles = triangulation.triangles;
+        if triangles.is_empty() {
+            return Err(PlanError::NoWay);
+        }
+        let at = |k: usize| cones[triangles[k]].position;
+        let counter_clockwise = cross(at(1) - at(0), at(2) - at(0)) > 0.0;
+        let twins = triangulation.halfedges;
+        Ok(Self { cones, parameters, triangles, twins, counter_clockwise, astray: Vec::new() })
+    }
+
+    /// Ways are to stay near one that was driven, if it has any points.
+    pub(super) fn near(mut self, driven: &[Point]) -> Self {
+        if driven.is_empty() {
+            return self;
+        }
+        let cost = |edge: usize| {
+            // A way that was driven between them passes near their line, wherever on it.
+            let [left, right] = self.pair(edge).map(|cone| self.position(cone));
+            let line = Segment::new(left, right);
+            let squared = |p: &Point| (line.closest_point(*p) - p).norm_squared();
+            let away = driven.iter().map(squared).fold(f64::INFINITY, f64::min).sqrt();
+            let beyond = (away - 1.2).max(0.0);
+            (beyond * beyond).min(10.0)
+        };
+        self.astray = (0..self.triangles.len()).map(cost).collect();
+        self
+    }
+
+    fn position(&self, cone: usize) -> Point {
+        self.cones[cone].position
+    }
+
+    /// The left and the right cone for whoever enters a triangle by a half-edge.
+    fn pair(&self, edge: usize) -> Pair {
+        let (a, b) = (self.triangles[edge], self.triangles[following(edge)]);
+        if self.counter_clockwise { [a, b] } else { [b, a] }
+    }
+
+    fn width(&self, [left, right]: Pair) -> f64 {
+        (self.position(left) - self.position(right)).norm()
+    }
+
+    /// The unit vector through between a pair.
+    fn forward(&self, [left, right]: Pair) -> Vector {
+        let across = self.position(left) - self.position(right);
+        Vector::new(across.y, -across.x) / across.norm().max(1e-9)
+    }
+
+    fn middle(&self, [left, right]: Pair) -> Point {
+        nalgebra::center(&self.position(left), &self.position(right))
+    }
+
+    /// What a pair costs by itself: for being too near or too far from each other, and for wrong colours.
+    fn pair_cost(&self, pair: Pair) -> f64 {
+        let [low, high] = self.parameters.width;
+        let width = self.width(pair);
+        let short = ((low - width) / 0.4).max(0.0);
+        let long = ((width - high) / 2.0).max(0.0);
+        // A pair is far apart wherever one side has lost its cones, which alone must not drive the way off the other side.
+        (short * short).min(8.0) + (long * long).min(1.0)
+    }
+
+    /// What a cone costs on a side, 0 for left.
+    fn colour_cost(&self, cone: usize, side: usize) -> f64 {
+        let wanted = if side == 0 { 1 } else { -1 };
+        if self.cones[cone].colour.side() == -wanted { self.parameters.colour } else { 0.0 }
+    }
+
+    /// Edges across the car's way, nearly where it is, the best first.
+    fn starts(&self, car: Pose) -> Vec<Node> {
+        let mut found: Vec<(f64, usize)> = (0..self.triangles.len())
+            .filter_map(|edge| {
+                let pair = self.pair(edge);
+                let local = car.to_local(self.middle(pair));
+                let turn = 1.0 - self.forward(pair).dot(&car.forward());
+                if !(-2.0..9.0).contains(&local.x) || local.y.abs() > 3.5 || turn > 0.5 {
+                    return None;
+                }
+                let away = (local.x - 1.0).abs() * 0.15 + local.y.abs() * 0.4;
+                let colours = self.colour_cost(pair[0], 0) + self.colour_cost(pair[1], 1);
+                // The car passes between them and not beside both.
+                let sides = [car.to_local(self.position(pair[0])).y, car.to_local(self.position(pair[1])).y];
+                let beside = if sides[0] > 0.0 && sides[1] < 0.0 { 0.0 } else { 4.0 };
+                let astray = self.astray.get(edge).copied().unwrap_or(0.0);
+                Some((away + 4.0 * turn + colours + beside + astray + self.pair_cost(pair), edge))
+            })
+            .collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.truncate(STARTS);
+        let node = |(root, (cost, edge)): (usize, (f64, usize))| {
+            let pair = self.pair(edge);
+            Node { edge, pair, before: [None; 2], parent: None, root, cost, length: 0.0, good: 0 }
+        };
+        found.into_iter().enumerate().map(node).collect()
+    }
+
+    /// The best way from a car on. `None` if there is none.
+    pub(super) fn walk(&self, car: Pose) -> Option<Way> {
+        let mut nodes = self.starts(car);
+        let roots: Vec<usize> = nodes.iter().map(|node| node.edge).collect();
+        let mut beam: Vec<usize> = (0..nodes.len()).collect();
+        // The best ways so far that closed, and that ended: how bad, and the node.
+        let (mut closed, mut ended): (Best, Best) = (None, None);
+        let keep = |best: &mut Best, badness: f64, node: usize| {
+            if best.is_none_or(|(least, _)| badness < least) {
+                *best = Some((badness, node));
+            }
+        };
+        let mut candidates: Vec<Node> = Vec::new();
+        for _ in 0..self.cones.len() + self.cones.len() / 4 + 8 {
+            candidates.clear();
+            for &index in &beam {
+                let node = nodes[index];
+                // A way that ends is better the farther it leads.
+                let reached = node.length.min(self.parameters.horizon);
+                keep(&mut ended, node.cost - 0.4 * reached, index);
+                for exit in [following(node.edge), preceding(node.edge)] {
+                    let twin = self.twins[exit];
+                    if twin == delaunator::EMPTY {
+                        self.leave(&mut nodes, index, exit, &mut ended);
+                    } else if twin / 3 == roots[node.root] / 3 && node.length > self.parameters.shortest_loop
+                    {
+                        let aslant = if twin == roots[node.root] { 0.0 } else { 0.5 };
+                        // Of two loops, that with more of what a track looks like: not the shorter one.
+                        keep(&mut closed, node.cost + aslant - GOOD_STEP * f64::from(node.good), index);
+                    } else if !was_in(&nodes, index, twin / 3) {
+                        candidates.push(self.step(&node, index, self.pair(twin), twin));
+                    }
+                }
+            }
+            candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            beam.clear();
+            for candidate in &candidates {
+                if beam.len() == BEAM {
+                    break;
+                }
+                if !beam.iter().any(|&other| nodes[other].edge == candidate.edge) {
+                    nodes.push(*candidate);
+                    beam.push(nodes.len() - 1);
+                }
+            }
+        }
+        let (end, is_closed) = match (closed, ended) {
+            (Some((_, node)), _) => (node, true),
+            (None, Some((_, node))) => (node, false),
+            (None, None) => return None,
+        };
+        let mut pairs = Vec::new();
+        let mut at = Some(end);
+        while let Some(index) = at {
+            pairs.push(nodes[index].pair);
+            at = nodes[index].parent;
+        }
+        pairs.reverse();
+        if !is_closed {
+            self.cut(&mut pairs);
+        }
+        (pairs.len() >= 2).then_some(Way { pairs, closed: is_closed })
+    }
+
+    /// A way over the border of the triangulation ends there.
+    fn leave(&self, nodes: &mut Vec<Node>, index: usize, exit: usize, ended: &mut Best) {
+        let node = nodes[index];
+        let [a, b] = self.pair(exit);
+        // Seen from the triangle that is left, the sides are the other way around.
+        let last = self.step(&node, index, [b, a], exit);
+        let badness = last.cost - 0.4 * last.length.min(self.parameters.horizon);
+        if ended.is_none_or(|(least, _)| badness < least) {
+            nodes.push(last);
+            *ended = Some((badness, nodes.len() - 1));
+        }
+    }
+
+    /// The step to a pair that shares a cone with the present one.
+    fn step(&self, node: &Node, parent: usize, pair: Pair, edge: usize) -> Node {
+        let side = usize::from(pair[0] == node.pair[0]);
+        let (new, old) = (pair[side], node.pair[side]);
+        let leg = self.position(new) - self.position(old);
+        let far = ((leg.norm() - self.parameters.spacing) / 2.0).max(0.0);
+        let astray = self.astray.get(edge).copied().unwrap_or(0.0);
+        let mut cost = astray + self.pair_cost(pair) + (far * far).min(5.0) + self.colour_cost(new, side);
+        // An edge goes on ahead: neither back nor around a sharp corner.
+        let ahead = leg.dot(&self.forward(node.pair)) / leg.norm().max(1e-9);
+        cost += 2.5 * (0.3 - ahead).max(0.0);
+        if let Some(earlier) = node.before[side] {
+            let last = self.position(old) - self.position(earlier);
+            let turn = last.dot(&leg) / (last.norm() * leg.norm()).max(1e-9);
+            cost += 2.5 * (0.2 - turn).max(0.0);
+        }
+        let turn = self.forward(pair).dot(&self.forward(node.pair));
+        cost += 2.0 * (0.5 - turn).max(0.0);
+        let good = node.good + u32::from(cost < 0.3);
+        let mut before = node.before;
+        before[side] = Some(old);
+        let length = node.length + (self.middle(pair) - self.middle(node.pair)).norm();
+        Node {
+            edge,
+            pair,
+            before,
+            parent: Some(parent),
+            root: node.root,
+            cost: node.cost + cost,
+            length,
+            good,
+        }
+    }
+
+    /// Cuts an open way at the horizon.
+    fn cut(&self, pairs: &mut Vec<Pair>) {
+        let mut length = 0.0;
+        for k in 1..pairs.len() {
+            length += (self.middle(pairs[k]) - self.middle(pairs[k - 1])).norm();
+            if length > self.parameters.horizon {
+                pairs.truncate(k + 1);
+                return;
+            }
+        }
+    }
+}
+
+/// Whether a way was in a triangle lately.
+fn was_in(nodes: &[Node], index: usize, triangle: usize) -> bool {
+    let mut at = Some(index);
+    for _ in 0..MEMORY {
+        let Some(node) = at else { return false };
+        if nodes[node].edge / 3 == triangle {
+            return true;
+        }
+        at = nodes[node].parent;
+    }
+    false
+}
+
+fn following(edge: usize) -> usize {
+    if edge % 3 == 2 { edge - 2 } else { edge + 1 }
+}
+
+fn preceding(edge: usize) -> usize {
+    if edge.is_multiple_of(3) { edge + 2 } else { edge - 1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::drive::cones::*;
+    use crate::geometry::{Point, Pose};
+    use crate::random::Stream;
+
+    const TRACKS: u64 = if cfg!(debug_assertions) { 50 } else { 500 };
+
+    fn blind(cones: &[Cone]) -> Vec<Cone> {
+        cones.iter().map(|cone| Cone::unknown(cone.position)).collect()
+    }
+
+    /// The greatest distance of the found middle from the true one.
+    fn error(found: &CentreLine, truth: &Corridor) -> f64 {
+        let middle: Vec<Point> = truth.stations().iter().map(|s| s.position).collect();
+        let away = |p: Point| middle.iter().map(|m| (m - p).norm()).fold(f64::INFINITY, f64::min);
+        found.corridor.stations().iter().map(|s| away(s.position)).fold(0.0, f64::max)
+    }
+
+    /// Plans on many tracks from which a function takes cones away or to which it adds some. The share of plans that are closed
+    /// and nowhere farther than so many metres from the true middle; with `driven`, the way of the first lap is known.
+    fn share(wrong: f64, driven: bool, change: impl Fn(&GeneratedTrack, &mut Stream) -> Vec<Cone>) -> f64 {
+        let mut good = 0;
+        for seed in 0..TRACKS {
+            let generated = generate(seed, &TrackOptions::drawn(seed)).unwrap();
+            let mut random = Stream::new(seed).child("change", 0);
+            let cones = blind(&change(&generated, &mut random));
+            // A first lap is driven some decimetres beside the middle.
+            let stations = generated.corridor.stations().iter().step_by(2);
+            let way: Vec<Point> = stations.map(|s| s.aside(random.between(-0.4, 0.4))).collect();
+            let way = if driven { way } else { Vec::new() };
+            let start = generated.track.start.unwrap();
+            let found = CentreLine::along(&cones, start, &way, &CentreLineParameters::default());
+            match found.map(|line| (line.corridor.is_closed(), error(&line, &generated.corridor))) {
+                Ok((true, error)) if error < wrong => good += 1,
+                other => eprintln!("{seed}: {other:?}"),
+            }
+        }
+        f64::from(good) / TRACKS as f64
+    }
+
+    fn with_false_and_missing(generated: &GeneratedTrack, random: &mut Stream) -> Vec<Cone> {
+        let GeneratedTrack { track, corridor } = generated;
+        let mut cones: Vec<Cone> = track.cones.iter().copied().filter(|_| !random.chance(0.1)).collect();
+        let n = corridor.stations().len();
+        for _ in 0..cones.len() / 10 {
+            let station = corridor.stations()[random.below(n)];
+            let offset = station.left + random.between(0.8, 3.0);
+            cones.push(Cone::unknown(station.aside(if random.chance(0.5) { offset } else { -offset })));
+        }
+        // None in the middle of another part of the track.
+        cones.retain(|c| corridor.stations().iter().all(|s| (s.position - c.position).norm() > s.left - 0.2));
+        cones
+    }
+
+    fn with_a_gap(generated: &GeneratedTrack, random: &mut Stream) -> Vec<Cone> {
+        let GeneratedTrack { track, corridor } = generated;
+        let n = corridor.stations().len();
+        let (from, left) = (30 + random.below(n - 60), random.chance(0.5));
+        let side = if left { ConeColour::Blue } else { ConeColour::Yellow };
+        let edge = corridor.edge(left);
+        let gone =
+            |c: &Cone| c.colour == side && (from..from + 20).any(|k| (edge[k] - c.position).norm() < 0.8);
+        track.cones.iter().copied().filter(|c| !gone(c)).collect()
+    }
+
+    #[test]
+    fn generated_tracks_without_colours() {
+        assert_eq!(share(1.0, false, |generated, _| generated.track.cones.clone()), 1.0);
+    }
+
+    #[test]
+    fn cones_missing_and_too_many() {
+        assert!(share(1.8, true, with_false_and_missing) >= 0.9);
+    }
+
+    #[test]
+    fn one_side_is_missing_for_twenty_metres() {
+        assert!(share(1.8, true, with_a_gap) >= 0.84);
+        // Without a lap that was driven, the colours would tell; a colour-blind plan is right for most tracks only.
+        assert!(share(1.8, false, with_a_gap) >= 0.6);
+    }
+
+    #[test]
+    fn too_few_cones_or_none_ahead() {
+        let p = CentreLineParameters::default();
+        let two = [Cone::unknown(Point::origin()); 2];
+        let error = CentreLine::from_cones(&two, Pose::default(), &p).unwrap_err();
+        assert_eq!(error, PlanError::TooFew { found: 2, needed: 3 });
+        let far: Vec<Cone> =
+            (0..9).map(|i| Cone::unknown(Point::new(90.0 + f64::from(i % 3), f64::from(i / 3)))).collect();
+        assert_eq!(CentreLine::from_cones(&far, Pose::default(), &p).unwrap_err(), PlanError::NoWay);
+        let line: Vec<Cone> = (0..9).map(|i| Cone::unknown(Point::new(f64::from(i), 0.0))).collect();
+        assert_eq!(CentreLine::from_cones(&line, Pose::default(), &p).unwrap_err(), PlanError::NoWay);
+        let mut bad = far;
+        bad[4].position.x = f64::NAN;
+        assert_eq!(
+            CentreLine::from_cones(&bad, Pose::default(), &p).unwrap_err(),
+            PlanError::Degenerate { index: 4 }
+        );
+    }
+}

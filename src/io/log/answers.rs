@@ -1,0 +1,83 @@
+//! Robots that answer from a recording: what all of them share.
+
+use image::RgbImage;
+
+use super::open_loop::OpenLoop;
+use super::parts::{ScanHead, Size};
+use super::replay::Replay;
+use super::values::{self, Put, Values};
+use super::wire;
+use crate::geometry::{Pose, Twist};
+use crate::io::{
+    Camera, Display, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys, Lidar,
+    LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos,
+    Viewport,
+};
+use crate::world::Colour;
+
+/// What a recording answers to a call of a robot's.
+pub(super) trait Answers {
+    /// `take` makes the answer of the recorded result and of the bulk before it.
+    fn answer<T>(
+        &mut self,
+        method: &str,
+        arguments: &Values,
+        take: impl FnOnce(&Values, &[u8]) -> Option<T>,
+    ) -> Result<T>;
+}
+
+/// The ranges or the pixels in a recorded scan or image.
+fn bulk_of(message: &[u8]) -> &[u8] {
+    wire::bytes_of(message, 6).unwrap_or_default()
+}
+
+macro_rules! answered {
+    ($robot:ident $capability:ident { $( fn $name:ident($($arg:ident: $type:ty),*) -> $result:ty; )* }) => {
+        impl $capability for $robot {
+            $( fn $name(&mut self $(, $arg: $type)*) -> Result<$result> {
+                answered!(@body self $name($($arg),*))
+            } )*
+        }
+    };
+    (@body $self:ident scan_into($scan:ident)) => {
+        $self.answer("scan_into", &Values::default(), |head, bulk| {
+            let head: ScanHead = head.take()?;
+            head.fill($scan, wire::doubles(bulk_of(bulk))?);
+            Some(())
+        })
+    };
+    (@body $self:ident image_into($image:ident)) => {
+        $self.answer("image_into", &Values::default(), |size, bulk| {
+            let Size(width, height) = size.take()?;
+            let mut data = std::mem::take($image).into_raw();
+            data.clear();
+            data.extend_from_slice(bulk_of(bulk));
+            *$image = values::image(width, height, data)?;
+            Some(())
+        })
+    };
+    (@body $self:ident $name:ident($($arg:ident),*)) => {{
+        #[allow(unused_mut, reason = "some calls have no arguments")]
+        let mut arguments = Values::default();
+        $( $arg.put(&mut arguments); )*
+        $self.answer(stringify!($name), &arguments, |result, _| result.take())
+    }};
+}
+
+/// All capabilities but the clock.
+macro_rules! answering {
+    ($($robot:ident),*) => { $(
+        signatures! { Drive => answered!($robot) }
+        signatures! { DistanceSensors => answered!($robot) }
+        signatures! { Lidar => answered!($robot) }
+        signatures! { Camera => answered!($robot) }
+        signatures! { Display => answered!($robot) }
+        signatures! { Keys => answered!($robot) }
+        signatures! { Radio => answered!($robot) }
+        signatures! { Motors => answered!($robot) }
+        signatures! { Servos => answered!($robot) }
+        signatures! { Encoders => answered!($robot) }
+    )* };
+}
+
+answering! { Replay, OpenLoop }

@@ -1,0 +1,367 @@
+use std::io::Write;
+use std::ops::ControlFlow;
+
+use super::call::{self, Call};
+use super::player::{Player, Position, seconds};
+use super::port::Port;
+use super::recording::Kind;
+use super::truth::Notes;
+use super::values::Values;
+use super::writer::nanoseconds;
+use super::{LogWriter, Recorder, Replay, ReplayTruth, Witness};
+use crate::geometry::Pose;
+use crate::io::sim::{Fleet, RobotTruth};
+use crate::io::{Error, ErrorKind, Result, RobotIo};
+
+/// What a robot of a [`Troop`] does at each of its steps, until it breaks.
+pub type Behaviour<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<()>> + 'a>;
+
+/// Robots whose behaviours are stepped in one thread: a simulator's [`Fleet`], one that is recorded, or the recording of
+/// one.
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use roverlab::geometry::{Pose, Twist};
+/// use roverlab::io::log::{Header, Log, LogWriter, Player, Troop};
+/// use roverlab::io::sim::{Fleet, SimOptions};
+/// use roverlab::io::{Drive, Psd, Result};
+/// use roverlab::world::{RobotSpec, Scene, World};
+///
+/// fn approach<'a>(troop: &mut dyn Troop<'a>) -> Result<Pose> {
+///     troop.control(0, 0.1, Box::new(|robot| {
+///         let free = robot.distance(Psd::FRONT)?;
+///         robot.set_speed(Twist::new(0.5 * (free - 0.2), 0.0))?;
+///         Ok(ControlFlow::Continue(()))
+///     }))?;
+///     troop.run_for(5.0)?;
+///     troop.pose(0)
+/// }
+///
+/// # fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
+/// let scene = Scene::with_robot(World::walled(2.0, 2.0), RobotSpec::s4(), Pose::new(1.0, 1.0, 0.0));
+/// let writer = LogWriter::new(Vec::new(), &Header::new("approach", [""; 0]))?;
+/// let mut recorded = writer.troop(Fleet::new(&scene, SimOptions::default())?);
+/// let pose = approach(&mut recorded)?;
+/// drop(recorded);
+///
+/// let log = Log::read(writer.finish()?)?;
+/// assert_eq!(approach(&mut Player::new(&log).troop())?, pose);
+/// # Ok(())
+/// # }
+/// ```
+pub trait Troop<'a> {
+    /// How many robots there are.
+    fn robots(&self) -> usize;
+
+    /// Gives a robot a behaviour, which is called every `period` seconds until it breaks.
+    fn control(&mut self, robot: usize, period: f64, behaviour: Behaviour<'a>) -> Result<()>;
+
+    /// Steps each behaviour when it is due, for `seconds` or until all behaviours have ended. The first error of a
+    /// behaviour ends the run.
+    fn run_for(&mut self, seconds: f64) -> Result<()>;
+
+    /// Seconds since the start.
+    fn time(&mut self) -> Result<f64>;
+
+    /// A robot's true pose in the world.
+    fn pose(&mut self, robot: usize) -> Result<Pose>;
+
+    /// All that is true about a robot.
+    fn truth(&mut self, robot: usize) -> Result<RobotTruth>;
+}
+
+impl<'a> Troop<'a> for Fleet<'a> {
+    fn robots(&self) -> usize {
+        self.len()
+    }
+
+    fn control(&mut self, robot: usize, period: f64, mut behaviour: Behaviour<'a>) -> Result<()> {
+        Fleet::control(self, robot, period, move |robot| behaviour(robot))
+    }
+
+    fn run_for(&mut self, seconds: f64) -> Result<()> {
+        Fleet::run_for(self, seconds)
+    }
+
+    fn time(&mut self) -> Result<f64> {
+        Ok(Fleet::time(self))
+    }
+
+    fn pose(&mut self, robot: usize) -> Result<Pose> {
+        Fleet::pose(self, robot).ok_or_else(|| no_robot(robot, self.len()))
+    }
+
+    fn truth(&mut self, robot: usize) -> Result<RobotTruth> {
+        Fleet::truth(self, robot)
+    }
+}
+
+impl<'a, T: Troop<'a> + ?Sized> Troop<'a> for Box<T> {
+    fn robots(&self) -> usize {
+        (**self).robots()
+    }
+
+    fn control(&mut self, robot: usize, period: f64, behaviour: Behaviour<'a>) -> Result<()> {
+        (**self).control(robot, period, behaviour)
+    }
+
+    fn run_for(&mut self, seconds: f64) -> Result<()> {
+        (**self).run_for(seconds)
+    }
+
+    fn time(&mut self) -> Result<f64> {
+        (**self).time()
+    }
+
+    fn pose(&mut self, robot: usize) -> Result<Pose> {
+        (**self).pose(robot)
+    }
+
+    fn truth(&mut self, robot: usize) -> Result<RobotTruth> {
+        (**self).truth(robot)
+    }
+}
+
+fn no_robot(robot: usize, robots: usize) -> Error {
+    Error::new(ErrorKind::InvalidInput, format!("found no robot {robot}; expected an index below {robots}"))
+}
+
+/// A troop that is recorded, made by [`LogWriter::troop`]: each robot's calls as those of a
+/// [`Recorder`], with the ends of the runs among them.
+#[derive(Debug)]
+pub struct RecordedTroop<T, W: Write> {
+    inner: T,
+    writer: LogWriter<W>,
+    notes: Vec<Notes<W>>,
+}
+
+impl<T, W: Write> RecordedTroop<T, W> {
+    pub(super) fn new<'a>(inner: T, writer: LogWriter<W>) -> Self
+    where
+        T: Troop<'a>,
+    {
+        let notes =
+            (0..inner.robots()).map(|robot| Notes::new(Port::beside(writer.clone(), robot))).collect();
+        Self { inner, writer, notes }
+    }
+
+    fn notes(&mut self, robot: usize) -> Result<&mut Notes<W>> {
+        let robots = self.notes.len();
+        self.notes.get_mut(robot).ok_or_else(|| no_robot(robot, robots))
+    }
+}
+
+impl<'a, T: Troop<'a>, W: Write + 'a> Troop<'a> for RecordedTroop<T, W> {
+    fn robots(&self) -> usize {
+        self.inner.robots()
+    }
+
+    fn control(&mut self, robot: usize, period: f64, mut behaviour: Behaviour<'a>) -> Result<()> {
+        self.notes(robot)?;
+        let mut port = Some(self.writer.port(robot));
+        let recorded = move |robot: &mut dyn RobotIo| {
+            // A behaviour that has panicked is not called again.
+            let Some(held) = port.take() else { return Ok(ControlFlow::Break(())) };
+            let mut recorder = Recorder::new(robot, held);
+            let flow = behaviour(&mut recorder);
+            port = Some(recorder.into_port());
+            flow
+        };
+        let result = self.inner.control(robot, period, Box::new(recorded));
+        self.notes(robot)?.note(CONTROL, &period, &result);
+        result
+    }
+
+    fn run_for(&mut self, seconds: f64) -> Result<()> {
+        self.inner.run_for(seconds)?;
+        let time = self.inner.time();
+        // No call that follows is earlier.
+        let now = time.as_ref().ok().copied().map(nanoseconds);
+        for notes in &mut self.notes {
+            notes.note_at(now, RUN, &seconds, &time);
+        }
+        Ok(())
+    }
+
+    fn time(&mut self) -> Result<f64> {
+        self.inner.time()
+    }
+
+    fn pose(&mut self, robot: usize) -> Result<Pose> {
+        let pose = self.inner.pose(robot);
+        self.notes(robot)?.note("pose", &robot, &pose);
+        pose
+    }
+
+    fn truth(&mut self, robot: usize) -> Result<RobotTruth> {
+        let truth = self.inner.truth(robot);
+        self.notes(robot)?.note_robot(robot, &truth);
+        truth
+    }
+}
+
+/// What a recorded troop was told, beside the calls of its robots.
+const CONTROL: &str = "control";
+const RUN: &str = "run_for";
+
+/// A troop made of a recording, made by [`Player::troop`]. Each behaviour is stepped as often as it was in the recorded
+/// run, whose periods and durations must be the same; what a robot is asked must be, too, as with [`Replay`].
+pub struct ReplayTroop<'a> {
+    members: Vec<Member<'a>>,
+    time: f64,
+}
+
+struct Member<'a> {
+    robot: Replay,
+    truth: ReplayTruth,
+    orders: Orders,
+    behaviour: Option<Behaviour<'a>>,
+}
+
+impl std::fmt::Debug for ReplayTroop<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ReplayTroop")
+            .field("robots", &self.members.len())
+            .field("time", &self.time)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What a recorded robot's troop was told, in order.
+struct Orders {
+    position: Position,
+    /// The first event that has not been looked at.
+    next: usize,
+}
+
+impl Orders {
+    /// The next order before the robot's next call, if there is one.
+    fn next(&mut self) -> Option<Call<'_>> {
+        let end = self.position.next_call();
+        while self.next < end {
+            self.next += 1;
+            let event = self.position.event(self.next - 1).filter(|event| event.kind == Kind::Truth);
+            let call = event.and_then(|event| Call::read(self.position.log().data(event)));
+            if let Some(call) = call.filter(|call| matches!(call.method, CONTROL | RUN)) {
+                return Some(call);
+            }
+        }
+        None
+    }
+
+    /// Takes an order that must be the next one. Returns its answer.
+    fn take(&mut self, method: &str, argument: f64) -> Result<Option<Values>> {
+        let Some(order) = self.next() else { return Ok(None) };
+        let argument = Values::of(&argument);
+        if order.method != method || order.arguments != argument {
+            let found = call::shown(method, &argument);
+            let expected = call::shown(order.method, &order.arguments);
+            let message = format!("found {found}; expected {expected}, as recorded");
+            return Err(Error::new(ErrorKind::Diverged, message));
+        }
+        order.result.map(Some).map_err(|failure| failure.error())
+    }
+
+    /// Where the robot's next call is, if there is one.
+    fn next_call(&self) -> Option<usize> {
+        Some(self.position.next_call()).filter(|&index| self.position.event(index).is_some())
+    }
+}
+
+fn ended(what: &str) -> Error {
+    Error::new(ErrorKind::EndOfLog, format!("the recording has ended before {what}"))
+}
+
+impl<'a> ReplayTroop<'a> {
+    pub(super) fn new(player: &Player) -> Self {
+        let member = |position: Position| Member {
+            robot: Replay::at(position.clone()),
+            truth: ReplayTruth::new(position.clone()),
+            orders: Orders { position, next: 0 },
+            behaviour: None,
+        };
+        Self { members: player.positions().map(member).collect(), time: 0.0 }
+    }
+
+    fn member(&mut self, robot: usize) -> Result<&mut Member<'a>> {
+        let robots = self.members.len();
+        self.members.get_mut(robot).ok_or_else(|| no_robot(robot, robots))
+    }
+}
+
+impl Member<'_> {
+    /// Steps the behaviour up to the end of the recorded run, which it returns, or to the end of what was recorded.
+    fn run_for(&mut self, seconds: f64) -> Result<Option<f64>> {
+        loop {
+            if let Some(time) = self.orders.take(RUN, seconds)? {
+                return Ok(time.take());
+            }
+            let Some(before) = self.orders.next_call() else { return Ok(None) };
+            let flow = match &mut self.behaviour {
+                Some(behaviour) => behaviour(&mut self.robot)?,
+                None => return Err(self.unasked("a robot without a behaviour")),
+            };
+            if self.orders.next_call() == Some(before) {
+                return Err(self.unasked("a step without a call"));
+            }
+            if flow.is_break() {
+                self.behaviour = None;
+            }
+        }
+    }
+
+    /// The error of a robot that does not make its next call.
+    fn unasked(&self, found: &str) -> Error {
+        let position = &self.orders.position;
+        let call = position.event(position.next_call());
+        let expected = call.and_then(|event| {
+            let call = Call::read(position.log().data(event))?;
+            Some(format!("{} at {} s", call::shown(call.method, &call.arguments), seconds(event.time)))
+        });
+        let expected = expected.unwrap_or_else(|| "the end".into());
+        Error::new(ErrorKind::Diverged, format!("found {found}; expected {expected}, as recorded"))
+    }
+}
+
+impl<'a> Troop<'a> for ReplayTroop<'a> {
+    fn robots(&self) -> usize {
+        self.members.len()
+    }
+
+    fn control(&mut self, robot: usize, period: f64, behaviour: Behaviour<'a>) -> Result<()> {
+        let member = self.member(robot)?;
+        member.orders.take(CONTROL, period)?.ok_or_else(|| ended("the behaviours were given"))?;
+        member.behaviour = Some(behaviour);
+        Ok(())
+    }
+
+    fn run_for(&mut self, seconds: f64) -> Result<()> {
+        let mut first = None;
+        let mut whole = true;
+        for member in &mut self.members {
+            match member.run_for(seconds) {
+                Ok(Some(time)) => self.time = time,
+                Ok(None) => whole = false,
+                // What ended the recorded run: the other robots come as far as they did then.
+                Err(error) => first = first.or(Some(error)),
+            }
+        }
+        match first {
+            Some(error) => Err(error),
+            None if whole => Ok(()),
+            None => Err(ended("the run did")),
+        }
+    }
+
+    fn time(&mut self) -> Result<f64> {
+        Ok(self.time)
+    }
+
+    fn pose(&mut self, robot: usize) -> Result<Pose> {
+        self.member(robot)?.truth.pose(robot)
+    }
+
+    fn truth(&mut self, robot: usize) -> Result<RobotTruth> {
+        self.member(robot)?.truth.robot(robot)
+    }
+}

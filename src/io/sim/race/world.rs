@@ -1,0 +1,281 @@
+use super::body::{Body, Command, RaceCarSpec};
+use super::robot::RaceCar;
+use crate::geometry::{Point, Pose, Twist};
+use crate::io::sim::{NoiseModel, TICK};
+use crate::io::{Error, LidarSettings, Result};
+use crate::random::Stream;
+use crate::world::Colour;
+
+/// How a race runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RaceOptions {
+    /// The seed of every random stream.
+    pub seed: u64,
+    /// Drive and sensor errors.
+    pub noise: NoiseModel,
+    /// The share of cones that a scan does not see.
+    pub missed: f64,
+    /// Returns of a scan from where nothing is, as a share of the cones that it sees.
+    pub phantoms: f64,
+}
+
+impl Default for RaceOptions {
+    /// Seed 1, noise as on a real robot, every cone seen.
+    fn default() -> Self {
+        Self { seed: 1, noise: NoiseModel::real(), missed: 0.0, phantoms: 0.0 }
+    }
+}
+
+/// Where a car truly is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CarTruth {
+    /// The middle of the rear axle.
+    pub pose: Pose,
+    /// Speed along the car, and the rate of its heading.
+    pub twist: Twist,
+    /// The steering angle.
+    pub steering: f64,
+    /// Metres per second to the left, at the rear axle.
+    pub slip: f64,
+    /// Cones that it knocked over.
+    pub hits: usize,
+    /// Whether it has touched another car.
+    pub touched: bool,
+    /// Metres that its centre of mass has gone.
+    pub distance: f64,
+}
+
+/// A cone of a race. It falls over when a car touches its foot, and is gone then.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RaceCone {
+    /// Where it stands.
+    pub position: Point,
+    /// Metres from the axis to the edge of its foot.
+    pub radius: f64,
+    /// Metres from the ground to its tip.
+    pub height: f64,
+    /// Its colour.
+    pub colour: Colour,
+}
+
+impl RaceCone {
+    /// A small cone of a colour.
+    pub const fn new(position: Point, colour: Colour) -> Self {
+        Self { position, radius: 0.129, height: 0.325, colour }
+    }
+}
+
+/// A cone of the world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Obstacle {
+    pub(super) cone: RaceCone,
+    pub(super) stands: bool,
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct Entry {
+    pub(super) spec: RaceCarSpec,
+    pub(super) body: Body,
+    pub(super) command: Command,
+    pub(super) odometry: Pose,
+    /// What odometry measures now.
+    pub(super) measured: Twist,
+    pub(super) scanner: LidarSettings,
+    pub(super) lidar: Stream,
+    drive: Stream,
+    scale: f64,
+    drift: f64,
+    hits: usize,
+    touched: bool,
+    distance: f64,
+}
+
+/// Cones, and cars between them.
+#[derive(Debug, Clone)]
+pub struct Race {
+    pub(super) cones: Vec<Obstacle>,
+    pub(super) cars: Vec<Entry>,
+    pub(super) options: RaceOptions,
+    ticks: u64,
+}
+
+/// Steps of the tyres in a tick.
+const SUBSTEPS: u32 = 5;
+/// The error of a rate gyroscope for noise 1: rad/s that it reads standing, and rad/s from reading to reading.
+const GYRO_BIAS: f64 = 0.001;
+const GYRO_NOISE: f64 = 0.003;
+
+impl Race {
+    /// A race between cones, with cars that stand with the middle of their rear axle at a pose.
+    ///
+    /// Fails where a number is out of range.
+    pub fn new(cones: &[RaceCone], cars: &[(RaceCarSpec, Pose)], options: RaceOptions) -> Result<Self> {
+        options.noise.validate()?;
+        for (name, value) in
+            [("share of missed cones", options.missed), ("share of phantoms", options.phantoms)]
+        {
+            if !(0.0..=1.0).contains(&value) {
+                return Err(Error::invalid_input(name, value, "0 to 1"));
+            }
+        }
+        for cone in cones {
+            crate::io::error::require_finite("place of a cone", cone.position.x + cone.position.y)?;
+            if !(cone.radius > 0.0 && cone.radius < 10.0) {
+                return Err(Error::invalid_input(
+                    "radius of a cone",
+                    cone.radius,
+                    "more than 0, less than 10 m",
+                ));
+            }
+            crate::io::error::require_positive("height of a cone", cone.height)?;
+        }
+        let random = Stream::new(options.seed);
+        // Relative errors of the drive are given for robots with small wheels: what is left of them is a tyre's.
+        let size = options.noise.wheel_mismatch / NoiseModel::real().wheel_mismatch;
+        let mut entries = Vec::new();
+        for (index, (spec, pose)) in cars.iter().enumerate() {
+            spec.validate()?;
+            if !pose.is_finite() {
+                return Err(Error::invalid_input("start", format!("{pose:?}"), "finite numbers"));
+            }
+            let mut drive = random.child("drive", index as u64);
+            entries.push(Entry {
+                spec: *spec,
+                body: Body::standing(spec, *pose),
+                command: Command::default(),
+                odometry: Pose::default(),
+                measured: Twist::default(),
+                scanner: LidarSettings { field_of_view: std::f64::consts::PI, tilt: 0.0, points: 901 },
+                lidar: random.child("lidar", index as u64),
+                scale: 1.0 + options.noise.wheel_scale * drive.normal(),
+                drift: GYRO_BIAS * size * drive.normal(),
+                drive,
+                hits: 0,
+                touched: false,
+                distance: 0.0,
+            });
+        }
+        let cones = cones.iter().map(|&cone| Obstacle { cone, stands: true }).collect();
+        Ok(Self { cones, cars: entries, options, ticks: 0 })
+    }
+
+    /// A car, by its number from 0. Time passes for all of them when it waits.
+    pub fn car(&mut self, index: usize) -> Result<RaceCar<'_>> {
+        if index >= self.cars.len() {
+            let expected = format!("less than {}", self.cars.len());
+            return Err(Error::invalid_input("number of the car", index, &expected));
+        }
+        Ok(RaceCar { race: self, index })
+    }
+
+    /// Seconds since the beginning.
+    pub fn time(&self) -> f64 {
+        self.ticks as f64 * TICK
+    }
+
+    /// Where a car truly is. `None` if there is no such car.
+    pub fn truth(&self, index: usize) -> Option<CarTruth> {
+        self.cars.get(index).map(|car| CarTruth {
+            pose: car.body.pose(&car.spec),
+            twist: car.body.twist(),
+            steering: car.body.steering,
+            slip: car.body.slip(&car.spec),
+            hits: car.hits,
+            touched: car.touched,
+            distance: car.distance,
+        })
+    }
+
+    /// Cones that all cars have knocked over.
+    pub fn hits(&self) -> usize {
+        self.cars.iter().map(|car| car.hits).sum()
+    }
+
+    /// Which cones stand, in the order in which they were given.
+    pub fn standing(&self) -> impl Iterator<Item = bool> + '_ {
+        self.cones.iter().map(|cone| cone.stands)
+    }
+
+    /// Lets time pass, in ticks of 10 ms.
+    pub fn advance(&mut self, seconds: f64) {
+        for _ in 0..crate::io::sim::options::ticks_in(seconds.clamp(0.0, 1e6)) {
+            self.tick();
+        }
+    }
+
+    fn tick(&mut self) {
+        self.ticks += 1;
+        for car in &mut self.cars {
+            car.tick(&self.options, &mut self.cones);
+        }
+        for i in 0..self.cars.len() {
+            for j in i + 1..self.cars.len() {
+                if self.cars[i].outline_meets(&self.cars[j]) {
+                    self.cars[i].touched = true;
+                    self.cars[j].touched = true;
+                }
+            }
+        }
+    }
+}
+
+impl Entry {
+    fn tick(&mut self, options: &RaceOptions, cones: &mut [Obstacle]) {
+        for _ in 0..SUBSTEPS {
+            self.body.step(&self.spec, self.command, TICK / f64::from(SUBSTEPS));
+        }
+        let twist = self.body.twist();
+        if twist == Twist::default() {
+            self.measured = twist;
+            return;
+        }
+        self.distance += twist.linear.abs() * TICK;
+        let size = options.noise.wheel_mismatch / NoiseModel::real().wheel_mismatch;
+        let slip = options.noise.slip * (twist.linear.abs() / TICK).sqrt() * self.drive.normal();
+        let rate = twist.angular + self.drift + GYRO_NOISE * size * self.drive.normal();
+        self.measured = Twist::new(twist.linear * self.scale + slip, rate);
+        let half = self.odometry.heading + 0.5 * TICK * rate;
+        let step = crate::geometry::direction(half) * (TICK * self.measured.linear);
+        let heading = crate::geometry::normalize_angle(self.odometry.heading + TICK * rate);
+        self.odometry = Pose::new(self.odometry.x + step.x, self.odometry.y + step.y, heading);
+        let pose = self.body.pose(&self.spec);
+        let reach = self.spec.nose + self.spec.width;
+        for Obstacle { cone, stands } in cones.iter_mut().filter(|cone| cone.stands) {
+            let away = cone.position - pose.position();
+            if away.norm_squared() > reach * reach {
+                continue;
+            }
+            let local = pose.to_local(cone.position);
+            let outside_x = (local.x - self.spec.nose).max(-self.spec.tail - local.x).max(0.0);
+            let outside_y = (local.y.abs() - 0.5 * self.spec.width).max(0.0);
+            if outside_x * outside_x + outside_y * outside_y < cone.radius * cone.radius {
+                *stands = false;
+                self.hits += 1;
+            }
+        }
+    }
+
+    /// The corners of the car.
+    pub(super) fn corners(&self) -> [Point; 4] {
+        let (pose, half) = (self.body.pose(&self.spec), 0.5 * self.spec.width);
+        [(self.spec.nose, half), (-self.spec.tail, half), (-self.spec.tail, -half), (self.spec.nose, -half)]
+            .map(|(x, y)| pose.to_world(Point::new(x, y)))
+    }
+
+    /// Whether two cars overlap, by the axes of both.
+    fn outline_meets(&self, other: &Self) -> bool {
+        let (a, b) = (self.corners(), other.corners());
+        [a, b].iter().all(|corners| {
+            [corners[1] - corners[0], corners[2] - corners[1]].iter().all(|axis| {
+                let span = |points: &[Point; 4]| {
+                    points
+                        .iter()
+                        .map(|p| p.coords.dot(axis))
+                        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)))
+                };
+                let ((al, ah), (bl, bh)) = (span(&a), span(&b));
+                al <= bh && bl <= ah
+            })
+        })
+    }
+}

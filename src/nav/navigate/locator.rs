@@ -1,0 +1,71 @@
+use crate::geometry::{Point, Pose};
+use crate::io::LidarScan;
+use crate::nav::ScanMatcher;
+use crate::world::World;
+use crate::world::space::{Scanner, Solid, Space};
+
+/// Where the robot is in the known world: by odometry, corrected by the scans that the world lets expect.
+#[derive(Debug, Clone)]
+pub(super) struct Locator {
+    space: Space,
+    start: Pose,
+    scanner: Option<Scanner>,
+    expected: LidarScan,
+    matcher: ScanMatcher,
+    /// Where the expected scan is from, relative to the start.
+    expected_at: Pose,
+    points: Vec<Point>,
+}
+
+/// After so many metres there is a new expected scan.
+const SPACING: f64 = 0.06;
+/// The height above the floor of a scanner that does not tell.
+const HEIGHT: f64 = 0.04;
+
+impl Locator {
+    pub(super) fn new(world: &World, start: Pose) -> Self {
+        let mut space = Space::new(&world.walls);
+        for object in &world.objects {
+            space.add(Solid::from(object));
+        }
+        Self {
+            space,
+            start,
+            scanner: None,
+            expected: LidarScan::default(),
+            matcher: ScanMatcher::new(),
+            expected_at: Pose::default(),
+            points: Vec::new(),
+        }
+    }
+
+    /// The pose in the world at which a scan was made.
+    pub(super) fn locate(&mut self, odometry: Pose, scan: &LidarScan) -> Pose {
+        self.points.clear();
+        self.points.extend(scan.points());
+        let pose = self.matcher.update(odometry, &self.points);
+        let is_first = self.scanner.is_none();
+        if is_first || pose.distance_to(self.expected_at.position()) > SPACING {
+            self.expect(pose, scan);
+        }
+        self.start.compose(&pose)
+    }
+
+    /// Works out what there is to be seen, by the known world, from a pose relative to the start.
+    fn expect(&mut self, pose: Pose, scan: &LidarScan) {
+        let beams = scan.ranges.len();
+        let scanner = self.scanner.get_or_insert_with(|| {
+            Scanner::new(scan.angle_min, scan.angle_increment, beams, HEIGHT, 0.0, scan.range_max)
+        });
+        if scanner.beams() != beams {
+            *scanner = Scanner::new(scan.angle_min, scan.angle_increment, beams, HEIGHT, 0.0, scan.range_max);
+        }
+        self.expected.clone_from(scan);
+        let at = self.start.compose(&pose).compose(&scan.mount);
+        self.space.scan(scanner, &at, None, &mut self.expected.ranges);
+        self.points.clear();
+        self.points.extend(self.expected.points());
+        self.matcher.know(pose, &self.points);
+        self.expected_at = pose;
+    }
+}

@@ -1,0 +1,16 @@
+//! Driving what is planned: to a goal through a known world, of which something may have changed.
+
+mod chart;
+mod locator;
+mod navigator;
+mod parameters;
+mod report;
+mod route;
+mod steering;
+mod sweep;
+#[cfg(test)]
+mod tests;
+
+pub use navigator::Navigator;
+pub use parameters::NavigateParameters;
+pub use report::{NavigateEvent, NavigateObservation, NavigateOutcome, NavigatePhase};

@@ -1,0 +1,428 @@
+use super::chart::{Chart, LEVELS};
+use super::locator::Locator;
+use super::parameters::NavigateParameters;
+use super::report::{NavigateEvent, NavigateObservation, NavigateOutcome, NavigatePhase};
+use super::route::Route;
+use super::steering::Steering;
+use crate::geometry::{Point, Pose, Twist, angle_difference};
+use crate::io::{Clock, Drive, Error, ErrorKind, Lidar, LidarScan, Result};
+use crate::nav::ScanFilter;
+use crate::nav::surroundings::Surroundings;
+use crate::world::{GridCell, World};
+
+/// Drives to a goal through a known world, of which something may have changed (book, section 10.3 and after).
+///
+/// The robot plans on a grid of the known world, grown by its outline and a clearance, and follows the plan with
+/// feedback: at every step it heads for the farthest point of the path that a straight way leads to, past what the lidar
+/// sees. What the lidar sees and the world lacks goes into the grid, and the plan is repaired by D\* Lite. Where the wished
+/// clearance leaves no way, it plans with less, down to the least one, and with more again as soon as that leads on.
+///
+/// Odometry is corrected by matching scans with those that the known world lets expect.
+///
+/// # Model
+///
+/// The plan is that of the circle that holds the outline, so that the robot can turn everywhere. All places within a free
+/// cell are free for it; what a straight way through such cells sweeps is, too. At every step the outline itself is swept
+/// along the arc that is about to be driven, and slowed down to stop before anything that is seen.
+///
+/// # Outcomes
+///
+/// [`Unreachable`](NavigateOutcome::Unreachable) is told at once if the known world has no way. If what has been seen leaves
+/// none, it is forgotten and looked at anew first. A robot that does not get on takes down what is before it, backs off
+/// and plans anew; after several times it is [`Stuck`](NavigateOutcome::Stuck).
+#[derive(Debug, Clone)]
+pub struct Navigator {
+    parameters: NavigateParameters,
+    goal: Point,
+    phase: NavigatePhase,
+    chart: Chart,
+    route: Option<Route>,
+    locator: Locator,
+    start: Pose,
+    pose: Pose,
+    filter: ScanFilter,
+    surroundings: Surroundings,
+    /// The noise-filtered hits of the scan in the robot's frame, and those near it.
+    points: Vec<Point>,
+    near: Vec<Point>,
+    events: Vec<NavigateEvent>,
+    /// What has been seen since the plan was made.
+    marks: Vec<GridCell>,
+    progress: Progress,
+    /// Steps that are left of looking or backing off.
+    left: u32,
+    doubts: u32,
+    /// Where a wider way was looked for last.
+    widened_at: Point,
+}
+
+/// Whether the robot gets on.
+#[derive(Debug, Clone)]
+struct Progress {
+    anchor: Pose,
+    idle: f64,
+    least: f64,
+    waiting: f64,
+    blocked_at: Point,
+    blocked: u32,
+}
+
+/// The standard deviation of a lidar's ranges that the filter starts from, in metres.
+const EXPECTED_NOISE: f64 = 0.010;
+/// Metres within which what is seen counts for the plan, for the next step, and for a robot that does not get on.
+const SEEING: f64 = 2.5;
+const NEAR: f64 = 0.6;
+const TOUCHING: f64 = 0.05;
+/// What is seen so near to something known is that: in metres, and in standard deviations of a range.
+const STRAY: f64 = 0.045;
+const STRAY_DEVIATIONS: f64 = 4.0;
+/// The farthest target of a step, in metres.
+const LOOKAHEAD: f64 = 0.5;
+/// Seconds that the robot looks before it plans.
+const LOOKING_TIME: f64 = 0.6;
+/// Seconds without moving, and without getting nearer, after which it does not get on.
+const IDLE_TIME: f64 = 2.0;
+const WAITING_TIME: f64 = 25.0;
+/// How it backs off: m/s and s.
+const BACKING_SPEED: f64 = 0.06;
+const BACKING_TIME: f64 = 1.0;
+/// So often it may fail to get on in one place, and doubt what it has seen.
+const MAX_BLOCKED: u32 = 8;
+const MAX_DOUBTS: u32 = 2;
+/// After so many metres it looks for a way with more clearance.
+const WIDENING: f64 = 0.3;
+
+impl Navigator {
+    /// A run through a known world, from a pose to a goal in it.
+    ///
+    /// Fails if a parameter is out of range, the start or the goal is no finite place, or the world is too large.
+    pub fn new(world: &World, start: Pose, goal: Point, parameters: NavigateParameters) -> Result<Self> {
+        parameters.validate()?;
+        if !start.is_finite() {
+            return Err(Error::invalid_input("start", format!("{start:?}"), "finite numbers"));
+        }
+        if !(goal.x.is_finite() && goal.y.is_finite()) {
+            return Err(Error::invalid_input("goal", goal, "finite numbers"));
+        }
+        let mut this = Self {
+            chart: Chart::new(world, &parameters)?,
+            parameters,
+            goal,
+            phase: NavigatePhase::Looking,
+            route: None,
+            locator: Locator::new(world, start),
+            start,
+            pose: start,
+            filter: ScanFilter::new(EXPECTED_NOISE),
+            surroundings: Surroundings::default(),
+            points: Vec::new(),
+            near: Vec::new(),
+            events: Vec::new(),
+            marks: Vec::new(),
+            progress: Progress {
+                anchor: start,
+                idle: 0.0,
+                least: f64::INFINITY,
+                waiting: 0.0,
+                blocked_at: start.position(),
+                blocked: 0,
+            },
+            left: (LOOKING_TIME / parameters.period).ceil() as u32,
+            doubts: 0,
+            widened_at: start.position(),
+        };
+        if !this.plan(LEVELS) {
+            this.end(NavigateOutcome::Unreachable);
+        }
+        Ok(this)
+    }
+
+    /// What the robot is doing.
+    pub fn phase(&self) -> NavigatePhase {
+        self.phase
+    }
+
+    /// Where the robot takes itself to be in the world.
+    pub fn pose(&self) -> Pose {
+        self.pose
+    }
+
+    /// The distance to the goal that the robot takes itself to have.
+    pub fn goal_distance(&self) -> f64 {
+        self.pose.distance_to(self.goal)
+    }
+
+    /// The path that is left, from the robot to the goal, in the world.
+    pub fn path(&self) -> &[Point] {
+        self.route.as_ref().map_or(&[], Route::path)
+    }
+
+    /// The length of the path that is left, in metres along the edges and diagonals of cells.
+    pub fn path_length(&self) -> Option<f64> {
+        self.route.as_ref().map(Route::length)
+    }
+
+    /// What it sees at the moment: the noise-filtered hits of the scan in the robot's frame.
+    pub fn visible_points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// The places in the world where it has seen something that the known world lacks.
+    pub fn unknown_obstacles(&self) -> Vec<Point> {
+        self.chart.seen().collect()
+    }
+
+    /// Takes the events that have happened since the last call.
+    pub fn take_events(&mut self) -> Vec<NavigateEvent> {
+        std::mem::take(&mut self.events)
+    }
+
+    /// Ends the run with a verdict from outside, such as that the time is over.
+    pub fn end(&mut self, outcome: NavigateOutcome) {
+        if !matches!(self.phase, NavigatePhase::Ended(_)) {
+            self.phase = NavigatePhase::Ended(outcome);
+            self.events.push(NavigateEvent::End(outcome));
+        }
+    }
+
+    /// One control step: what the robot shall do until the next.
+    pub fn step(&mut self, observation: &NavigateObservation<'_>) -> Result<Twist> {
+        if matches!(self.phase, NavigatePhase::Ended(_)) {
+            return Ok(Twist::STOP);
+        }
+        self.perceive(observation)?;
+        if self.goal_distance() <= self.parameters.goal_tolerance {
+            self.end(NavigateOutcome::Reached);
+        }
+        Ok(match self.phase {
+            NavigatePhase::Looking => {
+                self.look();
+                Twist::STOP
+            }
+            NavigatePhase::Driving => self.drive(observation.speed),
+            NavigatePhase::BackingOff => self.back_off(),
+            NavigatePhase::Ended(_) => Twist::STOP,
+        })
+    }
+
+    /// Takes in what the robot measures.
+    fn perceive(&mut self, observation: &NavigateObservation<'_>) -> Result<()> {
+        if !observation.odometry.is_finite() {
+            let found = format!("{:?}", observation.odometry);
+            return Err(Error::invalid_input("odometry", found, "finite numbers"));
+        }
+        let ranges = &observation.scan.ranges;
+        if !ranges.is_empty() && ranges.iter().all(|range| range.is_nan()) {
+            let expected = "metres or +infinity";
+            return Err(Error::invalid_input("every range of the lidar scan", f64::NAN, expected));
+        }
+        self.pose = if self.parameters.match_scans {
+            self.locator.locate(observation.odometry, observation.scan)
+        } else {
+            self.start.compose(&observation.odometry)
+        };
+        self.filter.update(self.pose, observation.scan)?;
+        self.points.clear();
+        self.points.extend(self.filter.points());
+        self.surroundings.update(self.points.iter().copied(), NEAR);
+        self.near.clear();
+        self.near.extend(self.points.iter().filter(|point| point.coords.norm() < NEAR));
+        let stray = STRAY.max(STRAY_DEVIATIONS * self.filter.noise());
+        for point in &self.points {
+            if point.coords.norm() < SEEING {
+                self.marks.extend(self.chart.note(self.pose.to_world(*point), stray));
+            }
+        }
+        Ok(())
+    }
+
+    fn look(&mut self) {
+        self.left = self.left.saturating_sub(1);
+        if self.left > 0 {
+            return;
+        }
+        self.phase = NavigatePhase::Driving;
+        if !self.plan(LEVELS) {
+            self.lose_way();
+        }
+    }
+
+    /// Plans at the largest of the first so many clearances that leaves a way.
+    fn plan(&mut self, levels: usize) -> bool {
+        let (from, radius) = (self.pose.position(), self.parameters.radius());
+        let mut routes =
+            (0..levels).filter_map(|level| Route::new(&self.chart, level, from, self.goal, radius));
+        let Some(route) = routes.next() else { return false };
+        let clearance = self.chart.clearance(route.level);
+        self.events.push(NavigateEvent::Planned { length: route.length(), clearance });
+        self.progress.least = f64::INFINITY;
+        self.marks.clear();
+        self.route = Some(route);
+        true
+    }
+
+    /// No way is left at the present clearance.
+    fn lose_way(&mut self) {
+        if self.plan(LEVELS) {
+            return;
+        }
+        self.route = None;
+        if !self.chart.forget() || self.doubts >= MAX_DOUBTS {
+            return self.end(NavigateOutcome::Unreachable);
+        }
+        self.doubts += 1;
+        self.events.push(NavigateEvent::Doubted { point: self.pose.position() });
+        self.marks.clear();
+        self.left = (LOOKING_TIME / self.parameters.period).ceil() as u32;
+        self.phase = NavigatePhase::Looking;
+    }
+
+    /// Follows the path.
+    fn drive(&mut self, speed: Twist) -> Twist {
+        if !self.repair() {
+            self.lose_way();
+            return Twist::STOP;
+        }
+        self.widen();
+        if !self.gets_on() {
+            return self.give_way();
+        }
+        let Some(route) = &self.route else { return Twist::STOP };
+        let target = route.target(&self.chart, self.pose.position(), LOOKAHEAD);
+        let clearance = self.chart.clearance(route.level);
+        let steering = Steering {
+            parameters: &self.parameters,
+            surroundings: &self.surroundings,
+            points: &self.near,
+            clearance,
+        };
+        steering.towards(self.pose.to_local(target), self.pose.distance_to(self.goal), speed)
+    }
+
+    /// Brings the plan up to date. `false` if no way is left.
+    fn repair(&mut self) -> bool {
+        let position = self.pose.position();
+        let Some(route) = &mut self.route else { return false };
+        let changed = route.block(&self.chart, &self.marks, position);
+        self.marks.clear();
+        let (Some(changed), true) = (changed, changed.is_some() && route.follow(&self.chart, position))
+        else {
+            return false;
+        };
+        if changed {
+            self.events.push(NavigateEvent::Replanned { point: position, length: route.length() });
+            self.progress.least = f64::INFINITY;
+        }
+        true
+    }
+
+    /// Looks for a way with more clearance than the present one has.
+    fn widen(&mut self) {
+        let level = self.route.as_ref().map_or(0, |route| route.level);
+        if level > 0 && self.pose.distance_to(self.widened_at) > WIDENING {
+            self.widened_at = self.pose.position();
+            self.plan(level);
+        }
+    }
+
+    /// Whether the robot moves, and the way that is left gets shorter.
+    fn gets_on(&mut self) -> bool {
+        let (period, pose) = (self.parameters.period, self.pose);
+        let length = self.path_length().unwrap_or(f64::INFINITY);
+        let progress = &mut self.progress;
+        let moved = pose.distance_to(progress.anchor.position()) > 0.03
+            || angle_difference(pose.heading, progress.anchor.heading).abs() > 0.3;
+        if moved {
+            (progress.anchor, progress.idle) = (pose, 0.0);
+        }
+        progress.idle += period;
+        if length < progress.least - 0.05 {
+            (progress.least, progress.waiting) = (length, 0.0);
+        }
+        progress.waiting += period;
+        progress.idle < IDLE_TIME && progress.waiting < WAITING_TIME
+    }
+
+    /// Takes down what is before the robot and begins to back off.
+    fn give_way(&mut self) -> Twist {
+        let position = self.pose.position();
+        self.events.push(NavigateEvent::Blocked { point: position });
+        let progress = &mut self.progress;
+        (progress.idle, progress.waiting, progress.least) = (0.0, 0.0, f64::INFINITY);
+        if (position - progress.blocked_at).norm() > 5.0 * TOUCHING {
+            progress.blocked = 0;
+        }
+        progress.blocked += 1;
+        progress.blocked_at = position;
+        if progress.blocked > MAX_BLOCKED {
+            self.end(NavigateOutcome::Stuck);
+            return Twist::STOP;
+        }
+        if progress.blocked.is_multiple_of(3) {
+            // What has been taken down may be what is wrong.
+            self.chart.forget();
+            self.plan(LEVELS);
+        }
+        let reach = self.parameters.radius() + TOUCHING;
+        for point in self.points.iter().filter(|point| point.x > 0.0 && point.coords.norm() < reach) {
+            self.marks.extend(self.chart.insist(self.pose.to_world(*point)));
+        }
+        self.phase = NavigatePhase::BackingOff;
+        self.left = (BACKING_TIME / self.parameters.period).ceil() as u32;
+        self.back_off()
+    }
+
+    fn back_off(&mut self) -> Twist {
+        self.left = self.left.saturating_sub(1);
+        let steering = Steering {
+            parameters: &self.parameters,
+            surroundings: &self.surroundings,
+            points: &self.near,
+            clearance: self.parameters.least_clearance,
+        };
+        let twist = steering.safe(Twist::new(-BACKING_SPEED, 0.0));
+        if self.left == 0 || twist.linear > -0.2 * BACKING_SPEED {
+            self.phase = NavigatePhase::Driving;
+            return Twist::STOP;
+        }
+        twist
+    }
+
+    /// Drives a robot to the goal, or finds that there is no way, within `time_limit` seconds. `observe` is called after
+    /// every step.
+    ///
+    /// Fails if the robot does, or if its clock stands still.
+    pub fn run<R: Clock + Drive + Lidar + ?Sized>(
+        &mut self,
+        robot: &mut R,
+        time_limit: f64,
+        mut observe: impl FnMut(&mut Self, f64),
+    ) -> Result<NavigateOutcome> {
+        let mut scan = LidarScan::default();
+        let begin = robot.now()?;
+        let mut next = begin;
+        let mut last = f64::NEG_INFINITY;
+        loop {
+            let now = robot.now()?;
+            if now <= last {
+                return Err(Error::new(ErrorKind::Other, "the robot's clock stands still"));
+            }
+            last = now;
+            if now - begin >= time_limit {
+                self.end(NavigateOutcome::TimedOut);
+            }
+            robot.scan_into(&mut scan)?;
+            let observation =
+                NavigateObservation { odometry: robot.pose()?, speed: robot.speed()?, scan: &scan };
+            let twist = self.step(&observation)?;
+            robot.set_speed(twist)?;
+            observe(self, now);
+            if let NavigatePhase::Ended(outcome) = self.phase() {
+                return Ok(outcome);
+            }
+            next += self.parameters.period;
+            let pause = next - robot.now()?;
+            robot.wait(pause)?;
+        }
+    }
+}

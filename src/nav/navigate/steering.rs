@@ -1,0 +1,69 @@
+use super::parameters::NavigateParameters;
+use super::sweep::Sweep;
+use crate::geometry::{Point, Twist, direction, math};
+use crate::nav::surroundings::Surroundings;
+
+/// How a robot steers past what it sees.
+#[derive(Debug)]
+pub(super) struct Steering<'a> {
+    pub(super) parameters: &'a NavigateParameters,
+    pub(super) surroundings: &'a Surroundings,
+    /// What is seen near the robot, in its frame.
+    pub(super) points: &'a [Point],
+    /// The clearance of the plan.
+    pub(super) clearance: f64,
+}
+
+/// Seconds within which the robot stands, the motors' lag included, and a little more.
+const STOPPING_TIME: f64 = 0.5;
+/// How far, in metres, a step looks ahead for something in its way.
+const STEP: f64 = 0.15;
+/// How far, in radians, a step may point past its target, and by how much at a time.
+const ASIDE: f64 = 1.2;
+const TURN: f64 = 0.08;
+
+impl Steering<'_> {
+    /// The twist for a target in the robot's frame that is on the way to a goal so many metres off.
+    pub(super) fn towards(&self, target: Point, rest: f64, speed: Twist) -> Twist {
+        let bearing = math::atan2(target.y, target.x);
+        let heading = self.past_obstacles(bearing, target.coords.norm().min(STEP));
+        let limit = self.parameters.turn_rate;
+        // Proportional to the error, damped by the turn rate: the motors' lag would make it swing otherwise.
+        let angular = (8.0 * heading - 1.5 * speed.angular).clamp(-limit, limit);
+        let ahead = math::cos(heading).max(0.0);
+        let wished = self.parameters.cruise_speed * ahead * ahead * ahead;
+        let linear = wished.min((rest / STOPPING_TIME).max(0.02));
+        self.safe(Twist::new(linear, angular))
+    }
+
+    /// The direction nearest to a bearing in which a step keeps its distance: that of the plan, or else the least.
+    fn past_obstacles(&self, bearing: f64, length: f64) -> f64 {
+        let radius = self.parameters.radius();
+        let offsets = (0..=(ASIDE / TURN) as i32).flat_map(|step| {
+            let aside = TURN * f64::from(step);
+            [bearing + aside, bearing - aside]
+        });
+        for clearance in [0.7 * self.clearance, 0.5 * self.parameters.least_clearance] {
+            let keeps = |heading: &f64| {
+                self.surroundings.step_clearance(direction(*heading), length).0 >= radius + clearance
+            };
+            if let Some(heading) = offsets.clone().find(keeps) {
+                return heading;
+            }
+        }
+        bearing
+    }
+
+    /// The same twist, slowed down so that the robot can stop before its outline sweeps over anything.
+    pub(super) fn safe(&self, twist: Twist) -> Twist {
+        let margin = 0.5 * self.parameters.least_clearance;
+        let time = Sweep::new(&self.parameters.footprint, margin, twist).time_to_contact(self.points);
+        // A robot that turns later than it is told to drives straight on.
+        let straight = Twist::new(twist.linear, 0.0);
+        let straight = Sweep::new(&self.parameters.footprint, margin, straight).time_to_contact(self.points);
+        let slower = |time: f64| (time / STOPPING_TIME).min(1.0);
+        let turned = Sweep::new(&self.parameters.footprint, margin, Twist::new(0.0, twist.angular));
+        let turn = slower(turned.time_to_contact(self.points));
+        Twist::new(twist.linear * slower(time.min(straight)), twist.angular * turn)
+    }
+}

@@ -1,0 +1,79 @@
+use super::*;
+use crate::geometry::{Point, Pose, Twist};
+use crate::io::LidarScan;
+use crate::world::{Wall, World};
+
+/// Two rooms of 1 m with a door of `door` metres in the wall between them.
+fn rooms(door: f64) -> World {
+    let mut world = World::walled(2.0, 1.0);
+    world.walls.push(Wall::new(Point::new(1.0, 0.0), Point::new(1.0, 0.5 - 0.5 * door)));
+    world.walls.push(Wall::new(Point::new(1.0, 0.5 + 0.5 * door), Point::new(1.0, 1.0)));
+    world
+}
+
+fn navigator(door: f64) -> Navigator {
+    let (start, goal) = (Pose::new(0.3, 0.3, 0.0), Point::new(1.7, 0.7));
+    Navigator::new(&rooms(door), start, goal, NavigateParameters::default()).unwrap()
+}
+
+fn clearance_of(navigator: &mut Navigator) -> f64 {
+    let planned = navigator.take_events().into_iter().find_map(|event| match event {
+        NavigateEvent::Planned { clearance, .. } => Some(clearance),
+        _ => None,
+    });
+    planned.unwrap()
+}
+
+#[test]
+fn narrow_doors_are_passed_with_less_clearance_and_closed_ones_told_at_once() {
+    assert!((clearance_of(&mut navigator(0.5)) - 0.039).abs() < 1e-9);
+    assert!((clearance_of(&mut navigator(0.19)) - 0.012).abs() < 1e-9);
+    let mut closed = navigator(0.1);
+    assert_eq!(closed.phase(), NavigatePhase::Ended(NavigateOutcome::Unreachable));
+    assert_eq!(closed.take_events(), [NavigateEvent::End(NavigateOutcome::Unreachable)]);
+    let scan = LidarScan::default();
+    let observation = NavigateObservation { odometry: Pose::default(), speed: Twist::STOP, scan: &scan };
+    assert_eq!(closed.step(&observation).unwrap(), Twist::STOP);
+}
+
+#[test]
+fn goals_in_walls_or_outside_are_unreachable() {
+    for goal in [Point::new(1.0, 0.1), Point::new(5.0, 5.0), Point::new(-3.0, 0.5)] {
+        let start = Pose::new(0.3, 0.3, 0.0);
+        let navigator = Navigator::new(&rooms(0.5), start, goal, NavigateParameters::default()).unwrap();
+        assert_eq!(navigator.phase(), NavigatePhase::Ended(NavigateOutcome::Unreachable), "{goal:?}");
+    }
+}
+
+#[test]
+fn nonsense_is_refused() {
+    let good = NavigateParameters::default();
+    let new =
+        |goal: Point, parameters| Navigator::new(&rooms(0.5), Pose::new(0.3, 0.3, 0.0), goal, parameters);
+    assert!(new(Point::new(f64::NAN, 0.0), good).is_err());
+    for bad in [
+        NavigateParameters { clearance: 0.001, ..good },
+        NavigateParameters { clearance: f64::NAN, ..good },
+        NavigateParameters { resolution: 0.0, ..good },
+        NavigateParameters { period: f64::INFINITY, ..good },
+    ] {
+        assert!(new(Point::new(1.0, 0.5), bad).is_err());
+    }
+}
+
+/// The path keeps its clearance everywhere, not just at its points.
+#[test]
+fn what_the_path_sweeps_is_free() {
+    let mut navigator = navigator(0.5);
+    let clearance = clearance_of(&mut navigator);
+    let world = rooms(0.5);
+    for pair in navigator.path().windows(2) {
+        for step in 0..20 {
+            let point = pair[0] + (pair[1] - pair[0]) * (f64::from(step) / 20.0);
+            for wall in &world.walls {
+                let gap = wall.line.distance_to(point) - 0.5 * wall.thickness;
+                assert!(gap >= 0.060 + clearance - 1e-9, "{gap} at {point:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! The example `navigate` as a whole.
+
+#[path = "../examples/common/mod.rs"]
+mod common;
+#[path = "../examples/driving/mod.rs"]
+mod driving;
+#[path = "../examples/navigate/mod.rs"]
+mod navigate;
+
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+use serde_json::Value;
+
+/// Runs the example with `--json`. Returns its status and its report, and what it said on standard error.
+fn run(options: &[&str]) -> (u8, Value, String) {
+    let words = ["navigate", "--json"].iter().chain(options).map(OsString::from);
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    let status = common::run("navigate", words, &mut out, &mut err, navigate::work);
+    let err = String::from_utf8(err).unwrap();
+    (status, serde_json::from_slice(&out).unwrap_or(Value::Null), err)
+}
+
+fn assert_reached((status, report, err): &(u8, Value, String)) {
+    assert_eq!((*status, report["outcome"].as_str(), err.as_str()), (0, Some("reached"), ""), "{report}");
+    assert!(report["goal_distance_mm"].as_f64().unwrap() < 60.0, "{report}");
+    assert!(report["position_error_mm"].as_f64().unwrap() < 40.0, "{report}");
+}
+
+fn file(name: &str, text: &str) -> String {
+    let path: PathBuf = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn what_the_robot_was_not_told_of_changes_its_plan() {
+    let mut replans = 0;
+    for seed in ["1", "2", "3"] {
+        let ended = run(&["--seed", seed]);
+        assert_reached(&ended);
+        assert_eq!(ended.1["unmapped"], 3);
+        replans += ended.1["replans"].as_u64().unwrap();
+    }
+    assert!(replans > 0);
+    // Told of everything, it plans once.
+    let ended = run(&["--unmapped", "0", "--noise", "0"]);
+    assert_reached(&ended);
+    assert_eq!((&ended.1["replans"], &ended.1["recoveries"]), (&0.into(), &0.into()), "{}", ended.1);
+}
+
+#[test]
+fn a_campaign_reaches_its_goals_without_contact() {
+    let args = navigate::Args::try_parse_from(["navigate", "--campaign", "--runs", "6"]).unwrap();
+    let trials = navigate::trials(&args).unwrap();
+    assert!(trials.iter().all(|trial| trial.is_reached() && trial.contacts == 0), "{trials:?}");
+    assert!(trials.iter().any(|trial| trial.unmapped > 1 && trial.replans > 0), "{trials:?}");
+    let one = navigate::Args::try_parse_from(["navigate", "--campaign", "--runs", "6", "--threads", "1"]);
+    assert_eq!(navigate::trials(&one.unwrap()).unwrap(), trials);
+}
+
+#[test]
+fn closed_worlds_are_told_at_once() {
+    let world = file(
+        "closed.wld",
+        "floor 3000 2000\n0 0 3000 0\n3000 0 3000 2000\n3000 2000 0 2000\n0 2000 0 0\n1500 0 1500 2000\n",
+    );
+    let (status, report, err) = run(&["--world", &world, "--start", "500,1000,0", "--goal", "2500,1000"]);
+    assert_eq!((status, report["outcome"].as_str(), err.as_str()), (0, Some("unreachable"), ""), "{report}");
+    assert!(
+        report["sim_time_s"].as_f64().unwrap() < 1.0 && report["planned_length_mm"].is_null(),
+        "{report}"
+    );
+    let (_, report, _) = run(&["--world", &world, "--start", "500,1000,0", "--goal", "9000,1000"]);
+    assert_eq!(report["outcome"], "unreachable");
+}
+
+#[test]
+fn a_grid_map_is_a_floor() {
+    let map = "type octile\nheight 6\nwidth 9\nmap\n.........\n.@@@@@@..\n.@....@..\n.@.@@.@..\n...@.....\n....@@@@.\n";
+    let world = file("floor.map", map);
+    // Column 2, row 2 of the map, and its upper right cell.
+    let ended = run(&["--world", &world, "--start", "500,700,0", "--goal", "1700,1100"]);
+    assert_reached(&ended);
+    // Inside of a blocked cell there is no way out.
+    let (status, report, _) = run(&["--world", &world, "--start", "300,900,0", "--goal", "1700,1100"]);
+    assert_eq!((status, report["outcome"].as_str()), (0, Some("unreachable")), "{report}");
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    for (options, part) in [
+        (&["--clearance", "0"][..], "--clearance"),
+        (&["--clearance", "nan"], "--clearance"),
+        (&["--clearance", "10", "--least-clearance", "20"], "clearance"),
+        (&["--unmapped", "1000"], "--unmapped"),
+        (&["--goal", "100,100,90"], "--goal: found a heading"),
+        (&["--world", "no/such.map", "--start", "1,1,0", "--goal", "2,2"], "no/such.map:1:1"),
+        (&["--campaign", "--runs", "0"], "--runs"),
+    ] {
+        let (status, report, err) = run(options);
+        assert_eq!((status, report, err.lines().count()), (2, Value::Null, 1), "{options:?}: {err}");
+        assert!(err.contains(part), "{options:?}: {err}");
+    }
+}
