@@ -76,6 +76,9 @@ const NANOSECONDS: f64 = 1e9;
 /// Seconds from 1970 to the beginning of every run: noon of the first day of 2020, in Greenwich.
 pub(crate) const EPOCH: f64 = 1_577_880_000.0;
 
+/// Seconds between two looks at a robot that drives on.
+const LOOK: f64 = 0.1;
+
 /// Where a run is reported.
 #[derive(Debug, Default)]
 pub struct Outlets {
@@ -214,8 +217,8 @@ impl Robios {
         // What is known now counts, whatever becomes of the rest.
         self.publish();
         let ended = self.report.time;
-        if stage == Stage::Ended && self.link.truth().is_some() {
-            while self.goes_on() && self.pass(TICK).is_ok() {}
+        if stage == Stage::Ended {
+            self.drive_on();
         }
         self.publish();
         if let Some(file) = &mut self.file {
@@ -227,14 +230,14 @@ impl Robios {
         }
     }
 
-    fn goes_on(&mut self) -> bool {
-        let held = self.flag(&Request::IsStalled).unwrap_or(true);
-        !held
-            && match self.moving {
-                Moving::No => false,
-                Moving::Manoeuvre => !self.flag(&Request::IsDone).unwrap_or(true),
-                Moving::Speeds => true,
+    /// Lets a world of the program's own run until the robot stands.
+    fn drive_on(&mut self) {
+        while let Some(before) = self.link.truth() {
+            let passed = self.pass(LOOK).is_ok();
+            if !passed || self.link.truth().is_none_or(|now| now.pose == before.pose) {
+                return;
             }
+        }
     }
 }
 
