@@ -1,11 +1,12 @@
 //! What a program's library asks the world for, and who answers.
 
+use std::fmt;
+
 use image::RgbImage;
 use roverlab::geometry::{Pose, Twist};
-use roverlab::io::sim::{SimRobot, Simulation, TICK, Truth};
+use roverlab::io::sim::{Simulation, TICK, Truth};
 use roverlab::io::{
-    Camera, Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Lidar, LidarScan, LidarSettings,
-    Motors, Psd, Radio, RadioMessage, Resolution, Result, Servos,
+    Error, ErrorKind, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result, RobotIo,
 };
 use roverlab::world::{DriveSpec, RobotSpec, Scene};
 
@@ -122,14 +123,22 @@ const FULL_SPEED: f64 = 0.4;
 const FULL_SPEED_OF_CARS: f64 = 0.5;
 
 /// Someone who drives one robot of a simulation.
-#[derive(Debug)]
 pub struct Seat {
-    robot: SimRobot,
+    robot: Box<dyn RobotIo + Send>,
     truth: Truth,
     identity: Identity,
     index: usize,
     elevations: (Vec<f64>, Vec<f64>),
     scan: LidarScan,
+}
+
+impl fmt::Debug for Seat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Seat")
+            .field("index", &self.index)
+            .field("identity", &self.identity)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Seat {
@@ -138,10 +147,23 @@ impl Seat {
         simulation: &Simulation,
         scene: &Scene,
         index: usize,
-        (call_duration, time_limit): (f64, Option<f64>),
+        times: (f64, Option<f64>),
     ) -> Result<Self> {
-        let robot = simulation.robot(index)?;
-        // Taking the robot has checked the index.
+        Ok(Self::of(Box::new(simulation.robot(index)?), simulation, scene, index, times))
+    }
+
+    /// Takes a robot that has been taken, and may have been wrapped.
+    ///
+    /// # Panics
+    ///
+    /// If the scene has no robot of this index.
+    pub fn of(
+        robot: Box<dyn RobotIo + Send>,
+        simulation: &Simulation,
+        scene: &Scene,
+        index: usize,
+        (call_duration, time_limit): (f64, Option<f64>),
+    ) -> Self {
         let spec = &scene.robots[index].spec;
         let (top_speed, full_speed, tick_length) = speeds(spec);
         let identity = Identity {
@@ -159,7 +181,7 @@ impl Seat {
         let robots = scene.robots.iter().map(|robot| robot.elevation).collect();
         let objects = scene.world.objects.iter().map(|object| object.elevation).collect();
         let (truth, scan) = (simulation.truth(), LidarScan::default());
-        Ok(Self { robot, truth, identity, index, elevations: (robots, objects), scan })
+        Self { robot, truth, identity, index, elevations: (robots, objects), scan }
     }
 
     /// Who the robot is.

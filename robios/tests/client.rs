@@ -12,10 +12,7 @@ use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::robios::RobiosRobot;
 use roverlab::io::sim::Simulation;
 use roverlab::io::wrappers::{Quantised, Stamp, Traced};
-use roverlab::io::{
-    Camera, Clock, Display, DistanceSensors, Drive, Encoders, ErrorKind, Fill, Keys, Lidar, LidarSettings,
-    Motors, Picture, Psd, Radio, Resolution, Result, RobotIo, Servos, Viewport,
-};
+use roverlab::io::{ErrorKind, Fill, LidarSettings, Picture, Psd, Resolution, Result, RobotIo, Viewport};
 use roverlab::nav::{DistBug, DistBugParameters};
 use roverlab::random::Stream;
 use roverlab::world::Colour;
@@ -60,7 +57,7 @@ fn tour(robot: &mut impl RobotIo) {
         robot.wait_done()?;
         robot.drive_to(0.2, 0.11, 0.2)?;
         robot.wait_done()?;
-        robot.set_pose(Pose::new(0.1234, 0.5, 3.14))?;
+        robot.set_pose(Pose::new(0.1234, 0.5, 3.1))?;
         robot.pose()?;
         robot.set_speed(Twist::new(0.1, 0.3333))?;
         robot.wait(1.234_567)?;

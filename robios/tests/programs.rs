@@ -253,6 +253,26 @@ fn limits_end_any_program() {
 }
 
 #[test]
+fn runs_are_recorded_and_drawn() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("recorded");
+    let file = folder.copy("square.c", "square.c").display().to_string();
+    let [log, picture, lcd] =
+        ["run.mcap", "run.svg", "lcd.png"].map(|name| folder.0.join(name).display().to_string());
+    let watched = report(&["--record", &log, "--picture", &picture, "--lcd", &lcd, "--noise", "1", &file]);
+    let alone = report(&["--noise", "1", &file]);
+    // It is the same run, in the runner's process and in the program's own.
+    for field in ["outcome", "pose", "odometry", "path_length_mm", "sim_time_s", "lcd_text"] {
+        assert_eq!(watched[field], alone[field], "{field}");
+    }
+    assert!(std::fs::read(&log).unwrap().starts_with(b"\x89MCAP"));
+    assert!(std::fs::read_to_string(&picture).unwrap().contains("</svg>"));
+    assert!(std::fs::read(&lcd).unwrap().starts_with(b"\x89PNG"));
+}
+
+#[test]
 fn python_programs_run() {
     if !python() {
         return;

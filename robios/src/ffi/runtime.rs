@@ -138,7 +138,9 @@ fn enter_quietly<T>(call: impl FnOnce(&mut Robios) -> Result<T>) -> Option<T> {
         drop(state);
         drop(inside);
         IN_TIMER.store(true, Ordering::Relaxed);
-        due.into_iter().for_each(|function| function());
+        for function in due {
+            function();
+        }
         IN_TIMER.store(false, Ordering::Relaxed);
     }
     answer.and_then(Result::ok)

@@ -129,7 +129,7 @@ impl Robios {
 
     /// Drives a motor with a fraction of the speed that it can do.
     fn motor(&mut self, motor: i32, fraction: f64) -> Result<()> {
-        let number = self.motor_number(motor)?;
+        let number = motor_number(motor)?;
         self.order(&Request::Motor(number, fraction.clamp(-1.0, 1.0)))?;
         // Other motors may turn; they count as driving until the speeds are set anew.
         if fraction != 0.0 {
@@ -138,21 +138,15 @@ impl Robios {
         Ok(())
     }
 
-    /// A motor's number as the simulator has it.
-    fn motor_number(&self, motor: i32) -> Result<u8> {
-        let number = u8::try_from(motor).ok().filter(|_| (1..=MOTORS).contains(&motor));
-        number.ok_or_else(|| invalid("motor", motor, "1 to 4"))
-    }
-
     /// `MOTORPID` and `MOTORPIDOff`: the simulated motors' controllers need no tuning.
     pub fn motor_pid(&mut self, motor: i32) -> Result<()> {
-        self.motor_number(motor)?;
+        motor_number(motor)?;
         self.charge()
     }
 
     /// `ENCODERRead`.
     pub fn encoder_read(&mut self, motor: i32) -> Result<i32> {
-        let number = self.motor_number(motor)?;
+        let number = motor_number(motor)?;
         match self.ask(&Request::Encoder(number))? {
             Reply::Count(count) => Ok(count as i32),
             _ => Err(super::foreign()),
@@ -161,7 +155,7 @@ impl Robios {
 
     /// `ENCODERReset`.
     pub fn encoder_reset(&mut self, motor: i32) -> Result<()> {
-        let number = self.motor_number(motor)?;
+        let number = motor_number(motor)?;
         self.order(&Request::ResetEncoder(number))
     }
 
@@ -194,4 +188,10 @@ impl Robios {
 fn servo_index(servo: i32) -> Result<usize> {
     let index = usize::try_from(servo).ok().filter(|_| (1..=14).contains(&servo));
     index.ok_or_else(|| invalid("servo", servo, "1 to 14"))
+}
+
+/// A motor's number as the simulator has it.
+fn motor_number(motor: i32) -> Result<u8> {
+    let number = u8::try_from(motor).ok().filter(|_| (1..=MOTORS).contains(&motor));
+    number.ok_or_else(|| invalid("motor", motor, "1 to 4"))
 }

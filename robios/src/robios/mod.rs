@@ -49,8 +49,6 @@ pub struct Robios {
     /// The size of the images that the display takes, and where it puts them.
     lcd_image: Option<(usize, usize)>,
     window: Option<Viewport>,
-    /// Whether scans go all round.
-    full_turn: bool,
     /// Whether the last drive command was one for a turn on the spot.
     turns: bool,
     moving: Moving,
@@ -77,6 +75,9 @@ enum Moving {
 const NANOSECONDS: f64 = 1e9;
 /// Seconds from 1970 to the beginning of every run: noon of the first day of 2020, in Greenwich.
 pub(crate) const EPOCH: f64 = 1_577_880_000.0;
+
+/// Seconds between two looks at a robot that drives on.
+const LOOK: f64 = 0.1;
 
 /// Where a run is reported.
 #[derive(Debug, Default)]
@@ -105,7 +106,6 @@ impl Robios {
             inbox: radio::Inbox::new(),
             lcd_image: None,
             window: None,
-            full_turn: identity.full_turn,
             turns: false,
             moving: Moving::No,
             standing_since: 0.0,
@@ -217,8 +217,8 @@ impl Robios {
         // What is known now counts, whatever becomes of the rest.
         self.publish();
         let ended = self.report.time;
-        if stage == Stage::Ended && self.link.truth().is_some() {
-            while self.goes_on() && self.pass(TICK).is_ok() {}
+        if stage == Stage::Ended {
+            self.drive_on();
         }
         self.publish();
         if let Some(file) = &mut self.file {
@@ -230,14 +230,14 @@ impl Robios {
         }
     }
 
-    fn goes_on(&mut self) -> bool {
-        let held = self.flag(&Request::IsStalled).unwrap_or(true);
-        !held
-            && match self.moving {
-                Moving::No => false,
-                Moving::Manoeuvre => !self.flag(&Request::IsDone).unwrap_or(true),
-                Moving::Speeds => true,
+    /// Lets a world of the program's own run until the robot stands.
+    fn drive_on(&mut self) {
+        while let Some(before) = self.link.truth() {
+            let passed = self.pass(LOOK).is_ok();
+            if !passed || self.link.truth().is_none_or(|now| now.pose == before.pose) {
+                return;
             }
+        }
     }
 }
 

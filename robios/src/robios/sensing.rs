@@ -29,7 +29,7 @@ impl Robios {
         let Reply::Ranges(ranges) = self.ask(&Request::Scan)? else { return Err(super::foreign()) };
         let mut distances: Vec<i32> = ranges.into_iter().map(range).collect();
         distances.reverse();
-        if self.full_turn {
+        if self.identity.full_turn {
             // The simulator's scan begins behind, so its last beam is not the first one here but the second.
             distances.rotate_right(1);
         }
@@ -50,7 +50,7 @@ impl Robios {
         let tilt = -units::from_deg(tilt.into());
         self.order(&Request::ConfigureLidar(LidarSettings { field_of_view, tilt, points }))?;
         self.identity.lidar_points = points as u32;
-        self.full_turn = angle == 360;
+        self.identity.full_turn = angle == 360;
         Ok(())
     }
 

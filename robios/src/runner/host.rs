@@ -1,17 +1,21 @@
 use std::collections::BTreeMap;
 use std::ffi::OsString;
-use std::io;
+use std::fs::File;
+use std::io::{BufWriter, ErrorKind as StreamError};
 use std::os::unix::net::UnixStream;
+use std::path::Path;
 use std::thread;
 use std::time::Duration;
 
 use eyesim::ask::Seat;
 use eyesim::plan::{Plan, names};
 use eyesim::process;
+use eyesim::report::Report;
 use eyesim::wire::{Answer, LONGEST_REQUEST, Question, receive, send};
 use roverlab::geometry::Pose;
+use roverlab::io::log::{Header, LogWriter};
 use roverlab::io::sim::{SimOptions, Simulation, Truth as World};
-use roverlab::io::{Clock, ErrorKind};
+use roverlab::io::{self, Clock, ErrorKind, RobotIo};
 use roverlab::world::Scene;
 
 use super::children::{Running, start};
@@ -47,8 +51,16 @@ pub(crate) fn run_together(
     let times = (sim_options.call_duration, sim_options.time_limit);
     let simulation = Simulation::new(scene, sim_options).map_err(|error| error.to_string())?;
     // All are seated before the first one drives, so that the world waits for all of them.
-    let seats = programs.iter().map(|program| Seat::take(&simulation, scene, program.robot, times));
-    let seats = seats.collect::<Result<Vec<_>, _>>().map_err(|error| error.to_string())?;
+    let log = options.record.as_deref().map(|file| recording(file, plan, scene)).transpose()?;
+    let seats = programs.iter().map(|program| {
+        let (robot, index) = (simulation.robot(program.robot)?, program.robot);
+        let robot: Box<dyn RobotIo + Send> = match &log {
+            Some(log) => Box::new(log.recorder(robot, index)),
+            None => Box::new(robot),
+        };
+        Ok(Seat::of(robot, &simulation, scene, index, times))
+    });
+    let seats = seats.collect::<io::Result<Vec<_>>>().map_err(|error| error.to_string())?;
 
     let mut tables = Vec::new();
     for (program, seat) in programs.iter().zip(seats) {
@@ -70,6 +82,9 @@ pub(crate) fn run_together(
     });
 
     drive_on(&simulation, scene);
+    if let Some(Err(error)) = log.map(LogWriter::finish) {
+        return Err(format!("--record: the recording is incomplete: {error}"));
+    }
     let world = simulation.truth();
     if let Some(file) = &options.picture {
         picture::draw(scene, &world, file)?;
@@ -82,6 +97,19 @@ pub(crate) fn run_together(
         Verdict::new(program, ending, &report, truth(&world, program.robot, served.time))
     });
     Ok(verdicts.collect())
+}
+
+/// Begins a recording.
+fn recording(file: &Path, plan: &Plan, scene: &Scene) -> Result<LogWriter<BufWriter<File>>, String> {
+    let begin = || {
+        let header = Header { seed: Some(plan.seed), ..Header::new("robios", Vec::<String>::new()) };
+        LogWriter::new(BufWriter::new(File::create(file)?), &header)
+    };
+    let log = begin().map_err(|error: std::io::Error| {
+        format!("--record {}: {error}; expected a file that can be written", file.display())
+    })?;
+    log.show(scene);
+    Ok(log)
 }
 
 fn truth(world: &World, robot: usize, time: f64) -> Truth {
@@ -99,15 +127,15 @@ fn truth(world: &World, robot: usize, time: f64) -> Truth {
 
 /// Answers a program until it ends, and waits for its end.
 fn attend(
-    seat: Seat,
+    mut seat: Seat,
     stream: UnixStream,
     running: Result<Running, String>,
     options: &Options,
-) -> (Served, (Ending, eyesim::report::Report)) {
+) -> (Served, (Ending, Report)) {
     match running {
         Err(message) => {
-            let time = { seat }.now();
-            (Served { time, offence: None }, (Ending::NotStarted(message), Default::default()))
+            let served = Served { time: seat.now(), offence: None };
+            (served, (Ending::NotStarted(message), Report::default()))
         }
         Ok(running) => {
             let served = serve(seat, stream, running.id(), options.hang_limit);
@@ -127,7 +155,7 @@ fn serve(mut seat: Seat, mut stream: UnixStream, process: u32, hang_limit: f64) 
             Ok(true) => {}
             Ok(false) => break None,
             Err(error) if is_timeout(&error) => break Some(format!("no call for {hang_limit} real seconds")),
-            Err(error) if error.kind() == io::ErrorKind::InvalidData => break Some(error.to_string()),
+            Err(error) if error.kind() == StreamError::InvalidData => break Some(error.to_string()),
             // It has ended in the middle of a question.
             Err(_) => break None,
         }
@@ -147,8 +175,8 @@ fn serve(mut seat: Seat, mut stream: UnixStream, process: u32, hang_limit: f64) 
     Served { time: seat.now(), offence }
 }
 
-fn is_timeout(error: &io::Error) -> bool {
-    matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut)
+fn is_timeout(error: &std::io::Error) -> bool {
+    matches!(error.kind(), StreamError::WouldBlock | StreamError::TimedOut)
 }
 
 /// Seconds between two looks at robots that drive on.

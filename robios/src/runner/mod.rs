@@ -70,7 +70,8 @@ fn run(options: &Options) -> Result<Summary, String> {
     }
     let folder = work_folder::WorkFolder::new()?;
     let programs = programs::of(options, &scene, &folder)?;
-    let own_world = programs.len() == 1 && options.picture.is_none();
+    let watched = options.picture.is_some() || options.record.is_some();
+    let own_world = programs.len() == 1 && !watched;
     let verdicts = if own_world {
         children::run_alone(&programs[0], &plan, &scene, options, &folder)
     } else {

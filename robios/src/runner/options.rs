@@ -58,6 +58,10 @@ pub(crate) struct Options {
     #[arg(long, value_name = "FILE", value_parser = parse_picture)]
     pub(crate) picture: Option<PathBuf>,
 
+    /// Record the robots' calls and answers.
+    #[arg(long, value_name = "FILE.mcap")]
+    pub(crate) record: Option<PathBuf>,
+
     /// Save the display of the last robot that has one as a .png file.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) lcd: Option<PathBuf>,

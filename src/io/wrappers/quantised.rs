@@ -79,18 +79,23 @@ impl<R: Clock> Quantised<R> {
     }
 }
 
+/// The nearest whole number in a unit. Whole numbers have no negative zero.
+fn whole(value: f64, unit: fn(f64) -> f64) -> f64 {
+    unit(value.round() + 0.0)
+}
+
 /// The nearest whole millimetre.
 fn length(metres: f64) -> f64 {
-    units::from_mm(units::to_mm(metres).round())
+    whole(units::to_mm(metres), units::from_mm)
 }
 
 /// The nearest whole degree.
 fn angle(radians: f64) -> f64 {
-    units::from_deg(units::to_deg(radians).round())
+    whole(units::to_deg(radians), units::from_deg)
 }
 
 fn pose(pose: Pose) -> Pose {
-    let degrees = units::to_deg(normalize_angle(pose.heading)).round();
+    let degrees = units::to_deg(normalize_angle(pose.heading)).round() + 0.0;
     let degrees = if degrees == -180.0 { 180.0 } else { degrees };
     Pose::new(length(pose.x), length(pose.y), units::from_deg(degrees))
 }
