@@ -148,6 +148,12 @@ impl Contents {
         };
         // The header decides whether the rest can be understood.
         for record in records.iter().filter(|record| record.opcode != op::CHUNK) {
+            if record.opcode == op::MESSAGE {
+                return Err(LogError::damaged(format!(
+                    "a message outside of chunks at byte {}",
+                    record.start
+                )));
+            }
             reading.add(record)?;
         }
         let header = reading.header()?;
