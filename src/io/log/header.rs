@@ -44,7 +44,7 @@ impl Compression {
 
     /// Its name in files; empty for none.
     pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(kind, _)| *kind == self).map_or("", |(_, name)| name)
+        Self::ALL.iter().find(|(kind, _)| *kind == self).map_or("", |(_, name)| *name)
     }
 
     pub(super) fn named(name: &str) -> Option<Self> {

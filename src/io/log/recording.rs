@@ -147,10 +147,13 @@ impl Contents {
             tracks: Vec::new(),
         };
         // The header decides whether the rest can be understood.
-        for record in records.iter().filter(|record| record.opcode != op::CHUNK) {
+        for record in records.iter().filter(|record| !matches!(record.opcode, op::CHUNK | op::MESSAGE)) {
             reading.add(record)?;
         }
         let header = reading.header()?;
+        if let Some(message) = records.iter().find(|record| record.opcode == op::MESSAGE) {
+            return Err(LogError::damaged(format!("a message outside of chunks at byte {}", message.start)));
+        }
         let chunks = records.iter().filter(|record| record.opcode == op::CHUNK);
         let chunks = chunks.map(reader::contents).collect::<Result<Vec<_>, _>>()?;
         reading.facts.chunks = chunks.len();
