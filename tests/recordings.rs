@@ -203,8 +203,8 @@ fn other_jobs_check() {
 /// Every example with the shared command line is in the table, or drives no robot.
 #[test]
 fn no_program_is_forgotten() {
-    // A walker is no robot of `RobotIo`.
-    const NO_ROBOT: [&str; 1] = ["starman"];
+    // A walker is no robot of `RobotIo`, and racing cars are in a world of their own, which refuses to be recorded.
+    const NO_ROBOT: [&str; 3] = ["cone_drive", "cone_race", "starman"];
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
