@@ -83,6 +83,8 @@ pub struct Follower {
     parameters: FollowMeParameters,
     /// The robot ahead in the frame of odometry, its velocity, and when it was seen.
     target: Option<Target>,
+    /// To which side it looks round for a robot that it has lost, as a bearing.
+    looking: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,6 +107,8 @@ const AHEAD: f64 = 0.3;
 /// Metres to where a lost robot was seen last at which it looks round, and with how many radians per second.
 const LOOKING_PLACE: f64 = 0.3;
 const LOOKING_RATE: f64 = 1.0;
+/// The part of its speed with which it drives to that place.
+const SEARCHING: f64 = 0.5;
 /// Seconds in which the free way ahead is driven.
 const BRAKING: f64 = 0.7;
 
@@ -112,7 +116,7 @@ impl Follower {
     /// A follower that has not seen anybody.
     pub fn new(parameters: FollowMeParameters) -> Result<Self> {
         parameters.validate()?;
-        Ok(Self { parameters, target: None })
+        Ok(Self { parameters, target: None, looking: None })
     }
 
     /// Where the robot ahead is in the frame of odometry, as far as that is known.
@@ -137,16 +141,18 @@ impl Follower {
             return Err(Error::invalid_input("observed pose", found, "finite numbers"));
         }
         self.track(seen);
-        let parameters = &self.parameters;
+        let parameters = self.parameters;
         let Some(target) = self.target else { return Ok(Twist::STOP) };
         let away = seen.pose.to_local(target.place);
         let distance = away.coords.norm();
         let bearing = math::atan2(away.y, away.x);
         let lost = self.is_lost(seen.time);
         if lost && distance < parameters.gap.min(LOOKING_PLACE) {
-            // It looks round for the robot ahead.
-            return Ok(Twist::new(0.0, LOOKING_RATE.min(parameters.turn_rate).copysign(bearing)));
+            // It looks all round for the robot ahead, first to where that was.
+            let side = *self.looking.get_or_insert(bearing);
+            return Ok(Twist::new(0.0, LOOKING_RATE.min(parameters.turn_rate).copysign(side)));
         }
+        self.looking = None;
         // The robot ahead is no obstacle on the way to its gap.
         let near_target = parameters.leader_radius + 0.05;
         let obstacles: Vec<Point> =
@@ -155,7 +161,8 @@ impl Follower {
         let (towards, free) = way.towards(&obstacles, bearing, AHEAD.min(distance));
         let along = crate::geometry::direction(seen.pose.heading + bearing).dot(&target.velocity);
         // A robot that is out of sight is looked for where it was seen last.
-        let closing = if lost { parameters.speed } else { PULL * (distance - parameters.gap) + along };
+        let closing =
+            if lost { SEARCHING * parameters.speed } else { PULL * (distance - parameters.gap) + along };
         let turn = normalize_angle(towards);
         let facing = math::cos(turn).max(0.0);
         // What stands straight ahead of the robot as it points now limits its speed as well.
@@ -229,8 +236,9 @@ pub fn robots_in(scan: &LidarScan, radius: f64) -> Vec<Point> {
         // What is beside it has to be farther away.
         let before = if start > 0 || all_round { Some(at(start + beams - 1)) } else { None };
         let after = if step < beams || all_round { Some(at(step)) } else { None };
+        // At the edge of what the lidar sees a wall may end anywhere.
         let farther = |beside: Option<usize>, end: usize| {
-            beside.is_none_or(|beside| scan.ranges[beside] > scan.ranges[end] + STEP)
+            beside.is_some_and(|beside| scan.ranges[beside] > scan.ranges[end] + STEP)
         };
         if farther(before, at(start)) && farther(after, at(step - 1)) {
             found.extend(middle_of(scan, &thing, radius));

@@ -29,7 +29,7 @@ pub struct CoveragePlan {
 const ERROR: f64 = 0.004;
 /// Of the cells under the robot, the share that has to be gained for a place to be worth a visit, and the share of the floor
 /// at which no more such visits are made: small gains count where the floor is small or has many corners.
-const WORTH: [(f64, f64); 3] = [(0.12, 0.995), (0.05, 0.96), (0.02, 0.95)];
+const WORTH: [(f64, f64); 3] = [(0.12, 0.995), (0.05, 0.92), (0.02, 0.9)];
 /// The share of the floor below which a plan is worse than another one, however short.
 const ENOUGH: f64 = 0.98;
 /// The most visits beside the lanes.
