@@ -82,10 +82,10 @@ fn a_grid_map_is_a_floor() {
     let map = "type octile\nheight 6\nwidth 9\nmap\n.........\n.@@@@@@..\n.@....@..\n.@.@@.@..\n...@.....\n....@@@@.\n";
     let world = file("floor.map", map);
     // Column 2, row 2 of the map, and its upper right cell.
-    let ended = run(&["--world", &world, "--start", "500,700,0", "--goal", "1700,1100"]);
+    let ended = run(&["--world", &world, "--start", "1250,1750,0", "--goal", "4250,2750"]);
     assert_reached(&ended);
     // Inside of a blocked cell there is no way out.
-    let (status, report, _) = run(&["--world", &world, "--start", "300,900,0", "--goal", "1700,1100"]);
+    let (status, report, _) = run(&["--world", &world, "--start", "750,2250,0", "--goal", "4250,2750"]);
     assert_eq!((status, report["outcome"].as_str()), (0, Some("unreachable")), "{report}");
 }
 

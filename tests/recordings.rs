@@ -158,17 +158,23 @@ fn short(program: &str) -> &'static [&'static str] {
     }
 }
 
-/// Records a short run of an example and checks the recording with `replay check`.
+/// Records a short run of an example twice, which gives the same, and checks a recording with `replay check`.
 fn assert_checks(program: &programs::Program, options: &[&str]) {
-    let log = file(&format!("check-{}{}.mcap", program.name, options.concat()));
-    let words = [&[program.name, "--json"], options, &["--time-limit", "6", "--record"]].concat();
-    let words = words.iter().map(OsString::from).chain([log.clone().into()]).collect();
-    let (mut out, mut err) = (Vec::new(), Vec::new());
-    (program.run)(words, &mut out, &mut err);
-    assert!(log.is_file(), "{}: {}", program.name, String::from_utf8_lossy(&err));
-    let (status, report, err) = manage(&["check", log.to_str().unwrap()]);
+    let logs = [1, 2].map(|n| file(&format!("check-{}{}-{n}.mcap", program.name, options.concat())));
+    for log in &logs {
+        let words = [&[program.name, "--json"], options, &["--time-limit", "6", "--record"]].concat();
+        let words = words.iter().map(OsString::from).chain([log.into()]).collect();
+        let (mut out, mut err) = (Vec::new(), Vec::new());
+        (program.run)(words, &mut out, &mut err);
+        assert!(log.is_file(), "{}: {}", program.name, String::from_utf8_lossy(&err));
+    }
+    let (name, same) = (program.name, fs::read(&logs[0]).unwrap() == fs::read(&logs[1]).unwrap());
+    assert!(same, "{name} {options:?} is not deterministic");
+    let (status, report, err) = manage(&["check", logs[0].to_str().unwrap()]);
     assert_eq!((status, report["outcome"].as_str()), (0, Some("same")), "{report} {err}");
-    fs::remove_file(log).unwrap();
+    for log in logs {
+        fs::remove_file(log).unwrap();
+    }
 }
 
 #[test]

@@ -44,6 +44,8 @@
 //! reaches the report by itself. Runs that nobody records, as those of a campaign, use `Stage::simulated`. Robots that are
 //! stepped in one thread come from `common.troop(&scene, options)`, which is used as a `Fleet` is.
 //!
+//! `replay check` finds the program of a recording in `programs`, where the example is listed.
+//!
 //! The command line of a recorded run is in the recording, but for what does not affect the run; `--replay` reads it
 //! from there. In place of the names of files are those that the files have in the recording, so an example reads the
 //! file of an option of its own by `common.read("option", path)`, and the option stands in the list `FILES` of

@@ -10,8 +10,9 @@ use crate::common::parse_picture;
     after_help = "\
 JSON fields: example, command, outcome;
   check     program, differences: null, or {robot, time_s, found, expected}
-  recover   chunks, messages, lost_bytes
-  info      program, version, schema, seed, options, robots, start_s, end_s, bytes, chunks, topics, attachments
+  recover   chunks, messages, header (whether it is saved), lost_bytes
+  info      program, version, schema, seed, options, robots, start_s, end_s, bytes, chunks, topics, attachments,
+            attachments_hash, compression
   export    rows, csv, picture
 Outcomes: same, different, recovered, read, exported. The exit status is 1 for `different`."
 )]

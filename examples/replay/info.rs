@@ -19,6 +19,7 @@ pub(super) fn info(log: &Log) -> Result<Found, Failure> {
         "program": header.program, "version": header.version, "schema": SCHEMA_VERSION, "seed": header.seed,
         "options": header.options, "robots": log.robots(), "start_s": start, "end_s": end,
         "bytes": log.bytes().len(), "chunks": log.chunks(), "topics": log.topics(), "attachments": attachments,
+        "attachments_hash": format!("{:016x}", header.digest()), "compression": header.compression.name(),
     });
     let mut lines = vec![format!("{} {}", header.program, header.options.join(" "))];
     let mut add = |name: &str, value: String| lines.push(format!("  {name:<22} {value}"));

@@ -72,13 +72,14 @@ fn recovered(file: &Path, out: &Path) -> Result<Found, Failure> {
     let saved =
         recover(&bytes(file)?).map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
     write(out, &saved.bytes)?;
-    let (chunks, messages, lost) = (saved.chunks, saved.messages, saved.lost);
+    let (chunks, messages, header, lost) = (saved.chunks, saved.messages, saved.header, saved.lost);
+    let without = if header { "" } else { "; the header is lost, so they cannot be replayed" };
     Ok(Found {
         fields: json!({
             "example": "replay", "command": "recover", "outcome": "recovered",
-            "chunks": chunks, "messages": messages, "lost_bytes": lost,
+            "chunks": chunks, "messages": messages, "header": header, "lost_bytes": lost,
         }),
-        text: format!("recovered {chunks} chunks with {messages} messages; {lost} bytes are lost"),
+        text: format!("recovered {chunks} chunks with {messages} messages; {lost} bytes are lost{without}"),
         good: true,
     })
 }

@@ -161,11 +161,10 @@ fn serve(mut seat: Seat, mut stream: UnixStream, process: u32, hang_limit: f64) 
     let offence = loop {
         match receive(&mut stream, LONGEST_REQUEST, &mut frame) {
             Ok(true) => {}
-            Ok(false) => break None,
             Err(error) if is_timeout(&error) => break Some(format!("no call for {hang_limit} real seconds")),
             Err(error) if error.kind() == StreamError::InvalidData => break Some(error.to_string()),
-            // It has ended in the middle of a question.
-            Err(_) => break None,
+            // It has ended, after a question or in the middle of one.
+            Ok(false) | Err(_) => break None,
         }
         let Some(Question { debt, request }) = Question::decode(&frame) else {
             break Some(format!("a question of {} bytes that makes no sense", frame.len()));

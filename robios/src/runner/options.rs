@@ -50,7 +50,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "S", default_value = "10", value_parser = parse_seconds)]
     pub(crate) hang_limit: f64,
 
-    /// The keys: AUTO, NONE, or presses such as KEY1@2s,KEY4@60s,TOUCH:120:80@3s,IRTV_OK@4s.
+    /// The keys: AUTO, NONE, or presses such as `KEY1@2s,KEY4@60s,TOUCH:120:80@3s,IRTV_OK@4s`.
     #[arg(long, value_name = "PLAN", default_value = "AUTO", value_parser = parse_keys)]
     pub(crate) keys: String,
 

@@ -5,11 +5,13 @@
 //! - [`generate`]: legal tracks by the rules of Formula Student, from a seed;
 //! - [`CentreLine`]: the way between cones, by a triangulation, with or without colours;
 //! - [`GapDriver`]: the book's driver, which steers for the nearest gap in one scan;
-//! - [`sightings`]: finds cones in scans; a [`Referee`] takes the time and counts penalties;
+//! - [`Racer`]: finds cones in scans ([`sightings`]), makes a map of them in the first lap ([`ConeMap`]), then races; a
+//!   [`LineTracker`] keeps the car on its line; a [`Referee`] takes the time and counts penalties;
 //! - [`minimum_curvature`]: the racing line within a [`Corridor`], and [`SpeedProfile`]: how fast a car goes along it.
 
 mod banded;
 mod box_qp;
+mod camera_sight;
 mod centre_line;
 mod cone;
 mod corridor;
@@ -17,15 +19,21 @@ mod error;
 mod files;
 mod gap;
 mod generate;
+mod map;
 mod profile;
+mod racer;
+#[cfg(test)]
+mod racer_tests;
 mod racing_line;
 mod referee;
 mod sight;
 mod spline;
 #[cfg(test)]
 mod tests;
+mod tracker;
 mod walk;
 
+pub use camera_sight::{CameraMount, CameraSight, fuse};
 pub use centre_line::{CentreLine, CentreLineParameters};
 pub use cone::{Cone, ConeColour, ConeTrack, Event};
 pub use corridor::{Corridor, Station};
@@ -36,8 +44,11 @@ pub use files::{
 };
 pub use gap::GapDriver;
 pub use generate::{GeneratedTrack, TrackOptions, generate, lined};
+pub use map::{ConeMap, ConeMapParameters};
 pub use profile::{CarLimits, SpeedProfile};
+pub use racer::{RacePhase, Racer, RacerParameters};
 pub use racing_line::{LineSolver, RacingLine, RacingLineParameters, minimum_curvature};
 pub use referee::{Referee, Verdict};
 pub use sight::{Sighting, sightings};
 pub use spline::{ClosedSpline, SplinePoint};
+pub use tracker::{LineTracker, TrackerParameters};

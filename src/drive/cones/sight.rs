@@ -1,3 +1,4 @@
+use super::cone::ConeColour;
 use crate::geometry::{Point, direction, math};
 use crate::io::LidarScan;
 
@@ -10,13 +11,17 @@ pub struct Sighting {
     pub size: f64,
     /// How many of the beams that a cone would stop it has stopped, 0 to 1.
     pub confidence: f64,
-    /// Metres from the scanner.
+    /// Metres from the sensor.
     pub range: f64,
+    /// How far its place may be wrong, in metres.
+    pub error: f64,
+    /// Its colour, where that is seen.
+    pub colour: ConeColour,
 }
 
 impl Sighting {
     /// Metres that no cone is wide.
-    pub const WIDEST_CONE: f64 = 0.35;
+    pub const WIDEST_CONE: f64 = 0.45;
 
     /// Whether it is as small as a cone.
     pub fn is_cone(&self) -> bool {
@@ -26,6 +31,8 @@ impl Sighting {
 
 /// A cone's radius where a low scanner sees it, in metres.
 const RADIUS: f64 = 0.065;
+/// Metres by which the place of a cone in a scan is wrong.
+const ERROR: f64 = 0.03;
 /// Metres from point to point within one thing.
 const STEP: f64 = 0.3;
 
@@ -79,6 +86,8 @@ fn finish(scan: &LidarScan, run: &[(f64, f64)]) -> Option<Sighting> {
         size,
         confidence: (count / expected).min(1.0),
         range,
+        error: ERROR,
+        colour: ConeColour::Unknown,
     })
 }
 

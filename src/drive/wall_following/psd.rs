@@ -114,6 +114,8 @@ const CORNER_WEIGHT: usize = 8;
 const NEW_WALL_ANGLE: f64 = 0.3;
 /// Metres around the nearest point that was swept over in which points belong to the same wall.
 const SAME_WALL: f64 = 0.13;
+/// A wall on the other side that is nearer than this part of the distance is in the way.
+const CROWDED: f64 = 0.6;
 /// Points in a row within so many metres are taken for one surface.
 const ONE_SURFACE: f64 = 0.06;
 /// The heading error, in radians, at which a turn ends.
@@ -206,7 +208,12 @@ impl WallFollower {
             State::Searching { heading, since } => self.search(seen, ahead, heading, since),
             State::Turning { since, target } => self.turn(seen, before, since, target),
             State::Following(tracker) => self.follow(tracker, &motion, &pose, ahead, aside),
-            State::Rounding { corner, along, since } => self.round(&pose, ahead, aside, corner, along, since),
+            State::Rounding { corner, along, since } => {
+                // Between two walls the one on the other side may be as much in the way as one ahead.
+                let other = seen.right + self.sensors.right.y.abs();
+                let ahead = if other < CROWDED * self.parameters.distance { 0.0 } else { ahead };
+                self.round(&pose, ahead, aside, corner, along, since)
+            }
         }
     }
 

@@ -51,7 +51,7 @@ pub enum LogError {
     },
     /// Its chunks are compressed.
     #[error(
-        "found chunks compressed by `{compression}`; expected uncompressed ones, as `mcap decompress` makes them"
+        "found chunks compressed by `{compression}`; expected uncompressed ones, or a build with the feature `{compression}`"
     )]
     Compressed {
         /// The name of the compression.

@@ -1,4 +1,5 @@
 use std::collections::BTreeMap;
+use std::io;
 
 /// The version of what recordings hold. A recording of a newer one is refused.
 pub const SCHEMA_VERSION: u32 = 1;
@@ -19,8 +20,52 @@ pub struct Header {
     pub seed: Option<u64>,
     /// The version of this crate that made the recording; a new header has the present one.
     pub version: String,
+    /// How the file's chunks are packed.
+    pub compression: Compression,
     /// Files that belong to the run, such as its world, with their whole contents.
     pub attachments: Vec<Attachment>,
+}
+
+/// How the chunks of a recording are packed. Files are many times smaller so, and are written more slowly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Compression {
+    /// Not at all.
+    #[default]
+    None,
+    /// By LZ4, which is fast. For builds with the feature `lz4`.
+    Lz4,
+    /// By Zstandard, which packs more densely. For builds with the feature `zstd`.
+    Zstd,
+}
+
+impl Compression {
+    const ALL: [(Self, &'static str); 3] = [(Self::None, ""), (Self::Lz4, "lz4"), (Self::Zstd, "zstd")];
+
+    /// Its name in files; empty for none.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(kind, _)| *kind == self).map_or("", |(_, name)| *name)
+    }
+
+    pub(super) fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(_, other)| *other == name).map(|(kind, _)| *kind)
+    }
+
+    /// What the writer of files calls it. Fails if this build cannot pack so.
+    pub(super) fn method(self) -> io::Result<Option<mcap::Compression>> {
+        match self {
+            Self::None => Ok(None),
+            #[cfg(feature = "lz4")]
+            Self::Lz4 => Ok(Some(mcap::Compression::Lz4)),
+            #[cfg(feature = "zstd")]
+            Self::Zstd => Ok(Some(mcap::Compression::Zstd)),
+            #[allow(unreachable_patterns, reason = "a build may have all features")]
+            other => Err(io::Error::new(
+                io::ErrorKind::Unsupported,
+                format!("this build lacks the feature `{}`, which packs recordings", other.name()),
+            )),
+        }
+    }
 }
 
 /// A file in a recording.
@@ -45,8 +90,8 @@ impl Header {
         }
     }
 
-    /// A digest of all attachments, their names included.
-    fn digest(&self) -> u64 {
+    /// A digest of all attachments, their names included: of the world and the robots.
+    pub fn digest(&self) -> u64 {
         let parts = self.attachments.iter().flat_map(|file| [file.name.as_bytes(), &file.data]);
         // The 64-bit FNV-1a digest (Fowler, Noll and Vo), with the length ahead of each part.
         let with_length =
@@ -64,6 +109,9 @@ impl Header {
             ("program".to_owned(), self.program.clone()),
             ("attachments".to_owned(), format!("{:016x}", self.digest())),
         ]);
+        if self.compression != Compression::None {
+            fields.insert("compression".to_owned(), self.compression.name().to_owned());
+        }
         if let Some(seed) = self.seed {
             fields.insert("seed".to_owned(), seed.to_string());
         }
@@ -83,6 +131,10 @@ impl Header {
             options: options.map(|(_, option)| option.clone()).collect(),
             seed: fields.get("seed").and_then(|seed| seed.parse().ok()),
             version: fields.get("version").cloned().unwrap_or_default(),
+            compression: fields
+                .get("compression")
+                .and_then(|name| Compression::named(name))
+                .unwrap_or_default(),
             attachments: Vec::new(),
         };
         Some((header, schema))

@@ -50,7 +50,7 @@ pub use determinism::{Indeterminate, check_determinism};
 pub use difference::Difference;
 pub use entry::Entry;
 pub use error::LogError;
-pub use header::{Attachment, Header, SCHEMA_VERSION};
+pub use header::{Attachment, Compression, Header, SCHEMA_VERSION};
 pub use open_loop::{Command, OpenLoop, OpenLoopReport};
 pub use player::Player;
 pub use recorder::Recorder;

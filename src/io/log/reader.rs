@@ -1,4 +1,8 @@
+use std::borrow::Cow;
+
+use mcap::McapError;
 use mcap::records::{MessageHeader, Record, op};
+use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use super::LogError;
 
@@ -147,8 +151,8 @@ pub(super) fn has_checksum(chunk: &Framed<'_>) -> bool {
     chunk.body.get(24..28).is_some_and(|crc| crc != [0; 4])
 }
 
-/// What a chunk holds: its messages and what declares them. Fails if it is not as it was written.
-pub(super) fn chunk<'a>(record: &Framed<'a>) -> Result<Vec<Framed<'a>>, LogError> {
+/// The bytes of what a chunk holds, unpacked. Fails if they are not as they were written.
+pub(super) fn contents<'a>(record: &Framed<'a>) -> Result<Cow<'a, [u8]>, LogError> {
     let mut fixed = record.body.iter().as_slice();
     let mut number = |size: usize| -> Option<u64> {
         let (head, rest) = fixed.split_at_checked(size)?;
@@ -158,14 +162,63 @@ pub(super) fn chunk<'a>(record: &Framed<'a>) -> Result<Vec<Framed<'a>>, LogError
     let short = || LogError::damaged(format!("the chunk at byte {} is too short", record.start));
     let (_, _, size, crc, name) = (number(8), number(8), number(8), number(4), number(4).ok_or_else(short)?);
     let (name, rest) = fixed.split_at_checked(name as usize).ok_or_else(short)?;
-    if !name.is_empty() {
-        return Err(LogError::Compressed { compression: String::from_utf8_lossy(name).into_owned() });
-    }
     let (length, data) = rest.split_at_checked(8).ok_or_else(short)?;
     let length = u64::from_le_bytes(length.try_into().map_err(|_| short())?);
-    if length != data.len() as u64 || size != Some(length) {
-        return Err(LogError::damaged(format!("the chunk at byte {} has another length", record.start)));
+    let size = size.ok_or_else(short)?;
+    let another = || LogError::damaged(format!("the chunk at byte {} has another length", record.start));
+    if length != data.len() as u64 {
+        return Err(another());
     }
-    check(&format!("chunk at byte {}", record.start), crc.unwrap_or(0) as u32, data)?;
-    records(data, 0).map(|inner| inner.ok_or_else(short)).collect()
+    let data = match name {
+        [] => Cow::Borrowed(data),
+        name => Cow::Owned(unpacked(record, &String::from_utf8_lossy(name), size)?),
+    };
+    if size != data.len() as u64 {
+        return Err(another());
+    }
+    check(&format!("chunk at byte {}", record.start), crc.unwrap_or(0) as u32, &data)?;
+    Ok(data)
+}
+
+/// Unpacks a compressed chunk.
+fn unpacked(chunk: &Framed<'_>, name: &str, size: u64) -> Result<Vec<u8>, LogError> {
+    /// No chunk of a recording is as large.
+    const LARGEST: usize = 1 << 30;
+    let damaged = |error: &dyn std::fmt::Display| {
+        LogError::damaged(format!("{error} in the chunk at byte {}", chunk.start))
+    };
+    if size > LARGEST as u64 {
+        return Err(damaged(&format_args!("{size} bytes")));
+    }
+    let options = LinearReaderOptions::default().with_skip_start_magic(true).with_skip_end_magic(true);
+    let mut reader = LinearReader::new_with_options(options.with_record_length_limit(LARGEST));
+    let length = (chunk.body.len() as u64).to_le_bytes();
+    let packed = [&[chunk.opcode][..], &length, chunk.body].concat();
+    let (mut rest, mut plain) = (packed.as_slice(), Vec::new());
+    while let Some(event) = reader.next_event() {
+        match event {
+            Ok(LinearReadEvent::ReadRequest(wanted)) => {
+                let (next, behind) = rest.split_at(wanted.min(rest.len()));
+                reader.insert(next.len()).copy_from_slice(next);
+                reader.notify_read(next.len());
+                rest = behind;
+            }
+            Ok(LinearReadEvent::Record { data, opcode }) => {
+                plain.push(opcode);
+                plain.extend_from_slice(&(data.len() as u64).to_le_bytes());
+                plain.extend_from_slice(data);
+            }
+            Err(McapError::UnsupportedCompression(_)) => {
+                return Err(LogError::Compressed { compression: name.into() });
+            }
+            Err(error) => return Err(damaged(&error)),
+        }
+    }
+    Ok(plain)
+}
+
+/// The records in the bytes of a chunk: its messages and what declares them.
+pub(super) fn inner(contents: &[u8]) -> Result<Vec<Framed<'_>>, LogError> {
+    let cut_off = || LogError::damaged("a record is longer than the chunk that holds it");
+    records(contents, 0).map(|record| record.ok_or_else(cut_off)).collect()
 }

@@ -1,3 +1,4 @@
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
@@ -24,6 +25,8 @@ pub struct Log {
 
 struct Contents {
     bytes: Vec<u8>,
+    /// What is in the chunks, one after the other, if some are compressed; else it is in place.
+    unpacked: Option<Vec<u8>>,
     header: Header,
     /// What each robot recorded, in the order in which it did.
     tracks: Vec<Vec<Event>>,
@@ -76,8 +79,8 @@ impl Log {
     /// Reads a recording from the bytes of its file. Takes time in proportion to them, and a few bytes of memory for
     /// each message besides.
     pub fn read(bytes: Vec<u8>) -> Result<Self, LogError> {
-        let (header, tracks, facts) = Contents::read(&bytes)?;
-        Ok(Self { contents: Arc::new(Contents { bytes, header, tracks, facts }) })
+        let (header, tracks, facts, unpacked) = Contents::read(&bytes)?;
+        Ok(Self { contents: Arc::new(Contents { bytes, unpacked, header, tracks, facts }) })
     }
 
     /// What the recording says about its run.
@@ -121,15 +124,19 @@ impl Log {
 
     /// What a message holds.
     pub(super) fn data(&self, event: &Event) -> &[u8] {
-        &self.contents.bytes[event.place.clone()]
+        let contents = &*self.contents;
+        &contents.unpacked.as_ref().unwrap_or(&contents.bytes)[event.place.clone()]
     }
 }
 
+/// Header, tracks and facts of a recording, and its chunks unpacked if some are compressed.
+type Parts = (Header, Vec<Vec<Event>>, Facts, Option<Vec<u8>>);
+
 impl Contents {
-    fn read(bytes: &[u8]) -> Result<(Header, Vec<Vec<Event>>, Facts), LogError> {
+    fn read(bytes: &[u8]) -> Result<Parts, LogError> {
         let records = reader::whole(bytes)?;
         let mut reading = Reading {
-            bytes,
+            start: bytes.as_ptr().addr(),
             library: String::new(),
             headers: Vec::new(),
             attachments: Vec::new(),
@@ -140,25 +147,40 @@ impl Contents {
             tracks: Vec::new(),
         };
         // The header decides whether the rest can be understood.
-        for record in records.iter().filter(|record| record.opcode != op::CHUNK) {
+        for record in records.iter().filter(|record| !matches!(record.opcode, op::CHUNK | op::MESSAGE)) {
             reading.add(record)?;
         }
         let header = reading.header()?;
-        for record in records.iter().filter(|record| record.opcode == op::CHUNK) {
-            reading.facts.chunks += 1;
-            for inner in reader::chunk(record)? {
+        if let Some(message) = records.iter().find(|record| record.opcode == op::MESSAGE) {
+            return Err(LogError::damaged(format!("a message outside of chunks at byte {}", message.start)));
+        }
+        let chunks = records.iter().filter(|record| record.opcode == op::CHUNK);
+        let chunks = chunks.map(reader::contents).collect::<Result<Vec<_>, _>>()?;
+        reading.facts.chunks = chunks.len();
+        let packed = chunks.iter().any(|contents| matches!(contents, Cow::Owned(_)));
+        let unpacked = packed.then(|| chunks.concat());
+        let parts: Vec<&[u8]> = match &unpacked {
+            Some(all) => vec![all.as_slice()],
+            None => chunks.iter().map(AsRef::as_ref).collect(),
+        };
+        if let Some(all) = &unpacked {
+            reading.start = all.as_ptr().addr();
+        }
+        for part in parts {
+            for inner in reader::inner(part)? {
                 reading.add(&inner)?;
             }
         }
         let topics = std::mem::take(&mut reading.messages).into_iter();
         reading.facts.topics = topics.map(|(id, count)| (reading.topic(id), count)).collect();
-        Ok((header, reading.tracks, reading.facts))
+        Ok((header, reading.tracks, reading.facts, unpacked))
     }
 }
 
 /// A file while it is read.
-struct Reading<'a> {
-    bytes: &'a [u8],
+struct Reading {
+    /// The address of the bytes that messages are in.
+    start: usize,
     library: String,
     headers: Vec<(Header, u32)>,
     attachments: Vec<Attachment>,
@@ -171,7 +193,7 @@ struct Reading<'a> {
     tracks: Vec<Vec<Event>>,
 }
 
-impl Reading<'_> {
+impl Reading {
     fn add(&mut self, record: &Framed<'_>) -> Result<(), LogError> {
         if record.opcode == op::MESSAGE {
             return self.add_message(record);
@@ -215,8 +237,8 @@ impl Reading<'_> {
         if self.tracks.len() <= robot {
             self.tracks.resize(robot + 1, Vec::new());
         }
-        // The data is a part of the file, so its place is found by its address.
-        let start = message.data.as_ptr().addr() - self.bytes.as_ptr().addr();
+        // The data is a part of those bytes, so its place is found by its address.
+        let start = message.data.as_ptr().addr() - self.start;
         let place = start..start + message.data.len();
         self.tracks[robot].push(Event { kind, time: message.header.log_time, place });
         Ok(())

@@ -4,9 +4,10 @@ use mcap::records::{Record, op};
 use mcap::write::NoSeek;
 use mcap::{McapError, Writer};
 
-use super::LogError;
+use super::header::METADATA;
 use super::reader::{self, Framed};
 use super::writer::write_options;
+use super::{Compression, Header, LogError};
 
 /// What could be saved of a damaged recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,6 +18,8 @@ pub struct Recovery {
     pub chunks: usize,
     /// Messages that were saved.
     pub messages: u64,
+    /// Whether the header was saved. Without it what is left can be looked at, but not replayed.
+    pub header: bool,
     /// Bytes of the damaged file that hold nothing of use: the incomplete last chunk, say.
     pub lost: usize,
 }
@@ -62,7 +65,7 @@ pub fn recover(bytes: &[u8]) -> Result<Recovery, LogError> {
             (op::DATA_END, _) => break,
             (op::HEADER, None) => {
                 if let Record::Header(header) = record.parse()? {
-                    saving = Some(Saving::new(&header.profile, &header.library)?);
+                    saving = Some(Saving::new(&header.profile, &header.library, compression(bytes, at))?);
                 }
             }
             (_, Some(saving)) => saving.add(&record)?,
@@ -74,11 +77,25 @@ pub fn recover(bytes: &[u8]) -> Result<Recovery, LogError> {
     saving.finish(lost)
 }
 
+/// How the first chunk from a place on is compressed.
+fn compression(bytes: &[u8], start: usize) -> Compression {
+    let records = reader::records(bytes, start).map_while(|record| record);
+    let chunks = records.filter(|record| record.opcode == op::CHUNK);
+    let named = chunks.filter_map(|chunk| match chunk.parse() {
+        Ok(Record::Chunk { header, .. }) => Some(Compression::named(&header.compression)),
+        _ => None,
+    });
+    named.flatten().next().unwrap_or_default()
+}
+
 /// Whether a record can be read, a chunk with all that it holds.
 fn is_sound(record: &Framed<'_>) -> bool {
     match record.opcode {
         op::CHUNK => {
-            reader::chunk(record).is_ok_and(|inner| inner.iter().all(|record| record.parse().is_ok()))
+            let contents = reader::contents(record);
+            let inner = contents.as_deref().map(reader::inner);
+            inner
+                .is_ok_and(|inner| inner.is_ok_and(|inner| inner.iter().all(|record| record.parse().is_ok())))
         }
         op::HEADER..=op::DATA_END => record.parse().is_ok(),
         // Kinds that future formats or other programs add.
@@ -100,18 +117,22 @@ struct Saving {
     file: Writer<NoSeek<Vec<u8>>>,
     chunks: usize,
     messages: u64,
+    header: bool,
 }
 
 impl Saving {
-    fn new(profile: &str, library: &str) -> Result<Self, LogError> {
-        let options = write_options().profile(profile).library(library);
+    fn new(profile: &str, library: &str, compression: Compression) -> Result<Self, LogError> {
+        let options = write_options(compression)?.profile(profile).library(library);
         let file = options.create(NoSeek::new(Vec::new())).map_err(|error| damaged(&error))?;
-        Ok(Self { file, chunks: 0, messages: 0 })
+        Ok(Self { file, chunks: 0, messages: 0, header: false })
     }
 
     fn add(&mut self, record: &Framed<'_>) -> Result<(), LogError> {
         let written = match record.parse()? {
-            Record::Metadata(metadata) => self.file.write_metadata(&metadata),
+            Record::Metadata(metadata) => {
+                self.header |= metadata.name == METADATA && Header::read(&metadata.metadata).is_some();
+                self.file.write_metadata(&metadata)
+            }
             Record::Attachment { header, data, .. } => self.file.attach(&mcap::Attachment {
                 log_time: header.log_time,
                 create_time: header.create_time,
@@ -121,7 +142,8 @@ impl Saving {
             }),
             Record::Chunk { .. } => {
                 self.chunks += 1;
-                reader::chunk(record)?.iter().try_for_each(|inner| self.add_inner(inner))?;
+                let contents = reader::contents(record)?;
+                reader::inner(&contents)?.iter().try_for_each(|inner| self.add_inner(inner))?;
                 self.file.flush()
             }
             _ => Ok(()),
@@ -157,8 +179,8 @@ impl Saving {
 
     fn finish(mut self, lost: usize) -> Result<Recovery, LogError> {
         self.file.finish().map_err(|error| damaged(&error))?;
-        let Self { file, chunks, messages } = self;
-        Ok(Recovery { bytes: file.into_inner().into_inner(), chunks, messages, lost })
+        let Self { file, chunks, messages, header } = self;
+        Ok(Recovery { bytes: file.into_inner().into_inner(), chunks, messages, header, lost })
     }
 }
 

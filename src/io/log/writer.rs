@@ -13,7 +13,7 @@ use super::port::{Port, SCENE, TRANSFORMS, transform};
 use super::scene::{WORLD, scene_update};
 use super::schema::Schema;
 use super::wire::Fields;
-use super::{Header, RecordedTroop, RecordedTruth, Recorder, Troop, Witness};
+use super::{Compression, Header, RecordedTroop, RecordedTruth, Recorder, Troop, Witness};
 use crate::world::Scene;
 
 /// A channel of a recording: the part of its topic behind the robot's name, and what it carries.
@@ -32,7 +32,8 @@ pub(super) fn nanoseconds(seconds: f64) -> Nanoseconds {
 ///
 /// One or several robots write into it through [`recorder`](LogWriter::recorder); what they did is merged by its
 /// time, so that the file does not depend on how their programs' threads are scheduled. A chunk of the file ends with
-/// each second of the robots' time, or when it is full, and is flushed.
+/// each second of the robots' time, or when it is full, and is flushed; [`Header::compression`] says whether chunks are
+/// packed.
 ///
 /// A sink that fails does not disturb the run: the rest is not recorded, and [`finish`](LogWriter::finish) returns
 /// the first error. A file should be buffered.
@@ -108,17 +109,19 @@ struct Message {
 const CHUNK_BYTES: usize = 1 << 20;
 const SECOND: u64 = 1_000_000_000;
 
-/// How recordings are written: without compression, to sinks that cannot seek, and with chunks that end where the
-/// writer says so.
-pub(super) fn write_options() -> WriteOptions {
-    WriteOptions::new().compression(None).disable_seeking(true).chunk_size(None).profile("")
+/// How recordings are written: to sinks that cannot seek, in one thread, and with chunks that end where the writer says
+/// so.
+pub(super) fn write_options(compression: Compression) -> io::Result<WriteOptions> {
+    let options = WriteOptions::new().compression(compression.method()?).compression_threads(0);
+    Ok(options.disable_seeking(true).chunk_size(None).profile(""))
 }
 
 impl<W: Write> LogWriter<W> {
     /// Begins a recording with its header.
     pub fn new(sink: W, header: &Header) -> io::Result<Self> {
         // The version is in the header, which a replay copies.
-        let mut file = write_options().library("roverlab").create(NoSeek::new(sink)).map_err(as_io)?;
+        let options = write_options(header.compression)?.library("roverlab");
+        let mut file = options.create(NoSeek::new(sink)).map_err(as_io)?;
         let metadata = Metadata { name: METADATA.into(), metadata: header.metadata() };
         file.write_metadata(&metadata).map_err(as_io)?;
         for attachment in &header.attachments {

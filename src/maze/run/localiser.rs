@@ -9,9 +9,8 @@ use crate::maze::{Maze, Scale, Wall};
 ///
 /// An extended Kalman filter estimates the pose together with what is systematic about the robot: how far it really goes for
 /// a metre of odometry, how far it really turns, and how it bends to one side. Each reading is compared with the known wall
-/// that it should come from, which centres the robot between walls and tells how far it is from one ahead. Where a wall
-/// begins or ends beside the robot, be it known or not, the change of the readings tells how far along the robot is
-/// (*wall-edge correction*).
+/// that it should come from, which centres the robot between walls and tells how far it is from one ahead. Where a wall ends
+/// beside the robot, a reading from the wrong side of the end tells how far along the robot is (*wall-edge correction*).
 #[derive(Debug, Clone)]
 pub struct MazeLocaliser {
     rig: Rig,
@@ -165,20 +164,30 @@ impl MazeLocaliser {
                 return;
             }
             let model = Model { crossing, offset, ray };
-            if passed == 0 && straight_on.abs() > SQUARE {
+            let square = straight_on.abs() > SQUARE;
+            if passed == 0 && square {
                 self.notice_edge(sensor, &model, reading);
             }
             let slack = GATE * (deviation + self.deviation(&model.range_slope()));
             let agrees = (reading - crossing.distance).abs() < slack.min(0.3 * self.scale.cell);
             // How far along the wall the ray may be from where it seems to be.
             let margin = CORNER + 2.0 * self.deviation(&model.along_slope());
+            let post = margin + 0.5 * self.scale.wall;
             let differs = reading - crossing.distance;
             match crossing.wall {
-                Wall::Unknown => return,
+                Wall::Unknown => {
+                    // A return from where a wall can be is one from it, or from a post in line with it.
+                    if agrees && square {
+                        self.update(&model.range_slope(), differs, deviation * deviation);
+                    }
+                    let through = reading > crossing.distance && crossing.corner_distance() > post;
+                    if agrees || !square || !through {
+                        return;
+                    }
+                }
                 Wall::Absent => {
                     // A post may be in the way.
-                    let post = margin + 0.5 * self.scale.wall;
-                    if agrees && straight_on.abs() > SQUARE && crossing.corner_distance() < post {
+                    if agrees && square && crossing.corner_distance() < post {
                         self.update(&model.range_slope(), differs, deviation * deviation);
                     }
                     if crossing.corner_distance() < post {

@@ -128,7 +128,8 @@ impl DStarLite {
             let next = self.steps(at).into_iter().flatten();
             let best = next.min_by_key(|&(cell, cost)| cost + self.cells[self.index(cell)].settled);
             let next = best.ok_or(unreachable)?.0;
-            debug_assert!(self.cells[self.index(next)].settled < self.cells[self.index(at)].implied);
+            // What a shortest path goes over is settled.
+            debug_assert_eq!(self.cells[self.index(next)].settled, self.cells[self.index(next)].implied);
             at = next;
             cells.push(at);
         }

@@ -71,9 +71,9 @@ impl Map {
     }
 }
 
-/// Millimetres along an edge of a cell where a map stands for a floor: a maze's narrowest way then is one that a robot of
-/// 120 mm has room in.
-pub const CELL_MM: f64 = 200.0;
+/// Millimetres along an edge of a cell where a map stands for a floor: a way one cell wide then has room for small robots
+/// even on plans whose cells are as coarse as those of a large map must be.
+pub const CELL_MM: f64 = 500.0;
 
 impl Map {
     /// The map as a floor: cells of [`CELL_MM`], the lower left corner of the map at the origin, and all around it, as outside

@@ -22,10 +22,12 @@
 //! ```
 
 mod body;
+mod camera;
 mod robot;
 mod sight;
 mod world;
 
 pub use body::{CarModel, RaceCarSpec};
+pub use camera::RaceCamera;
 pub use robot::RaceCar;
 pub use world::{CarTruth, Race, RaceCone, RaceOptions};

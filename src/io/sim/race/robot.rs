@@ -1,8 +1,12 @@
+use image::RgbImage;
+
 use super::world::Race;
 use crate::geometry::{Pose, Twist, math};
-use crate::io::{Clock, Drive, Error, Lidar, LidarScan, LidarSettings, Motors, Result, Servos};
+use crate::io::{
+    Camera, Clock, Drive, Error, Lidar, LidarScan, LidarSettings, Motors, Resolution, Result, Servos,
+};
 
-/// A car of a race: drive, lidar, clock, motor 1 and servo 1.
+/// A car of a race: drive, lidar, camera, clock, motor 1 and servo 1.
 ///
 /// Its origin is the middle of the rear axle. Odometry takes the speed from the wheels and the heading from a gyroscope; that
 /// the car slides is beyond it.
@@ -122,6 +126,26 @@ impl Servos for RaceCar<'_> {
         }
         let car = &mut self.race.cars[self.index];
         car.command.steering = -position.clamp(-1.0, 1.0) * car.spec.max_steering;
+        Ok(())
+    }
+}
+
+impl Camera for RaceCar<'_> {
+    fn set_resolution(&mut self, resolution: Resolution) -> Result<()> {
+        self.race.cars[self.index].resolution = resolution;
+        Ok(())
+    }
+
+    fn resolution(&mut self) -> Result<Resolution> {
+        Ok(self.race.cars[self.index].resolution)
+    }
+
+    fn image_into(&mut self, image: &mut RgbImage) -> Result<()> {
+        let (width, height) = self.race.cars[self.index].resolution.dimensions();
+        if image.dimensions() != (width, height) {
+            *image = RgbImage::new(width, height);
+        }
+        self.race.draw(self.index, image);
         Ok(())
     }
 }

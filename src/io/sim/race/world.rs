@@ -2,7 +2,7 @@ use super::body::{Body, Command, RaceCarSpec};
 use super::robot::RaceCar;
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::sim::{NoiseModel, TICK};
-use crate::io::{Error, LidarSettings, Result};
+use crate::io::{Error, LidarSettings, Resolution, Result};
 use crate::random::Stream;
 use crate::world::Colour;
 
@@ -81,6 +81,7 @@ pub(super) struct Entry {
     /// What odometry measures now.
     pub(super) measured: Twist,
     pub(super) scanner: LidarSettings,
+    pub(super) resolution: Resolution,
     pub(super) lidar: Stream,
     drive: Stream,
     scale: f64,
@@ -97,6 +98,8 @@ pub struct Race {
     pub(super) cars: Vec<Entry>,
     pub(super) options: RaceOptions,
     ticks: u64,
+    /// Seconds that have passed since the last tick.
+    owed: f64,
 }
 
 /// Steps of the tyres in a tick.
@@ -146,6 +149,7 @@ impl Race {
                 odometry: Pose::default(),
                 measured: Twist::default(),
                 scanner: LidarSettings { field_of_view: std::f64::consts::PI, tilt: 0.0, points: 901 },
+                resolution: Resolution::default(),
                 lidar: random.child("lidar", index as u64),
                 scale: 1.0 + options.noise.wheel_scale * drive.normal(),
                 drift: GYRO_BIAS * size * drive.normal(),
@@ -156,7 +160,7 @@ impl Race {
             });
         }
         let cones = cones.iter().map(|&cone| Obstacle { cone, stands: true }).collect();
-        Ok(Self { cones, cars: entries, options, ticks: 0 })
+        Ok(Self { cones, cars: entries, options, ticks: 0, owed: 0.0 })
     }
 
     /// A car, by its number from 0. Time passes for all of them when it waits.
@@ -170,7 +174,7 @@ impl Race {
 
     /// Seconds since the beginning.
     pub fn time(&self) -> f64 {
-        self.ticks as f64 * TICK
+        self.ticks as f64 * TICK + self.owed
     }
 
     /// Where a car truly is. `None` if there is no such car.
@@ -198,9 +202,13 @@ impl Race {
 
     /// Lets time pass, in ticks of 10 ms.
     pub fn advance(&mut self, seconds: f64) {
-        for _ in 0..crate::io::sim::options::ticks_in(seconds.clamp(0.0, 1e6)) {
+        self.owed += seconds.clamp(0.0, 1e6);
+        // Half a millionth of a tick: sums of decimals are a little off.
+        while self.owed > TICK * (1.0 - 5e-7) {
+            self.owed -= TICK;
             self.tick();
         }
+        self.owed = self.owed.max(0.0);
     }
 
     fn tick(&mut self) {

@@ -139,7 +139,7 @@ fn errors_stand_where_the_reference_stands() {
     );
     assert_eq!(
         failure("world test.sim"),
-        "test.sim:1:7: found `test.sim`; expected a file that ends in .wld, .maz, .yaml or .yml"
+        "test.sim:1:7: found `test.sim`; expected a file that ends in .wld, .maz, .yaml, .yml or .map"
     );
     assert_eq!(
         failure("robot broken.robi"),

@@ -1,0 +1,86 @@
+//! Planning between cones: the way through a whole map of about 200 cones, and the racing line on it. What counts is the worst
+//! track, so the slowest of many is printed beside the mean; each is the fastest of some repetitions, as the machine has other
+//! things to do.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use roverlab::drive::cones::{
+    CarLimits, CentreLine, CentreLineParameters, Cone, GeneratedTrack, LineSolver, RacingLineParameters,
+    SpeedProfile, TrackOptions, generate,
+};
+use roverlab::geometry::{Point, Pose};
+
+/// A map without colours, where the car is, and a way that was driven.
+struct Map {
+    cones: Vec<Cone>,
+    start: Pose,
+    driven: Vec<Point>,
+}
+
+/// Maps of 190 to 210 cones.
+fn maps() -> Vec<Map> {
+    let mut maps = Vec::new();
+    for seed in 0..2000 {
+        let GeneratedTrack { track, corridor } = generate(seed, &TrackOptions::drawn(seed)).expect("a track");
+        if !(190..=210).contains(&track.cones.len()) {
+            continue;
+        }
+        let cones = track.cones.iter().map(|cone| Cone::unknown(cone.position)).collect();
+        let driven = corridor.stations().iter().step_by(2).map(|station| station.position).collect();
+        maps.push(Map { cones, start: track.start.expect("a start"), driven });
+    }
+    maps
+}
+
+/// Milliseconds, the fastest of twenty.
+#[allow(clippy::disallowed_methods, reason = "a benchmark measures")]
+fn fastest(mut work: impl FnMut()) -> f64 {
+    let times = (0..20).map(|_| {
+        let begin = Instant::now();
+        work();
+        begin.elapsed().as_secs_f64() * 1e3
+    });
+    times.fold(f64::INFINITY, f64::min)
+}
+
+fn tell(name: &str, times: &[f64]) {
+    let worst = times.iter().copied().fold(0.0, f64::max);
+    let mean = times.iter().sum::<f64>() / times.len() as f64;
+    println!("{name}: worst {worst:.3} ms, mean {mean:.3} ms of {} maps", times.len());
+}
+
+fn planning(c: &mut Criterion) {
+    let parameters = CentreLineParameters::default();
+    let limits = CarLimits { grip: 8.5, drive: 5.0, brake: 7.0, top_speed: 20.0 };
+    let racing = RacingLineParameters { margin: 0.95, ..RacingLineParameters::default() };
+    let maps = maps();
+    let (mut ways, mut lines, mut profiles) = (Vec::new(), Vec::new(), Vec::new());
+    let mut solver = LineSolver::default();
+    for map in &maps {
+        let plan = || CentreLine::along(&map.cones, map.start, &map.driven, &parameters).expect("a way");
+        let way = plan();
+        assert!(way.corridor.is_closed(), "the whole track is planned");
+        ways.push(fastest(|| {
+            black_box(plan());
+        }));
+        let line = solver.solve(&way.corridor, &racing).expect("a line");
+        lines.push(fastest(|| {
+            black_box(solver.solve(&way.corridor, &racing).expect("a line"));
+        }));
+        profiles.push(fastest(|| {
+            black_box(SpeedProfile::closed(&line.points, &limits).expect("a profile"));
+        }));
+    }
+    tell("triangulation, way and corridor", &ways);
+    tell("racing line", &lines);
+    tell("speed profile", &profiles);
+    let map = &maps[0];
+    c.bench_function("cones: way through 200", |b| {
+        b.iter(|| CentreLine::along(black_box(&map.cones), map.start, &map.driven, &parameters));
+    });
+}
+
+criterion_group!(benches, planning);
+criterion_main!(benches);

@@ -1,0 +1,194 @@
+//! What the example `cone_drive` is made of.
+
+use std::path::PathBuf;
+
+use roverlab::drive::cones::{GapDriver, Referee, Verdict};
+use roverlab::geometry::{Aabb, Point, Pose};
+use roverlab::io::sim::NoiseModel;
+use roverlab::io::sim::race::{CarTruth, Race, RaceCarSpec, RaceOptions};
+use roverlab::io::{self, Lidar, LidarScan, LidarSettings, Motors, Servos};
+use roverlab::picture::{Picture, Style};
+use roverlab::world::World;
+
+use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
+use crate::course::{Course, colour};
+
+/// The command line of the example `cone_drive`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    name = "cone_drive",
+    about = "Drives between cones as the book prints it: for the nearest gap left and right of the middle of one scan",
+    after_help = "\
+The car keeps its speed; ten times a second it steers for the middle between the two cones nearest to the middle of its
+scan. `cone_race` drives the same tracks properly.
+
+JSON fields:
+  laps, cones_hit, off_course, lap_times_s    as the referee sees it
+  distance_clean_m                            metres to the first cone or off the course
+  tracks, clean, clean_share                  of a campaign
+  picture
+Outcomes: finished, penalised, timed_out, raced (a campaign)."
+)]
+pub(crate) struct Args {
+    /// Track to drive on [default: one of our own].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) track: Option<PathBuf>,
+
+    /// Laps to drive.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100))]
+    pub(crate) laps: u16,
+
+    /// Speed in metres per second.
+    #[arg(long, value_name = "M/S", default_value_t = 3.0)]
+    pub(crate) speed: f64,
+
+    /// Drive on so many tracks of our own, from --seed on.
+    #[arg(long, value_name = "TRACKS", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) campaign: Option<u32>,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// What came out of a drive.
+struct Driven {
+    verdict: Verdict,
+    truth: CarTruth,
+    time: f64,
+    clean: f64,
+    trail: Vec<(Pose, f64)>,
+}
+
+/// The work of the example.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    let common = &args.common;
+    common.check_picture()?;
+    if !(args.speed > 0.0 && args.speed <= 30.0) {
+        return Err(Failure::input(format!("--speed {}: expected more than 0, at most 30 m/s", args.speed)));
+    }
+    if let Some(tracks) = args.campaign {
+        return campaign(args, tracks);
+    }
+    let course = match &args.track {
+        Some(path) => Course::from_file(common, path)?,
+        None => Course::generated(common.seed)?,
+    };
+    let driven = drive(&course, args, common.seed).map_err(Failure::run)?;
+    let verdict = &driven.verdict;
+    let done = verdict.lap_times.len() >= usize::from(args.laps);
+    let word = match (done, verdict.cones_hit + verdict.off_course) {
+        (false, _) => Outcome::verdict("timed_out"),
+        (true, 0) => Outcome::verdict("finished"),
+        (true, _) => Outcome::verdict("penalised"),
+    };
+    let file = common.picture.clone().or_else(|| (!common.json).then(|| PathBuf::from("cone_drive.svg")));
+    let saved = file.as_ref().map(|file| picture(&course, &driven).save(file)).transpose();
+    let times: Vec<f64> = verdict.lap_times.iter().map(|time| rounded(*time)).collect();
+    let report = Report::new(word)
+        .field("laps", times.len())
+        .field("cones_hit", verdict.cones_hit)
+        .field("off_course", verdict.off_course)
+        .field("lap_times_s", times)
+        .field("distance_clean_m", rounded(driven.clean))
+        .field("picture", file);
+    Ok(Report {
+        sim_time: Some(driven.time),
+        path_length: Some(driven.truth.distance),
+        pose: Some(driven.truth.pose),
+        trouble: saved.err().map(|error| error.to_string()),
+        ..report
+    })
+}
+
+fn drive(course: &Course, args: &Args, seed: u64) -> io::Result<Driven> {
+    let noise = NoiseModel::real().scaled(args.common.noise);
+    let options = RaceOptions { seed, noise, ..RaceOptions::default() };
+    let spec = RaceCarSpec::default();
+    let mut world = Race::new(&course.race_cones(), &[(spec, course.start)], options)?;
+    let mut referee = Referee::new(course.corridor.clone(), Course::wheels());
+    let mut driver = GapDriver::default();
+    let mut scan = LidarScan::default();
+    let laps = usize::from(args.laps);
+    let limit =
+        args.common.time_limit.unwrap_or(1.5 * course.corridor.length() * laps as f64 / args.speed + 10.0);
+    let (mut clean, mut trail) = (None, Vec::new());
+    let mut car = world.car(0)?;
+    // As the book sets it: 180 points over 180 degrees.
+    car.configure_lidar(LidarSettings { field_of_view: std::f64::consts::PI, tilt: 0.0, points: 180 })?;
+    car.set_motor(1, args.speed / spec.top_speed)?;
+    while world.time() < limit && referee.verdict().lap_times.len() < laps {
+        let mut car = world.car(0)?;
+        car.scan_into(&mut scan)?;
+        if let Some(position) = driver.step(&scan) {
+            car.set_servo(1, position)?;
+        }
+        for _ in 0..10 {
+            world.advance(0.01);
+            if let Some(truth) = world.truth(0) {
+                referee.see(world.time(), truth.pose, truth.hits);
+                let verdict = referee.verdict();
+                if clean.is_none() && verdict.cones_hit + verdict.off_course > 0 {
+                    clean = Some(truth.distance);
+                }
+            }
+        }
+        trail.extend(world.truth(0).map(|truth| (truth.pose, truth.twist.linear)));
+        // Off the track for good: there are no cones to steer by.
+        if referee.verdict().off_course > 0 && trail.last().is_some_and(|(pose, _)| lost(course, *pose)) {
+            break;
+        }
+    }
+    let truth = world.truth(0).ok_or_else(|| io::Error::new(io::ErrorKind::Other, "the car is gone"))?;
+    let verdict = referee.verdict().clone();
+    Ok(Driven { verdict, truth, time: world.time(), clean: clean.unwrap_or(truth.distance), trail })
+}
+
+/// Whether a car is far from its track.
+fn lost(course: &Course, pose: Pose) -> bool {
+    course.corridor.stations().iter().all(|station| pose.distance_to(station.position) > 25.0)
+}
+
+fn campaign(args: &Args, tracks: u32) -> Result<Report, Failure> {
+    let (mut clean, mut laps, mut cones, mut off, mut metres) = (0_u32, 0, 0, 0, 0.0);
+    let first = args.common.seed;
+    for seed in first..first + u64::from(tracks) {
+        let course = Course::generated(seed)?;
+        let driven = drive(&course, args, seed).map_err(Failure::run)?;
+        let verdict = &driven.verdict;
+        let done = verdict.lap_times.len() >= usize::from(args.laps);
+        clean += u32::from(done && verdict.cones_hit + verdict.off_course == 0);
+        laps += verdict.lap_times.len();
+        cones += verdict.cones_hit;
+        off += verdict.off_course;
+        metres += driven.clean;
+    }
+    let share = |sum: f64| rounded(sum / f64::from(tracks));
+    Ok(Report::new(Outcome::verdict("raced"))
+        .field("tracks", tracks)
+        .field("clean", clean)
+        .field("clean_share", share(f64::from(clean)))
+        .field("laps", laps)
+        .field("cones_hit", cones)
+        .field("off_course", off)
+        .field("distance_clean_m", share(metres)))
+}
+
+fn picture(course: &Course, driven: &Driven) -> Picture {
+    let around = Aabb::around(course.cones.iter().map(|cone| cone.position));
+    let mut world = World::empty(1.0, 1.0);
+    world.floor = around.unwrap_or(world.floor).inflated(5.0);
+    let mut picture = Picture::new(&world);
+    picture.title("Cone drive, as printed");
+    for cone in &course.cones {
+        picture.disc(cone.position, 0.3, Style::aid().colour(colour(cone.colour)).filled(1.0));
+    }
+    picture
+        .speed_path(driven.trail.iter().map(|(pose, speed)| (pose.to_world(Point::new(0.8, 0.0)), *speed)));
+    picture
+}

@@ -1,0 +1,42 @@
+//! Races on many tracks.
+
+use super::Args;
+use super::course::{Course, Spoils};
+use super::race::race;
+use crate::common::{Failure, Outcome, Report, rounded};
+
+/// Races on so many tracks of our own, from the seed on, and tells of those that were not clean.
+pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Failure> {
+    let common = &args.common;
+    let (mut clean, mut finished, mut cones, mut off) = (0_u32, 0_u32, 0, 0);
+    let mut times = Vec::new();
+    for seed in common.seed..common.seed + u64::from(tracks) {
+        let mut course = Course::generated(seed)?;
+        course.spoil(spoils, seed);
+        let outcome = race(&course, &args.settings(seed)).map_err(Failure::run)?;
+        let verdict = &outcome.verdict;
+        clean += u32::from(outcome.is_clean());
+        finished += u32::from(outcome.phase == roverlab::drive::cones::RacePhase::Finished);
+        cones += verdict.cones_hit;
+        off += verdict.off_course;
+        if !outcome.is_clean() {
+            common.tell(format_args!(
+                "track {seed}: {:?}, {} laps, {} cones hit, {} times off course",
+                outcome.phase,
+                verdict.lap_times.len(),
+                verdict.cones_hit,
+                verdict.off_course
+            ));
+        }
+        times.extend(verdict.lap_times.iter().skip(1).map(|time| course.corridor.length() / time));
+    }
+    let mean = times.iter().sum::<f64>() / times.len().max(1) as f64;
+    Ok(Report::new(Outcome::verdict("raced"))
+        .field("tracks", tracks)
+        .field("clean", clean)
+        .field("clean_share", rounded(f64::from(clean) / f64::from(tracks)))
+        .field("finished", finished)
+        .field("cones_hit", cones)
+        .field("off_course", off)
+        .field("mean_racing_speed_m_s", rounded(mean)))
+}

@@ -1,0 +1,149 @@
+//! What is raced on: a file, or a track of our own.
+
+#![allow(dead_code, reason = "every example uses its own part of this")]
+
+use std::path::Path;
+
+use roverlab::drive::cones::{
+    CentreLine, CentreLineParameters, Cone, ConeColour, ConeTrack, Corridor, GeneratedTrack, RacerParameters,
+    TrackFile, TrackOptions, generate, lined, parse_track,
+};
+use roverlab::geometry::{Point, Pose};
+use roverlab::io::sim::race::RaceCone;
+use roverlab::random::Stream;
+use roverlab::world::Colour;
+
+use crate::common::{CommonArgs, Failure};
+
+/// Cones, the corridor that the referee goes by, and the start.
+#[derive(Debug, Clone)]
+pub(crate) struct Course {
+    pub(crate) cones: Vec<Cone>,
+    pub(crate) corridor: Corridor,
+    pub(crate) start: Pose,
+    /// Whether it is much wider than a track of Formula Student.
+    pub(crate) wide: bool,
+}
+
+/// What is done to the cones before the race.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Spoils {
+    /// Cones beside the track that belong to none of its edges, as a share.
+    pub(crate) false_cones: f64,
+    /// Cones that are missing, as a share.
+    pub(crate) missing: f64,
+    /// Metres over which one side has no cones.
+    pub(crate) gap: f64,
+}
+
+impl Course {
+    /// A generated track.
+    pub(crate) fn generated(seed: u64) -> Result<Self, Failure> {
+        let GeneratedTrack { track, corridor } =
+            generate(seed, &TrackOptions::drawn(seed)).map_err(Failure::input)?;
+        let start = track.start_pose().ok_or_else(|| Failure::input("the track has no start"))?;
+        Ok(Self { cones: track.cones, corridor, start, wide: false })
+    }
+
+    /// The track of a file.
+    pub(crate) fn from_file(common: &CommonArgs, path: &Path) -> Result<Self, Failure> {
+        let bytes = common.read("track", path).map_err(Failure::input)?;
+        let text = String::from_utf8_lossy(&bytes);
+        match parse_track(&text, &path.display().to_string()).map_err(Failure::input)? {
+            TrackFile::Cones(track) => Self::between(&track, path),
+            TrackFile::Corridor(corridor) => {
+                let fine = corridor.resampled(1.0).map_err(Failure::input)?;
+                let GeneratedTrack { track, corridor } = lined(fine, 4.8);
+                let start = track.start_pose().ok_or_else(|| Failure::input("the track has no start"))?;
+                Ok(Self { cones: track.cones, corridor, start, wide: true })
+            }
+            TrackFile::Line(_) => Err(Failure::input(format!(
+                "--track {}: found a line without widths; expected a track",
+                path.display()
+            ))),
+        }
+    }
+
+    fn between(track: &ConeTrack, path: &Path) -> Result<Self, Failure> {
+        let refused = |found: String| {
+            Failure::input(format!(
+                "--track {}: found {found}; expected cones around a closed track",
+                path.display()
+            ))
+        };
+        let start = track.start_pose().ok_or_else(|| refused("no start".into()))?;
+        let line = CentreLine::from_cones(&track.cones, start, &CentreLineParameters::default())
+            .map_err(|error| refused(error.to_string()))?;
+        if !line.corridor.is_closed() {
+            return Err(refused(format!("a way of {:.0} m that does not close", line.corridor.length())));
+        }
+        Ok(Self { cones: track.cones.clone(), corridor: line.corridor, start, wide: false })
+    }
+
+    /// Takes cones away and adds others.
+    pub(crate) fn spoil(&mut self, spoils: Spoils, seed: u64) {
+        let random = Stream::new(seed);
+        let (mut missing, mut added) = (random.child("missing", 0), random.child("false", 0));
+        let before = self.cones.len();
+        let stations = self.corridor.stations();
+        let n = stations.len();
+        if spoils.gap > 0.0 {
+            let mut gap = random.child("gap", 0);
+            let left = gap.chance(0.5);
+            let length = (spoils.gap / self.corridor.length() * n as f64).ceil() as usize;
+            let from = n / 8 + gap.below((n - n / 4).saturating_sub(length).max(1));
+            let edge = self.corridor.edge(left);
+            self.cones
+                .retain(|cone| (from..from + length).all(|k| (edge[k % n] - cone.position).norm() > 0.9));
+        }
+        self.cones.retain(|_| !missing.chance(spoils.missing));
+        for _ in 0..(spoils.false_cones * before as f64).round() as usize {
+            let station = stations[added.below(n)];
+            let beyond = added.between(0.8, 3.0);
+            let left = added.chance(0.5);
+            let place = station.aside(if left { station.left + beyond } else { -station.right - beyond });
+            // Not on another part of the track.
+            let clear = stations.iter().all(|s| (s.position - place).norm() > s.left.max(s.right) + 0.5);
+            if clear {
+                self.cones.push(Cone::unknown(place));
+            }
+        }
+    }
+
+    /// The cones as the simulator takes them.
+    pub(crate) fn race_cones(&self) -> Vec<RaceCone> {
+        let cone = |cone: &Cone| RaceCone {
+            position: cone.position,
+            radius: cone.colour.radius(),
+            height: cone.colour.height(),
+            colour: colour(cone.colour),
+        };
+        self.cones.iter().map(cone).collect()
+    }
+
+    /// How it is raced.
+    pub(crate) fn parameters(&self, laps: usize) -> RacerParameters {
+        let mut parameters = RacerParameters { laps, ..RacerParameters::default() };
+        if self.wide {
+            parameters.centre_line.width = [6.0, 24.0];
+            parameters.map.farthest = 24.0;
+            parameters.limits.top_speed = 28.0;
+        }
+        parameters
+    }
+
+    /// The referee's wheels in the frame of the car.
+    pub(crate) fn wheels() -> [Point; 4] {
+        [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y))
+    }
+}
+
+/// How a cone is painted.
+pub(crate) fn colour(colour: ConeColour) -> Colour {
+    match colour {
+        ConeColour::Blue => Colour::from_hex(0x1f_4f_d8),
+        ConeColour::Yellow => Colour::from_hex(0xf2_c8_11),
+        ConeColour::Orange | ConeColour::BigOrange => Colour::from_hex(0xf0_70_10),
+        ConeColour::Unknown => Colour::from_hex(0x90_90_90),
+    }
+}

@@ -1,0 +1,166 @@
+//! Pictures of a race, still and moving.
+
+use std::path::Path;
+
+use roverlab::drive::cones::Cone;
+use roverlab::geometry::{Aabb, Point, Pose, units};
+use roverlab::picture::{Picture, Style};
+use roverlab::world::{Colour, World};
+use svg::Document;
+use svg::node::element::{Animate, AnimateTransform, Circle, Polygon, Polyline};
+
+use super::course::{Course, colour};
+use super::race::Outcome;
+
+/// Metres around the track.
+const MARGIN: f64 = 5.0;
+
+fn bounds(course: &Course) -> Aabb {
+    let around = Aabb::around(course.cones.iter().map(|cone| cone.position));
+    around.unwrap_or(Aabb::new(Point::origin(), Point::origin())).inflated(MARGIN)
+}
+
+/// The track, the cones, the racing line, and the driven line coloured by speed.
+pub(crate) fn picture(course: &Course, outcome: &Outcome) -> Picture {
+    let mut world = World::empty(1.0, 1.0);
+    world.floor = bounds(course);
+    let mut picture = Picture::new(&world);
+    picture.title("Cone race");
+    let fallen = |index: usize| !outcome.standing.get(index).copied().unwrap_or(true);
+    for left in [true, false] {
+        let mut edge = course.corridor.edge(left);
+        edge.extend(edge.first().copied());
+        picture.line(edge, Style::aid().width(1.0).opacity(0.4));
+    }
+    for (index, Cone { position, colour: paint }) in course.cones.iter().enumerate() {
+        let style = if fallen(index) {
+            Style::aid().colour(Colour::RED)
+        } else {
+            Style::aid().colour(colour(*paint))
+        };
+        let radius = if course.wide { 1.2 } else { 2.0 * paint.radius() };
+        picture.disc(*position, radius, style.filled(1.0));
+    }
+    let mut line = outcome.line.clone();
+    line.extend(line.first().copied());
+    picture.line(line, Style::plan().width(1.0).labelled("racing line"));
+    // The last laps, which are all on the racing line, and the first one, which is slow.
+    let points = outcome.trail.iter().map(|(pose, speed)| (pose.to_world(Point::new(0.8, 0.0)), *speed));
+    picture.speed_path(points);
+    let times: Vec<String> = outcome.verdict.lap_times.iter().map(|time| format!("{time:.2}")).collect();
+    picture.caption(format!(
+        "laps {} s; {} cones hit, {} times off course",
+        times.join(", "),
+        outcome.verdict.cones_hit,
+        outcome.verdict.off_course
+    ));
+    picture
+}
+
+/// The car driving, in real time, again and again.
+pub(crate) fn animation(course: &Course, outcome: &Outcome, file: &Path) -> std::io::Result<()> {
+    svg::save(file, &document(course, outcome))
+}
+
+/// Pixels for a metre.
+const SCALE: f64 = 8.0;
+
+fn document(course: &Course, outcome: &Outcome) -> Document {
+    let bounds = bounds(course);
+    let size = bounds.size() * SCALE;
+    let place = |p: Point| {
+        let round = |value: f64| (value * 10.0).round() / 10.0;
+        (round((p.x - bounds.min.x) * SCALE), round((bounds.max.y - p.y) * SCALE))
+    };
+    let chain = |points: &[Point]| {
+        let texts: Vec<String> = points
+            .iter()
+            .map(|p| {
+                let (x, y) = place(*p);
+                format!("{x},{y}")
+            })
+            .collect();
+        texts.join(" ")
+    };
+    let mut document = Document::new()
+        .set("viewBox", (0, 0, size.x.ceil() as i64, size.y.ceil() as i64))
+        .set("width", size.x.ceil())
+        .set("height", size.y.ceil())
+        .set("style", "background:#f4f4f2");
+    let mut line = outcome.line.clone();
+    line.extend(line.first().copied());
+    document = document.add(
+        Polyline::new()
+            .set("points", chain(&line))
+            .set("fill", "none")
+            .set("stroke", "#999")
+            .set("stroke-width", 1),
+    );
+    for cone in &course.cones {
+        let (x, y) = place(cone.position);
+        let radius = (cone.colour.radius() * SCALE * 1.6).max(1.5);
+        document = document.add(
+            Circle::new()
+                .set("cx", x)
+                .set("cy", y)
+                .set("r", radius)
+                .set("fill", colour(cone.colour).to_string()),
+        );
+    }
+    document.add(car(&outcome.trail, outcome.time, place))
+}
+
+/// A car that moves along its trail.
+fn car(
+    trail: &[(Pose, f64)],
+    seconds: f64,
+    place: impl Fn(Point) -> (f64, f64),
+) -> svg::node::element::Group {
+    // Ten places a second are smooth enough, and keep the file small.
+    let frames: Vec<Pose> = trail.iter().step_by(2).map(|(pose, _)| *pose).collect();
+    let mut turned = 0.0;
+    let mut before = frames.first().map_or(0.0, |pose| pose.heading);
+    let mut places = Vec::new();
+    let mut angles = Vec::new();
+    for pose in &frames {
+        // Angles that go on beyond a full turn, so that nothing spins back.
+        turned += roverlab::geometry::angle_difference(pose.heading, before);
+        before = pose.heading;
+        let (x, y) = place(pose.position());
+        places.push(format!("{x} {y}"));
+        let first = frames.first().map_or(0.0, |pose| pose.heading);
+        angles.push(format!("{:.1}", -units::to_deg(first + turned)));
+    }
+    let motion = |kind: &str, values: &[String], sum: bool| {
+        AnimateTransform::new()
+            .set("attributeName", "transform")
+            .set("type", kind)
+            .set("values", values.join(";"))
+            .set("dur", format!("{seconds:.1}s"))
+            .set("repeatCount", "indefinite")
+            .set("additive", if sum { "sum" } else { "replace" })
+    };
+    let corner = |x: f64, y: f64| format!("{:.1},{:.1}", x * SCALE, y * SCALE);
+    let outline = [(-0.45, -0.7), (1.6, -0.7), (2.15, -0.3), (2.15, 0.3), (1.6, 0.7), (-0.45, 0.7)];
+    let points: Vec<String> = outline.iter().map(|(x, y)| corner(*x, *y)).collect();
+    let fastest = trail.iter().map(|(_, speed)| *speed).fold(1.0, f64::max);
+    let colours: Vec<String> = trail
+        .iter()
+        .step_by(10)
+        .map(|(_, speed)| roverlab::picture::ramp(speed / fastest).to_string())
+        .collect();
+    let paint = Animate::new()
+        .set("attributeName", "fill")
+        .set("values", colours.join(";"))
+        .set("dur", format!("{seconds:.1}s"))
+        .set("repeatCount", "indefinite");
+    let body = Polygon::new()
+        .set("points", points.join(" "))
+        .set("stroke", "#222")
+        .set("stroke-width", 0.8)
+        .add(paint);
+    svg::node::element::Group::new()
+        .add(motion("translate", &places, false))
+        .add(motion("rotate", &angles, true))
+        .add(body)
+}

@@ -1,0 +1,215 @@
+//! What the example `cone_race` is made of.
+
+mod campaign;
+pub(crate) mod course;
+mod drawing;
+mod race;
+
+use std::path::PathBuf;
+
+use roverlab::drive::cones::{ClosedSpline, RacePhase, TrackFile, parse_track};
+use roverlab::geometry::{Point, Segment};
+
+use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
+use course::{Course, Spoils};
+use race::Settings;
+
+/// The command line of the example `cone_race`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    name = "cone_race",
+    about = "Races on a track of cones that the car does not know: a map in the first lap, then the racing line",
+    after_help = "\
+The first lap is driven between the cones that the lidar sees, and makes the map; all others are on the racing line within
+the friction circle. The referee adds 2 s for a cone and 10 s for leaving the course with all wheels. Tracks: FSSIM yaml,
+EUFS csv, TUM csv (lined with cones), or one of our own by the seed.
+
+JSON fields:
+  laps, cones_hit, off_course, lap_times_s, total_s    of the race; the total is with penalties
+  track_length_m, cones                                of the track
+  racing_line_rms_m                                    distance of the racing line from that of --line
+  mapped                                               whether the whole track was planned after the first lap
+  tracks, clean, clean_share                           of a campaign
+  picture, animation
+Outcomes: finished, penalised, timed_out, raced (a campaign)."
+)]
+pub(crate) struct Args {
+    /// Track to race on [default: one of our own].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) track: Option<PathBuf>,
+
+    /// Laps to drive, the first one for the map.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=100))]
+    pub(crate) laps: u16,
+
+    /// What sees the cones.
+    #[arg(long, value_enum, default_value = "lidar")]
+    pub(crate) sensors: Sensors,
+
+    /// Line to compare the racing line with, as a TUM race line.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) line: Option<PathBuf>,
+
+    /// Cones beside the track that belong to none of its edges, as a share.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share)]
+    pub(crate) false_cones: f64,
+
+    /// Cones that are missing, as a share.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share)]
+    pub(crate) missing: f64,
+
+    /// Metres over which one side of the track has no cones.
+    #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = metres)]
+    pub(crate) gap: f64,
+
+    /// Draw the race as a moving picture.
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) animation: Option<PathBuf>,
+
+    /// Race on so many tracks of our own, from --seed on, and print a table.
+    #[arg(long, value_name = "TRACKS", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) campaign: Option<u32>,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl Args {
+    /// What a race is made of, beside its course.
+    fn settings(&self, seed: u64) -> Settings {
+        let (noise, limit) = (self.common.noise, self.common.time_limit);
+        Settings { laps: usize::from(self.laps), sensors: self.sensors, seed, noise, limit }
+    }
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// What sees the cones.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Sensors {
+    /// The low lidar: places, no colours.
+    Lidar,
+    /// The camera above the driver: colours, and places that are the less certain the farther they are.
+    Camera,
+    /// Places by the lidar, colours by the camera.
+    Both,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|value| (0.0..=0.9).contains(value));
+    value.ok_or_else(|| "expected a share of 0 to 0.9".into())
+}
+
+fn metres(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|value| (0.0..=200.0).contains(value));
+    value.ok_or_else(|| "expected 0 to 200 m".into())
+}
+
+/// The work of the example.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    let common = &args.common;
+    common.check_picture()?;
+    check(common)?;
+    let spoils = Spoils { false_cones: args.false_cones, missing: args.missing, gap: args.gap };
+    if let Some(tracks) = args.campaign {
+        return campaign::run(args, tracks, spoils);
+    }
+    let mut course = match &args.track {
+        Some(path) => Course::from_file(common, path)?,
+        None => Course::generated(common.seed)?,
+    };
+    course.spoil(spoils, common.seed);
+    let outcome = race::race(&course, &args.settings(common.seed)).map_err(Failure::run)?;
+    let (picture, animation, trouble) = draw(args, &course, &outcome);
+    let verdict = &outcome.verdict;
+    let word = match outcome.phase {
+        RacePhase::Finished if outcome.is_clean() => Outcome::verdict("finished"),
+        RacePhase::Finished => Outcome::failure("penalised"),
+        _ => Outcome::failure("timed_out"),
+    };
+    let rms = args.line.as_ref().map(|file| distance(common, file, &outcome.line)).transpose()?;
+    let times: Vec<f64> = verdict.lap_times.iter().map(|time| rounded(*time)).collect();
+    let report = Report::new(word)
+        .field("laps", times.len())
+        .field("cones_hit", verdict.cones_hit)
+        .field("off_course", verdict.off_course)
+        .field("lap_times_s", times)
+        .field("total_s", rounded(verdict.total()))
+        .field("track_length_m", rounded(course.corridor.length()))
+        .field("cones", course.cones.len())
+        .field("mapped", !outcome.line.is_empty())
+        .field("racing_line_rms_m", rms.flatten().map(rounded))
+        .field("picture", picture)
+        .field("animation", animation);
+    Ok(Report {
+        sim_time: Some(outcome.time),
+        path_length: Some(outcome.truth.distance),
+        pose: Some(outcome.truth.pose),
+        odometry: Some(outcome.odometry),
+        trouble,
+        ..report
+    })
+}
+
+/// The root of the mean squared distance of a racing line from that of a file. `None` without one.
+fn distance(common: &CommonArgs, file: &std::path::Path, line: &[Point]) -> Result<Option<f64>, Failure> {
+    let bytes = common.read("line", file).map_err(Failure::input)?;
+    let name = file.display().to_string();
+    let text = String::from_utf8_lossy(&bytes);
+    let TrackFile::Line(other) = parse_track(&text, &name).map_err(Failure::input)? else {
+        return Err(Failure::input(format!("--line {name}: found a track; expected a line without widths")));
+    };
+    let Ok(spline) = ClosedSpline::through(line) else { return Ok(None) };
+    let n = other.len();
+    let squared = |p: Point| {
+        let away = (0..n).map(|i| Segment::new(other[i], other[(i + 1) % n]).distance_to(p));
+        let least = away.fold(f64::INFINITY, f64::min);
+        least * least
+    };
+    let places = spline.resample(2.0);
+    let sum: f64 = places.iter().map(|place| squared(place.position)).sum();
+    Ok(Some((sum / places.len() as f64).sqrt()))
+}
+
+/// Fails when an option has no meaning here.
+fn check(common: &CommonArgs) -> Result<(), Failure> {
+    let given = [
+        ("--world", common.world.is_some()),
+        ("--robot", common.robot.is_some()),
+        ("--start", common.start.is_some()),
+        ("--goal", common.goal.is_some()),
+        ("--fault", !common.fault.is_empty()),
+        ("--record", common.record.is_some()),
+        ("--replay", common.replay.is_some()),
+    ];
+    let refused = |option: &str| {
+        Failure::input(format!("{option}: has no meaning for a race; expected a command line without it"))
+    };
+    given.iter().find(|(_, given)| *given).map_or(Ok(()), |(option, _)| Err(refused(option)))
+}
+
+/// Saves the pictures: where the options say, and in the present folder if a person looks on.
+fn draw(
+    args: &Args,
+    course: &Course,
+    outcome: &race::Outcome,
+) -> (Option<PathBuf>, Option<PathBuf>, Option<String>) {
+    let named = |file: &Option<PathBuf>, name: &str| {
+        file.clone().or_else(|| (!args.common.json).then(|| PathBuf::from(name)))
+    };
+    let (still, moving) =
+        (named(&args.common.picture, "cone_race.svg"), named(&args.animation, "cone_race_moving.svg"));
+    let mut trouble = Vec::new();
+    if let Some(file) = &still {
+        trouble.extend(drawing::picture(course, outcome).save(file).err().map(|error| error.to_string()));
+    }
+    if let Some(file) = &moving {
+        let saved = drawing::animation(course, outcome, file);
+        trouble.extend(saved.err().map(|error| format!("{}: {error}", file.display())));
+    }
+    (still, moving, (!trouble.is_empty()).then(|| trouble.join("\n")))
+}

@@ -1,0 +1,73 @@
+use super::*;
+use crate::geometry::Point;
+use crate::io::sim::NoiseModel;
+use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions};
+use crate::io::{Drive, Lidar, LidarScan};
+use crate::world::Colour;
+
+/// What came of a race on a generated track.
+#[derive(Debug)]
+struct Raced {
+    verdict: Verdict,
+    phase: RacePhase,
+    laps: usize,
+    /// Cones hit in the first lap.
+    first: usize,
+    /// The greatest distance of a cone of the map from the nearest true one.
+    error: f64,
+}
+
+fn race(seed: u64, laps: usize, noise: f64) -> Raced {
+    let GeneratedTrack { track, corridor } = generate(seed, &TrackOptions::drawn(seed)).unwrap();
+    let cones: Vec<RaceCone> =
+        track.cones.iter().map(|cone| RaceCone::new(cone.position, Colour::BLUE)).collect();
+    let noise = NoiseModel::real().scaled(noise);
+    let options = RaceOptions { seed, noise, ..RaceOptions::default() };
+    let start = track.start.unwrap();
+    let mut world = Race::new(&cones, &[(RaceCarSpec::default(), start)], options).unwrap();
+    let wheels = [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y));
+    let mut referee = Referee::new(corridor, wheels);
+    let mut racer = Racer::new(RacerParameters { laps, ..RacerParameters::default() });
+    let mut scan = LidarScan::default();
+    let mut first = 0;
+    while world.time() < 150.0 * laps as f64 {
+        let mut car = world.car(0).unwrap();
+        car.scan_into(&mut scan).unwrap();
+        let (pose, speed) = (car.pose().unwrap(), car.speed().unwrap());
+        let command = racer.step(pose, speed, &scan);
+        car.set_speed(command).unwrap();
+        for _ in 0..5 {
+            world.advance(0.01);
+            let truth = world.truth(0).unwrap();
+            referee.see(world.time(), truth.pose, truth.hits);
+            if racer.phase() == RacePhase::Mapping {
+                first = truth.hits;
+            }
+        }
+        if racer.phase() == RacePhase::Finished && speed.linear < 0.05 {
+            break;
+        }
+    }
+    let away =
+        |place: Point| cones.iter().map(|cone| (cone.position - place).norm()).fold(f64::INFINITY, f64::min);
+    let error = racer.map().cones().map(|cone| away(start.to_world(cone.position))).fold(0.0, f64::max);
+    Raced { verdict: referee.verdict().clone(), phase: racer.phase(), laps: racer.laps(), first, error }
+}
+
+#[test]
+fn the_first_lap_makes_the_map() {
+    for seed in 0..3 {
+        let raced = race(seed, 2, 1.0);
+        assert!(raced.phase == RacePhase::Finished && raced.laps == 2, "{seed}: {raced:?}");
+        assert!(raced.first == 0 && raced.error < 1.5, "{seed}: {raced:?}");
+        // On the racing line, with the speeds of a known track.
+        let times = &raced.verdict.lap_times;
+        assert!(times.len() == 2 && times[1] < 0.7 * times[0], "{seed}: {raced:?}");
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_race() {
+    let [a, b] = [0, 1].map(|_| race(2, 1, 1.0).verdict);
+    assert_eq!(a, b);
+}

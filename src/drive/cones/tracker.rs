@@ -1,0 +1,146 @@
+use super::profile::SpeedProfile;
+use crate::geometry::{Point, Pose, Twist, angle_difference, cross, math};
+
+/// How a car is kept on a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrackerParameters {
+    /// Metres from the rear axle to the point of the car that is kept on the line.
+    pub ahead: f64,
+    /// Metres in which an error dies out, standing.
+    pub length: f64,
+    /// Metres more for each m/s.
+    pub length_by_speed: f64,
+    /// Seconds by which the steering lags behind.
+    pub steering_lag: f64,
+    /// Seconds by which the speed lags behind.
+    pub speed_lag: f64,
+    /// Radians by which the rear tyres slip, for an acceleration across of 1 m/s².
+    pub slip: f64,
+    /// Radians more of the steering, for an acceleration across of 1 m/s², that front tyres need which slide first.
+    pub understeer: f64,
+    /// The greatest curvature that is asked for, in 1/m.
+    pub curvature: f64,
+}
+
+impl Default for TrackerParameters {
+    fn default() -> Self {
+        Self {
+            ahead: 0.9,
+            length: 2.0,
+            length_by_speed: 0.22,
+            steering_lag: 0.12,
+            speed_lag: 0.08,
+            slip: 0.0052,
+            understeer: 0.0008,
+            curvature: 0.42,
+        }
+    }
+}
+
+/// Metres between the axles for which [`TrackerParameters::understeer`] is a curvature.
+const WHEELBASE: f64 = 1.55;
+
+/// A line with its speeds, and how far along it the car is.
+#[derive(Debug, Clone)]
+pub struct LineTracker {
+    parameters: TrackerParameters,
+    points: Vec<Point>,
+    profile: SpeedProfile,
+    closed: bool,
+    nearest: usize,
+    started: bool,
+}
+
+impl LineTracker {
+    /// A line from points, and a profile for the same ones.
+    pub fn new(
+        points: Vec<Point>,
+        profile: SpeedProfile,
+        closed: bool,
+        parameters: TrackerParameters,
+    ) -> Self {
+        Self { parameters, points, profile, closed, nearest: 0, started: false }
+    }
+
+    /// The points of the line.
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// The speeds and curvatures at the points.
+    pub fn profile(&self) -> &SpeedProfile {
+        &self.profile
+    }
+
+    fn next(&self, i: usize) -> usize {
+        let n = self.points.len();
+        if self.closed { (i + 1) % n } else { (i + 1).min(n - 1) }
+    }
+
+    /// Speed and rate of turn that keep a car on the line: the curvature ahead, and what brings errors of place and heading
+    /// to nothing within some metres, critically damped. Also the distance from the line, positive to its left.
+    ///
+    /// `None` beyond the end of an open line.
+    pub fn step(&mut self, rear: Pose, speed: f64) -> Option<(Twist, f64)> {
+        let p = self.parameters;
+        let place = rear.to_world(Point::new(p.ahead, 0.0));
+        self.locate(place);
+        let (i, j) = (self.nearest, self.next(self.nearest));
+        if i == j {
+            return None;
+        }
+        let chord = self.points[j] - self.points[i];
+        let along = chord / chord.norm().max(1e-9);
+        let share = ((place - self.points[i]).dot(&along) / chord.norm().max(1e-9)).clamp(0.0, 1.0);
+        let aside = cross(along, place - self.points[i]);
+        let curvature_here = self.at(&self.profile.curvatures, i, share, 0.0);
+        // The chord's heading is that of its middle; the point of the car that is followed does not move along the car.
+        let heading = math::atan2(along.y, along.x) + curvature_here * (share - 0.5) * chord.norm();
+        let slip = math::asin((p.ahead * curvature_here).clamp(-0.9, 0.9));
+        // Tyres that slip let the nose point into the bend.
+        let inwards = p.slip * speed * speed * curvature_here;
+        let turned = angle_difference(rear.heading, heading - slip + inwards);
+        let curvature = self.at(&self.profile.curvatures, i, share, speed.max(0.0) * p.steering_lag);
+        let length = p.length + p.length_by_speed * speed.abs();
+        let wanted = curvature - aside / (length * length) - 1.6 * math::sin(turned) / length;
+        // The rear axle drives a tighter bend than the point ahead of it.
+        let inside = (1.0 - (p.ahead * wanted) * (p.ahead * wanted)).max(0.5).sqrt();
+        let more = p.understeer * speed * speed * curvature / WHEELBASE;
+        let curvature = (wanted / inside + more).clamp(-p.curvature, p.curvature);
+        let speed = self.at(&self.profile.speeds, i, share, (speed.max(0.0) + 0.5) * p.speed_lag);
+        Some((Twist::new(speed, speed * curvature), aside))
+    }
+
+    /// The point of the line before the place, near the last one.
+    fn locate(&mut self, place: Point) {
+        let n = self.points.len();
+        let squared = |i: usize| (self.points[i] - place).norm_squared();
+        if !self.started {
+            self.started = true;
+            self.nearest = (0..n).min_by(|&a, &b| squared(a).total_cmp(&squared(b))).unwrap_or(0);
+        }
+        for _ in 0..n {
+            let (i, j) = (self.nearest, self.next(self.nearest));
+            let chord = self.points[j] - self.points[i];
+            if i == j || (place - self.points[j]).dot(&chord) < 0.0 {
+                break;
+            }
+            self.nearest = j;
+        }
+    }
+
+    /// A value along the line, some metres beyond a share of a piece.
+    fn at(&self, values: &[f64], piece: usize, share: f64, beyond: f64) -> f64 {
+        let (mut i, mut left) = (piece, beyond + share * self.profile.lengths[piece]);
+        while left > self.profile.lengths[i] {
+            left -= self.profile.lengths[i];
+            let next = self.next(i);
+            if next == i || (!self.closed && self.next(next) == next) {
+                return values[next];
+            }
+            i = next;
+        }
+        let share = left / self.profile.lengths[i];
+        values[i] + (values[self.next(i)] - values[i]) * share
+    }
+}
