@@ -11,7 +11,8 @@
 //!
 //! # fn main() -> roverlab::io::Result<()> {
 //! let mut robot = RobiosRobot::open("libeyebot.so")?;
-//! robot.straight(robot.distance(Psd::FRONT)? - 0.1, 0.2)?;
+//! let ahead = robot.distance(Psd::FRONT)?;
+//! robot.straight(ahead - 0.1, 0.2)?;
 //! robot.wait_done()?;
 //! # Ok(())
 //! # }

@@ -27,7 +27,7 @@ fn clearance_of(navigator: &mut Navigator) -> f64 {
 #[test]
 fn narrow_doors_are_passed_with_less_clearance_and_closed_ones_told_at_once() {
     assert!((clearance_of(&mut navigator(0.5)) - 0.039).abs() < 1e-9);
-    assert!((clearance_of(&mut navigator(0.19)) - 0.012).abs() < 1e-9);
+    assert!((clearance_of(&mut navigator(0.18)) - 0.012).abs() < 1e-9);
     let mut closed = navigator(0.1);
     assert_eq!(closed.phase(), NavigatePhase::Ended(NavigateOutcome::Unreachable));
     assert_eq!(closed.take_events(), [NavigateEvent::End(NavigateOutcome::Unreachable)]);
