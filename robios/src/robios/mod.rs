@@ -1,7 +1,7 @@
 //! RoBIOS in safe Rust: what its functions do, in its own units, for one robot.
 //!
 //! Methods are named after the functions. They answer with what the function returns, or with the error that makes it
-//! return its code for failure; who calls from C is in [`ffi`](crate::ffi).
+//! return its code for failure; who calls from C is in `ffi`.
 
 mod display;
 mod drive;

@@ -112,7 +112,9 @@ const SECOND: u64 = 1_000_000_000;
 /// How recordings are written: to sinks that cannot seek, in one thread, and with chunks that end where the writer says
 /// so.
 pub(super) fn write_options(compression: Compression) -> io::Result<WriteOptions> {
-    let options = WriteOptions::new().compression(compression.method()?).compression_threads(0);
+    let options = WriteOptions::new().compression(compression.method()?);
+    #[cfg(feature = "zstd")]
+    let options = options.compression_threads(0);
     Ok(options.disable_seeking(true).chunk_size(None).profile(""))
 }
 
