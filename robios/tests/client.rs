@@ -122,9 +122,9 @@ fn library() -> PathBuf {
     [folder.join(name), folder.join("deps").join(name)].into_iter().find(|file| file.is_file()).unwrap()
 }
 
-/// The child's part of the test below.
+/// What the tests below run in a process of its own for each job, as a process has one robot behind the library.
 #[test]
-#[ignore = "started by the other test"]
+#[ignore = "run by the tests below, in processes of their own"]
 fn child() {
     let (Ok(job), Ok(output)) = (std::env::var(JOB), std::env::var(OUTPUT)) else { return };
     std::fs::write(output, trace(RobiosRobot::open(library()).unwrap(), &job)).unwrap();

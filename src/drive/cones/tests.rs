@@ -1,4 +1,4 @@
-//! Files of the wild, whole plans, and how long they take.
+//! Files of the wild, and whole plans.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -201,32 +201,4 @@ fn events_are_told_by_their_cones() {
     strip.cones.push(cone(80.0, 0.0, ConeColour::Orange));
     assert_eq!(strip.event(), Event::Acceleration);
     assert_eq!(ConeTrack::default().start_pose(), None);
-}
-
-#[test]
-#[ignore = "prints times"]
-#[allow(clippy::disallowed_methods, reason = "measures")]
-fn times() {
-    let (mut lines, mut racing) = (Vec::new(), Vec::new());
-    let mut solver = LineSolver::default();
-    for seed in 0..200 {
-        let GeneratedTrack { track, .. } = generate(seed, &TrackOptions::drawn(seed)).unwrap();
-        let cones: Vec<Cone> =
-            track.cones.iter().map(|cone| Cone::unknown(cone.position)).take(2000).collect();
-        let begin = std::time::Instant::now();
-        let line = CentreLine::from_cones(&cones, track.start.unwrap(), &CentreLineParameters::default());
-        let Ok(line) = line else {
-            eprintln!("{seed}: {line:?} {:?}", cones.iter().position(|c| !c.position.x.is_finite()));
-            continue;
-        };
-        let middle = std::time::Instant::now();
-        let found = solver.solve(&line.corridor, &RacingLineParameters { margin: 0.9, ..Default::default() });
-        let end = std::time::Instant::now();
-        lines.push(((middle - begin).as_secs_f64() * 1e3, cones.len()));
-        racing.push(((end - middle).as_secs_f64() * 1e3, found.map(|l| l.iterations)));
-    }
-    lines.sort_by(|a, b| b.0.total_cmp(&a.0));
-    racing.sort_by(|a, b| b.0.total_cmp(&a.0));
-    eprintln!("{:?} {:?}", &lines[..5], lines[100]);
-    eprintln!("{:?} {:?}", &racing[..5], racing[100]);
 }

@@ -1,0 +1,124 @@
+//! Robots that are stepped together in one thread.
+
+use super::*;
+
+/// Two robots, the first of which stops for good after some steps.
+fn patrol(troop: &mut dyn Troop<'_>, period: f64, steps: u32) -> Result<Vec<Pose>> {
+    let mut left = steps;
+    let first = move |robot: &mut dyn RobotIo| {
+        left -= 1;
+        robot.set_speed(Twist::new(0.1, 0.1 * f64::from(left)))?;
+        Ok(if left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    };
+    let second = |robot: &mut dyn RobotIo| {
+        let free = robot.scan()?.ranges[0].min(robot.pose()?.x + 1.0);
+        robot.set_speed(Twist::new(0.1 * free, 0.0))?;
+        robot.print(".")?;
+        Ok(ControlFlow::Continue(()))
+    };
+    troop.control(0, period, Box::new(first))?;
+    troop.control(1, 0.07, Box::new(second))?;
+    let mut path = Vec::new();
+    while troop.time()? < 2.45 {
+        troop.run_for(0.1)?;
+        path.extend([troop.pose(0)?, troop.pose(1)?]);
+    }
+    path.extend([troop.truth(0)?.pose, troop.truth(1)?.odometry]);
+    Ok(path)
+}
+
+fn pair() -> Scene {
+    let mut scene = scene();
+    let second = crate::world::RobotPlacement { pose: Pose::new(0.5, 0.4, 0.0), ..scene.robots[0].clone() };
+    scene.robots.push(second);
+    scene
+}
+
+fn recorded_troop<'a, T>(
+    troop: impl Troop<'a> + 'a,
+    run: impl FnOnce(&mut dyn Troop<'a>) -> T,
+) -> (T, Vec<u8>) {
+    let writer = LogWriter::new(Vec::new(), &header()).unwrap();
+    let mut troop = writer.troop(troop);
+    let result = run(&mut troop);
+    drop(troop);
+    (result, writer.finish().unwrap())
+}
+
+fn fleet<'a>() -> Fleet<'a> {
+    Fleet::new(&pair(), SimOptions::with_noise(1.0, 3)).unwrap()
+}
+
+#[test]
+fn a_troop_replays_to_the_bit() {
+    let (path, bytes) = recorded_troop(fleet(), |troop| patrol(troop, 0.05, 30).unwrap());
+    assert_eq!(path, patrol(&mut fleet(), 0.05, 30).unwrap());
+    assert!(bytes == recorded_troop(fleet(), |troop| patrol(troop, 0.05, 30)).1);
+    let log = Log::read(bytes.clone()).unwrap();
+    let player = Player::new(&log);
+    let (again, second) = recorded_troop(player.troop(), |troop| patrol(troop, 0.05, 30).unwrap());
+    assert_eq!((again, player.rest()), (path, None));
+    let second = Log::read(second).unwrap();
+    assert!(second.bytes() == bytes, "{}", Difference::between(&log, &second).unwrap());
+    // Viewers and the field's tools want messages in the order of their time.
+    let times: Vec<u64> = super::reader::whole(&bytes)
+        .unwrap()
+        .iter()
+        .filter(|record| record.opcode == mcap::records::op::CHUNK)
+        .flat_map(|chunk| super::reader::inner(&chunk.body[40..]).unwrap())
+        .filter(|record| record.opcode == mcap::records::op::MESSAGE)
+        .map(|record| super::reader::message(record.body).unwrap().header.log_time)
+        .collect();
+    assert!(times.is_sorted() && times.len() > 300, "{}", times.len());
+}
+
+#[test]
+fn a_troop_that_does_something_else_is_named() {
+    let (_, bytes) = recorded_troop(fleet(), |troop| patrol(troop, 0.05, 30));
+    let log = Log::read(bytes.clone()).unwrap();
+    let named = |log: &Log, period, steps| {
+        let error = patrol(&mut Player::new(log).troop(), period, steps).unwrap_err();
+        (error.kind(), error.to_string())
+    };
+    let message = "found control(0.06); expected control(0.05), as recorded";
+    assert_eq!(named(&log, 0.06, 30), (ErrorKind::Diverged, message.into()));
+    let (kind, message) = named(&log, 0.05, 31);
+    assert!(kind == ErrorKind::Diverged && message.contains("found the call set_speed("), "{message}");
+    let (kind, message) = named(&log, 0.05, 29);
+    assert!(kind == ErrorKind::Diverged && message.contains("set_speed("), "{message}");
+    let idle = Player::new(&log)
+        .troop()
+        .control(0, 0.05, Box::new(|_| Ok(ControlFlow::Continue(()))))
+        .and_then(|()| patrol(&mut Player::new(&Log::read(recorded(0.3)).unwrap()).troop(), 0.05, 3));
+    assert_eq!(idle.unwrap_err().kind(), ErrorKind::EndOfLog);
+    let mut troop = Player::new(&log).troop();
+    troop.control(0, 0.05, Box::new(|_| Ok(ControlFlow::Continue(())))).unwrap();
+    let error = troop.run_for(0.1).unwrap_err().to_string();
+    assert!(error.starts_with("found a step without a call; expected set_speed("), "{error}");
+    // What is left of a recording that was cut off replays as far as it goes.
+    let saved = Log::read(recover(&bytes[..bytes.len() / 2]).unwrap().bytes).unwrap();
+    assert_eq!(named(&saved, 0.05, 30).0, ErrorKind::EndOfLog);
+}
+
+#[test]
+fn an_error_that_ends_a_troop_is_replayed() {
+    let run = |troop: &mut dyn Troop<'_>| {
+        for (robot, sensor) in [(0, Psd::FRONT), (1, Psd(99))] {
+            let mut steps = 0;
+            let step = move |robot: &mut dyn RobotIo| {
+                steps += 1;
+                robot.pose()?;
+                robot.distance(if steps < 8 { Psd::FRONT } else { sensor })?;
+                Ok(ControlFlow::Continue(()))
+            };
+            troop.control(robot, 0.05, Box::new(step)).unwrap();
+        }
+        (0..20).try_for_each(|_| troop.run_for(0.1)).unwrap_err().to_string()
+    };
+    let (error, bytes) = recorded_troop(fleet(), run);
+    let log = Log::read(bytes.clone()).unwrap();
+    let player = Player::new(&log);
+    let (again, second) = recorded_troop(player.troop(), run);
+    assert_eq!((again, player.rest()), (error, None));
+    assert!(second == bytes, "{}", Difference::between(&log, &Log::read(second).unwrap()).unwrap());
+}
