@@ -45,6 +45,8 @@ mod random_drive;
 mod replay;
 #[path = "room/mod.rs"]
 mod room;
+#[path = "starman/mod.rs"]
+mod starman;
 #[path = "wall_following/mod.rs"]
 mod wall_following;
 

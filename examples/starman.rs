@@ -1,6 +1,6 @@
 //! A round robot with five limbs learns to walk (book, chapter 12).
 //!
-//! `cargo run --release --features physics --example starman -- --help` lists the options.
+//! `cargo run --release --example starman -- --help` lists the options.
 
 mod common;
 #[path = "starman/mod.rs"]

@@ -4,7 +4,6 @@
 mod common;
 #[path = "../examples/genetic/mod.rs"]
 mod genetic;
-#[cfg(feature = "physics")]
 #[path = "../examples/starman/mod.rs"]
 mod starman;
 
@@ -52,7 +51,6 @@ fn options_without_a_meaning_are_refused() {
     assert_eq!((status, err.as_str()), (2, expected));
 }
 
-#[cfg(feature = "physics")]
 mod walking {
     use std::path::{Path, PathBuf};
     use std::process::{Command, Stdio};

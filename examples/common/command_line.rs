@@ -11,14 +11,27 @@ use super::origin::Facts;
 use super::{CommonArgs, Failure};
 
 /// Options that do not affect a run.
-const NOT_RECORDED: [&str; 8] =
-    ["record", "replay", "picture", "output", "lcd", "json", "realtime", "robios"];
+const NOT_RECORDED: [&str; 12] = [
+    "record",
+    "replay",
+    "picture",
+    "animation",
+    "output",
+    "lcd",
+    "json",
+    "realtime",
+    "robios",
+    // How a run is computed, and where it is kept on the way.
+    "threads",
+    "processes",
+    "checkpoint",
+];
 
 /// Options that name files which a run reads.
 const FILES: [&str; 3] = ["world", "robot", "maze"];
 
 /// Options with which nothing drives that could be recorded: many runs at once, or none.
-const UNRECORDED: [&str; 3] = ["campaign", "plan", "input"];
+const UNRECORDED: [&str; 5] = ["campaign", "plan", "input", "compare", "steps"];
 
 /// Why a command line is not one to run.
 pub(crate) enum Refusal {

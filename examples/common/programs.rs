@@ -6,7 +6,7 @@ use std::io::Write;
 use crate::common::run;
 use crate::{
     a_to_b, ackermann, bug_compare, camera, color_tracking, coverage, distbug, edges, follow_me, genetic,
-    lidar_scan, localise, micromouse, motion, navigate, omni, random_drive, wall_following,
+    lidar_scan, localise, micromouse, motion, navigate, omni, random_drive, starman, wall_following,
 };
 
 /// Runs a program with a command line and its two outputs. Returns the exit status.
@@ -48,6 +48,7 @@ programs!(
     navigate,
     omni,
     random_drive,
+    starman,
     wall_following
 );
 

@@ -65,6 +65,28 @@ impl DerefMut for StagedTroop<'_> {
     }
 }
 
+/// One robot with a world of its own kind: made by the example or replayed, and recorded if the options ask for it.
+/// For all else as a [`Stage`].
+pub(crate) struct StagedRobot {
+    // Let go before the recording is finished.
+    robot: Driven,
+    _recording: Recording,
+}
+
+impl Deref for StagedRobot {
+    type Target = Driven;
+
+    fn deref(&self) -> &Self::Target {
+        &self.robot
+    }
+}
+
+impl DerefMut for StagedRobot {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.robot
+    }
+}
+
 impl CommonArgs {
     /// The stage that the options describe: a simulation of a scene, or the recording that `--replay` names.
     pub(crate) fn stage(&self, scene: &Scene, options: SimOptions) -> Result<Stage, Failure> {
@@ -114,6 +136,22 @@ impl CommonArgs {
             None => troop,
         };
         Ok(StagedTroop { troop, _recording: recording })
+    }
+
+    /// A robot that no scene describes: `own`, or that of the recording which `--replay` names. The scene is what
+    /// viewers show around it.
+    pub(crate) fn staged_robot(
+        &self,
+        scene: &Scene,
+        own: impl RobotIo + Send + 'static,
+    ) -> Result<StagedRobot, Failure> {
+        let player = self.player();
+        let recording = self.recording(scene, player.clone())?;
+        let robot = match player {
+            Some(player) => recording.recorder(player.robot(0).map_err(|error| foreign(&error))?, 0),
+            None => recording.recorder(own, 0),
+        };
+        Ok(StagedRobot { robot, _recording: recording })
     }
 
     /// What plays the recording that `--replay` names.
@@ -180,19 +218,14 @@ impl Stage {
         match &self.play {
             Play::Simulation(simulation) => {
                 let faults = if index == 0 { self.faults.clone() } else { Vec::new() };
-                Ok(self.recorded(Faulty::new(simulated(simulation, index)?, faults), index))
+                Ok(self.recording.recorder(Faulty::new(simulated(simulation, index)?, faults), index))
             }
-            Play::Apart(simulations) => Ok(self.recorded(simulated(&simulations[index], 0)?, index)),
+            Play::Apart(simulations) => {
+                Ok(self.recording.recorder(simulated(&simulations[index], 0)?, index))
+            }
             Play::Recording(player) => {
-                Ok(self.recorded(player.robot(index).map_err(|error| foreign(&error))?, index))
+                Ok(self.recording.recorder(player.robot(index).map_err(|error| foreign(&error))?, index))
             }
-        }
-    }
-
-    fn recorded(&self, robot: impl RobotIo + Send + 'static, index: usize) -> Driven {
-        match &self.recording.writer {
-            Some(writer) => Box::new(writer.recorder(robot, index)),
-            None => Box::new(robot),
         }
     }
 
@@ -227,6 +260,16 @@ impl Stage {
 /// A recording that lacks a robot belongs to another scene.
 fn foreign(error: &LogError) -> Failure {
     Failure::input(format!("--replay: {error}"))
+}
+
+impl Recording {
+    /// A robot that is recorded, if there is a recording.
+    fn recorder(&self, robot: impl RobotIo + Send + 'static, index: usize) -> Driven {
+        match &self.writer {
+            Some(writer) => Box::new(writer.recorder(robot, index)),
+            None => Box::new(robot),
+        }
+    }
 }
 
 impl Drop for Recording {

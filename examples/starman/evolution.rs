@@ -5,9 +5,10 @@ use roverlab::evolve::{
     Evaluator, Evolution, Gait, Genetic, Parallel, Population, Processes, Recipe, StopRules, Trial,
     checkpoint,
 };
-use roverlab::io::Result;
 use roverlab::io::sim::starman::{LIMBS, Starman, StarmanSpec};
+use roverlab::io::{Drive, Result};
 use roverlab::random::Stream;
+use roverlab::world::{Scene, World};
 
 use super::WORKER;
 use super::options::{Args, Init};
@@ -17,6 +18,9 @@ use crate::common::{Failure, Progress, Stopwatch};
 const CYCLE: usize = 10;
 /// The largest step between control points of the first generation near the middle, in bytes.
 const STEP: u8 = 5;
+
+/// The floor that a recording shows: width and depth in metres.
+const FLOOR: (f64, f64) = (4.0, 0.5);
 
 /// How a gait is tried.
 #[derive(Debug, Clone, Copy)]
@@ -73,6 +77,15 @@ pub(crate) struct Evolved {
 pub(crate) fn evolve(args: &Args) -> std::result::Result<Evolved, Failure> {
     let (mut evaluator, threads) = evaluator(args)?;
     run(args, args.common.seed, args.init, evaluator.as_mut(), threads)
+}
+
+/// Walks a gait on the robot that can be recorded and replayed. Returns metres along the floor, by the robot itself.
+pub(crate) fn walk(args: &Args, bytes: &[u8]) -> std::result::Result<f64, Failure> {
+    let trials = args.trials();
+    let room = Scene::new(World::empty(FLOOR.0, FLOOR.1));
+    let mut robot = args.common.staged_robot(&room, Starman::new(&trials.spec)?)?;
+    Gait::from_bytes(bytes, LIMBS, trials.leading)?.run(&mut *robot, trials.seconds)?;
+    Ok(robot.pose()?.x)
 }
 
 /// Threads or processes that try gaits, and how many.

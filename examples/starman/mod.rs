@@ -1,5 +1,7 @@
 //! What the example `starman` is made of.
 
+#![allow(dead_code, reason = "the program and its tests each use their own part of this")]
+
 mod compare;
 mod evolution;
 mod moving;
@@ -10,6 +12,7 @@ mod strip;
 use std::process::ExitCode;
 
 use roverlab::evolve::serve;
+use roverlab::geometry::units;
 
 use crate::common::{Failure, Outcome, Report, rounded};
 pub(crate) use options::Args;
@@ -46,6 +49,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 /// Evolves a gait and shows it.
 fn walk(args: &Args) -> Result<Report, Failure> {
     let evolved = evolution::evolve(args)?;
+    let way = evolution::walk(args, &evolved.best)?;
     let walk = strip::Walk::of(&args.trials(), &evolved.best)?;
     let file = args.common.picture.clone().unwrap_or_else(|| "starman.svg".into());
     let trouble = strip::picture(args, &walk).save(&file).err().map(|error| error.to_string());
@@ -62,6 +66,7 @@ fn walk(args: &Args) -> Result<Report, Failure> {
         .field("ratio", rounded(evolved.best_last / evolved.best_first))
         .field("population_hash", format!("{:016x}", evolved.hash))
         .field("best_gait", &evolved.best)
+        .field("way_mm", rounded(units::to_mm(way)))
         .field("threads", evolved.threads)
         .field("picture", file.display().to_string());
     Ok(Report { sim_time: Some(args.seconds * evolved.evaluations as f64), trouble, ..report })

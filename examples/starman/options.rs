@@ -19,6 +19,7 @@ JSON fields:
   best_first, best_last, ratio   greatest fitness of the first and of all generations
   population_hash                tells final populations apart
   best_gait                      its bytes, five for each control point
+  way_mm                         where the best gait's walk ends along the floor, which --record records
   threads, picture
 With --compare, `rows`: seed, best_first, best_last, random (the best of as many random gaits), and how often
 evolution was better. With --steps, `rows`: time step, median change of the way when it is halved.
@@ -119,8 +120,6 @@ impl Args {
             ("--start", self.common.start.is_some()),
             ("--goal", self.common.goal.is_some()),
             ("--fault", !self.common.fault.is_empty()),
-            ("--record", self.common.record.is_some()),
-            ("--replay", self.common.replay.is_some()),
         ];
         match given.iter().find(|(_, given)| *given) {
             Some((option, _)) => Err(Failure::input(format!(
