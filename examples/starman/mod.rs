@@ -9,6 +9,7 @@ mod options;
 mod steps;
 mod strip;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use roverlab::evolve::serve;
@@ -51,11 +52,8 @@ fn walk(args: &Args) -> Result<Report, Failure> {
     let evolved = evolution::evolve(args)?;
     let way = evolution::walk(args, &evolved.best)?;
     let walk = strip::Walk::of(&args.trials(), &evolved.best)?;
-    let file = args.common.picture.clone().unwrap_or_else(|| "starman.svg".into());
-    let trouble = strip::picture(args, &walk).save(&file).err().map(|error| error.to_string());
-    let animation = args.animation.as_ref().map(|file| moving::save(file, &walk)).transpose();
-    let trouble = trouble.or(animation.err().map(|error| error.to_string()));
-    args.common.tell(format_args!("the best gait goes {:.0} mm: {}", evolved.best_last, file.display()));
+    args.common.tell(format_args!("the best gait goes {:.0} mm", units::to_mm(way)));
+    let (picture, trouble) = draw(args, &walk);
     let report = Report::new(Outcome::verdict("evolved"))
         .field("generations", evolved.generations)
         .field("evaluations", evolved.evaluations)
@@ -68,6 +66,19 @@ fn walk(args: &Args) -> Result<Report, Failure> {
         .field("best_gait", &evolved.best)
         .field("way_mm", rounded(units::to_mm(way)))
         .field("threads", evolved.threads)
-        .field("picture", file.display().to_string());
+        .field("picture", picture.map(|file| file.display().to_string()));
     Ok(Report { sim_time: Some(args.seconds * evolved.evaluations as f64), trouble, ..report })
+}
+
+/// Draws a walk where the options say. Returns the file of the strip, and what went wrong.
+fn draw(args: &Args, walk: &strip::Walk) -> (Option<PathBuf>, Option<String>) {
+    let usual = || (!args.common.json).then(|| PathBuf::from("starman.svg"));
+    let strip = args.common.picture.clone().or_else(usual);
+    let drawn = strip.as_ref().map(|file| strip::picture(args, walk).save(file)).transpose();
+    let moved = args.animation.as_ref().map(|file| moving::save(file, walk)).transpose();
+    if let Some(file) = &strip {
+        args.common.tell(format_args!("its picture: {}", file.display()));
+    }
+    let trouble = drawn.err().map(|error| error.to_string()).or(moved.err().map(|error| error.to_string()));
+    (strip, trouble)
 }

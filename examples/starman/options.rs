@@ -10,7 +10,8 @@ use super::evolution::Trials;
     name = "starman",
     about = "A round robot with five limbs learns to walk by a genetic algorithm",
     after_help = "\
-Fitness is 1 plus the millimetres that a gait brings the robot along the floor.
+Fitness is 1 plus the millimetres that a gait brings the robot along the floor. The best gait's walk is drawn into
+starman.svg, except with --json.
 
 JSON fields:
   generations, evaluations       made by this run, a checkpoint's included
@@ -20,7 +21,7 @@ JSON fields:
   population_hash                tells final populations apart
   best_gait                      its bytes, five for each control point
   way_mm                         where the best gait's walk ends along the floor, which --record records
-  threads, picture
+  threads, picture               the file of the strip, if there is one
 With --compare, `rows`: seed, best_first, best_last, random (the best of as many random gaits), and how often
 evolution was better. With --steps, `rows`: time step, median change of the way when it is halved.
 Outcomes: evolved, compared, failed."

@@ -1,14 +1,10 @@
 //! The example `quadtree` as a whole.
 
-#[path = "../examples/common/mod.rs"]
-mod common;
-#[path = "../examples/quadtree/mod.rs"]
-mod quadtree;
-
 use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 
+use crate::{common, quadtree};
 use serde_json::{Value, json};
 
 fn run(options: &[&str]) -> (u8, String, String) {

@@ -1,15 +1,11 @@
 //! The planners on grids through the example `grid_benchmark`, on small maps of the project, and on published maps where
 //! the environment variable `ROVERLAB_DATA` names the folder that holds `movingai/`.
 
-#[path = "../examples/common/mod.rs"]
-mod common;
-#[path = "../examples/grid_benchmark/mod.rs"]
-mod grid_benchmark;
-
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::{common, grid_benchmark};
 use roverlab::nav::grid::{
     AnyAngle, GridPlanner, GridSearch, JumpPointSearch, PreparedJumps, Quadtree, QuadtreePlanner,
 };

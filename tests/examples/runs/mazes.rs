@@ -3,20 +3,11 @@
 //! The published mazes are no part of the project: their tests run when the environment variable `ROVERLAB_DATA` names the
 //! folder that holds `micromouse/`.
 
-mod common {
-    pub(crate) use crate::shared::*;
-}
-#[path = "../examples/driving/mod.rs"]
-mod driving;
-#[path = "../examples/micromouse/mod.rs"]
-mod micromouse;
-#[path = "../examples/common/mod.rs"]
-mod shared;
-
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::{common, micromouse};
 use roverlab::maze::files::{self, MazeFormat};
 use roverlab::maze::{Preference, Unknown, distances_from_start, distances_to_goal, shortest_route};
 use serde_json::Value;

@@ -1,16 +1,12 @@
 //! The example `bug_compare` as a whole: tables, the campaign, its measures, and refusals.
 
-#[path = "../examples/bug_compare/mod.rs"]
-mod bug_compare;
-#[path = "../examples/common/mod.rs"]
-mod common;
-
 use std::f64::consts::{PI, TAU};
 use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 
-use bug_compare::{Boundaries, interval};
+use crate::bug_compare::{Boundaries, interval};
+use crate::{bug_compare, common};
 use roverlab::geometry::{Point, Segment, direction};
 use roverlab::random::Stream;
 use roverlab::world::{Wall, World};

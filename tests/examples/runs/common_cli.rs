@@ -1,15 +1,12 @@
 //! The command line and the report that all examples share.
 
-#[path = "../examples/common/mod.rs"]
-mod common;
-
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::Parser;
-use common::{
+use crate::common::{
     CommonArgs, Failure, Outcome, Report, parse_noise, parse_point, parse_pose, parse_seconds, run,
 };
+use clap::Parser;
 use proptest::prelude::*;
 use roverlab::geometry::{Pose, units};
 use serde_json::{Value, json};

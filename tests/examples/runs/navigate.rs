@@ -1,16 +1,10 @@
 //! The example `navigate` as a whole.
 
-#[path = "../examples/common/mod.rs"]
-mod common;
-#[path = "../examples/driving/mod.rs"]
-mod driving;
-#[path = "../examples/navigate/mod.rs"]
-mod navigate;
-
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::{common, navigate};
 use clap::Parser;
 use serde_json::Value;
 

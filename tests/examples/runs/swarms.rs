@@ -1,22 +1,11 @@
 //! The examples `random_drive`, `coverage` and `follow_me` as wholes.
 
-#[path = "../examples/common/mod.rs"]
-mod common;
-#[path = "../examples/coverage/mod.rs"]
-mod coverage;
-#[path = "../examples/driving/mod.rs"]
-mod driving;
-#[path = "../examples/follow_me/mod.rs"]
-mod follow_me;
-#[path = "../examples/random_drive/mod.rs"]
-mod random_drive;
-mod support;
-
 use std::fs;
 use std::path::Path;
 
+use crate::support::{Ended, number, run};
+use crate::{coverage, follow_me, random_drive};
 use clap::Parser;
-use support::{Ended, number, run};
 
 fn assert_ended((status, report, err): &Ended, outcome: &str) {
     assert_eq!((*status, report["outcome"].as_str(), err.as_str()), (0, Some(outcome), ""), "{report}");

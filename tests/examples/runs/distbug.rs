@@ -1,14 +1,10 @@
 //! The example `distbug` as a whole: worlds from files, options, faults, verdicts, pictures and exit statuses.
 
-#[path = "../examples/common/mod.rs"]
-mod common;
-#[path = "../examples/distbug/mod.rs"]
-mod distbug;
-
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::{common, distbug};
 use roverlab::world::formats::robi;
 use roverlab::world::{DriveSpec, LidarSpec, RobotSpec};
 use serde_json::{Value, json};

@@ -1,16 +1,12 @@
 //! DistBug on generated courses, in small: the example `distbug_campaign` as a whole.
 
-#[path = "../examples/common/mod.rs"]
-mod common;
-#[path = "../examples/distbug/mod.rs"]
-mod distbug;
-
 use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 
+use crate::distbug::CampaignArgs;
+use crate::{common, distbug};
 use clap::Parser;
-use distbug::CampaignArgs;
 use serde_json::Value;
 
 fn args(options: &[&str]) -> CampaignArgs {

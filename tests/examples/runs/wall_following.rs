@@ -1,20 +1,13 @@
 //! The example `wall_following` as a whole.
 
-#[path = "../examples/common/mod.rs"]
-mod common;
-#[path = "../examples/driving/mod.rs"]
-mod driving;
-mod support;
-#[path = "../examples/wall_following/mod.rs"]
-mod wall_following;
-
 use std::fs;
 use std::path::Path;
 
+use crate::support::{Ended, number};
+use crate::wall_following::{Args, Controller, Row};
+use crate::{support, wall_following};
 use clap::Parser;
 use serde_json::Value;
-use support::{Ended, number};
-use wall_following::{Args, Controller, Row};
 
 fn run(options: &[&str]) -> Ended {
     support::run("wall_following", wall_following::work, options)

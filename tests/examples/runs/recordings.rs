@@ -1,59 +1,11 @@
 //! Recorded and replayed runs of the examples.
 
-#[path = "../examples/a_to_b/mod.rs"]
-mod a_to_b;
-#[path = "../examples/ackermann/mod.rs"]
-mod ackermann;
-#[path = "../examples/bug_compare/mod.rs"]
-mod bug_compare;
-#[path = "../examples/camera/mod.rs"]
-mod camera;
-#[path = "../examples/color_tracking/mod.rs"]
-mod color_tracking;
-#[path = "../examples/common/mod.rs"]
-mod common;
-#[path = "../examples/coverage/mod.rs"]
-mod coverage;
-#[path = "../examples/distbug/mod.rs"]
-mod distbug;
-#[path = "../examples/driving/mod.rs"]
-mod driving;
-#[path = "../examples/edges/mod.rs"]
-mod edges;
-#[path = "../examples/follow_me/mod.rs"]
-mod follow_me;
-#[path = "../examples/genetic/mod.rs"]
-mod genetic;
-#[path = "../examples/lidar_scan/mod.rs"]
-mod lidar_scan;
-#[path = "../examples/localise/mod.rs"]
-mod localise;
-#[path = "../examples/micromouse/mod.rs"]
-mod micromouse;
-#[path = "../examples/motion/mod.rs"]
-mod motion;
-#[path = "../examples/navigate/mod.rs"]
-mod navigate;
-#[path = "../examples/omni/mod.rs"]
-mod omni;
-#[path = "../examples/common/programs.rs"]
-mod programs;
-#[path = "../examples/random_drive/mod.rs"]
-mod random_drive;
-#[path = "../examples/replay/mod.rs"]
-mod replay;
-#[path = "../examples/room/mod.rs"]
-mod room;
-#[path = "../examples/starman/mod.rs"]
-mod starman;
-#[path = "../examples/wall_following/mod.rs"]
-mod wall_following;
-
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use common::{CommonArgs, Failure, Report};
+use crate::common::{CommonArgs, Failure, Report};
+use crate::{a_to_b, ackermann, common, distbug, omni, programs, replay};
 use roverlab::io::log::recover;
 use roverlab::world::{LidarSpec, RobotSpec, formats};
 use serde_json::Value;
@@ -316,7 +268,7 @@ fn files_that_cannot_be_replayed_are_named() {
 }
 
 /// A small recording that was made once, perhaps on another machine. After a change that is meant to change runs, it is
-/// made anew by `REGENERATE=1 cargo test --test recordings`.
+/// made anew by `REGENERATE=1 cargo test --test examples recordings`.
 #[test]
 fn a_recording_of_another_machine_checks() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/logs");
@@ -355,7 +307,7 @@ fn a_killed_process_loses_its_last_chunk_at_most() {
     let start = || {
         let _ = fs::remove_file(&log);
         let mut command = std::process::Command::new(std::env::current_exe().unwrap());
-        command.args(["--exact", "a_process_to_be_killed"]).env(VICTIM, &log);
+        command.args(["--exact", "runs::recordings::a_process_to_be_killed"]).env(VICTIM, &log);
         command.stdout(std::process::Stdio::null()).spawn().unwrap()
     };
     let watch = common::Stopwatch::start();

@@ -1,20 +1,11 @@
 //! The examples `lidar_scan` and `localise` as wholes.
 
-#[path = "../examples/common/mod.rs"]
-mod common;
-#[path = "../examples/driving/mod.rs"]
-mod driving;
-#[path = "../examples/lidar_scan/mod.rs"]
-mod lidar_scan;
-#[path = "../examples/localise/mod.rs"]
-mod localise;
-mod support;
-
 use std::fs;
 use std::path::Path;
 
+use crate::support::{Ended, number, run};
+use crate::{lidar_scan, localise};
 use clap::Parser;
-use support::{Ended, number, run};
 
 fn lidar_scan(options: &[&str]) -> Ended {
     run("lidar_scan", lidar_scan::work, options)

@@ -1,26 +1,11 @@
 //! The examples `camera`, `edges`, `color_tracking` and `motion` as wholes.
 
-#[path = "../examples/camera/mod.rs"]
-mod camera;
-#[path = "../examples/color_tracking/mod.rs"]
-mod color_tracking;
-#[path = "../examples/common/mod.rs"]
-mod common;
-#[path = "../examples/driving/mod.rs"]
-mod driving;
-#[path = "../examples/edges/mod.rs"]
-mod edges;
-#[path = "../examples/motion/mod.rs"]
-mod motion;
-#[path = "../examples/room/mod.rs"]
-mod room;
-mod support;
-
 use std::path::PathBuf;
 
+use crate::support::{assert_outcome, run, temporary, text};
+use crate::{camera, color_tracking, edges, motion};
 use clap::ValueEnum;
 use image::RgbImage;
-use support::{assert_outcome, run, temporary, text};
 
 /// An image of coloured squares with noise.
 fn squares(name: &str) -> PathBuf {

@@ -1,22 +1,11 @@
 //! The examples `a_to_b`, `ackermann` and `omni` as wholes.
 
-#[path = "../examples/a_to_b/mod.rs"]
-mod a_to_b;
-#[path = "../examples/ackermann/mod.rs"]
-mod ackermann;
-#[path = "../examples/common/mod.rs"]
-mod common;
-#[path = "../examples/driving/mod.rs"]
-mod driving;
-#[path = "../examples/omni/mod.rs"]
-mod omni;
-mod support;
-
 use std::fs;
 use std::path::Path;
 
+use crate::support::{Ended, number, run};
+use crate::{a_to_b, ackermann, omni};
 use clap::Parser;
-use support::{Ended, number, run};
 
 fn a_to_b(options: &[&str]) -> Ended {
     run("a_to_b", a_to_b::work, options)

@@ -1,16 +1,10 @@
 //! The examples `cone_race` and `cone_drive` as wholes.
 
-#[path = "../examples/common/mod.rs"]
-mod common;
-#[path = "../examples/cone_drive/mod.rs"]
-mod cone_drive;
-#[path = "../examples/cone_race/mod.rs"]
-mod cone_race;
-
 use std::ffi::OsString;
 use std::fs;
 
-use cone_race::course;
+use crate::cone_race::course;
+use crate::{common, cone_drive, cone_race};
 use serde_json::Value;
 
 /// Runs the example with `--json`. Returns its status and its report, and what it said on standard error.

@@ -1,0 +1,128 @@
+//! The examples `genetic` and `starman` as wholes.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::{env, fs, thread, time};
+
+use crate::support::{number, run};
+use crate::{genetic, starman};
+use serde_json::Value;
+
+#[test]
+fn all_methods_find_the_same_spline() {
+    let scales = ["genetic", "steady-state", "cma-es"].map(|method| {
+        let options = ["--method", method, "--generations", "60"];
+        let (status, report, err) = run("genetic", genetic::work, &options);
+        assert_eq!((status, err.as_str()), (0, ""), "{report}");
+        report["scale"].as_f64().unwrap()
+    });
+    assert!(scales.iter().all(|scale| (scale - scales[0]).abs() < 0.02), "{scales:?}");
+}
+
+#[test]
+fn gains_of_a_wall_follower_get_better() {
+    let options = ["--task", "wall", "--generations", "3", "--noise", "1"];
+    let (status, report, err) = run("genetic", genetic::work, &options);
+    assert_eq!((status, err.as_str()), (0, ""), "{report}");
+    assert!(report["fitness"].as_f64().unwrap() > -0.02, "{report}");
+}
+
+#[test]
+fn options_without_a_meaning_are_refused() {
+    let (status, _, err) = run("genetic", genetic::work, &["--world", "a.wld"]);
+    let expected = "--world: has no meaning for evolution; expected a command line without it\n";
+    assert_eq!((status, err.as_str()), (2, expected));
+}
+
+const SMALL: [&str; 6] = ["--population", "8", "--generations", "6", "--seconds", "4"];
+
+fn folder(name: &str) -> PathBuf {
+    let folder = env::temp_dir().join(format!("roverlab-starman-{name}-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn evolved(folder: &Path, options: &[&str]) -> Value {
+    let picture = folder.join("starman.svg");
+    let options = [&SMALL[..], &["--picture", picture.to_str().unwrap()], options].concat();
+    let (status, report, err) = run("starman", starman::work, &options);
+    assert_eq!((status, err.as_str()), (0, ""), "{report}");
+    report
+}
+
+#[test]
+fn threads_do_not_change_the_population() {
+    let folder = folder("threads");
+    let hashes =
+        ["1", "2", "8"].map(|threads| evolved(&folder, &["--threads", threads])["population_hash"].clone());
+    assert!(hashes.iter().all(|hash| *hash == hashes[0] && hash.is_string()), "{hashes:?}");
+    assert_ne!(evolved(&folder, &["--seed", "2"])["population_hash"], hashes[0]);
+    assert!(fs::read_to_string(folder.join("starman.svg")).unwrap().starts_with("<svg"));
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn the_best_gait_gets_better_and_moves_in_its_picture() {
+    let folder = folder("better");
+    let animation = folder.join("walk.svg");
+    let report = evolved(&folder, &["--init", "uniform", "--animation", animation.to_str().unwrap()]);
+    let number = |name: &str| number(&report, name);
+    assert!(number("best_last") >= number("best_first") && number("best_first") > 1.0, "{report}");
+    assert_eq!(number("evaluations"), 48.0);
+    let moving = fs::read_to_string(animation).unwrap();
+    assert_eq!(moving.matches("<line").count(), 6, "a floor and five limbs");
+    assert!(moving.contains("<animate"));
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn only_a_program_that_is_told_so_works_for_another() {
+    assert!(starman::work_for_another().is_none());
+}
+
+/// Not a test of its own: the run that the test below kills.
+#[test]
+fn run_that_is_killed() {
+    if let Ok(folder) = env::var("ROVERLAB_KILLED_RUN") {
+        resumable(Path::new(&folder));
+    }
+}
+
+fn resumable(folder: &Path) -> Value {
+    let checkpoint = folder.join("run.json");
+    evolved(folder, &["--leading", "2", "--threads", "1", "--checkpoint", checkpoint.to_str().unwrap()])
+}
+
+#[test]
+fn a_killed_run_goes_on_to_the_same_end() {
+    let (killed, whole) = (folder("killed"), folder("whole"));
+    for wait in [100, 250, 175] {
+        let mut child = Command::new(env::current_exe().unwrap())
+            .args(["--exact", "runs::evolution::run_that_is_killed"])
+            .env("ROVERLAB_KILLED_RUN", &killed)
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap();
+        thread::sleep(time::Duration::from_millis(wait));
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    assert_eq!(resumable(&killed)["population_hash"], resumable(&whole)["population_hash"]);
+    fs::remove_dir_all(killed).unwrap();
+    fs::remove_dir_all(whole).unwrap();
+}
+
+#[test]
+fn a_checkpoint_of_another_run_is_refused() {
+    let folder = folder("other");
+    resumable(&folder);
+    let checkpoint = folder.join("run.json");
+    let options = ["--population", "9", "--seconds", "4", "--checkpoint", checkpoint.to_str().unwrap()];
+    let (status, _, err) = run("starman", starman::work, &options);
+    assert_eq!(status, 2, "{err}");
+    assert!(
+        err.contains("a run with population 8") && err.contains("expected one with population 9"),
+        "{err}"
+    );
+    fs::remove_dir_all(folder).unwrap();
+}
