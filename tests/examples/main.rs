@@ -16,6 +16,8 @@ mod common;
 mod cone_drive;
 #[path = "../../examples/cone_race/mod.rs"]
 mod cone_race;
+#[path = "../../examples/cone_race/course.rs"]
+mod course;
 #[path = "../../examples/coverage/mod.rs"]
 mod coverage;
 #[path = "../../examples/distbug/mod.rs"]

@@ -3,7 +3,6 @@
 use std::ffi::OsString;
 use std::fs;
 
-use crate::cone_race::course;
 use crate::{common, cone_drive, cone_race};
 use serde_json::Value;
 
