@@ -58,12 +58,16 @@ pub(crate) fn worlds() -> Vec<Place> {
     .into()
 }
 
-/// A random pose inside of a world with walls round it, with room for a robot.
+/// A random pose with room for a robot: where the world's own start can be reached, or else inside of the walls round it.
 pub(crate) fn start(world: &World, radius: f64, seed: u64) -> Option<Pose> {
     const TRIES: usize = 10_000;
     let free = Reachability::new(world, radius + 0.05, 0.02).ok()?;
     let bounds = world.bounds();
     let outside = bounds.inflated(0.1).min;
+    let is_inside = |place| match world.start {
+        Some(start) => free.connected(place, start.position()),
+        None => !free.connected(place, outside),
+    };
     let mut stream = Stream::new(seed).child("start", 0);
     (0..TRIES).find_map(|_| {
         let place = Point::new(
@@ -71,7 +75,6 @@ pub(crate) fn start(world: &World, radius: f64, seed: u64) -> Option<Pose> {
             stream.between(bounds.min.y, bounds.max.y),
         );
         let heading = stream.between(-PI, PI);
-        let good = free.is_free(place) && !free.connected(place, outside);
-        good.then(|| Pose::new(place.x, place.y, heading))
+        (free.is_free(place) && is_inside(place)).then(|| Pose::new(place.x, place.y, heading))
     })
 }

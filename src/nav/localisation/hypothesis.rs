@@ -47,6 +47,8 @@ const LEAST_ERROR: f64 = 0.01;
 const OUTLIERS: f64 = 0.1;
 /// What likelihoods are raised to, since an error of the pose is in all beams.
 const TEMPER: f64 = 0.1;
+/// Hypotheses nearer than this, in metres and radians, are the same.
+const SAME: (f64, f64) = (0.06, 0.06);
 
 impl Hypothesis {
     pub(super) fn new(pose: Pose, spread: f64) -> Self {
@@ -58,6 +60,19 @@ impl Hypothesis {
             log_weight: 0.0,
             explained: 0.0,
         }
+    }
+
+    /// Whether it is about the same place as another one.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        self.pose.distance_to(other.pose.position()) <= SAME.0
+            && angle_difference(self.pose.heading, other.pose.heading).abs() <= SAME.1
+    }
+
+    /// The pose turned by an angle, about the point that leaves it as probable as can be.
+    pub(super) fn turned(&self, angle: f64) -> Pose {
+        let [x, y] = [0, 1].map(|axis| self.covariance[(axis, 2)] / self.covariance[(2, 2)]);
+        let Pose { heading, .. } = self.pose;
+        Pose::new(self.pose.x + angle * x, self.pose.y + angle * y, normalize_angle(heading + angle))
     }
 
     /// Moves on with the robot, by its motion in its own frame.

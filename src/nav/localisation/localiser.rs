@@ -92,8 +92,9 @@ const SEARCH_STEPS: usize = 10;
 const TRACK_STEPS: usize = 3;
 /// How far a candidate of a search may be off, in metres and radians.
 const CANDIDATE_SPREAD: f64 = 0.15;
-/// Hypotheses nearer than this, in metres and radians, are the same.
-const SAME: (f64, f64) = (0.06, 0.06);
+/// How many candidates are tried again, turned by so many radians.
+const TURNED: usize = 16;
+const TURNS: [f64; 6] = [-0.2, -0.13, -0.06, 0.06, 0.13, 0.2];
 /// A hypothesis counts if it is this probable in terms of the best one.
 const COUNTS: f64 = 0.02;
 /// The share of beams that have to be as expected.
@@ -207,12 +208,28 @@ impl Localiser {
 
     fn search(&mut self, scan: &LidarScan, bench: &mut Bench) {
         self.searches += 1;
-        for candidate in search(&self.map, scan, &self.parameters) {
-            let mut hypothesis = Hypothesis::new(candidate.pose, CANDIDATE_SPREAD);
+        let candidates = search(&self.map, scan, &self.parameters);
+        self.try_poses(candidates.into_iter().map(|candidate| candidate.pose), scan, bench);
+        self.turn_best(scan, bench);
+    }
+
+    /// Makes hypotheses of poses that may be right.
+    fn try_poses(&mut self, poses: impl IntoIterator<Item = Pose>, scan: &LidarScan, bench: &mut Bench) {
+        for pose in poses {
+            let mut hypothesis = Hypothesis::new(pose, CANDIDATE_SPREAD);
             hypothesis.log_weight =
                 hypothesis.match_scan(&self.map, scan, bench, &self.parameters, SEARCH_STEPS);
             self.hypotheses.push(hypothesis);
         }
+    }
+
+    /// Adds the best hypotheses turned a little. A round wall is made of straight pieces, and a scan that is off by one
+    /// piece fits nearly as well as the right one: matching does not leave it, and candidates so near are not looked at.
+    fn turn_best(&mut self, scan: &LidarScan, bench: &mut Bench) {
+        self.unite();
+        let best = self.hypotheses.iter().take(TURNED);
+        let turned: Vec<Pose> = best.flat_map(|best| TURNS.map(|turn| best.turned(turn))).collect();
+        self.try_poses(turned, scan, bench);
     }
 
     fn track(&mut self, motion: &Pose, scan: &LidarScan, bench: &mut Bench, other_view: bool) {
@@ -230,24 +247,27 @@ impl Localiser {
 
     /// Sorts, unites and weighs the hypotheses, and drops the improbable ones.
     fn tidy(&mut self) {
+        self.unite();
+        let best = self.hypotheses.first().map_or(0.0, |best| best.log_weight);
+        let least = best + math::ln(self.parameters.least_probability);
+        self.hypotheses.retain(|hypothesis| hypothesis.log_weight >= least);
+        self.hypotheses.truncate(MOST);
+        let total: f64 = self.hypotheses.iter().map(|other| math::exp(other.log_weight - best)).sum();
+        for hypothesis in &mut self.hypotheses {
+            hypothesis.log_weight -= best;
+            hypothesis.probability = math::exp(hypothesis.log_weight) / total;
+        }
+    }
+
+    /// Sorts the hypotheses, the best one first, and keeps the best alone of those that are the same.
+    fn unite(&mut self) {
         self.hypotheses.retain(|hypothesis| hypothesis.log_weight.is_finite());
         self.hypotheses.sort_by(|a, b| b.log_weight.total_cmp(&a.log_weight));
         let mut kept: Vec<Hypothesis> = Vec::with_capacity(self.hypotheses.len());
-        let best = self.hypotheses.first().map_or(0.0, |best| best.log_weight);
-        let least = best + math::ln(self.parameters.least_probability);
         for hypothesis in self.hypotheses.drain(..) {
-            let is_new = kept.iter().all(|other| {
-                other.pose.distance_to(hypothesis.pose.position()) > SAME.0
-                    || angle_difference(other.pose.heading, hypothesis.pose.heading).abs() > SAME.1
-            });
-            if is_new && hypothesis.log_weight >= least && kept.len() < MOST {
+            if !kept.iter().any(|other| other.is_same(&hypothesis)) {
                 kept.push(hypothesis);
             }
-        }
-        let total: f64 = kept.iter().map(|other| math::exp(other.log_weight - best)).sum();
-        for hypothesis in &mut kept {
-            hypothesis.log_weight -= best;
-            hypothesis.probability = math::exp(hypothesis.log_weight) / total;
         }
         self.hypotheses = kept;
     }

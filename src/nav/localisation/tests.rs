@@ -1,7 +1,7 @@
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::*;
-use crate::geometry::{Point, Pose, angle_difference};
+use crate::geometry::{Point, Pose, angle_difference, direction};
 use crate::io::sim::{SimOptions, Simulation};
 use crate::io::{Drive, Lidar, LidarScan};
 use crate::world::{RobotSpec, Scene, Wall, World};
@@ -63,6 +63,24 @@ fn a_place_is_found_wherever_it_is() {
             assert_eq!(localiser.localisation().count(), 1, "{start:?} {noise}");
             assert_found(&localiser, simulation.truth().pose(0).unwrap());
         }
+    }
+}
+
+/// A round room of straight pieces with a door: turned by one piece it looks nearly the same.
+#[test]
+fn a_round_room_is_not_taken_for_itself_turned() {
+    const PIECES: usize = 40;
+    let middle = Point::new(1.0, 1.0);
+    let corner = |i: usize| middle + direction(TAU * i as f64 / PIECES as f64) * 0.6;
+    let mut world = World::empty(2.0, 2.0);
+    world.walls.extend((3..PIECES).map(|i| Wall::new(corner(i), corner(i + 1))));
+    for seed in 0..8_u64 {
+        let start = Pose::new(0.9 + 0.03 * seed as f64, 1.1, 0.7 * seed as f64);
+        let simulation = simulation(&world, start, 1.0, seed);
+        let mut localiser = localiser(&world);
+        look_round(&simulation, &mut localiser, 8);
+        assert_eq!(localiser.localisation().count(), 1, "{start:?}");
+        assert_found(&localiser, simulation.truth().pose(0).unwrap());
     }
 }
 
