@@ -1,6 +1,7 @@
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use roverlab::geometry::Segment;
+use roverlab::geometry::{Segment, direction};
 use roverlab::nav::{BugKind, PathBound};
 use roverlab::random::Stream;
 use roverlab::world::RobotSpec;
@@ -29,6 +30,10 @@ pub(crate) struct Checked {
 
 /// By which part more than those traced the perimeters count.
 const TOLERANCE: f64 = 0.02;
+/// Metres by which lines are traced nearer to obstacles than the middle of the narrowest corridor.
+const RESERVE: f64 = 0.004;
+/// Metres to a point outside of every field.
+const FAR: f64 = 1e3;
 
 /// The work of the campaign.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
@@ -63,7 +68,11 @@ pub(crate) fn check(args: &Args, seed: u64) -> Result<Vec<Checked>, Failure> {
         if bounded && boundaries.is_none() {
             let parameters = parameters(&setting.trip, args.common.noise);
             let followed = parameters.robot_radius + parameters.clearance;
-            boundaries = Some(Boundaries::new(&course.world, followed).map_err(Failure::run)?);
+            // Robots go through passages that are too narrow for the clearance that they keep elsewhere: so the lines are
+            // those of half the narrowest corridor, which parts nothing, and count as parallels of them.
+            let traced = followed.min(0.5 * options.min_corridor - RESERVE);
+            let lines = Boundaries::new(&course.world, traced).map_err(Failure::run)?;
+            boundaries = Some((lines, followed - traced));
         }
         let traced = boundaries.as_ref().filter(|_| bounded);
         Ok(Checked {
@@ -74,22 +83,28 @@ pub(crate) fn check(args: &Args, seed: u64) -> Result<Vec<Checked>, Failure> {
             contacts: ride.contacts,
             sim_time: ride.sim_time,
             of_bound: traced
-                .and_then(|boundaries| Some(ride.path_length / bound(&setting, &ride, boundaries)?)),
+                .and_then(|(lines, apart)| Some(ride.path_length / bound(&setting, &ride, lines, *apart)?)),
         })
     };
     args.bugs().iter().map(drive).collect()
 }
 
-/// The bound of a ride's path in metres.
-fn bound(setting: &Setting, ride: &Ride, boundaries: &Boundaries) -> Option<f64> {
+/// The bound of a ride's path in metres. The robot's middle follows parallels of the lines, so many metres `apart`.
+fn bound(setting: &Setting, ride: &Ride, boundaries: &Boundaries, apart: f64) -> Option<f64> {
     let line = Segment::new(setting.trip.start().position(), setting.trip.goal);
     let mut met: Vec<usize> = ride.hits.iter().filter_map(|&hit| boundaries.nearest(hit)).collect();
     met.sort_unstable();
     met.dedup();
     let crossed = ride.guarantee.path_bound == PathBound::Crossings;
     let counted = boundaries.all.iter().enumerate().filter(|(index, _)| crossed || met.contains(index));
+    // A parallel outside of a closed line is longer by a full turn times the distance, and one inside shorter.
+    let far = line.a + direction(0.4) * FAR;
     let terms: Vec<(f64, usize)> = counted
-        .map(|(_, line_of)| ((1.0 + TOLERANCE) * line_of.perimeter, line_of.crossings(line)))
+        .map(|(_, line_of)| {
+            let is_inside = line_of.crossings(Segment::new(line.a, far)) % 2 == 1;
+            let parallel = line_of.perimeter + if is_inside { -TAU } else { TAU } * apart;
+            ((1.0 + TOLERANCE) * parallel, line_of.crossings(line))
+        })
         .collect();
     ride.guarantee.path_bound.metres(setting.trip.distance(), &terms)
 }
