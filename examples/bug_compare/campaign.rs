@@ -12,7 +12,7 @@ use super::Args;
 use super::boundaries::Boundaries;
 use super::contest::Setting;
 use super::ride::{Ride, parameters, ride};
-use crate::common::{Failure, Outcome, Report, rounded, share_out};
+use crate::common::{Failure, Outcome, Report, rounded, share_out, threads};
 
 /// What is left of one run in the campaign.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +38,7 @@ const FAR: f64 = 1e3;
 /// The work of the campaign.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
     let courses = args.runs.unwrap_or(1000);
-    let checked = share_out("courses", courses, args.threads(), |index| {
+    let checked = share_out("courses", courses, threads(args.threads), |index| {
         check(args, args.common.seed.wrapping_add(index))
     })?;
     let checked: Vec<Checked> = checked.into_iter().flatten().collect();
@@ -91,22 +91,23 @@ pub(crate) fn check(args: &Args, seed: u64) -> Result<Vec<Checked>, Failure> {
 
 /// The bound of a ride's path in metres. The robot's middle follows parallels of the lines, so many metres `apart`.
 fn bound(setting: &Setting, ride: &Ride, boundaries: &Boundaries, apart: f64) -> Option<f64> {
-    let line = Segment::new(setting.trip.start().position(), setting.trip.goal);
-    let mut met: Vec<usize> = ride.hits.iter().filter_map(|&hit| boundaries.nearest(hit)).collect();
+    let (start, goal) = (setting.trip.start().position(), setting.trip.goal);
+    let mut met: Vec<usize> =
+        ride.follows.iter().filter_map(|&(from, to)| boundaries.followed(&ride.path[from..to])).collect();
     met.sort_unstable();
     met.dedup();
-    let crossed = ride.guarantee.path_bound == PathBound::Crossings;
-    let counted = boundaries.all.iter().enumerate().filter(|(index, _)| crossed || met.contains(index));
+    // The lines that the robot drives along: the first one, and one from each hit point.
+    let ways: Vec<Segment> = [start].iter().chain(&ride.hits).map(|&from| Segment::new(from, goal)).collect();
     // A parallel outside of a closed line is longer by a full turn times the distance, and one inside shorter.
-    let far = line.a + direction(0.4) * FAR;
-    let terms: Vec<(f64, usize)> = counted
-        .map(|(_, line_of)| {
-            let is_inside = line_of.crossings(Segment::new(line.a, far)) % 2 == 1;
-            let parallel = line_of.perimeter + if is_inside { -TAU } else { TAU } * apart;
-            ((1.0 + TOLERANCE) * parallel, line_of.crossings(line))
-        })
-        .collect();
-    ride.guarantee.path_bound.metres(setting.trip.distance(), &terms)
+    let far = Segment::new(start, start + direction(0.4) * FAR);
+    let terms = met.into_iter().map(|index| {
+        let line = &boundaries.all[index];
+        let is_inside = line.crossings(far) % 2 == 1;
+        let parallel = line.perimeter + if is_inside { -TAU } else { TAU } * apart;
+        let crossings = ways.iter().map(|&way| line.crossings(way)).max().unwrap_or(0);
+        ((1.0 + TOLERANCE) * parallel, crossings)
+    });
+    ride.guarantee.path_bound.metres(setting.trip.distance(), &terms.collect::<Vec<_>>())
 }
 
 fn breaks(run: &Checked) -> bool {
