@@ -87,10 +87,10 @@ fn what_is_wrong_with_files_is_named() {
     for (query, expected, part) in [
         ("2 1 0 0 1", 2, "parted.scen: query 2: the start (2, 1) is blocked; expected a free cell"),
         ("0 0 2 0 1", 2, "parted.scen: query 2: the goal (2, 0) is blocked; expected a free cell"),
-        ("5 1 0 0 1", 2, "parted.scen:3:16: found `5`"),
-        ("0 0 0 2 1", 2, "parted.scen:3:22: found `2`"),
-        ("0 0 0 1 nan", 2, "parted.scen:3:24: found `nan`"),
-        ("0 0 0 1 -1", 2, "parted.scen:3:24: found `-1`"),
+        ("5 1 0 0 1", 2, "parted.scen:3:14: found `5`"),
+        ("0 0 0 2 1", 2, "parted.scen:3:20: found `2`"),
+        ("0 0 0 1 nan", 2, "parted.scen:3:22: found `nan`"),
+        ("0 0 0 1 -1", 2, "parted.scen:3:22: found `-1`"),
         ("0 0 4 1 5", 1, "parted.scen: query 2: no way leads from (0, 0) to (4, 1)"),
     ] {
         fs::write(&scen, format!("version 1\n0 parted 5 2 0 0 1 0 1\n0 parted 5 2 {query}\n")).unwrap();
