@@ -189,6 +189,7 @@ fn bounds_are_those_of_the_papers() {
     let guarantee =
         |kind: BugKind| kind.with(Point::new(1.0, 0.0), BugParameters::default()).unwrap().guarantee();
     assert_eq!(guarantee(BugKind::Bug1).path_bound, PathBound::Perimeters);
+    assert_eq!(guarantee(BugKind::LeaveBug).path_bound, PathBound::TwicePerimeters);
     assert_eq!(guarantee(BugKind::Bug2).path_bound, PathBound::Crossings);
     assert!(BugKind::ALL.into_iter().all(|kind| guarantee(kind).complete));
 }

@@ -3,9 +3,9 @@
 //! `cargo bench --bench planners` prints a table for each map with the median time of a query and, at the end, geometric
 //! means of the ratios over the maps of 512 cells and more. Published maps take part where the environment variable
 //! `ROVERLAB_DATA` names the folder that holds `movingai/`; others are made here. `-- --scaling` shows how the planners and
-//! the decomposition into a quadtree grow up to 4096 x 4096 cells instead. `--queries N` and `--repeat N` say how many
-//! queries a map has got and how often each is asked, the fastest time of which counts; `--maps TEXT` takes the maps alone
-//! whose names hold a text, `--own` none but those made here.
+//! the decomposition into a quadtree grow up to 4096 x 4096 cells instead, with fewer queries on larger maps.
+//! `--queries N` and `--repeat N` say how many queries a map has got and how often each is asked, the fastest time of
+//! which counts; `--maps TEXT` takes the maps alone whose names hold a text, `--own` none but those made here.
 
 #[path = "planners/compare.rs"]
 mod compare;
@@ -93,14 +93,21 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
+/// Cells along the sides of maps, and how many queries these get at most: a search of all cells of the last takes seconds.
+const SIZES: [(usize, usize); 5] = [(256, 100), (512, 100), (1024, 50), (2048, 20), (4096, 8)];
+
 /// How the planners of this library grow.
 fn scaling(options: &Options) {
-    for size in [256, 512, 1024, 2048, 4096] {
-        for map in maps::own(size, options.queries.min(100)) {
+    let mut results = Vec::new();
+    for (size, queries) in SIZES {
+        for map in maps::own(size, options.queries.min(queries)) {
             if map.name.contains(&options.maps) {
-                print!("{}", compare::compare(&map, &table::ours(), options.repeat));
+                let result = compare::compare(&map, &table::ours(), options.repeat);
+                print!("{result}");
+                results.push(result);
             }
         }
         decomposition::show(size);
     }
+    print!("{}", summary::growth(&results));
 }

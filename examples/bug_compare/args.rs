@@ -74,10 +74,4 @@ impl Args {
     pub(crate) fn families(&self) -> &[CourseFamily] {
         if self.families.is_empty() { &CourseFamily::ALL } else { &self.families }
     }
-
-    /// How many threads drive.
-    pub(crate) fn threads(&self) -> usize {
-        let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
-        self.threads.map_or_else(cores, NonZero::get)
-    }
 }

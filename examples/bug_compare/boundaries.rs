@@ -21,6 +21,9 @@ pub(crate) struct Boundary {
 /// Metres along a cell's edge: fine enough to keep apart what leaves the robot half a centimetre more than it follows at.
 const RESOLUTION: f64 = 0.006;
 
+/// Points of a path that are looked at.
+const VOTES: usize = 100;
+
 /// No crossing, or no neighbour.
 const NONE: usize = usize::MAX;
 
@@ -31,6 +34,15 @@ impl Boundaries {
         let mut tracer = Tracer::new(&field, clearance);
         tracer.join_all();
         Ok(Self { all: tracer.lines() })
+    }
+
+    /// The line that comes nearest to the most points of a path: the one that it goes along, though other lines may be
+    /// as near where it begins.
+    pub(crate) fn followed(&self, path: &[Point]) -> Option<usize> {
+        let mut counts = vec![0; self.all.len()];
+        let looked_at = path.iter().step_by(path.len() / VOTES + 1);
+        looked_at.filter_map(|&point| self.nearest(point)).for_each(|line| counts[line] += 1);
+        (0..counts.len()).max_by_key(|&line| counts[line]).filter(|_| !path.is_empty())
     }
 
     /// The line that comes nearest to a point.

@@ -1,6 +1,7 @@
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use roverlab::geometry::Segment;
+use roverlab::geometry::{Segment, direction};
 use roverlab::nav::{BugKind, PathBound};
 use roverlab::random::Stream;
 use roverlab::world::RobotSpec;
@@ -11,7 +12,7 @@ use super::Args;
 use super::boundaries::Boundaries;
 use super::contest::Setting;
 use super::ride::{Ride, parameters, ride};
-use crate::common::{Failure, Outcome, Report, rounded, share_out};
+use crate::common::{Failure, Outcome, Report, rounded, share_out, threads};
 
 /// What is left of one run in the campaign.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,11 +30,15 @@ pub(crate) struct Checked {
 
 /// By which part more than those traced the perimeters count.
 const TOLERANCE: f64 = 0.02;
+/// Metres by which lines are traced nearer to obstacles than the middle of the narrowest corridor.
+const RESERVE: f64 = 0.004;
+/// Metres to a point outside of every field.
+const FAR: f64 = 1e3;
 
 /// The work of the campaign.
 pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
     let courses = args.runs.unwrap_or(1000);
-    let checked = share_out("courses", courses, args.threads(), |index| {
+    let checked = share_out("courses", courses, threads(args.threads), |index| {
         check(args, args.common.seed.wrapping_add(index))
     })?;
     let checked: Vec<Checked> = checked.into_iter().flatten().collect();
@@ -63,7 +68,11 @@ pub(crate) fn check(args: &Args, seed: u64) -> Result<Vec<Checked>, Failure> {
         if bounded && boundaries.is_none() {
             let parameters = parameters(&setting.trip, args.common.noise);
             let followed = parameters.robot_radius + parameters.clearance;
-            boundaries = Some(Boundaries::new(&course.world, followed).map_err(Failure::run)?);
+            // Robots go through passages that are too narrow for the clearance that they keep elsewhere: so the lines are
+            // those of half the narrowest corridor, which parts nothing, and count as parallels of them.
+            let traced = followed.min(0.5 * options.min_corridor - RESERVE);
+            let lines = Boundaries::new(&course.world, traced).map_err(Failure::run)?;
+            boundaries = Some((lines, followed - traced));
         }
         let traced = boundaries.as_ref().filter(|_| bounded);
         Ok(Checked {
@@ -74,24 +83,31 @@ pub(crate) fn check(args: &Args, seed: u64) -> Result<Vec<Checked>, Failure> {
             contacts: ride.contacts,
             sim_time: ride.sim_time,
             of_bound: traced
-                .and_then(|boundaries| Some(ride.path_length / bound(&setting, &ride, boundaries)?)),
+                .and_then(|(lines, apart)| Some(ride.path_length / bound(&setting, &ride, lines, *apart)?)),
         })
     };
     args.bugs().iter().map(drive).collect()
 }
 
-/// The bound of a ride's path in metres.
-fn bound(setting: &Setting, ride: &Ride, boundaries: &Boundaries) -> Option<f64> {
-    let line = Segment::new(setting.trip.start().position(), setting.trip.goal);
-    let mut met: Vec<usize> = ride.hits.iter().filter_map(|&hit| boundaries.nearest(hit)).collect();
+/// The bound of a ride's path in metres. The robot's middle follows parallels of the lines, so many metres `apart`.
+fn bound(setting: &Setting, ride: &Ride, boundaries: &Boundaries, apart: f64) -> Option<f64> {
+    let (start, goal) = (setting.trip.start().position(), setting.trip.goal);
+    let mut met: Vec<usize> =
+        ride.follows.iter().filter_map(|&(from, to)| boundaries.followed(&ride.path[from..to])).collect();
     met.sort_unstable();
     met.dedup();
-    let crossed = ride.guarantee.path_bound == PathBound::Crossings;
-    let counted = boundaries.all.iter().enumerate().filter(|(index, _)| crossed || met.contains(index));
-    let terms: Vec<(f64, usize)> = counted
-        .map(|(_, line_of)| ((1.0 + TOLERANCE) * line_of.perimeter, line_of.crossings(line)))
-        .collect();
-    ride.guarantee.path_bound.metres(setting.trip.distance(), &terms)
+    // The lines that the robot drives along: the first one, and one from each hit point.
+    let ways: Vec<Segment> = [start].iter().chain(&ride.hits).map(|&from| Segment::new(from, goal)).collect();
+    // A parallel outside of a closed line is longer by a full turn times the distance, and one inside shorter.
+    let far = Segment::new(start, start + direction(0.4) * FAR);
+    let terms = met.into_iter().map(|index| {
+        let line = &boundaries.all[index];
+        let is_inside = line.crossings(far) % 2 == 1;
+        let parallel = line.perimeter + if is_inside { -TAU } else { TAU } * apart;
+        let crossings = ways.iter().map(|&way| line.crossings(way)).max().unwrap_or(0);
+        ((1.0 + TOLERANCE) * parallel, crossings)
+    });
+    ride.guarantee.path_bound.metres(setting.trip.distance(), &terms.collect::<Vec<_>>())
 }
 
 fn breaks(run: &Checked) -> bool {

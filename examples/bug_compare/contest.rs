@@ -5,7 +5,7 @@ use roverlab::world::{RobotSpec, Scene};
 
 use super::ride::{Conditions, Ride, ride, ride_with};
 use super::{Args, job};
-use crate::common::{Driven, Failure, StageTruth, Trip, share_out};
+use crate::common::{Driven, Failure, StageTruth, Trip, share_out, threads};
 
 /// A world with a robot and a goal, and the truth about it.
 #[derive(Debug, Clone)]
@@ -60,7 +60,7 @@ pub(crate) fn entries(args: &Args) -> Result<Vec<Entry>, Failure> {
     let runs = args.runs.unwrap_or(10);
     let own = args.common.world.is_some().then(|| job::own_trip(args)).transpose()?;
     let families = if own.is_some() { 1 } else { args.families().len() as u64 };
-    share_out("courses", families * runs, args.threads(), |index| {
+    share_out("courses", families * runs, threads(args.threads), |index| {
         let seed = args.common.seed.wrapping_add(index % runs);
         let setting = match &own {
             Some(trip) => Setting::new("world", seed, trip.clone())?,

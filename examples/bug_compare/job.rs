@@ -1,7 +1,5 @@
-use std::f64::consts::TAU;
-
-use roverlab::geometry::{Pose, units};
-use roverlab::world::{DriveSpec, RobotSpec, Scene, World};
+use roverlab::geometry::Pose;
+use roverlab::world::{RobotSpec, Scene, World};
 
 use super::contest::{self, Entry};
 use super::ride::ride;
@@ -74,27 +72,8 @@ pub(super) fn own_trip(args: &Args) -> Result<Trip, Failure> {
     // The scene of `--world` comes before this empty one.
     let empty = || Scene::with_robot(World::walled(1.0, 1.0), RobotSpec::s4(), Pose::new(0.5, 0.5, 0.0));
     let trip = args.common.trip(empty)?;
-    let file = args.common.robot.as_ref().or(args.common.world.as_ref());
-    let place = file.map_or(String::new(), |file| format!("{}: ", file.display()));
-    let spec = trip.spec();
-    let found = if matches!(spec.drive, DriveSpec::Ackermann { .. }) {
-        Some("a car; expected one that turns on the spot".to_owned())
-    } else {
-        match spec.lidar {
-            None => Some("without a lidar; expected one with a lidar".into()),
-            Some(lidar) if lidar.field_of_view < 0.999 * TAU => Some(format!(
-                "with a lidar of {:.0} degrees; expected one of 360 degrees",
-                units::to_deg(lidar.field_of_view)
-            )),
-            Some(_) => None,
-        }
-    };
-    match found {
-        Some(found) => {
-            Err(Failure::input(format!("{place}found robot {} {found}, as bugs need it", spec.name)))
-        }
-        None => Ok(trip),
-    }
+    args.common.check_turning_with_lidar(trip.spec())?;
+    Ok(trip)
 }
 
 /// Draws the paths of all algorithms on one world, if asked for: those that were recorded, or new ones.

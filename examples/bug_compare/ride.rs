@@ -50,6 +50,8 @@ pub(crate) struct Ride {
     pub(crate) sim_time: f64,
     /// Where obstacles were met, in the world.
     pub(crate) hits: Vec<Point>,
+    /// The same as numbers of steps of the path, each with that of the leave or the end after it.
+    pub(crate) follows: Vec<(usize, usize)>,
     /// Where the robot was at each step, truly.
     pub(crate) path: Vec<Point>,
 }
@@ -101,14 +103,23 @@ pub(crate) fn ride_with(
     let start = trip.start();
     let parameters = parameters(trip, conditions.noise);
     let mut bug = kind.with(start.to_local(trip.goal), parameters).map_err(Failure::input)?;
-    let (mut hits, mut path) = (Vec::new(), vec![start.position()]);
+    let (mut hits, mut follows, mut path) = (Vec::new(), Vec::new(), vec![start.position()]);
     let result = run_bug(bug.as_mut(), &mut robot, conditions.time_limit, |bug, _| {
         path.extend(truth.pose(0).ok().as_ref().map(Pose::position));
-        hits.extend(bug.take_events().iter().filter_map(|event| match event {
-            BugEvent::Hit { point, .. } => Some(start.to_world(*point)),
-            _ => None,
-        }));
+        for event in bug.take_events() {
+            match event {
+                BugEvent::Hit { point, .. } => {
+                    hits.push(start.to_world(point));
+                    follows.push((path.len() - 1, usize::MAX));
+                }
+                BugEvent::Leave { .. } => {
+                    follows.iter_mut().rev().take(1).for_each(|follow| follow.1 = path.len())
+                }
+                _ => {}
+            }
+        }
     });
+    follows.iter_mut().for_each(|follow| follow.1 = follow.1.min(path.len()));
     // The robot lets go of the world, so that what is true stays as it is.
     drop(robot);
     let (sim_time, truth) = (truth.time().map_err(Failure::run)?, truth.robot(0).map_err(Failure::run)?);
@@ -121,6 +132,7 @@ pub(crate) fn ride_with(
         goal_distance: truth.pose.distance_to(trip.goal),
         sim_time,
         hits,
+        follows,
         path,
     })
 }

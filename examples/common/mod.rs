@@ -77,4 +77,4 @@ pub(crate) use values::{
     GoalOption, parse_goal, parse_noise, parse_picture, parse_point, parse_pose, parse_seconds,
 };
 pub(crate) use wall_clock::{Pacer, Progress, Stopwatch};
-pub(crate) use workers::share_out;
+pub(crate) use workers::{share_out, threads};

@@ -1,9 +1,10 @@
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use roverlab::geometry::{Aabb, Point, Pose, units};
 use roverlab::world::formats::{FormatError, Parsed};
 use roverlab::world::space::{Solid, Space, Span};
-use roverlab::world::{Object, RobotPlacement, RobotSpec, Scene, Shape};
+use roverlab::world::{DriveSpec, Object, RobotPlacement, RobotSpec, Scene, Shape};
 
 use super::{CommonArgs, Failure};
 
@@ -43,6 +44,9 @@ impl Trip {
         (40.0 * (walls + objects) + 20.0 * self.distance()).ceil().clamp(600.0, 1e6)
     }
 }
+
+/// A lidar that looks this far round, in radians, looks all round.
+const ALL_ROUND: f64 = 0.999 * TAU;
 
 /// The robot that drives where a world has none, or one that an example has no use for.
 #[derive(Debug, Clone)]
@@ -133,6 +137,24 @@ impl CommonArgs {
             Some(_) => Err(Failure::input(format!("--goal: {why}; expected a command line without --goal"))),
             None => self.placed(own),
         }
+    }
+
+    /// Refuses a robot that cannot turn on the spot, or has no lidar that looks all round.
+    pub(crate) fn check_turning_with_lidar(&self, spec: &RobotSpec) -> Result<(), Failure> {
+        let found = match spec.lidar {
+            _ if matches!(spec.drive, DriveSpec::Ackermann { .. }) => {
+                ", a car; expected one that turns on the spot".to_owned()
+            }
+            None => " without a lidar; expected one with a lidar of 360 degrees".to_owned(),
+            Some(lidar) if lidar.field_of_view < ALL_ROUND => format!(
+                " with a lidar of {:.0} degrees; expected one of 360 degrees",
+                units::to_deg(lidar.field_of_view)
+            ),
+            Some(_) => return Ok(()),
+        };
+        let file = self.robot.as_ref().or(self.world.as_ref());
+        let place = file.map_or(String::new(), |file| format!("{}: ", file.display()));
+        Err(Failure::input(format!("{place}found robot {}{found}", spec.name)))
     }
 
     /// The world's name in messages.

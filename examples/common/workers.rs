@@ -1,7 +1,14 @@
+use std::num::NonZero;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use super::{Failure, Progress};
+
+/// How many threads work: as many as asked for, or one for each core.
+pub(crate) fn threads(asked: Option<NonZero<usize>>) -> usize {
+    let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
+    asked.map_or_else(cores, NonZero::get)
+}
 
 /// The results of some pieces of work in their order, done by several threads. The number of threads makes no difference
 /// to them. The first failure ends it. `things` is what progress counts.

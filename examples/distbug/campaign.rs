@@ -1,11 +1,9 @@
 use std::num::NonZero;
 use std::path::PathBuf;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use super::trial::{Trial, trial};
 use super::{save, table};
-use crate::common::{Failure, Printed, Progress, Stopwatch, parse_noise};
+use crate::common::{Failure, Printed, Stopwatch, parse_noise, share_out, threads};
 
 /// The command line of the campaign.
 #[derive(Debug, Clone, clap::Parser)]
@@ -67,60 +65,7 @@ pub(crate) fn campaign(args: &CampaignArgs) -> Result<Printed, Failure> {
 
 /// All trials in the order of their seeds, driven by as many threads as the options say.
 pub(crate) fn trials(args: &CampaignArgs) -> Result<Vec<Trial>, Failure> {
-    let threads = args
-        .threads
-        .map_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get), NonZero::get);
-    let threads = threads.min(usize::try_from(args.worlds).unwrap_or(usize::MAX));
-    let work = Work::new(args);
-    std::thread::scope(|scope| {
-        for _ in 1..threads {
-            scope.spawn(|| work.drive(|_| {}));
-        }
-        let mut progress = Progress::start();
-        work.drive(|done| progress.show(|| format!("{done} of {} courses", args.worlds)));
-    });
-    work.finish()
-}
-
-/// What the threads share.
-struct Work<'a> {
-    args: &'a CampaignArgs,
-    /// Courses begun, and ended.
-    next: AtomicU64,
-    done: AtomicU64,
-    failed: AtomicBool,
-    results: Mutex<Vec<Result<Trial, Failure>>>,
-}
-
-impl<'a> Work<'a> {
-    fn new(args: &'a CampaignArgs) -> Self {
-        Self {
-            args,
-            next: AtomicU64::new(0),
-            done: AtomicU64::new(0),
-            failed: AtomicBool::new(false),
-            results: Mutex::new(Vec::new()),
-        }
-    }
-
-    /// Takes one course after the other until there are no more. `told` is called with the number of finished ones.
-    fn drive(&self, mut told: impl FnMut(u64)) {
-        while !self.failed.load(Ordering::Relaxed) {
-            let index = self.next.fetch_add(1, Ordering::Relaxed);
-            if index >= self.args.worlds {
-                return;
-            }
-            let result = trial(self.args.seed.wrapping_add(index), &self.args.noise);
-            self.failed.fetch_or(result.is_err(), Ordering::Relaxed);
-            self.results.lock().expect("no thread has panicked").push(result);
-            told(self.done.fetch_add(1, Ordering::Relaxed) + 1);
-        }
-    }
-
-    fn finish(self) -> Result<Vec<Trial>, Failure> {
-        let results = self.results.into_inner().expect("no thread has panicked");
-        let mut trials = results.into_iter().collect::<Result<Vec<_>, _>>()?;
-        trials.sort_by_key(|trial| trial.seed.wrapping_sub(self.args.seed));
-        Ok(trials)
-    }
+    share_out("courses", args.worlds, threads(args.threads), |index| {
+        trial(args.seed.wrapping_add(index), &args.noise)
+    })
 }

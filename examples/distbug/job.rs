@@ -1,10 +1,8 @@
-use std::f64::consts::TAU;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use roverlab::geometry::{Point, units};
 use roverlab::nav::{DistBugOutcome, WallSide};
-use roverlab::world::DriveSpec;
 
 use super::{Args, Drive, Ending, Event, Happening, Options, drive, picture, scene, sim_options};
 use crate::common::{CommonArgs, Failure, Outcome, Pacer, Progress, Report, Trip, millimetres, point_in_mm};
@@ -17,8 +15,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
     let trip = common.trip(scene)?;
-    check_drive(common, &trip)?;
-    check_robot(common, &trip)?;
+    common.check_turning_with_lidar(trip.spec())?;
     let time_limit = common.time_limit.unwrap_or_else(|| trip.generous_time_limit());
     let options = Options { seed: common.seed, noise: common.noise, time_limit };
 
@@ -28,39 +25,6 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         Err(failure) => (None, Some(failure.to_string())),
     };
     Ok(Report { trouble, ..report(&trip, &drive, &options, picture.as_deref()) })
-}
-
-/// DistBug turns on the spot, which no car does.
-fn check_drive(common: &CommonArgs, trip: &Trip) -> Result<(), Failure> {
-    let spec = trip.spec();
-    if !matches!(spec.drive, DriveSpec::Ackermann { .. }) {
-        return Ok(());
-    }
-    let file = common.robot.as_ref().or(common.world.as_ref());
-    let place = file.map_or(String::new(), |file| format!("{}: ", file.display()));
-    Err(Failure::input(format!(
-        "{place}found robot {}, a car; expected one that turns on the spot, as DistBug does",
-        spec.name
-    )))
-}
-
-/// DistBug needs a lidar that looks all round.
-fn check_robot(common: &CommonArgs, trip: &Trip) -> Result<(), Failure> {
-    let spec = trip.spec();
-    let file = common.robot.as_ref().or(common.world.as_ref());
-    let place = file.map_or(String::new(), |file| format!("{}: ", file.display()));
-    match spec.lidar {
-        None => Err(Failure::input(format!(
-            "{place}found robot {} without a lidar; expected one with a lidar, which DistBug sees by",
-            spec.name
-        ))),
-        Some(lidar) if lidar.field_of_view < 0.999 * TAU => Err(Failure::input(format!(
-            "{place}found robot {} with a lidar of {:.0} degrees; expected one of 360 degrees",
-            spec.name,
-            units::to_deg(lidar.field_of_view)
-        ))),
-        Some(_) => Ok(()),
-    }
 }
 
 /// Drives and tells what happens.

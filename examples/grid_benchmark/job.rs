@@ -1,5 +1,5 @@
 use roverlab::nav::grid::{
-    AnyAngle, GridPlanner, GridSearch, JumpPointSearch, PreparedJumps, Quadtree, QuadtreePlanner,
+    AnyAngle, GridPlanner, GridSearch, JumpPointSearch, PlanError, PreparedJumps, Quadtree, QuadtreePlanner,
 };
 use roverlab::world::BitGrid;
 use roverlab::world::formats::movingai::{self, Query};
@@ -23,6 +23,8 @@ pub(crate) struct Result {
     pub(crate) times: Vec<f64>,
     pub(crate) preprocess_ms: f64,
     pub(crate) expanded: usize,
+    /// The first query that no way answers, in words.
+    pub(crate) without_way: Option<String>,
 }
 
 impl Result {
@@ -61,10 +63,10 @@ pub(crate) fn work(args: &Args) -> std::result::Result<Printed, Failure> {
         }
         _ => own_map::with_queries(args.seed),
     };
-    let result = answer(name, &grid, &queries, args);
+    let result = answer(name, &grid, &queries, args)?;
     let wall_time = stopwatch.seconds();
     let text = if args.json { table::json(&result, args, wall_time) } else { table::text(&result) };
-    Ok(Printed { text, message: None, status: u8::from(!result.is_good()) })
+    Ok(Printed { text, status: u8::from(!result.is_good()), message: result.without_way })
 }
 
 fn planner(algorithm: Algorithm, grid: &BitGrid) -> Box<dyn GridPlanner> {
@@ -82,7 +84,12 @@ fn planner(algorithm: Algorithm, grid: &BitGrid) -> Box<dyn GridPlanner> {
     }
 }
 
-fn answer(map: String, grid: &BitGrid, queries: &[Query], args: &Args) -> Result {
+fn answer(
+    map: String,
+    grid: &BitGrid,
+    queries: &[Query],
+    args: &Args,
+) -> std::result::Result<Result, Failure> {
     let stopwatch = Stopwatch::start();
     let mut planner = planner(args.algorithm, grid);
     let mut result = Result {
@@ -97,26 +104,43 @@ fn answer(map: String, grid: &BitGrid, queries: &[Query], args: &Args) -> Result
         times: Vec::new(),
         preprocess_ms: 1e3 * stopwatch.seconds(),
         expanded: 0,
+        without_way: None,
     };
     let mut progress = Progress::start();
     for (index, query) in queries.iter().enumerate() {
         progress.show(|| format!("{index} of {} queries", queries.len()));
-        ask(&mut *planner, query, args.repeat.get(), &mut result);
+        if let Err(error) = ask(&mut *planner, query, args.repeat.get(), &mut result) {
+            let file = args.scen.as_ref().map_or(String::new(), |scen| format!("{}: ", scen.display()));
+            let wrong = format!("{file}query {}: {error}", index + 1);
+            if !matches!(error, PlanError::Unreachable { .. }) {
+                return Err(Failure::input(wrong));
+            }
+            result.without_way.get_or_insert(wrong);
+        }
     }
     result.times.sort_by(f64::total_cmp);
-    result
+    Ok(result)
 }
 
-fn ask(planner: &mut dyn GridPlanner, query: &Query, repeat: u32, result: &mut Result) {
-    let (mut answer, mut time) = (None, f64::INFINITY);
-    for _ in 0..repeat {
+fn ask(
+    planner: &mut dyn GridPlanner,
+    query: &Query,
+    repeat: u32,
+    result: &mut Result,
+) -> std::result::Result<(), PlanError> {
+    let mut time = f64::INFINITY;
+    let mut once = || {
         let stopwatch = Stopwatch::start();
-        let plan = planner.plan(query.start, query.goal);
+        let answer = planner.plan(query.start, query.goal);
         time = time.min(1e6 * stopwatch.seconds());
-        answer = plan.ok();
+        answer
+    };
+    let mut answer = once();
+    for _ in 1..repeat {
+        answer = once();
     }
     result.times.push(time);
-    let Some(path) = answer else { return };
+    let path = answer?;
     result.solved += 1;
     result.expanded += path.statistics.expanded;
     let tolerance = (2e-5 * query.optimal).max(0.006);
@@ -124,4 +148,5 @@ fn ask(planner: &mut dyn GridPlanner, query: &Query, repeat: u32, result: &mut R
     if query.optimal > 0.0 {
         result.ratios.push(path.cost / query.optimal);
     }
+    Ok(())
 }

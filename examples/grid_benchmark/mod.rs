@@ -27,7 +27,8 @@ JSON fields:
   median_us, p95_us           time of a query, microseconds
   preprocess_ms               time to get ready for the map
   mean_expanded               nodes taken off the queue, per query
-Outcomes: solved; wrong if a query got no path, or one of an octile planner is not as long as published."
+Outcomes: solved; wrong if a query got no path, or one of an octile planner is not as long as published. A query that starts
+or ends in a blocked cell or outside of the map is no query."
 )]
 pub(crate) struct Args {
     /// MovingAI map.

@@ -1,14 +1,10 @@
-use std::num::NonZero;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
-
 use roverlab::geometry::units;
 use roverlab::nav::NavigateOutcome;
 
 use super::Args;
 use super::course;
 use super::drive::{Arrival, drive};
-use crate::common::{Failure, Outcome, Progress, Report, rounded};
+use crate::common::{Failure, Outcome, Report, rounded, share_out, threads};
 use crate::driving::Conditions;
 
 /// A generated world and what came of it.
@@ -79,30 +75,9 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
 
 /// All trials in the order of their seeds, whatever the number of threads.
 pub(crate) fn trials(args: &Args) -> Result<Vec<Trial>, Failure> {
-    let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
-    let threads = args.threads.map_or_else(cores, NonZero::get);
-    let (next, results) = (AtomicU64::new(0), Mutex::new(Vec::new()));
-    let work = |told: &mut dyn FnMut(u64)| {
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            if index >= args.runs {
-                return;
-            }
-            told(index);
-            let result = trial(args, args.common.seed.wrapping_add(index));
-            results.lock().expect("no thread has panicked").push((index, result));
-        }
-    };
-    std::thread::scope(|scope| {
-        for _ in 1..threads {
-            scope.spawn(|| work(&mut |_| {}));
-        }
-        let mut progress = Progress::start();
-        work(&mut |index| progress.show(|| format!("{index} of {} worlds", args.runs)));
-    });
-    let mut results = results.into_inner().expect("no thread has panicked");
-    results.sort_by_key(|(index, _)| *index);
-    results.into_iter().map(|(_, result)| result).collect()
+    share_out("worlds", args.runs, threads(args.threads), |index| {
+        trial(args, args.common.seed.wrapping_add(index))
+    })
 }
 
 fn trial(args: &Args, seed: u64) -> Result<Trial, Failure> {

@@ -1,16 +1,14 @@
-use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use roverlab::geometry::{Point, units};
 use roverlab::nav::{NavigateEvent, NavigateOutcome};
 use roverlab::random::Stream;
-use roverlab::world::DriveSpec;
 
 use super::course::{self, Course};
 use super::drive::{Arrival, drive};
 use super::{Args, campaign, picture};
-use crate::common::{CommonArgs, Failure, Outcome, Report, Trip, millimetres, point_in_mm};
-use crate::driving::{Conditions, Run, check_drive, drawn, paced};
+use crate::common::{Failure, Outcome, Report, Trip, millimetres, point_in_mm};
+use crate::driving::{Conditions, Run, drawn, paced};
 
 /// Obstacles of the example's own world that the robot is not told of, unless the command line says how many.
 const UNMAPPED: u32 = 3;
@@ -23,7 +21,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
     let trip = common.trip(course::scene)?;
-    check_robot(common, &trip)?;
+    common.check_turning_with_lidar(trip.spec())?;
     let parameters = args.parameters(trip.spec().footprint)?;
     let usual = if common.world.is_none() { UNMAPPED } else { 0 };
     let mut stream = Stream::new(common.seed).child("unmapped", 0);
@@ -48,26 +46,6 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     })?;
     let (file, trouble) = drawn(common, "navigate.svg", || picture::of(&course, &run, &conditions));
     Ok(Report { trouble, ..report(&course, &run, conditions.time_limit, file) })
-}
-
-fn check_robot(common: &CommonArgs, trip: &Trip) -> Result<(), Failure> {
-    let spec = trip.spec();
-    let turns = !matches!(spec.drive, DriveSpec::Ackermann { .. });
-    check_drive(common, spec, turns, "one that turns on the spot")?;
-    let file = common.robot.as_ref().or(common.world.as_ref());
-    let place = file.map_or(String::new(), |file| format!("{}: ", file.display()));
-    match spec.lidar {
-        None => Err(Failure::input(format!(
-            "{place}found robot {} without a lidar; expected one with a lidar, by which it finds its way",
-            spec.name
-        ))),
-        Some(lidar) if lidar.field_of_view < 0.999 * TAU => Err(Failure::input(format!(
-            "{place}found robot {} with a lidar of {:.0} degrees; expected one of 360 degrees",
-            spec.name,
-            units::to_deg(lidar.field_of_view)
-        ))),
-        Some(_) => Ok(()),
-    }
 }
 
 fn told(event: &NavigateEvent) -> String {

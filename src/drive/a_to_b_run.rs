@@ -1,6 +1,6 @@
-use super::beat::Beat;
 use super::{AToB, AToBCommand, AToBObservation, AToBOutcome};
 use crate::geometry::{Pose, Twist};
+use crate::io::beat::Beat;
 use crate::io::{Clock, Drive, Result};
 
 impl AToB {

@@ -1,7 +1,7 @@
 use super::a_to_b::dog_twist;
-use super::beat::Beat;
 use super::{FollowerParameters, Goal, Method, Path, PathFollower, Steering};
 use crate::geometry::{Point, Pose, Twist, angle_difference};
+use crate::io::beat::Beat;
 use crate::io::error::require_positive;
 use crate::io::{Clock, Drive, Error, Motors, Result, Servos};
 use crate::kinematics::{Ackermann, CarState};

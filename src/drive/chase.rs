@@ -1,9 +1,9 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::a_to_b::dog_twist;
-use super::beat::Beat;
 use super::{FollowerParameters, Hermite, Method};
 use crate::geometry::{Pose, Twist};
+use crate::io::beat::Beat;
 use crate::io::error::require_positive;
 use crate::io::{Clock, Drive, Error, Result};
 

@@ -22,7 +22,6 @@
 
 mod a_to_b;
 mod a_to_b_run;
-mod beat;
 mod car;
 mod chase;
 pub mod cones;

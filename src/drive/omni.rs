@@ -1,5 +1,5 @@
-use super::beat::Beat;
 use crate::geometry::{Point, Pose, Vector, angle_difference, direction, normalize_angle};
+use crate::io::beat::Beat;
 use crate::io::error::require_positive;
 use crate::io::{Clock, Drive, Error, Motors, Result};
 use crate::kinematics::{Omni, PlanarTwist};

@@ -5,6 +5,7 @@
 //! Every trait works behind `&mut R`, `Box<R>` and `dyn`.
 
 mod actuators;
+pub(crate) mod beat;
 mod camera;
 mod clock;
 pub mod delegate;

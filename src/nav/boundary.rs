@@ -60,8 +60,9 @@ pub(super) struct BoundaryFollower {
 /// Headings that are tried in a turn.
 const HEADINGS: usize = 180;
 const SPACING: f64 = TAU / HEADINGS as f64;
-/// The largest jump, in metres, of the anchor between two steps.
-const ANCHOR_JUMP: f64 = 0.08;
+/// The largest jump, in metres, of the anchor between two steps. What is farther away is another part of the wall, and the
+/// anchor, such as the end of a thin wall that is seen along the wall, is there still.
+const ANCHOR_JUMP: f64 = 0.04;
 /// Steps for which an anchor that is out of sight is taken to be there still.
 const ANCHOR_MEMORY: u32 = 20;
 
@@ -210,6 +211,14 @@ mod tests {
         };
         assert!((before_gap(0.18) + FRAC_PI_2).abs() < 0.3, "{}", before_gap(0.18));
         assert!(before_gap(0.12).abs() < 0.5, "{}", before_gap(0.12));
+    }
+
+    /// A thin wall ends before a narrow passage and is seen along itself, but for a point farther off.
+    #[test]
+    fn the_end_of_a_thin_wall_is_gone_round_though_it_is_not_seen() {
+        let seen = [vec![Point::new(-0.05, -0.17)], wall((-0.5, 0.09), (0.5, 0.09))].concat();
+        let heading = heading(WallSide::Right, (0.0, -0.11), &seen).unwrap();
+        assert!((-1.0..0.0).contains(&heading), "{heading}");
     }
 
     #[test]

@@ -289,6 +289,20 @@ fn merge(a: Beam, b: Beam) -> Beam {
 }
 
 /// Fails unless a scan covers a full turn.
+/// Fails for odometry that is no place, and for a scan without a single number.
+pub(super) fn check_measured(odometry: &Pose, scan: &LidarScan) -> Result<()> {
+    if !odometry.is_finite() {
+        let Pose { x, y, heading } = odometry;
+        let found = format!("{x} m, {y} m, {heading} rad");
+        return Err(Error::invalid_input("odometry", found, "finite numbers"));
+    }
+    if !scan.ranges.is_empty() && scan.ranges.iter().all(|range| range.is_nan()) {
+        let expected = "metres or +infinity";
+        return Err(Error::invalid_input("every range of the lidar scan", f64::NAN, expected));
+    }
+    Ok(())
+}
+
 fn check(scan: &LidarScan) -> Result<()> {
     let covered = scan.angle_increment * scan.ranges.len() as f64;
     if scan.ranges.len() < 36 || (covered - TAU).abs() > 0.02 * TAU {

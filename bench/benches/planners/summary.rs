@@ -82,6 +82,32 @@ fn warthog(text: &mut String, large: &[&Result]) {
     }
 }
 
+/// A table for each kind of map: medians by planner and by size, and in brackets the milliseconds to get ready.
+pub(crate) fn growth(results: &[Result]) -> String {
+    // Names are those of kinds, and sizes after them.
+    let kind = |result: &Result| result.map.split(',').next().unwrap_or_default().to_owned();
+    let size = |result: &Result| result.map.split(' ').next_back().unwrap_or_default().to_owned();
+    let mut kinds: Vec<String> = results.iter().map(kind).collect();
+    kinds.sort();
+    kinds.dedup();
+    let mut text = String::new();
+    for name in kinds {
+        let of_kind: Vec<&Result> = results.iter().filter(|result| kind(result) == name).collect();
+        let sizes: Vec<String> = of_kind.iter().map(|result| size(result)).collect();
+        let _ = writeln!(text, "\n| {name}, us (ready in ms) | {} |", sizes.join(" | "));
+        let _ = writeln!(text, "|---|{}", "---|".repeat(sizes.len()));
+        for (row, column) in of_kind[0].columns.iter().enumerate() {
+            let cell = |result: &&Result| {
+                let column = &result.columns[row];
+                format!("{:.0} ({:.1})", column.median, column.prepare_ms)
+            };
+            let cells: Vec<String> = of_kind.iter().map(cell).collect();
+            let _ = writeln!(text, "| {} | {} |", column.entry.name, cells.join(" | "));
+        }
+    }
+    text
+}
+
 /// How long paths through quadtrees are.
 fn quality(text: &mut String, results: &[Result]) {
     let columns = results.iter().flat_map(|result| result.columns.iter());

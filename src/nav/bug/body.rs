@@ -3,6 +3,7 @@ use super::report::{BugEvent, BugObservation, BugOutcome, BugPhase};
 use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math};
 use crate::io::{Error, Result};
 use crate::nav::boundary::{WallSide, nearer_side};
+use crate::nav::scan_filter::check_measured;
 use crate::nav::surroundings::Surroundings;
 use crate::nav::{ScanFilter, ScanMatcher};
 
@@ -91,19 +92,7 @@ impl Body {
 
     /// Takes in what the robot measures.
     pub(super) fn perceive(&mut self, observation: &BugObservation<'_>) -> Result<()> {
-        if !observation.odometry.is_finite() {
-            let Pose { x, y, heading } = observation.odometry;
-            let found = format!("{x} m, {y} m, {heading} rad");
-            return Err(Error::invalid_input("odometry", found, "finite numbers"));
-        }
-        let ranges = &observation.scan.ranges;
-        if !ranges.is_empty() && ranges.iter().all(|range| range.is_nan()) {
-            return Err(Error::invalid_input(
-                "every range of the lidar scan",
-                f64::NAN,
-                "metres or +infinity",
-            ));
-        }
+        check_measured(&observation.odometry, observation.scan)?;
         self.pose = self.locate(observation);
         self.filter.update(self.pose, observation.scan)?;
         self.points.clear();

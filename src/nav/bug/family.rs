@@ -3,7 +3,8 @@ use std::fmt::Debug;
 use super::parameters::BugParameters;
 use super::report::{BugEvent, BugObservation, BugOutcome, BugPhase};
 use crate::geometry::{Point, Pose, Twist};
-use crate::io::{Clock, Drive, Error, ErrorKind, Lidar, LidarScan, Result};
+use crate::io::beat::Beat;
+use crate::io::{Clock, Drive, Lidar, LidarScan, Result};
 
 /// A bug algorithm: to a goal through unknown obstacles by what a robot senses around it.
 ///
@@ -57,6 +58,8 @@ pub struct Guarantee {
 pub enum PathBound {
     /// `D + 1.5 sum(p)`.
     Perimeters,
+    /// `D + 2 sum(p)`.
+    TwicePerimeters,
     /// `D + sum(n p) / 2`, where the line from start to goal crosses a boundary `n` times; `n` counts as even, because
     /// one more time leads into an obstacle that the goal is in.
     Crossings,
@@ -72,12 +75,14 @@ impl PathBound {
     /// use roverlab::nav::PathBound;
     /// let boundaries = [(2.0, 2), (4.0, 6)];
     /// assert_eq!(PathBound::Perimeters.metres(3.0, &boundaries), Some(12.0));
+    /// assert_eq!(PathBound::TwicePerimeters.metres(3.0, &boundaries), Some(15.0));
     /// assert_eq!(PathBound::Crossings.metres(3.0, &boundaries), Some(17.0));
     /// assert_eq!(PathBound::Unknown.metres(3.0, &boundaries), None);
     /// ```
     pub fn metres(self, distance: f64, boundaries: &[(f64, usize)]) -> Option<f64> {
         let weight = |crossings: usize| match self {
             Self::Perimeters => Some(1.5),
+            Self::TwicePerimeters => Some(2.0),
             Self::Crossings => Some(crossings.div_ceil(2) as f64),
             Self::Unknown => None,
         };
@@ -99,29 +104,20 @@ pub fn run_bug<B: Bug + ?Sized, R: Clock + Drive + Lidar + ?Sized>(
     mut observe: impl FnMut(&mut B, f64),
 ) -> Result<BugOutcome> {
     let mut scan = LidarScan::default();
-    let begin = robot.now()?;
-    let mut next = begin;
-    let mut last = f64::NEG_INFINITY;
+    let mut beat = Beat::start(robot, bug.parameters().period)?;
     loop {
-        let now = robot.now()?;
-        if now <= last {
-            return Err(Error::new(ErrorKind::Other, "the robot's clock stands still"));
-        }
-        last = now;
-        if now - begin >= time_limit {
+        if beat.step(robot)? >= time_limit {
             bug.end(BugOutcome::TimedOut);
         }
         robot.scan_into(&mut scan)?;
         let observation = BugObservation { odometry: robot.pose()?, speed: robot.speed()?, scan: &scan };
         let twist = bug.step(&observation)?;
         robot.set_speed(twist)?;
-        observe(bug, now);
+        observe(bug, beat.now());
         if let BugPhase::Ended(outcome) = bug.phase() {
             return Ok(outcome);
         }
-        next += bug.parameters().period;
-        let pause = next - robot.now()?;
-        robot.wait(pause)?;
+        beat.rest(robot)?;
     }
 }
 

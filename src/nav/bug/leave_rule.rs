@@ -8,7 +8,7 @@ pub(super) trait LeaveRule: Debug + Clone + Default {
     /// Takes in that an obstacle has been met.
     fn meet(&mut self, meeting: &Sight);
 
-    /// Whether the obstacle may be left here. `goal` is that of the run, which began at the origin.
+    /// Whether the obstacle may be left here. `goal` is that of the run.
     fn allows(&mut self, goal: Point, sight: &Sight) -> bool;
 }
 
@@ -42,11 +42,16 @@ impl<const EVER: bool> LeaveRule for Nearer<EVER> {
     }
 }
 
-/// On the M-line, the straight line from start to goal, nearer to the goal than at the hit point, or with `EVER` than at
-/// any place of that line where the robot has been, if the way along it is open.
+/// On the M-line, the straight line that the robot drives to the goal along, nearer to the goal than at the hit point, or
+/// with `EVER` than at any place of that line where the robot has been, if the way along it is open.
+///
+/// A robot that turns off an obstacle rolls on across the line for some centimetres and drives at the goal from there, and
+/// what reaches over the one line by less need not reach over the other. So the line is drawn anew at every hit point.
 #[derive(Debug, Clone)]
 pub(super) struct OnMainLine<const EVER: bool> {
     nearest: f64,
+    /// Where the line begins.
+    hit: Point,
     /// Metres that the robot was to the left of the line at the last step.
     offset: f64,
 }
@@ -58,21 +63,22 @@ const OPEN_LINE: f64 = 2.5;
 
 impl<const EVER: bool> Default for OnMainLine<EVER> {
     fn default() -> Self {
-        Self { nearest: f64::INFINITY, offset: 0.0 }
+        Self { nearest: f64::INFINITY, hit: Point::origin(), offset: 0.0 }
     }
 }
 
 impl<const EVER: bool> LeaveRule for OnMainLine<EVER> {
     fn meet(&mut self, meeting: &Sight) {
         self.nearest = if EVER { self.nearest.min(meeting.distance) } else { meeting.distance };
-        self.offset = 0.0;
+        (self.hit, self.offset) = (meeting.place.point, 0.0);
     }
 
     fn allows(&mut self, goal: Point, sight: &Sight) -> bool {
-        let before = self.offset;
-        self.offset = cross(goal.coords, sight.place.point.coords) / goal.coords.norm();
+        let (before, line) = (self.offset, goal - self.hit);
+        self.offset = cross(line, sight.place.point - self.hit) / line.norm();
         let on_line = self.offset.abs() < LINE_WIDTH || self.offset * before < 0.0;
-        if !on_line {
+        // Behind the goal it ends.
+        if !on_line || line.dot(&(goal - sight.place.point)) < 0.0 {
             return false;
         }
         let open = sight.is_open() || sight.free >= OPEN_LINE * sight.radius;
@@ -83,5 +89,46 @@ impl<const EVER: bool> LeaveRule for OnMainLine<EVER> {
             self.nearest = self.nearest.min(sight.distance);
         }
         false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::nav::boundary::WallSide;
+    use crate::nav::bug::strategy::Place;
+
+    const GOAL: Point = Point::new(3.0, 0.0);
+
+    fn sight(x: f64, y: f64) -> Sight {
+        let point = Point::new(x, y);
+        Sight {
+            place: Place { point, wall: 0.0 },
+            side: WallSide::Left,
+            distance: (GOAL - point).norm(),
+            free: 9.0,
+            into_wall: -1.0,
+            at_boundary: false,
+            in_line: true,
+            travelled: 0.0,
+            margin: 0.04,
+            step: 0.015,
+            radius: 0.06,
+        }
+    }
+
+    /// The line is that from the hit point, a little beside that from the start, and ends at the goal.
+    #[test]
+    fn the_main_line_leads_from_the_hit_point_to_the_goal() {
+        let mut rule = OnMainLine::<false>::default();
+        rule.meet(&sight(1.0, 0.04));
+        assert!(!rule.allows(GOAL, &sight(1.0, 0.04)) && !rule.allows(GOAL, &sight(2.0, -0.1)));
+        assert!(rule.allows(GOAL, &sight(2.0, 0.1)));
+        rule.meet(&sight(1.0, 0.04));
+        assert!(!rule.allows(GOAL, &sight(2.0, 0.0)) && rule.allows(GOAL, &sight(2.0, 0.018)));
+        // Farther than the hit point, and behind the goal.
+        rule.meet(&sight(1.0, 0.04));
+        assert!(!rule.allows(GOAL, &sight(0.5, -0.1)) && !rule.allows(GOAL, &sight(0.5, 0.2)));
+        assert!(!rule.allows(GOAL, &sight(3.5, 0.1)) && !rule.allows(GOAL, &sight(3.5, -0.1)));
     }
 }

@@ -21,8 +21,8 @@ family! {
     ///
     /// # Model
     ///
-    /// As for [`DistBug`](super::DistBug). A point is met again where both the place and the direction of the wall are those
-    /// of before, which tells the two sides of a thin wall apart.
+    /// As for [`Bug2`](super::Bug2), whose M-line it is. A point is met again where both the place and the direction of the
+    /// wall are those of before, which tells the two sides of a thin wall apart.
     Alg1, "Alg1", Remembering<OnMainLine<true>, false>, PathBound::Unknown
 }
 

@@ -20,7 +20,9 @@ family! {
     /// # Model
     ///
     /// As for [`DistBug`](super::DistBug): the robot is a disc, and boundaries are those of obstacles grown by it. Of the
-    /// lidar it uses no more than a robot that feels its surroundings would.
+    /// lidar it uses no more than a robot that feels its surroundings would. It rolls on for some centimetres when it
+    /// leaves, so that the M-line is drawn anew from each hit point to the goal; the times that a boundary is crossed are
+    /// those of the line on which it was met.
     Bug2, "Bug2", Plain<OnMainLine<false>>, PathBound::Crossings
 }
 

@@ -34,8 +34,9 @@ family! {
     /// # Guarantee
     ///
     /// Complete, for the reasons of Bug1: what the best place promises is nearer than all of the boundary, so no obstacle
-    /// is met twice; the path is at most `D + 1.5 sum(p)`.
-    LeaveBug, "LeaveBug", Tour<true>, PathBound::Perimeters
+    /// is met twice. The path is at most `D + 2 sum(p)`: the best place may be farther from the goal than the hit point is,
+    /// by half of the boundary at the most, and the way to the next obstacle is longer by that.
+    LeaveBug, "LeaveBug", Tour<true>, PathBound::TwicePerimeters
 }
 
 /// Goes once round, then to the best place to leave. With `BY_RANGE` free ranges count too.
@@ -44,6 +45,11 @@ pub(super) struct Tour<const BY_RANGE: bool> {
     /// How near to the goal the boundary has come.
     least_distance: f64,
     best: Option<Candidate>,
+    /// The same among places whose merit the places before have as well; a free range between two obstacles may be there
+    /// for a moment only, and not be met again.
+    lasting: Option<Candidate>,
+    /// The merits of the latest places, if they could be left.
+    latest: [Option<f64>; LASTING],
     returning: Option<Returning>,
 }
 
@@ -69,10 +75,15 @@ const DOUBT: f64 = 0.02;
 /// How much worse, in STEPs, the place may seem when it is met again, and for each metre that it has been missed by.
 const SLACK: f64 = 0.5;
 const SLACK_PER_METRE: f64 = 0.1;
+/// After so many robot radii the place has been missed for good, and the next one that can be left at all will do.
+const MISSED: f64 = 3.0;
+/// For so many steps a merit lasts.
+const LASTING: usize = 3;
 
 impl<const BY_RANGE: bool> Default for Tour<BY_RANGE> {
     fn default() -> Self {
-        Self { least_distance: f64::INFINITY, best: None, returning: None }
+        let latest = [None; LASTING];
+        Self { least_distance: f64::INFINITY, best: None, lasting: None, latest, returning: None }
     }
 }
 
@@ -85,17 +96,31 @@ impl<const BY_RANGE: bool> Tour<BY_RANGE> {
 
     fn survey(&mut self, sight: &Sight) {
         self.least_distance = self.least_distance.min(sight.corner_distance());
-        let Some(merit) = Self::merit(sight) else { return };
-        if self.best.is_none_or(|best| merit < best.merit) {
-            self.best = Some(Candidate { merit, at: sight.travelled });
+        let merit = Self::merit(sight);
+        self.latest.rotate_right(1);
+        self.latest[0] = merit;
+        let lasting = self.latest.into_iter().try_fold(0.0, |most: f64, merit| Some(most.max(merit?)));
+        for (best, merit) in [(&mut self.best, merit), (&mut self.lasting, lasting.filter(|_| BY_RANGE))] {
+            if let Some(merit) = merit.filter(|&merit| best.is_none_or(|best| merit < best.merit)) {
+                *best = Some(Candidate { merit, at: sight.travelled });
+            }
         }
+    }
+
+    /// The best place to leave for a goal outside: nearer to it than all of the boundary.
+    fn place(&self) -> Option<Candidate> {
+        let leads_out = |place: &Candidate| place.merit <= self.least_distance;
+        self.lasting.filter(leads_out).or(self.best.filter(leads_out))
     }
 
     /// Whether the robot is back at the best place.
     fn is_there(&self, sight: &Sight, way: Returning) -> bool {
         let missed_by = (sight.travelled - way.from - way.length).max(0.0);
         let slack = SLACK * sight.step + SLACK_PER_METRE * missed_by;
-        self.best.zip(Self::merit(sight)).is_some_and(|(best, merit)| merit <= best.merit + slack)
+        let missed = missed_by > MISSED * sight.radius;
+        self.place().zip(Self::merit(sight)).is_some_and(|(best, merit)| {
+            merit <= best.merit + slack || missed && merit <= self.least_distance
+        })
     }
 }
 
@@ -116,10 +141,7 @@ impl<const BY_RANGE: bool> Strategy for Tour<BY_RANGE> {
         if self.returning.is_some() {
             return Decision::BeginLap;
         }
-        // A place that can be left for a goal outside is nearer to it than all of the boundary.
-        let Some(best) = self.best.filter(|best| best.merit <= self.least_distance) else {
-            return Decision::GiveUp;
-        };
+        let Some(best) = self.place() else { return Decision::GiveUp };
         let begin = sight.travelled - lap;
         let ahead = (best.at - begin).rem_euclid(lap);
         let forward = ahead <= 0.5 * lap;

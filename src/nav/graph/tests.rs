@@ -105,9 +105,30 @@ proptest! {
 
 #[cfg(feature = "petgraph")]
 mod petgraph {
+    use petgraph::graph::DiGraph;
     use proptest::prelude::*;
 
     use crate::nav::graph::{GraphError, petgraph_shortest_path};
+
+    #[test]
+    fn what_makes_no_sense_is_named() {
+        let graph = DiGraph::<(), f64>::from_edges([(0, 1, f64::NAN), (1, 2, -1.0), (3, 0, f64::INFINITY)]);
+        let error = |start: u32, goal: u32, estimate: f64| {
+            let cost = |edge: petgraph::graph::EdgeReference<'_, f64>| *edge.weight();
+            let path = petgraph_shortest_path(&graph, start.into(), goal.into(), cost, |_| estimate, |_| {});
+            path.unwrap_err()
+        };
+        assert_eq!(error(0, 2, 0.0), error(0, 1, 0.0));
+        assert_eq!(
+            error(0, 2, 0.0).to_string(),
+            "the cost from NodeIndex(0) to NodeIndex(1) is not a number"
+        );
+        assert_eq!(error(1, 2, 0.0), GraphError::NegativeCost { from: 1.into(), to: 2.into(), cost: -1.0 });
+        assert_eq!(error(3, 2, 0.0), GraphError::Unreachable { start: 3.into(), goal: 2.into() });
+        assert_eq!(error(0, 7, 0.0), GraphError::NoSuchNode(7.into()));
+        assert_eq!(error(9, 0, 0.0), GraphError::NoSuchNode(9.into()));
+        assert_eq!(error(1, 2, f64::NAN), GraphError::NanEstimate(1.into()));
+    }
 
     proptest! {
         /// The same costs as petgraph's own algorithm, on its graphs with removed nodes too.

@@ -59,7 +59,7 @@ impl Components {
     /// The number of the region that a cell belongs to, from 0 in the order of their first cells; `None` if the cell
     /// is not free.
     pub fn region(&self, cell: GridCell) -> Option<usize> {
-        let rows = self.rows.get(cell.row..cell.row + 2)?;
+        let rows = self.rows.get(cell.row..cell.row.saturating_add(2))?;
         let runs = &self.runs[rows[0] as usize..rows[1] as usize];
         let index = runs.partition_point(|run| run.end as usize <= cell.column);
         runs.get(index).filter(|run| run.first as usize <= cell.column).map(|run| run.label as usize)
@@ -154,6 +154,7 @@ mod tests {
         for grid in [BitGrid::blocked(0, 0), BitGrid::blocked(70, 3), BitGrid::blocked(0, 5)] {
             let components = Components::new(&grid.unwrap());
             assert_eq!((components.count(), components.region(GridCell::new(0, 0))), (0, None));
+            assert_eq!(components.region(GridCell::new(usize::MAX, usize::MAX)), None);
         }
     }
 

@@ -1,6 +1,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use super::components::Components;
 use super::cost::{DIAGONAL, STRAIGHT, octile};
 use super::path::{End, GridPath, PlanError, SearchStatistics};
 use crate::world::{BitGrid, GridCell};
@@ -11,7 +12,8 @@ use crate::world::{BitGrid, GridCell};
 /// them alone is computed anew.
 ///
 /// S. Koenig, M. Likhachev, *D\* Lite*, AAAI 2002. A new plan takes time in proportion to the cells whose distance to the
-/// goal has changed and matters, times the logarithm of the queue's length; memory is 24 bytes a cell.
+/// goal has changed and matters, times the logarithm of the queue's length; memory is 40 bytes a cell. That the map as it
+/// was given has no way is told at once by its [`Components`]; that a change has cut off the last one is found by search.
 ///
 /// ```
 /// use roverlab::nav::grid::DStarLite;
@@ -34,6 +36,7 @@ pub struct DStarLite {
     queue: BinaryHeap<Reverse<Entry>>,
     /// By how much keys have grown since the beginning, as the robot has moved.
     shift: u64,
+    searched: bool,
     statistics: SearchStatistics,
 }
 
@@ -69,6 +72,7 @@ impl DStarLite {
             goal,
             queue: BinaryHeap::new(),
             shift: 0,
+            searched: false,
             statistics: SearchStatistics::default(),
         };
         for (end, cell) in [(End::Start, robot), (End::Goal, goal)] {
@@ -116,11 +120,15 @@ impl DStarLite {
                 return Err(PlanError::Blocked { end, cell });
             }
         }
+        let unreachable = PlanError::Unreachable { start: self.robot, goal: self.goal };
+        if !self.searched && !Components::new(&self.grid).connected(self.robot, self.goal) {
+            return Err(unreachable);
+        }
+        self.searched = true;
         self.statistics = SearchStatistics::default();
         self.settle();
         let mut cells = vec![self.robot];
         let mut at = self.robot;
-        let unreachable = PlanError::Unreachable { start: self.robot, goal: self.goal };
         if self.cells[self.index(at)].implied >= FAR {
             return Err(unreachable);
         }
@@ -287,12 +295,28 @@ mod tests {
         assert!(second > 0 && 3 * second < first, "{second} after {first}");
     }
 
+    /// The first plan knows the regions of the map, so that it need not search all of the goal's.
+    #[test]
+    fn no_way_is_told_at_once() {
+        let grid = BitGrid::from_fn(100, 100, |x, _| x != 50).unwrap();
+        let (robot, goal) = (GridCell::new(0, 50), GridCell::new(99, 50));
+        let mut planner = DStarLite::new(&grid, robot, goal).unwrap();
+        assert_eq!(planner.plan(), Err(PlanError::Unreachable { start: robot, goal }));
+        assert_eq!(planner.statistics.expanded, 0);
+        planner.set_free(GridCell::new(50, 3), true);
+        assert!(planner.plan().unwrap().cost > 99.0);
+        planner.set_free(GridCell::new(50, 3), false);
+        assert_eq!(planner.plan(), Err(PlanError::Unreachable { start: robot, goal }));
+    }
+
     #[test]
     fn ends_outside_are_named() {
         let grid = BitGrid::from_text("..").unwrap();
         let outside = GridCell::new(2, 0);
         let error = DStarLite::new(&grid, GridCell::new(0, 0), outside).unwrap_err();
         assert_eq!(error, PlanError::Outside { end: End::Goal, cell: outside, width: 2, height: 1 });
+        let empty = BitGrid::blocked(0, 4).unwrap();
+        assert_eq!(DStarLite::new(&empty, outside, outside).unwrap_err(), PlanError::EmptyMap);
         let mut planner = DStarLite::new(&grid, GridCell::new(0, 0), GridCell::new(1, 0)).unwrap();
         assert!(planner.move_to(outside).is_err());
         planner.set_free(GridCell::new(1, 0), false);

@@ -1,6 +1,9 @@
 use proptest::prelude::*;
 
-use super::{End, GridPath, GridPlanner, GridSearch, JumpPointSearch, PlanError, PreparedJumps};
+use super::{
+    AnyAngle, End, GridPath, GridPlanner, GridSearch, JumpPointSearch, LazyThetaStar, PlanError,
+    PreparedJumps, Quadtree, QuadtreePlanner,
+};
 use crate::random::Stream;
 use crate::world::{BitGrid, GridCell};
 
@@ -145,26 +148,56 @@ proptest! {
     }
 }
 
+/// All that plan on a map, whatever their paths are like.
+fn all_planners(grid: &BitGrid) -> Vec<(&'static str, Box<dyn GridPlanner>)> {
+    let mut prepared = AnyAngle::new(grid);
+    prepared.prepare();
+    let others: [(&str, Box<dyn GridPlanner>); 4] = [
+        ("any angle", Box::new(AnyAngle::new(grid))),
+        ("any angle, prepared", Box::new(prepared)),
+        ("lazy theta", Box::new(LazyThetaStar::new(grid))),
+        ("quadtree", Box::new(QuadtreePlanner::new(&Quadtree::new(grid)))),
+    ];
+    planners(grid).into_iter().chain(others).collect()
+}
+
 #[test]
 fn queries_without_an_answer_are_named() {
     let grid = BitGrid::from_text("..#.\n..#.").unwrap();
-    let cell = GridCell::new;
-    for (name, mut planner) in planners(&grid) {
-        let outside = PlanError::Outside { end: End::Goal, cell: cell(4, 0), width: 4, height: 2 };
-        assert_eq!(planner.plan(cell(0, 0), cell(4, 0)), Err(outside), "{name}");
-        let blocked = PlanError::Blocked { end: End::Start, cell: cell(2, 1) };
-        assert_eq!(planner.plan(cell(2, 1), cell(0, 0)), Err(blocked), "{name}");
-        let unreachable = PlanError::Unreachable { start: cell(0, 0), goal: cell(3, 0) };
-        assert_eq!(planner.plan(cell(0, 0), cell(3, 0)), Err(unreachable), "{name}");
+    let (cell, far) = (GridCell::new, GridCell::new(usize::MAX, usize::MAX));
+    let outside = |end, cell| PlanError::Outside { end, cell, width: 4, height: 2 };
+    let blocked = |end| PlanError::Blocked { end, cell: GridCell::new(2, 1) };
+    for (name, mut planner) in all_planners(&grid) {
+        for (start, goal, error) in [
+            (cell(4, 0), cell(0, 0), outside(End::Start, cell(4, 0))),
+            (cell(0, 0), cell(0, 2), outside(End::Goal, cell(0, 2))),
+            (far, far, outside(End::Start, far)),
+            (cell(2, 1), cell(0, 0), blocked(End::Start)),
+            (cell(0, 0), cell(2, 1), blocked(End::Goal)),
+            (cell(2, 1), cell(2, 1), blocked(End::Start)),
+            (cell(0, 0), cell(3, 0), PlanError::Unreachable { start: cell(0, 0), goal: cell(3, 0) }),
+        ] {
+            assert_eq!(planner.plan(start, goal), Err(error), "{name}");
+        }
         assert_eq!(planner.plan(cell(1, 1), cell(1, 1)).unwrap().cost, 0.0, "{name}");
     }
-    for (_, mut planner) in planners(&BitGrid::blocked(0, 0).unwrap()) {
-        assert_eq!(planner.plan(cell(0, 0), cell(0, 0)), Err(PlanError::EmptyMap));
+    for (width, height) in [(0, 0), (0, 3), (3, 0)] {
+        for (name, mut planner) in all_planners(&BitGrid::blocked(width, height).unwrap()) {
+            assert_eq!(planner.plan(cell(0, 0), cell(0, 0)), Err(PlanError::EmptyMap), "{name}");
+        }
     }
-    assert_eq!(
-        PlanError::Blocked { end: End::Start, cell: cell(2, 1) }.to_string(),
-        "the start (2, 1) is blocked; expected a free cell"
-    );
+    assert_eq!(blocked(End::Start).to_string(), "the start (2, 1) is blocked; expected a free cell");
+}
+
+/// That there is no way is known before the search.
+#[test]
+fn disconnected_regions_need_no_search() {
+    let grid = BitGrid::from_fn(300, 300, |x, _| x != 150).unwrap();
+    for mut planner in [GridSearch::dijkstra(&grid), GridSearch::astar(&grid)] {
+        let (start, goal) = (GridCell::new(0, 0), GridCell::new(299, 299));
+        let found = planner.plan_traced(start, goal, |step| panic!("looked at {}", step.cell));
+        assert_eq!(found, Err(PlanError::Unreachable { start, goal }));
+    }
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::world::{BitGrid, Clearance, GridCell, World};
 ///
 /// There are several *levels* of clearance, the largest first. At each a cell is free if the robot touches nothing wherever
 /// in the cell its middle is, with the clearance beside it: so the disc that a straight way through free cells sweeps is
-/// free as well.
+/// free as well. What has been seen counts as a point in the middle of its cell, and may be nearer by half of a diagonal.
 #[derive(Debug, Clone)]
 pub(super) struct Chart {
     clearance: Clearance,
@@ -96,6 +96,11 @@ impl Chart {
     pub(super) fn has_room(&self, point: Point, radius: f64) -> bool {
         let least = self.levels[LEVELS - 1].clearance;
         self.clearance.at_point(point).is_some_and(|distance| distance >= radius + least)
+    }
+
+    /// Whether a point lies in the known world, and not in what stands there.
+    pub(super) fn is_open(&self, point: Point) -> bool {
+        self.clearance.at_point(point).is_some_and(|distance| distance > self.resolution())
     }
 
     /// Calls `blocked` for all cells that a marked cell blocks at a level.

@@ -5,8 +5,10 @@ use super::report::{NavigateEvent, NavigateObservation, NavigateOutcome, Navigat
 use super::route::Route;
 use super::steering::Steering;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
-use crate::io::{Clock, Drive, Error, ErrorKind, Lidar, LidarScan, Result};
+use crate::io::beat::Beat;
+use crate::io::{Clock, Drive, Error, Lidar, LidarScan, Result};
 use crate::nav::ScanFilter;
+use crate::nav::scan_filter::check_measured;
 use crate::nav::surroundings::Surroundings;
 use crate::world::{GridCell, World};
 
@@ -131,7 +133,7 @@ impl Navigator {
             doubts: 0,
             widened_at: start.position(),
         };
-        if !this.plan(LEVELS) {
+        if !this.chart.is_open(start.position()) || !this.plan(LEVELS) {
             this.end(NavigateOutcome::Unreachable);
         }
         Ok(this)
@@ -207,15 +209,7 @@ impl Navigator {
 
     /// Takes in what the robot measures.
     fn perceive(&mut self, observation: &NavigateObservation<'_>) -> Result<()> {
-        if !observation.odometry.is_finite() {
-            let found = format!("{:?}", observation.odometry);
-            return Err(Error::invalid_input("odometry", found, "finite numbers"));
-        }
-        let ranges = &observation.scan.ranges;
-        if !ranges.is_empty() && ranges.iter().all(|range| range.is_nan()) {
-            let expected = "metres or +infinity";
-            return Err(Error::invalid_input("every range of the lidar scan", f64::NAN, expected));
-        }
+        check_measured(&observation.odometry, observation.scan)?;
         self.pose = if self.parameters.match_scans {
             self.locator.locate(observation.odometry, observation.scan)
         } else {
@@ -290,13 +284,7 @@ impl Navigator {
         let Some(route) = &self.route else { return Twist::STOP };
         let target = route.target(&self.chart, self.pose.position(), LOOKAHEAD);
         let clearance = self.chart.clearance(route.level);
-        let steering = Steering {
-            parameters: &self.parameters,
-            surroundings: &self.surroundings,
-            points: &self.near,
-            clearance,
-        };
-        steering.towards(self.pose.to_local(target), self.pose.distance_to(self.goal), speed)
+        self.steering(clearance).towards(self.pose.to_local(target), self.pose.distance_to(self.goal), speed)
     }
 
     /// Brings the plan up to date. `false` if no way is left.
@@ -374,18 +362,17 @@ impl Navigator {
 
     fn back_off(&mut self) -> Twist {
         self.left = self.left.saturating_sub(1);
-        let steering = Steering {
-            parameters: &self.parameters,
-            surroundings: &self.surroundings,
-            points: &self.near,
-            clearance: self.parameters.least_clearance,
-        };
-        let twist = steering.safe(Twist::new(-BACKING_SPEED, 0.0));
+        let twist = self.steering(self.parameters.least_clearance).safe(Twist::new(-BACKING_SPEED, 0.0));
         if self.left == 0 || twist.linear > -0.2 * BACKING_SPEED {
             self.phase = NavigatePhase::Driving;
             return Twist::STOP;
         }
         twist
+    }
+
+    fn steering(&self, clearance: f64) -> Steering<'_> {
+        let Self { parameters, surroundings, near: points, .. } = self;
+        Steering { parameters, surroundings, points, clearance }
     }
 
     /// Drives a robot to the goal, or finds that there is no way, within `time_limit` seconds. `observe` is called after
@@ -399,16 +386,9 @@ impl Navigator {
         mut observe: impl FnMut(&mut Self, f64),
     ) -> Result<NavigateOutcome> {
         let mut scan = LidarScan::default();
-        let begin = robot.now()?;
-        let mut next = begin;
-        let mut last = f64::NEG_INFINITY;
+        let mut beat = Beat::start(robot, self.parameters.period)?;
         loop {
-            let now = robot.now()?;
-            if now <= last {
-                return Err(Error::new(ErrorKind::Other, "the robot's clock stands still"));
-            }
-            last = now;
-            if now - begin >= time_limit {
+            if beat.step(robot)? >= time_limit {
                 self.end(NavigateOutcome::TimedOut);
             }
             robot.scan_into(&mut scan)?;
@@ -416,13 +396,11 @@ impl Navigator {
                 NavigateObservation { odometry: robot.pose()?, speed: robot.speed()?, scan: &scan };
             let twist = self.step(&observation)?;
             robot.set_speed(twist)?;
-            observe(self, now);
+            observe(self, beat.now());
             if let NavigatePhase::Ended(outcome) = self.phase() {
                 return Ok(outcome);
             }
-            next += self.parameters.period;
-            let pause = next - robot.now()?;
-            robot.wait(pause)?;
+            beat.rest(robot)?;
         }
     }
 }

@@ -1,6 +1,6 @@
 use super::chart::Chart;
 use crate::geometry::Point;
-use crate::nav::grid::{Components, DStarLite};
+use crate::nav::grid::DStarLite;
 use crate::world::{BitGrid, GridCell};
 
 /// A plan at one level of clearance, which changes as obstacles are seen.
@@ -29,9 +29,6 @@ impl Route {
             _ if chart.has_room(goal, radius) => nearest_free(chart, &grid, goal)?,
             _ => return None,
         };
-        if !Components::new(&grid).connected(from, to) {
-            return None;
-        }
         let planner = DStarLite::new(&grid, from, to).ok()?;
         let mut route = Self { level, planner, cell: from, path: Vec::new(), goal, length: 0.0 };
         route.plan(chart).then_some(route)

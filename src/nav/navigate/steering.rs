@@ -54,16 +54,57 @@ impl Steering<'_> {
         bearing
     }
 
-    /// The same twist, slowed down so that the robot can stop before its outline sweeps over anything.
+    /// The same twist, slowed down so that the robot can stop before its outline sweeps over anything: what is told to the
+    /// robot touches nothing within the time that it takes to stop.
     pub(super) fn safe(&self, twist: Twist) -> Twist {
-        let margin = 0.5 * self.parameters.least_clearance;
-        let time = Sweep::new(&self.parameters.footprint, margin, twist).time_to_contact(self.points);
+        let slower = |twist: Twist| (self.time_to_contact(twist) / STOPPING_TIME).min(1.0);
         // A robot that turns later than it is told to drives straight on.
         let straight = Twist::new(twist.linear, 0.0);
-        let straight = Sweep::new(&self.parameters.footprint, margin, straight).time_to_contact(self.points);
-        let slower = |time: f64| (time / STOPPING_TIME).min(1.0);
-        let turned = Sweep::new(&self.parameters.footprint, margin, Twist::new(0.0, twist.angular));
-        let turn = slower(turned.time_to_contact(self.points));
-        Twist::new(twist.linear * slower(time.min(straight)), twist.angular * turn)
+        let linear = twist.linear * slower(twist).min(slower(straight));
+        let slowed = Twist::new(linear, twist.angular * slower(Twist::new(0.0, twist.angular)));
+        // Driving and turning, if slowed differently, make another arc.
+        let rest = slower(slowed);
+        Twist::new(slowed.linear * rest, slowed.angular * rest)
+    }
+
+    /// Seconds until the outline, with half of the least clearance around it, touches something.
+    fn time_to_contact(&self, twist: Twist) -> f64 {
+        let margin = 0.5 * self.parameters.least_clearance;
+        Sweep::new(&self.parameters.footprint, margin, twist).time_to_contact(self.points)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Aabb;
+    use crate::world::Footprint;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Whatever is wished, the outline does not sweep over what is seen before the robot can stop.
+        #[test]
+        fn what_is_told_can_be_stopped(
+            places in prop::collection::vec((0.12..0.6f64, -3.1..3.1f64), 0..30),
+            linear in -0.3..0.3f64, angular in -3.0..3.0f64, long in any::<bool>(),
+        ) {
+            let sides = Aabb::new(Point::new(-0.05, -0.04), Point::new(0.09, 0.06));
+            let footprint = if long { Footprint::Rectangle(sides) } else { Footprint::Disc { radius: 0.06 } };
+            let parameters = NavigateParameters::for_footprint(footprint);
+            let margin = 0.5 * parameters.least_clearance;
+            let points: Vec<Point> = places.iter().map(|&(r, a)| Point::origin() + direction(a) * r).collect();
+            let steering = Steering {
+                parameters: &parameters,
+                surroundings: &Surroundings::default(),
+                points: &points,
+                clearance: parameters.clearance,
+            };
+            let wished = Twist::new(linear, angular);
+            let told = steering.safe(wished);
+            let time = Sweep::new(&footprint, margin, told).time_to_contact(&points);
+            prop_assert!(time >= STOPPING_TIME - 1e-6, "{told:?}: {time}");
+            prop_assert!(told.linear * linear >= 0.0 && told.linear.abs() <= linear.abs());
+            prop_assert!(told.angular * angular >= 0.0 && told.angular.abs() <= angular.abs());
+        }
     }
 }

@@ -46,6 +46,15 @@ fn goals_in_walls_or_outside_are_unreachable() {
 }
 
 #[test]
+fn starts_in_walls_or_outside_lead_nowhere() {
+    for start in [Pose::new(1.0, 0.1, 0.0), Pose::new(5.0, 5.0, 0.0), Pose::new(-3.0, 0.5, 0.0)] {
+        let goal = Point::new(1.7, 0.7);
+        let navigator = Navigator::new(&rooms(0.5), start, goal, NavigateParameters::default()).unwrap();
+        assert_eq!(navigator.phase(), NavigatePhase::Ended(NavigateOutcome::Unreachable), "{start:?}");
+    }
+}
+
+#[test]
 fn nonsense_is_refused() {
     let good = NavigateParameters::default();
     let new =

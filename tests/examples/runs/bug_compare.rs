@@ -91,6 +91,19 @@ fn a_world_of_ones_own_is_compared_and_drawn() {
     }
 }
 
+/// Goals in a wall and outside, the truth about which the robots find out.
+#[test]
+fn goals_that_nobody_can_reach_are_told() {
+    let field = data("field.wld");
+    for goal in ["0,2000", "9000,2000"] {
+        let world = ["--world", &field, "--goal", goal, "--noise", "0", "--runs", "1"];
+        let report = report(&world);
+        for run in report["runs"].as_array().unwrap() {
+            assert_eq!((&run["outcome"], &run["correct"]), (&"unreachable".into(), &true.into()), "{run}");
+        }
+    }
+}
+
 #[test]
 fn the_campaign_checks_verdicts_and_bounds() {
     let report = report(&["--campaign", "--noise", "0", "--runs", "3", "--bugs", "bug1,bug2,class1"]);
@@ -108,6 +121,24 @@ fn the_campaign_checks_verdicts_and_bounds() {
             if bounded { closest.is_some_and(|c| c > 0.1 && c <= 1.0) } else { closest.is_none() },
             "{bug}"
         );
+    }
+}
+
+/// Lines to the goal that graze an obstacle or go on behind the goal, ends of thin walls before narrow gaps, obstacles met
+/// where others are as near, and places to leave that are seen for a moment only.
+#[test]
+fn hard_worlds_are_done_right() {
+    for (seed, bugs) in [
+        ("1017", "bug2"),
+        ("1096", "bug2,alg1"),
+        ("1224", "leavebug"),
+        ("1284", "leavebug"),
+        ("1318", "bug2,alg1"),
+        ("1361", "bug1"),
+        ("1381", "bug1,leavebug"),
+    ] {
+        let report = report(&["--campaign", "--noise", "0", "--seed", seed, "--runs", "1", "--bugs", bugs]);
+        assert_eq!((&report["outcome"], &report["collisions"]), (&"passed".into(), &0.into()), "{report}");
     }
 }
 
@@ -134,6 +165,10 @@ fn what_makes_no_sense_is_refused() {
         (&["--campaign", "--world", &field], "--campaign: found --world"),
         (&["--world", &field, "--goal", "30,2000,7"], "--goal: found a heading"),
         (&["--world", "no/such.wld"], "no/such.wld:1:1"),
+        (&["--world", &field, "--start", "-500,2000,0"], "--start: found a start at -500, 2000 mm, outside"),
+        (&["--world", &field, "--start", "0,2000,0"], "--start: found a start at 0, 2000 mm, in a wall"),
+        (&["--world", &field, "--goal", "nan,1"], "--goal"),
+        (&["--world", &field, "--start", "1,inf,0"], "--start"),
     ] {
         let (status, out, err) = run(&[&["--json"], options].concat());
         assert_eq!((status, out.as_str(), err.lines().count()), (2, "", 1), "{options:?}: {err}");
@@ -159,6 +194,10 @@ fn boundaries_have_the_perimeters_that_geometry_says() {
     assert!((3..=4).contains(&perimeters.len()), "{perimeters:?}");
     let round = &boundaries.all[boundaries.nearest(corner(0.85, 1.3)).unwrap()];
     assert!((round.perimeter - (3.2 + TAU * 0.1)).abs() < 0.02);
+    // A path that begins nearer to the border goes round the block nevertheless.
+    let path = [corner(0.2, 1.3), corner(0.9, 1.4), corner(0.91, 1.2), corner(0.9, 1.0)];
+    assert_eq!(boundaries.followed(&path), boundaries.nearest(corner(0.85, 1.3)));
+    assert_eq!(boundaries.followed(&[]), None);
     assert_eq!(round.crossings(Segment::new(corner(0.5, 1.3), corner(2.5, 1.3))), 2);
     assert_eq!(round.crossings(Segment::new(corner(0.5, 1.3), corner(1.5, 1.3))), 1);
     assert_eq!(round.crossings(Segment::new(corner(0.5, 0.5), corner(2.5, 0.5))), 0);

@@ -59,7 +59,7 @@ fn without_options_there_is_a_map_of_rooms() {
 }
 
 #[test]
-fn a_wrong_length_is_found_and_wrong_files_are_named() {
+fn a_wrong_length_is_found() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     let scen = folder.join("wrong.scen");
     fs::write(&scen, "version 1\n0 yard 8 6 0 0 7 0 7.5\n").unwrap();
@@ -72,6 +72,31 @@ fn a_wrong_length_is_found_and_wrong_files_are_named() {
         status == 2 && err.contains("found queries for a map of 9 x 6 cells") && err.lines().count() == 1,
         "{err}"
     );
+}
+
+#[test]
+fn what_is_wrong_with_files_is_named() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let (map, scen) = (folder.join("parted.map"), folder.join("parted.scen"));
+    fs::write(&map, "type octile\nheight 2\nwidth 5\nmap\n..@..\n..@..\n").unwrap();
+    let options = ["--map", map.to_str().unwrap(), "--scen", scen.to_str().unwrap()];
+    for (query, expected, part) in [
+        ("2 1 0 0 1", 2, "parted.scen: query 2: the start (2, 1) is blocked; expected a free cell"),
+        ("0 0 2 0 1", 2, "parted.scen: query 2: the goal (2, 0) is blocked; expected a free cell"),
+        ("5 1 0 0 1", 2, "parted.scen:3:14: found `5`"),
+        ("0 0 0 2 1", 2, "parted.scen:3:20: found `2`"),
+        ("0 0 0 1 nan", 2, "parted.scen:3:22: found `nan`"),
+        ("0 0 0 1 -1", 2, "parted.scen:3:22: found `-1`"),
+        ("0 0 4 1 5", 1, "parted.scen: query 2: no way leads from (0, 0) to (4, 1)"),
+    ] {
+        fs::write(&scen, format!("version 1\n0 parted 5 2 0 0 1 0 1\n0 parted 5 2 {query}\n")).unwrap();
+        for algorithm in ["dijkstra", "astar", "jps", "jps_plus", "any_angle", "quadtree"] {
+            let (status, report, err) = run(&[&options[..], &["--algorithm", algorithm]].concat());
+            assert_eq!((status, err.lines().count()), (expected, 1), "{algorithm}: {query}: {err}");
+            assert!(err.contains(part), "{algorithm}: {query}: {err}");
+            assert_eq!(report["outcome"].as_str(), (expected == 1).then_some("wrong"), "{report}");
+        }
+    }
     let (status, _, err) = run(&["--map", "nowhere.map", "--scen", "nowhere.scen"]);
     assert!(status == 2 && err.contains("nowhere.map:1:1: found"), "{err}");
     let (status, _, err) = run(&["--map", "nowhere.map"]);

@@ -67,8 +67,11 @@ fn closed_worlds_are_told_at_once() {
         report["sim_time_s"].as_f64().unwrap() < 1.0 && report["planned_length_mm"].is_null(),
         "{report}"
     );
-    let (_, report, _) = run(&["--world", &world, "--start", "500,1000,0", "--goal", "9000,1000"]);
-    assert_eq!(report["outcome"], "unreachable");
+    // Outside, and in a wall.
+    for goal in ["9000,1000", "1500,1000"] {
+        let (status, report, _) = run(&["--world", &world, "--start", "500,1000,0", "--goal", goal]);
+        assert_eq!((status, report["outcome"].as_str()), (0, Some("unreachable")), "{goal}: {report}");
+    }
 }
 
 #[test]
@@ -93,6 +96,11 @@ fn what_makes_no_sense_is_refused() {
         (&["--goal", "100,100,90"], "--goal: found a heading"),
         (&["--world", "no/such.map", "--start", "1,1,0", "--goal", "2,2"], "no/such.map:1:1"),
         (&["--campaign", "--runs", "0"], "--runs"),
+        (&["--start", "9000,400,0"], "--start: found a start at 9000, 400 mm, outside of the world"),
+        (&["--start", "1400,300,0"], "--start: found a start at 1400, 300 mm, in a wall"),
+        (&["--start", "nan,400,0"], "--start"),
+        (&["--goal", "nan,400"], "--goal"),
+        (&["--goal", "inf,400"], "--goal"),
     ] {
         let (status, report, err) = run(options);
         assert_eq!((status, report, err.lines().count()), (2, Value::Null, 1), "{options:?}: {err}");

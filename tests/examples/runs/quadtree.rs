@@ -59,11 +59,19 @@ fn paths_are_found_or_there_are_none() {
 #[test]
 fn what_is_wrong_is_named() {
     let map = picture("wrong.pgm");
+    let empty = Path::new(env!("CARGO_TARGET_TMPDIR")).join("empty.map");
+    fs::write(&empty, "type octile\nheight 0\nwidth 5\nmap\n").unwrap();
+    let empty = empty.to_str().unwrap().to_owned();
     for (options, message) in [
         (vec!["--map", "nowhere.png"], "nowhere.png:1:1: found"),
         (vec!["--minimum", "3"], "the minimum leaf is 3 cells wide"),
         (vec!["--map", &map, "--from", "0,0", "--to", "5,5"], "the goal (5, 5) is blocked"),
         (vec!["--map", &map, "--from", "0,0", "--to", "8,0"], "the goal (8, 0) lies outside"),
+        (vec!["--map", &map, "--from", "5,5", "--to", "0,0"], "the start (5, 5) is blocked"),
+        (vec!["--map", &map, "--from", "0,9", "--to", "0,0"], "the start (0, 9) lies outside"),
+        (vec!["--map", &empty, "--from", "0,0", "--to", "0,0"], "empty.map:2:8: found"),
+        (vec!["--from", "-1,0", "--to", "2,2"], "expected COLUMN,ROW"),
+        (vec!["--from", "nan,0", "--to", "2,2"], "expected COLUMN,ROW"),
         (vec!["--from", "0,0"], "--to"),
         (vec!["--from", "1", "--to", "2,2"], "expected COLUMN,ROW"),
     ] {

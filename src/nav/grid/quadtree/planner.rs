@@ -12,8 +12,10 @@ use crate::world::{BitGrid, GridCell};
 /// Paths through a quadtree's free leaves, pulled straight (book, section 10.5).
 ///
 /// The search is A\* over points on the parts of edges that neighbouring leaves share: their middles, and the ends of
-/// long ones. What it finds is then pulled straight within the leaves that it goes through, and cut short wherever a later
-/// point is in sight. Paths may be a little longer than the shortest: on published maps by 0.1 to 0.6 % in the mean.
+/// long ones. It weighs the rest of the way by 1.1 and takes up no point again (I. Pohl, *Heuristic Search Viewed as Path
+/// Finding in a Graph*, Artificial Intelligence 1, 1970). What it finds is then pulled straight within the leaves that it
+/// goes through, and cut short wherever a later point is in sight. Paths may be a little longer than the shortest: on
+/// published maps by 0.1 to 1 % in the mean, and by less than 4 % all of them.
 ///
 /// ```
 /// use roverlab::nav::grid::{GridPlanner, Quadtree, QuadtreePlanner};
@@ -36,21 +38,26 @@ pub struct QuadtreePlanner {
     queue: BucketQueue,
 }
 
-/// What is known about a point of a portal.
+/// What is known about a node.
 #[derive(Debug, Clone, Copy, Default)]
 struct Label {
     cost: f64,
     parent: u32,
-    /// The leaf that the way to it goes through last.
-    leaf: u32,
-    query: u32,
+    /// The query that this is about, and in the lowest two bits what follows.
+    state: u32,
 }
 
-/// The points of a portal: its ends, if it is longer than so many cells, and its middle.
-const POINTS: u32 = 3;
-const MIDDLE: u32 = 2;
-const LONG: i32 = 8;
+impl Label {
+    /// The way to the node comes through the second leaf of its portal rather than the first.
+    const FROM_SECOND: u32 = 1;
+    /// The node has left the queue.
+    const DONE: u32 = 2;
+}
+
 const START: u32 = u32::MAX;
+/// How much more than it is at least the rest of a way counts. Where there are many ways this finds one much sooner, which
+/// is longer by that part at the most.
+const HASTE: f64 = 1.1;
 
 struct Query {
     goal: HalfPoint,
@@ -67,7 +74,7 @@ impl QuadtreePlanner {
         Self {
             components: Components::new(&grid),
             field: Field::new(&grid),
-            labels: vec![Label::default(); portals.all.len() * POINTS as usize],
+            labels: vec![Label::default(); portals.nodes.len()],
             tree: tree.clone(),
             grid,
             portals,
@@ -82,20 +89,11 @@ impl QuadtreePlanner {
     }
 
     fn begin(&mut self) {
-        if self.query == u32::MAX {
+        if self.query >= u32::MAX - 7 {
             self.labels.fill(Label::default());
             self.query = 0;
         }
-        self.query += 1;
-    }
-
-    fn point(&self, node: u32) -> HalfPoint {
-        let [a, b] = self.portals.all[(node / POINTS) as usize].ends;
-        match node % POINTS {
-            0 => HalfPoint::corner(a.0, a.1),
-            1 => HalfPoint::corner(b.0, b.1),
-            _ => HalfPoint { x: a.0 + b.0, y: a.1 + b.1 },
-        }
+        self.query += 4;
     }
 
     fn leaf_of(&self, cell: GridCell) -> Option<u32> {
@@ -106,65 +104,57 @@ impl QuadtreePlanner {
         self.begin();
         self.queue.start(fixed(distance(start, query.goal)));
         self.spread(query, start, start_leaf, 0.0, START);
-        while let Some((node, bits)) = self.queue.pop_below(limit(query.best)) {
-            let label = self.labels[node as usize];
-            let point = self.point(node);
-            if label.cost.to_bits() != bits || label.cost + distance(point, query.goal) >= query.best {
+        while let Some((number, bits)) = self.queue.pop_below(limit(query.best)) {
+            let (label, node) = (&mut self.labels[number as usize], self.portals.nodes[number as usize]);
+            let cost = label.cost;
+            let rest = distance(node.at, query.goal);
+            if cost.to_bits() != bits || label.state & Label::DONE != 0 || cost + rest >= query.best {
                 continue;
             }
+            label.state |= Label::DONE;
             query.statistics.expanded += 1;
-            let [a, b] = self.portals.all[(node / POINTS) as usize].leaves;
-            let leaf = if label.leaf == a { b } else { a };
+            let leaf = node.leaves[usize::from(label.state & Label::FROM_SECOND == 0)];
             if leaf == query.goal_leaf {
-                (query.best, query.last) = (label.cost + distance(point, query.goal), node);
+                (query.best, query.last) = (cost + rest, number);
                 continue;
             }
-            self.spread(query, point, leaf, label.cost, node);
+            self.spread(query, node.at, leaf, cost, number);
         }
     }
 
-    /// Goes from a point to all portals of a leaf.
+    /// Goes from a point to all nodes around a leaf.
     fn spread(&mut self, query: &mut Query, from: HalfPoint, leaf: u32, cost: f64, parent: u32) {
-        for index in 0..self.portals.of(leaf).len() {
-            let number = self.portals.of(leaf)[index];
-            if parent != START && number == parent / POINTS {
+        let Self { portals, labels, queue, .. } = self;
+        let portal = if parent == START { None } else { Some(portals.nodes[parent as usize].portal) };
+        for &number in portals.around(leaf) {
+            let (label, node) = (&mut labels[number as usize], portals.nodes[number as usize]);
+            let total = cost + distance(from, node.at);
+            let is_known = label.state & !3 == self.query;
+            let is_done = is_known && (label.state & Label::DONE != 0 || label.cost <= total);
+            let rest = distance(node.at, query.goal);
+            if is_done || Some(node.portal) == portal || total + rest >= query.best {
                 continue;
             }
-            let [a, b] = self.portals.all[number as usize].ends;
-            let is_long = (b.0 - a.0) + (b.1 - a.1) > LONG;
-            for point in if is_long { 0..POINTS } else { MIDDLE..POINTS } {
-                let node = number * POINTS + point;
-                let at = self.point(node);
-                let label = &mut self.labels[node as usize];
-                let total = cost + distance(from, at);
-                if label.query == self.query && label.cost <= total {
-                    continue;
-                }
-                let sum = total + distance(at, query.goal);
-                if sum >= query.best {
-                    continue;
-                }
-                *label = Label { cost: total, parent, leaf, query: self.query };
-                query.statistics.generated += 1;
-                self.queue.push(fixed(sum), node, total.to_bits());
-            }
+            let side = if node.leaves[0] == leaf { 0 } else { Label::FROM_SECOND };
+            *label = Label { cost: total, parent, state: self.query | side };
+            query.statistics.generated += 1;
+            queue.push(fixed(total + HASTE * rest), number, total.to_bits());
         }
     }
 
     /// The portals that the way goes through, each by its left end and its right end.
     fn openings(&self, last: u32) -> Vec<(HalfPoint, HalfPoint)> {
         let mut openings = Vec::new();
-        let mut node = last;
-        while node != START {
-            let label = self.labels[node as usize];
-            let portal = self.portals.all[(node / POINTS) as usize];
+        let mut number = last;
+        while number != START {
+            let label = self.labels[number as usize];
+            let portal = self.portals.all[self.portals.nodes[number as usize].portal as usize];
             let [a, b] = portal.ends.map(|(x, y)| HalfPoint::corner(x, y));
             // To the right through an upright opening its upper end is on the left; downwards through a level one
             // its right end is.
-            let upright = a.x == b.x;
-            let forward = label.leaf == portal.leaves[0];
+            let (upright, forward) = (a.x == b.x, label.state & Label::FROM_SECOND == 0);
             openings.push(if upright == forward { (a, b) } else { (b, a) });
-            node = label.parent;
+            number = label.parent;
         }
         openings.reverse();
         openings

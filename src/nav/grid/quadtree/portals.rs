@@ -1,6 +1,7 @@
 //! The parts of edges that free leaves share.
 
 use super::tree::{Leaf, Quadtree};
+use crate::nav::grid::any_angle::HalfPoint;
 use crate::world::{BitGrid, GridCell};
 
 /// The part of an edge that two leaves share.
@@ -12,12 +13,25 @@ pub(super) struct Portal {
     pub(super) ends: [(i32, i32); 2],
 }
 
+/// A point of a portal, which ways go over.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Node {
+    pub(super) at: HalfPoint,
+    pub(super) portal: u32,
+    /// The leaves of the portal.
+    pub(super) leaves: [u32; 2],
+}
+
+/// Portals of more cells than this have nodes at their ends as well as in their middle.
+const LONG: i32 = 8;
+
 /// The free leaves of a quadtree and the portals between them.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Portals {
     pub(super) leaves: Vec<Leaf>,
     pub(super) all: Vec<Portal>,
-    /// Where the portals of each leaf begin in the list after it, and the end.
+    pub(super) nodes: Vec<Node>,
+    /// Where the nodes around each leaf begin in the list after it, and the end.
     first: Vec<u32>,
     of_leaf: Vec<u32>,
     /// The first cells of leaves, row by row, and how many come before each word: for finding a leaf's number.
@@ -34,22 +48,35 @@ impl Portals {
         for leaf in 0..this.leaves.len() as u32 {
             this.connect(tree, leaf);
         }
-        let mut counts = vec![0; this.leaves.len() + 1];
-        for portal in &this.all {
-            portal.leaves.iter().for_each(|&leaf| counts[leaf as usize + 1] += 1);
+        this.lay_nodes();
+        this
+    }
+
+    /// Lists the nodes of all portals, and those around each leaf.
+    fn lay_nodes(&mut self) {
+        for (portal, &Portal { leaves, ends: [a, b] }) in self.all.iter().enumerate() {
+            let mut add = |at| self.nodes.push(Node { at, portal: portal as u32, leaves });
+            add(HalfPoint { x: a.0 + b.0, y: a.1 + b.1 });
+            if (b.0 - a.0) + (b.1 - a.1) > LONG {
+                add(HalfPoint::corner(a.0, a.1));
+                add(HalfPoint::corner(b.0, b.1));
+            }
         }
-        for leaf in 0..this.leaves.len() {
+        let mut counts = vec![0; self.leaves.len() + 1];
+        for node in &self.nodes {
+            node.leaves.iter().for_each(|&leaf| counts[leaf as usize + 1] += 1);
+        }
+        for leaf in 0..self.leaves.len() {
             counts[leaf + 1] += counts[leaf];
         }
-        this.first.clone_from(&counts);
-        this.of_leaf = vec![0; 2 * this.all.len()];
-        for (number, portal) in this.all.iter().enumerate() {
-            for &leaf in &portal.leaves {
-                this.of_leaf[counts[leaf as usize] as usize] = number as u32;
+        self.first.clone_from(&counts);
+        self.of_leaf = vec![0; 2 * self.nodes.len()];
+        for (number, node) in self.nodes.iter().enumerate() {
+            for &leaf in &node.leaves {
+                self.of_leaf[counts[leaf as usize] as usize] = number as u32;
                 counts[leaf as usize] += 1;
             }
         }
-        this
     }
 
     fn number(&mut self, tree: &Quadtree) {
@@ -85,8 +112,8 @@ impl Portals {
         self.order[self.rank(leaf)]
     }
 
-    /// The portals of a leaf.
-    pub(super) fn of(&self, leaf: u32) -> &[u32] {
+    /// The nodes around a leaf.
+    pub(super) fn around(&self, leaf: u32) -> &[u32] {
         &self.of_leaf[self.first[leaf as usize] as usize..self.first[leaf as usize + 1] as usize]
     }
 

@@ -104,7 +104,7 @@ impl Quadtree {
     /// The free leaves, in the order of the book's program: the first quarter, the one beside it along the row, the one below
     /// it, the last one; each of them likewise.
     pub fn free_leaves(&self) -> Vec<Leaf> {
-        let mut leaves = Vec::new();
+        let mut leaves = Vec::with_capacity(self.at_least(&self.free));
         self.visit(|leaf, free| {
             if free {
                 leaves.push(leaf);
@@ -115,13 +115,21 @@ impl Quadtree {
 
     /// The blocked leaves, in the same order.
     pub fn blocked_leaves(&self) -> Vec<Leaf> {
-        let mut leaves = Vec::new();
+        let mut leaves = Vec::with_capacity(self.at_least(&self.blocked));
         self.visit(|leaf, free| {
             if !free {
                 leaves.push(leaf);
             }
         });
         leaves
+    }
+
+    /// How many leaves there are at least: of each size the squares that are not in one of the next.
+    fn at_least(&self, squares: &[BitGrid]) -> usize {
+        let counts: Vec<usize> =
+            squares[self.smallest.min(squares.len())..].iter().map(BitGrid::count_free).collect();
+        let larger = counts.iter().skip(1).chain([&0]);
+        counts.iter().zip(larger).map(|(count, larger)| count - 4 * larger).sum()
     }
 
     /// Calls `found` with all leaves, and whether they are free, in the order of [`Quadtree::free_leaves`].
@@ -144,21 +152,42 @@ impl Quadtree {
         if self.is_solid(level, x, y) {
             return found(leaf, false);
         }
-        if level == 1 && self.smallest == 0 {
-            return self.visit_cells(x, y, found);
+        if level == BLOCK && self.smallest == 0 && self.is_whole(leaf) {
+            return self.visit_block(leaf, found);
         }
         for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
             self.divide(level - 1, 2 * x + dx, 2 * y + dy, found);
         }
     }
 
-    /// The four cells of the smallest square that is divided.
+    /// The leaves of a square of 64 cells, which make one word in the order of quarters.
     #[inline]
-    fn visit_cells(&self, x: usize, y: usize, found: &mut impl FnMut(Leaf, bool)) {
-        for row in 2 * y..(2 * y + 2).min(self.height) {
-            let bits = self.free[0].row(row)[x / 32] >> (2 * x % 64);
-            for column in 2 * x..(2 * x + 2).min(self.width) {
-                found(Leaf { column, row, size: 1 }, bits >> (column & 1) & 1 != 0);
+    fn visit_block(&self, block: Leaf, found: &mut impl FnMut(Leaf, bool)) {
+        let rows = (0..8).map(|row| {
+            let cells = self.free[0].row(block.row + row)[block.column / 64] >> (block.column % 64);
+            (cells & 0xff) << (8 * row)
+        });
+        let cells = by_quarters(rows.fold(0, |all, row| all | row));
+        let part = |of: Leaf, size: usize, index: usize| Leaf {
+            column: of.column + (index & 1) * size,
+            row: of.row + (index >> 1) * size,
+            size,
+        };
+        for index in 0..4 {
+            let (quarter, cells) = (part(block, 4, index), cells >> (16 * index) & 0xffff);
+            if cells == 0 || cells == 0xffff {
+                found(quarter, cells != 0);
+                continue;
+            }
+            for index in 0..4 {
+                let (four, cells) = (part(quarter, 2, index), cells >> (4 * index) & 0xf);
+                if cells == 0 || cells == 0xf {
+                    found(four, cells != 0);
+                    continue;
+                }
+                for index in 0..4 {
+                    found(part(four, 1, index), cells >> index & 1 != 0);
+                }
             }
         }
     }
@@ -274,6 +303,37 @@ impl Quadtree {
         }
         grid
     }
+}
+
+/// The size, as a power of two, of squares whose cells fill a word.
+const BLOCK: usize = 3;
+
+/// Eight rows of eight cells, one after the other, in the order of quarters: the first quarter's cells first, each quarter
+/// likewise. The bits of a cell's number are those of its row and then of its column, and become one of each in turn.
+fn by_quarters(rows: u64) -> u64 {
+    SWAPS.into_iter().fold(rows, |cells, (mask, shift)| {
+        let moved = (cells >> shift ^ cells) & mask;
+        cells ^ (moved | moved << shift)
+    })
+}
+
+/// Exchanges of two bits of the numbers: the places where the higher one is to be set, and how far off the others are.
+const SWAPS: [(u64, u32); 3] = [swap(4, 2), swap(3, 2), swap(2, 1)];
+
+const fn swap(high: u32, low: u32) -> (u64, u32) {
+    (numbers(high, low), (1 << high) - (1 << low))
+}
+
+/// The numbers below 64 with one bit clear and a lower one set, as bits.
+const fn numbers(clear: u32, set: u32) -> u64 {
+    let (mut mask, mut number) = (0, 0);
+    while number < 64 {
+        if number >> clear & 1 == 0 && number >> set & 1 == 1 {
+            mask |= 1 << number;
+        }
+        number += 1;
+    }
+    mask
 }
 
 /// The square of some size around a cell.

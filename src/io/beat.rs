@@ -1,8 +1,8 @@
-use crate::io::{Clock, Error, ErrorKind, Result};
+use super::{Clock, Error, ErrorKind, Result};
 
 /// The beat of a control loop: its steps are a period apart by the robot's clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Beat {
+pub(crate) struct Beat {
     begin: f64,
     next: f64,
     last: f64,
@@ -11,13 +11,13 @@ pub(super) struct Beat {
 
 impl Beat {
     /// A loop that begins now.
-    pub(super) fn start<R: Clock + ?Sized>(robot: &mut R, period: f64) -> Result<Self> {
+    pub(crate) fn start<R: Clock + ?Sized>(robot: &mut R, period: f64) -> Result<Self> {
         let begin = robot.now()?;
         Ok(Self { begin, next: begin, last: f64::NEG_INFINITY, period })
     }
 
     /// Seconds since the begin, at a new step. Fails if no time has passed since the last one: such a loop would not end.
-    pub(super) fn step<R: Clock + ?Sized>(&mut self, robot: &mut R) -> Result<f64> {
+    pub(crate) fn step<R: Clock + ?Sized>(&mut self, robot: &mut R) -> Result<f64> {
         let now = robot.now()?;
         if now <= self.last {
             return Err(Error::new(ErrorKind::Other, "the robot's clock stands still"));
@@ -26,8 +26,13 @@ impl Beat {
         Ok(now - self.begin)
     }
 
+    /// When the present step began, by the robot's clock.
+    pub(crate) fn now(&self) -> f64 {
+        self.last
+    }
+
     /// Waits until the next step is due.
-    pub(super) fn rest<R: Clock + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
+    pub(crate) fn rest<R: Clock + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
         self.next += self.period;
         let pause = self.next - robot.now()?;
         robot.wait(pause)
