@@ -12,6 +12,12 @@ mod camera;
 mod color_tracking;
 #[path = "../examples/common/mod.rs"]
 mod common;
+#[path = "../examples/cone_drive/mod.rs"]
+mod cone_drive;
+#[path = "../examples/cone_race/mod.rs"]
+mod cone_race;
+#[path = "../examples/cones/mod.rs"]
+mod cones;
 #[path = "../examples/coverage/mod.rs"]
 mod coverage;
 #[path = "../examples/distbug/mod.rs"]
@@ -44,6 +50,8 @@ mod random_drive;
 mod replay;
 #[path = "../examples/room/mod.rs"]
 mod room;
+#[path = "../examples/safety/mod.rs"]
+mod safety;
 #[path = "../examples/wall_following/mod.rs"]
 mod wall_following;
 
@@ -150,10 +158,12 @@ fn short(program: &str) -> &'static [&'static str] {
         "bug_compare" => &["--bugs", "bug1,tangentbug"],
         "camera" => &["--images", "3"],
         "color_tracking" => &["--job", "home"],
+        "cone_drive" | "cone_race" => &["--track", "tests/data/cones/oval.csv"],
         "edges" => &["--repeat", "3"],
         "follow_me" => &["--followers", "3", "--mode", "radio"],
         "genetic" => &["--task", "wall", "--generations", "1"],
         "random_drive" => &["--robots", "3"],
+        "safety" => &["--track", "tests/data/cones/oval.csv", "--event", "radio"],
         _ => &[],
     }
 }
@@ -203,8 +213,8 @@ fn other_jobs_check() {
 /// Every example with the shared command line is in the table, or drives no robot.
 #[test]
 fn no_program_is_forgotten() {
-    // A walker is no robot of `RobotIo`, and racing cars are in a world of their own, which refuses to be recorded.
-    const NO_ROBOT: [&str; 3] = ["cone_drive", "cone_race", "starman"];
+    // A walker is no robot of `RobotIo`.
+    const NO_ROBOT: [&str; 1] = ["starman"];
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();

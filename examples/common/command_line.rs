@@ -11,11 +11,11 @@ use super::origin::Facts;
 use super::{CommonArgs, Failure};
 
 /// Options that do not affect a run.
-const NOT_RECORDED: [&str; 8] =
-    ["record", "replay", "picture", "output", "lcd", "json", "realtime", "robios"];
+const NOT_RECORDED: [&str; 9] =
+    ["record", "replay", "picture", "animation", "output", "lcd", "json", "realtime", "robios"];
 
 /// Options that name files which a run reads.
-const FILES: [&str; 3] = ["world", "robot", "maze"];
+const FILES: [&str; 5] = ["world", "robot", "maze", "track", "line"];
 
 /// Options with which nothing drives that could be recorded: many runs at once, or none.
 const UNRECORDED: [&str; 3] = ["campaign", "plan", "input"];
