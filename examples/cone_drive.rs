@@ -5,8 +5,8 @@
 mod common;
 #[path = "cone_drive/mod.rs"]
 mod cone_drive;
-#[path = "cone_race/course.rs"]
-mod course;
+#[path = "cones/mod.rs"]
+mod cones;
 
 fn main() -> std::process::ExitCode {
     common::main("cone_drive", cone_drive::work)

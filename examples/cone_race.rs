@@ -5,6 +5,8 @@
 mod common;
 #[path = "cone_race/mod.rs"]
 mod cone_race;
+#[path = "cones/mod.rs"]
+mod cones;
 
 fn main() -> std::process::ExitCode {
     common::main("cone_race", cone_race::work)

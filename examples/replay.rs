@@ -13,6 +13,12 @@ mod camera;
 #[path = "color_tracking/mod.rs"]
 mod color_tracking;
 mod common;
+#[path = "cone_drive/mod.rs"]
+mod cone_drive;
+#[path = "cone_race/mod.rs"]
+mod cone_race;
+#[path = "cones/mod.rs"]
+mod cones;
 #[path = "coverage/mod.rs"]
 mod coverage;
 #[path = "distbug/mod.rs"]
@@ -45,6 +51,8 @@ mod random_drive;
 mod replay;
 #[path = "room/mod.rs"]
 mod room;
+#[path = "safety/mod.rs"]
+mod safety;
 #[path = "starman/mod.rs"]
 mod starman;
 #[path = "wall_following/mod.rs"]

@@ -69,6 +69,10 @@ pub(crate) struct CommonArgs {
     #[arg(long, value_name = "KIND@T")]
     pub(crate) fault: Vec<String>,
 
+    /// Put robots under the safety system, armed and started; what it does is told. Robots stepped as a troop have none.
+    #[arg(long)]
+    pub(crate) supervised: bool,
+
     /// What the run is, for recordings.
     #[arg(skip)]
     pub(crate) origin: Origin,

@@ -28,7 +28,7 @@ const NOT_RECORDED: [&str; 12] = [
 ];
 
 /// Options that name files which a run reads.
-const FILES: [&str; 3] = ["world", "robot", "maze"];
+const FILES: [&str; 5] = ["world", "robot", "maze", "track", "line"];
 
 /// Options with which nothing drives that could be recorded: many runs at once, or none.
 const UNRECORDED: [&str; 5] = ["campaign", "plan", "input", "compare", "steps"];

@@ -61,6 +61,7 @@ mod origin;
 mod report;
 mod run;
 mod stage;
+mod supervision;
 mod trip;
 mod values;
 mod wall_clock;

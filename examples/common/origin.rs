@@ -3,6 +3,8 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use roverlab::io::log::{Attachment, Log};
 
+use super::supervision::Stops;
+
 /// What a run is: the program and the options that affect it, and the recording that it replays.
 ///
 /// The command line sets it when it has been read. Copies share it.
@@ -12,6 +14,7 @@ pub(crate) struct Origin {
     trouble: Arc<Mutex<Vec<String>>>,
     files: Arc<Mutex<Vec<Attachment>>>,
     staged: Arc<AtomicBool>,
+    stops: Stops,
 }
 
 /// What is known about a run from its command line.
@@ -56,6 +59,11 @@ impl Origin {
     /// Whether there was a stage.
     pub(crate) fn is_staged(&self) -> bool {
         self.staged.load(Ordering::Relaxed)
+    }
+
+    /// What safety systems have done.
+    pub(crate) fn stops(&self) -> &Stops {
+        &self.stops
     }
 
     /// Notes what went wrong with a recording. The run goes on, but the program reports it and fails.

@@ -5,8 +5,9 @@ use std::io::Write;
 
 use crate::common::run;
 use crate::{
-    a_to_b, ackermann, bug_compare, camera, color_tracking, coverage, distbug, edges, follow_me, genetic,
-    lidar_scan, localise, micromouse, motion, navigate, omni, random_drive, starman, wall_following,
+    a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, edges,
+    follow_me, genetic, lidar_scan, localise, micromouse, motion, navigate, omni, random_drive, safety,
+    starman, wall_following,
 };
 
 /// Runs a program with a command line and its two outputs. Returns the exit status.
@@ -36,6 +37,8 @@ programs!(
     bug_compare,
     camera,
     color_tracking,
+    cone_drive,
+    cone_race,
     coverage,
     distbug,
     edges,
@@ -48,6 +51,7 @@ programs!(
     navigate,
     omni,
     random_drive,
+    safety,
     starman,
     wall_following
 );

@@ -42,6 +42,9 @@ where
         common.check()?;
         let mut report = work(args)?;
         report.add_trouble(common.origin.take_trouble());
+        if let Some(safety) = common.origin.stops().take() {
+            report = report.field("safety", safety);
+        }
         common.check_recorded()?;
         let (seed, noise, wall_time) = (common.seed, common.noise, stopwatch.seconds());
         let header = Header { example, seed, noise, wall_time };

@@ -3,12 +3,15 @@ use std::io::BufWriter;
 use std::ops::{Deref, DerefMut};
 use std::path::Path;
 
+use roverlab::drive::safety::StoppingModel;
 use roverlab::io::log::{Attachment, Header, LogError, LogWriter, Player, Troop, Witness};
+use roverlab::io::sim::race::{Race, RaceCarSpec, SharedRace};
 use roverlab::io::sim::{Fleet, SimOptions, Simulation};
-use roverlab::io::wrappers::{Fault, Faulty};
+use roverlab::io::wrappers::{Deadman, Fault, Faulty};
 use roverlab::io::{self, Key, RobotIo};
-use roverlab::world::{Scene, formats};
+use roverlab::world::{MotorSpec, Scene, formats};
 
+use super::supervision::{DEADMAN, Stops, guarded};
 use super::{CommonArgs, Failure, Origin};
 
 /// A robot for an example: simulated or replayed, and recorded if the options ask for it.
@@ -25,6 +28,16 @@ pub(crate) struct Stage {
     play: Play,
     faults: Vec<Fault>,
     recording: Recording,
+    guard: Option<Guard>,
+}
+
+/// What the safety systems of robots go by, one for each robot.
+#[derive(Debug, Clone)]
+struct Guard {
+    models: Vec<StoppingModel>,
+    /// Whether each robot is alone in a world.
+    apart: bool,
+    stops: Stops,
 }
 
 #[derive(Debug)]
@@ -32,6 +45,7 @@ enum Play {
     Simulation(Simulation),
     /// Each robot alone in a world of its own.
     Apart(Vec<Simulation>),
+    Race(SharedRace),
     Recording(Player),
 }
 
@@ -91,12 +105,10 @@ impl CommonArgs {
     /// The stage that the options describe: a simulation of a scene, or the recording that `--replay` names.
     pub(crate) fn stage(&self, scene: &Scene, options: SimOptions) -> Result<Stage, Failure> {
         let stage = match self.player() {
-            Some(player) => {
-                Stage { play: Play::Recording(player), faults: Vec::new(), recording: Recording::default() }
-            }
+            Some(player) => Stage::new(Play::Recording(player), Vec::new()),
             None => Stage::simulated(scene, options, self.faults()?)?,
         };
-        self.recorded(scene, stage)
+        self.recorded(scene, stage, motors(scene))
     }
 
     /// As [`stage`](Self::stage), with copies of the scene's first robot that drive each alone in a copy of its world.
@@ -112,15 +124,36 @@ impl CommonArgs {
             let simulations = (0..robots).map(|_| Simulation::new(scene, options.clone()));
             Play::Apart(simulations.collect::<io::Result<_>>().map_err(Failure::input)?)
         };
-        self.recorded(scene, Stage { play, faults: Vec::new(), recording: Recording::default() })
+        let mut stage = self.recorded(scene, Stage::new(play, Vec::new()), motors(scene))?;
+        if let Some(guard) = &mut stage.guard {
+            guard.apart = true;
+        }
+        Ok(stage)
     }
 
-    fn recorded(&self, scene: &Scene, stage: Stage) -> Result<Stage, Failure> {
+    /// As [`stage`](Self::stage), with the cars of a race; the scene shows its cones.
+    pub(crate) fn stage_race(
+        &self,
+        scene: &Scene,
+        race: impl FnOnce() -> io::Result<Race>,
+    ) -> Result<Stage, Failure> {
+        let stage = match self.player() {
+            Some(player) => Stage::new(Play::Recording(player), Vec::new()),
+            None => Stage::race(race().map_err(Failure::input)?, self.faults()?),
+        };
+        let car = RaceCarSpec::default();
+        let model = StoppingModel { reaction: 0.0, lag: 1.0 / car.speed_gain, deceleration: car.brake };
+        self.recorded(scene, stage, vec![model])
+    }
+
+    fn recorded(&self, scene: &Scene, stage: Stage, models: Vec<StoppingModel>) -> Result<Stage, Failure> {
         let player = match &stage.play {
             Play::Recording(player) => Some(player.clone()),
             _ => None,
         };
-        Ok(Stage { recording: self.recording(scene, player)?, ..stage })
+        let stops = self.origin.stops().clone();
+        let guard = self.supervised.then_some(Guard { models, apart: false, stops });
+        Ok(Stage { recording: self.recording(scene, player)?, guard, ..stage })
     }
 
     /// As [`stage`](Self::stage), with all robots stepped in one thread.
@@ -183,6 +216,17 @@ impl CommonArgs {
     }
 }
 
+/// How the robots of a scene stop.
+fn motors(scene: &Scene) -> Vec<StoppingModel> {
+    let motors = scene.robots.iter().map(|robot| robot.spec.motor);
+    let model = |motor: MotorSpec| StoppingModel {
+        reaction: 0.0,
+        lag: motor.time_constant,
+        deceleration: motor.max_acceleration,
+    };
+    motors.map(model).collect()
+}
+
 /// World and robots as text.
 fn texts(scene: &Scene) -> Vec<Attachment> {
     let text = |name: String, text: String| Attachment {
@@ -209,24 +253,44 @@ impl Stage {
     /// A simulation that nobody records, with faults of the first robot.
     pub(crate) fn simulated(scene: &Scene, options: SimOptions, faults: Vec<Fault>) -> Result<Self, Failure> {
         let simulation = Simulation::new(scene, options).map_err(Failure::input)?;
-        Ok(Self { play: Play::Simulation(simulation), faults, recording: Recording::default() })
+        Ok(Self::new(Play::Simulation(simulation), faults))
+    }
+
+    /// A race that nobody records, with faults of the first car.
+    pub(crate) fn race(race: Race, faults: Vec<Fault>) -> Self {
+        Self::new(Play::Race(SharedRace::new(race)), faults)
+    }
+
+    fn new(play: Play, faults: Vec<Fault>) -> Self {
+        Self { play, faults, recording: Recording::default(), guard: None }
     }
 
     /// A robot, by its index in the scene. Take all robots that drive at once before the first one does.
     pub(crate) fn robot(&self, index: usize) -> Result<Driven, Failure> {
         let simulated = |simulation: &Simulation, index| simulation.robot(index).map_err(Failure::input);
-        match &self.play {
-            Play::Simulation(simulation) => {
-                let faults = if index == 0 { self.faults.clone() } else { Vec::new() };
-                Ok(self.recording.recorder(Faulty::new(simulated(simulation, index)?, faults), index))
-            }
-            Play::Apart(simulations) => {
-                Ok(self.recording.recorder(simulated(&simulations[index], 0)?, index))
-            }
+        let robot = match &self.play {
+            Play::Simulation(simulation) => self.faulty(simulated(simulation, index)?, index)?,
+            Play::Race(race) => self.faulty(race.car(index).map_err(Failure::input)?, index)?,
+            Play::Apart(simulations) => self.faulty(simulated(&simulations[index], 0)?, index)?,
             Play::Recording(player) => {
-                Ok(self.recording.recorder(player.robot(index).map_err(|error| foreign(&error))?, index))
+                self.recording.recorder(player.robot(index).map_err(|error| foreign(&error))?, index)
             }
+        };
+        let Some(guard) = &self.guard else { return Ok(robot) };
+        let models = &guard.models;
+        let model = *models.get(index).or(models.first()).ok_or_else(|| Failure::input("no robot"))?;
+        let who = if guard.apart { 0 } else { index };
+        guarded(robot, self.truth(index)?, who, model, guard.stops.clone()).map_err(Failure::run)
+    }
+
+    /// A simulated robot with the faults of the first one.
+    fn faulty(&self, robot: impl RobotIo + Send + 'static, index: usize) -> Result<Driven, Failure> {
+        let faults = if index == 0 { self.faults.clone() } else { Vec::new() };
+        if self.guard.is_none() {
+            return Ok(self.recording.recorder(Faulty::new(robot, faults), index));
         }
+        let robot = Deadman::new(robot, DEADMAN).map_err(Failure::run)?;
+        Ok(self.recording.recorder(Faulty::new(robot, faults), index))
     }
 
     /// What is true, for the program that drives or watches a robot. Of robots apart, each is the first one of its world.
@@ -234,6 +298,7 @@ impl Stage {
         match &self.play {
             Play::Simulation(simulation) => Ok(self.witnessed(simulation.truth(), index)),
             Play::Apart(simulations) => Ok(self.witnessed(simulations[index].truth(), index)),
+            Play::Race(race) => Ok(self.witnessed(race.clone(), index)),
             Play::Recording(player) => {
                 Ok(self.witnessed(player.truth(index).map_err(|error| foreign(&error))?, index))
             }
@@ -252,7 +317,8 @@ impl Stage {
         match &self.play {
             Play::Simulation(simulation) => simulation.press_key(index, time, key),
             Play::Apart(simulations) => simulations[index].press_key(0, time, key),
-            Play::Recording(_) => Ok(()),
+            // A racing car has no keys.
+            Play::Race(_) | Play::Recording(_) => Ok(()),
         }
     }
 }

@@ -2,16 +2,15 @@
 
 use std::path::PathBuf;
 
-use roverlab::drive::cones::{GapDriver, Referee, Verdict};
-use roverlab::geometry::{Aabb, Point, Pose};
-use roverlab::io::sim::NoiseModel;
-use roverlab::io::sim::race::{CarTruth, Race, RaceCarSpec, RaceOptions};
-use roverlab::io::{self, Lidar, LidarScan, LidarSettings, Motors, Servos};
+use roverlab::drive::cones::{GapDriver, Verdict};
+use roverlab::geometry::{Point, Pose};
+use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
+use roverlab::io::sim::{NoiseModel, RobotTruth};
+use roverlab::io::{self, LidarScan, LidarSettings, RobotIo};
 use roverlab::picture::{Picture, Style};
-use roverlab::world::World;
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
-use crate::course::{Course, colour};
+use crate::common::{CommonArgs, Failure, Outcome, Report, Stage, rounded};
+use crate::cones::{Course, Judge, colour, pass};
 
 /// The command line of the example `cone_drive`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -27,7 +26,7 @@ JSON fields:
   distance_clean_m                            metres to the first cone or off the course
   tracks, clean, clean_share                  of a campaign
   picture
-Outcomes: finished, penalised, timed_out, raced (a campaign)."
+Outcomes: finished, penalised, timed_out, failed, raced (a campaign)."
 )]
 pub(crate) struct Args {
     /// Track to drive on [default: one of our own].
@@ -59,7 +58,9 @@ impl AsRef<CommonArgs> for Args {
 /// What came out of a drive.
 struct Driven {
     verdict: Verdict,
-    truth: CarTruth,
+    /// Why it ended early, if the car failed.
+    error: Option<String>,
+    truth: RobotTruth,
     time: f64,
     clean: f64,
     trail: Vec<(Pose, f64)>,
@@ -79,74 +80,86 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         Some(path) => Course::from_file(common, path)?,
         None => Course::generated(common.seed)?,
     };
-    let driven = drive(&course, args, common.seed).map_err(Failure::run)?;
+    let stage = common.stage_race(&course.scene(), || world(&course, args, common.seed))?;
+    let driven = drive(&course, args, &stage)?;
+    let file = common.picture.clone().or_else(|| (!common.json).then(|| PathBuf::from("cone_drive.svg")));
+    let saved = file.as_ref().map(|file| picture(&course, &driven).save(file)).transpose();
+    let trouble = saved.err().map(|error| error.to_string());
+    Ok(Report { trouble, ..report(args, &course, driven).field("picture", file) })
+}
+
+/// What is told about a drive.
+fn report(args: &Args, course: &Course, driven: Driven) -> Report {
     let verdict = &driven.verdict;
     let done = verdict.lap_times.len() >= usize::from(args.laps);
     let word = match (done, verdict.cones_hit + verdict.off_course) {
+        _ if driven.error.is_some() => Outcome::failure("failed"),
         (false, _) => Outcome::verdict("timed_out"),
         (true, 0) => Outcome::verdict("finished"),
         (true, _) => Outcome::verdict("penalised"),
     };
-    let file = common.picture.clone().or_else(|| (!common.json).then(|| PathBuf::from("cone_drive.svg")));
-    let saved = file.as_ref().map(|file| picture(&course, &driven).save(file)).transpose();
     let times: Vec<f64> = verdict.lap_times.iter().map(|time| rounded(*time)).collect();
     let report = Report::new(word)
         .field("laps", times.len())
         .field("cones_hit", verdict.cones_hit)
         .field("off_course", verdict.off_course)
         .field("lap_times_s", times)
-        .field("distance_clean_m", rounded(driven.clean))
-        .field("picture", file);
-    Ok(Report {
+        .field("distance_clean_m", rounded(driven.clean));
+    Report {
         sim_time: Some(driven.time),
-        path_length: Some(driven.truth.distance),
+        collisions: Some(driven.truth.contacts.into()),
+        path_length: Some(driven.truth.path_length),
         pose: Some(driven.truth.pose),
-        trouble: saved.err().map(|error| error.to_string()),
+        odometry: Some(course.start.compose(&driven.truth.odometry)),
+        error: driven.error,
         ..report
+    }
+}
+
+/// The world of a drive.
+fn world(course: &Course, args: &Args, seed: u64) -> io::Result<Race> {
+    let noise = NoiseModel::real().scaled(args.common.noise);
+    let options = RaceOptions { seed, noise, ..RaceOptions::default() };
+    Race::new(&course.race_cones(), &[(RaceCarSpec::default(), course.start)], options)
+}
+
+fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Driven, Failure> {
+    let mut judge = Judge::new(course, stage.truth(0)?, 0).map_err(Failure::run)?;
+    let mut car = stage.robot(0)?;
+    let ending = laps(course, args, car.as_mut(), &mut judge);
+    drop(car);
+    Ok(Driven {
+        verdict: judge.verdict().clone(),
+        error: ending.err().map(|error| Failure::from(error).to_string()),
+        truth: judge.truth().clone(),
+        time: judge.time(),
+        clean: judge.clean_metres(),
+        trail: judge.trail().to_vec(),
     })
 }
 
-fn drive(course: &Course, args: &Args, seed: u64) -> io::Result<Driven> {
-    let noise = NoiseModel::real().scaled(args.common.noise);
-    let options = RaceOptions { seed, noise, ..RaceOptions::default() };
-    let spec = RaceCarSpec::default();
-    let mut world = Race::new(&course.race_cones(), &[(spec, course.start)], options)?;
-    let mut referee = Referee::new(course.corridor.clone(), Course::wheels());
+/// Drives until all laps are driven, time is over, or the car is lost.
+fn laps<R: RobotIo + ?Sized>(course: &Course, args: &Args, car: &mut R, judge: &mut Judge) -> io::Result<()> {
     let mut driver = GapDriver::default();
     let mut scan = LidarScan::default();
     let laps = usize::from(args.laps);
-    let limit =
-        args.common.time_limit.unwrap_or(1.5 * course.corridor.length() * laps as f64 / args.speed + 10.0);
-    let (mut clean, mut trail) = (None, Vec::new());
-    let mut car = world.car(0)?;
+    let usual = 1.5 * course.corridor.length() * laps as f64 / args.speed + 10.0;
+    let limit = args.common.time_limit.unwrap_or(usual);
     // As the book sets it: 180 points over 180 degrees.
     car.configure_lidar(LidarSettings { field_of_view: std::f64::consts::PI, tilt: 0.0, points: 180 })?;
-    car.set_motor(1, args.speed / spec.top_speed)?;
-    while world.time() < limit && referee.verdict().lap_times.len() < laps {
-        let mut car = world.car(0)?;
+    car.set_motor(1, args.speed / RaceCarSpec::default().top_speed)?;
+    while judge.time() < limit && judge.verdict().lap_times.len() < laps {
         car.scan_into(&mut scan)?;
         if let Some(position) = driver.step(&scan) {
             car.set_servo(1, position)?;
         }
-        for _ in 0..10 {
-            world.advance(0.01);
-            if let Some(truth) = world.truth(0) {
-                referee.see(world.time(), truth.pose, truth.hits);
-                let verdict = referee.verdict();
-                if clean.is_none() && verdict.cones_hit + verdict.off_course > 0 {
-                    clean = Some(truth.distance);
-                }
-            }
-        }
-        trail.extend(world.truth(0).map(|truth| (truth.pose, truth.twist.linear)));
+        pass(car, &mut [judge], 0.1)?;
         // Off the track for good: there are no cones to steer by.
-        if referee.verdict().off_course > 0 && trail.last().is_some_and(|(pose, _)| lost(course, *pose)) {
+        if judge.verdict().off_course > 0 && lost(course, judge.truth().pose) {
             break;
         }
     }
-    let truth = world.truth(0).ok_or_else(|| io::Error::new(io::ErrorKind::Other, "the car is gone"))?;
-    let verdict = referee.verdict().clone();
-    Ok(Driven { verdict, truth, time: world.time(), clean: clean.unwrap_or(truth.distance), trail })
+    Ok(())
 }
 
 /// Whether a car is far from its track.
@@ -159,7 +172,8 @@ fn campaign(args: &Args, tracks: u32) -> Result<Report, Failure> {
     let first = args.common.seed;
     for seed in first..first + u64::from(tracks) {
         let course = Course::generated(seed)?;
-        let driven = drive(&course, args, seed).map_err(Failure::run)?;
+        let stage = Stage::race(world(&course, args, seed).map_err(Failure::run)?, args.common.faults()?);
+        let driven = drive(&course, args, &stage)?;
         let verdict = &driven.verdict;
         let done = verdict.lap_times.len() >= usize::from(args.laps);
         clean += u32::from(done && verdict.cones_hit + verdict.off_course == 0);
@@ -180,10 +194,7 @@ fn campaign(args: &Args, tracks: u32) -> Result<Report, Failure> {
 }
 
 fn picture(course: &Course, driven: &Driven) -> Picture {
-    let around = Aabb::around(course.cones.iter().map(|cone| cone.position));
-    let mut world = World::empty(1.0, 1.0);
-    world.floor = around.unwrap_or(world.floor).inflated(5.0);
-    let mut picture = Picture::new(&world);
+    let mut picture = Picture::new(&course.ground());
     picture.title("Cone drive, as printed");
     for cone in &course.cones {
         picture.disc(cone.position, 0.3, Style::aid().colour(colour(cone.colour)).filled(1.0));

@@ -1,9 +1,9 @@
 //! Races on many tracks.
 
 use super::Args;
-use super::course::{Course, Spoils};
 use super::race::race;
-use crate::common::{Failure, Outcome, Report, rounded};
+use crate::common::{Failure, Outcome, Report, Stage, rounded};
+use crate::cones::{Course, Spoils};
 
 /// Races on so many tracks of our own, from the seed on, and tells of those that were not clean.
 pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Failure> {
@@ -13,16 +13,18 @@ pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Fa
     for seed in common.seed..common.seed + u64::from(tracks) {
         let mut course = Course::generated(seed)?;
         course.spoil(spoils, seed);
-        let outcome = race(&course, &args.settings(seed)).map_err(Failure::run)?;
+        let settings = args.settings(seed);
+        let stage = Stage::race(settings.world(&course).map_err(Failure::run)?, common.faults()?);
+        let outcome = race(&course, &settings, &stage)?;
         let verdict = &outcome.verdict;
         clean += u32::from(outcome.is_clean());
-        finished += u32::from(outcome.phase == roverlab::drive::cones::RacePhase::Finished);
+        finished += u32::from(outcome.is_finished());
         cones += verdict.cones_hit;
         off += verdict.off_course;
         if !outcome.is_clean() {
             common.tell(format_args!(
                 "track {seed}: {:?}, {} laps, {} cones hit, {} times off course",
-                outcome.phase,
+                outcome.ending,
                 verdict.lap_times.len(),
                 verdict.cones_hit,
                 verdict.off_course

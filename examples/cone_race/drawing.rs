@@ -3,28 +3,18 @@
 use std::path::Path;
 
 use roverlab::drive::cones::Cone;
-use roverlab::geometry::{Aabb, Point, Pose, units};
+use roverlab::geometry::{Point, Pose, units};
 use roverlab::picture::{Picture, Style};
-use roverlab::world::{Colour, World};
+use roverlab::world::Colour;
 use svg::Document;
 use svg::node::element::{Animate, AnimateTransform, Circle, Polygon, Polyline};
 
-use super::course::{Course, colour};
 use super::race::Outcome;
-
-/// Metres around the track.
-const MARGIN: f64 = 5.0;
-
-fn bounds(course: &Course) -> Aabb {
-    let around = Aabb::around(course.cones.iter().map(|cone| cone.position));
-    around.unwrap_or(Aabb::new(Point::origin(), Point::origin())).inflated(MARGIN)
-}
+use crate::cones::{Course, colour};
 
 /// The track, the cones, the racing line, and the driven line coloured by speed.
 pub(crate) fn picture(course: &Course, outcome: &Outcome) -> Picture {
-    let mut world = World::empty(1.0, 1.0);
-    world.floor = bounds(course);
-    let mut picture = Picture::new(&world);
+    let mut picture = Picture::new(&course.ground());
     picture.title("Cone race");
     let fallen = |index: usize| !outcome.standing.get(index).copied().unwrap_or(true);
     for left in [true, false] {
@@ -66,7 +56,7 @@ pub(crate) fn animation(course: &Course, outcome: &Outcome, file: &Path) -> std:
 const SCALE: f64 = 8.0;
 
 fn document(course: &Course, outcome: &Outcome) -> Document {
-    let bounds = bounds(course);
+    let bounds = course.ground().floor;
     let size = bounds.size() * SCALE;
     let place = |p: Point| {
         let round = |value: f64| (value * 10.0).round() / 10.0;

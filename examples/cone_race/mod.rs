@@ -1,7 +1,6 @@
 //! What the example `cone_race` is made of.
 
 mod campaign;
-pub(crate) mod course;
 mod drawing;
 mod race;
 
@@ -11,7 +10,7 @@ use roverlab::drive::cones::{ClosedSpline, RacePhase, TrackFile, parse_track};
 use roverlab::geometry::{Point, Segment};
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
-use course::{Course, Spoils};
+use crate::cones::{Course, Spoils};
 use race::Settings;
 
 /// The command line of the example `cone_race`.
@@ -29,9 +28,10 @@ JSON fields:
   track_length_m, cones                                of the track
   racing_line_rms_m                                    distance of the racing line from that of --line
   mapped                                               whether the whole track was planned after the first lap
+  other_cones_hit, touched                             with a second car
   tracks, clean, clean_share                           of a campaign
   picture, animation
-Outcomes: finished, penalised, timed_out, raced (a campaign)."
+Outcomes: finished, penalised, timed_out, failed, raced (a campaign)."
 )]
 pub(crate) struct Args {
     /// Track to race on [default: one of our own].
@@ -62,6 +62,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = metres)]
     pub(crate) gap: f64,
 
+    /// A second car drives ahead at a stroll, by the book's program.
+    #[arg(long)]
+    pub(crate) other: bool,
+
     /// Draw the race as a moving picture.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) animation: Option<PathBuf>,
@@ -78,7 +82,14 @@ impl Args {
     /// What a race is made of, beside its course.
     fn settings(&self, seed: u64) -> Settings {
         let (noise, limit) = (self.common.noise, self.common.time_limit);
-        Settings { laps: usize::from(self.laps), sensors: self.sensors, seed, noise, limit }
+        Settings {
+            laps: usize::from(self.laps),
+            sensors: self.sensors,
+            seed,
+            noise,
+            limit,
+            other: self.other,
+        }
     }
 }
 
@@ -123,15 +134,27 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         None => Course::generated(common.seed)?,
     };
     course.spoil(spoils, common.seed);
-    let outcome = race::race(&course, &args.settings(common.seed)).map_err(Failure::run)?;
+    let settings = args.settings(common.seed);
+    let stage = common.stage_race(&course.scene(), || settings.world(&course))?;
+    let outcome = race::race(&course, &settings, &stage)?;
     let (picture, animation, trouble) = draw(args, &course, &outcome);
-    let verdict = &outcome.verdict;
-    let word = match outcome.phase {
-        RacePhase::Finished if outcome.is_clean() => Outcome::verdict("finished"),
-        RacePhase::Finished => Outcome::failure("penalised"),
-        _ => Outcome::failure("timed_out"),
-    };
     let rms = args.line.as_ref().map(|file| distance(common, file, &outcome.line)).transpose()?;
+    let report = report(&course, &outcome)
+        .field("racing_line_rms_m", rms.flatten().map(rounded))
+        .field("picture", picture)
+        .field("animation", animation);
+    Ok(Report { trouble, ..report })
+}
+
+/// What is told about a race.
+fn report(course: &Course, outcome: &race::Outcome) -> Report {
+    let verdict = &outcome.verdict;
+    let word = match &outcome.ending {
+        Err(_) => Outcome::failure("failed"),
+        Ok(RacePhase::Finished) if outcome.is_clean() => Outcome::verdict("finished"),
+        Ok(RacePhase::Finished) => Outcome::failure("penalised"),
+        Ok(_) => Outcome::failure("timed_out"),
+    };
     let times: Vec<f64> = verdict.lap_times.iter().map(|time| rounded(*time)).collect();
     let report = Report::new(word)
         .field("laps", times.len())
@@ -142,17 +165,17 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         .field("track_length_m", rounded(course.corridor.length()))
         .field("cones", course.cones.len())
         .field("mapped", !outcome.line.is_empty())
-        .field("racing_line_rms_m", rms.flatten().map(rounded))
-        .field("picture", picture)
-        .field("animation", animation);
-    Ok(Report {
+        .field("other_cones_hit", outcome.other.map(|(cones, _)| cones))
+        .field("touched", outcome.other.map(|(_, touched)| touched));
+    Report {
         sim_time: Some(outcome.time),
-        path_length: Some(outcome.truth.distance),
+        collisions: Some(outcome.truth.contacts.into()),
+        path_length: Some(outcome.truth.path_length),
         pose: Some(outcome.truth.pose),
-        odometry: Some(outcome.odometry),
-        trouble,
+        odometry: Some(course.start.compose(&outcome.truth.odometry)),
+        error: outcome.ending.clone().err(),
         ..report
-    })
+    }
 }
 
 /// The root of the mean squared distance of a racing line from that of a file. `None` without one.
@@ -182,9 +205,6 @@ fn check(common: &CommonArgs) -> Result<(), Failure> {
         ("--robot", common.robot.is_some()),
         ("--start", common.start.is_some()),
         ("--goal", common.goal.is_some()),
-        ("--fault", !common.fault.is_empty()),
-        ("--record", common.record.is_some()),
-        ("--replay", common.replay.is_some()),
     ];
     let refused = |option: &str| {
         Failure::input(format!("{option}: has no meaning for a race; expected a command line without it"))

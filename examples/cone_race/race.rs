@@ -1,14 +1,17 @@
 //! One race.
 
 use image::RgbImage;
-use roverlab::drive::cones::{CameraMount, CameraSight, RacePhase, Racer, Referee, Verdict, fuse, sightings};
+use roverlab::drive::cones::{
+    CameraMount, CameraSight, RacePhase, Racer, Sighting, Verdict, fuse, sightings,
+};
 use roverlab::geometry::{Point, Pose};
-use roverlab::io::sim::NoiseModel;
-use roverlab::io::sim::race::{CarTruth, Race, RaceCarSpec, RaceOptions};
-use roverlab::io::{self, Camera, Drive, Lidar, LidarScan, Resolution};
+use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
+use roverlab::io::sim::{NoiseModel, RobotTruth};
+use roverlab::io::{self, LidarScan, LidarSettings, Resolution, RobotIo};
 
 use super::Sensors;
-use super::course::Course;
+use crate::common::{Driven, Failure, Stage};
+use crate::cones::{Course, Judge, pass};
 
 /// What a race is made of, beside its course.
 #[derive(Debug, Clone, Copy)]
@@ -18,89 +21,176 @@ pub(crate) struct Settings {
     pub(crate) seed: u64,
     pub(crate) noise: f64,
     pub(crate) limit: Option<f64>,
+    /// Whether a second car drives ahead, by the book's program.
+    pub(crate) other: bool,
+}
+
+impl Settings {
+    /// The world of a race.
+    pub(crate) fn world(&self, course: &Course) -> io::Result<Race> {
+        let noise = NoiseModel::real().scaled(self.noise);
+        let options = RaceOptions { seed: self.seed, noise, ..RaceOptions::default() };
+        let starts = [Some(course.start), self.other.then(|| course.ahead(HEAD_START))];
+        let cars: Vec<_> =
+            starts.into_iter().flatten().map(|start| (RaceCarSpec::default(), start)).collect();
+        Race::new(&course.race_cones(), &cars, options)
+    }
+}
+
+/// Metres that a second car is ahead at first.
+const HEAD_START: f64 = 6.0;
+/// Metres per second of a second car.
+const STROLL: f64 = 3.0;
+
+/// The second car.
+struct Other {
+    car: Driven,
+    driver: GapDriver,
+    scan: LidarScan,
+    judge: Judge,
+    decisions: u32,
+}
+
+impl Other {
+    fn new(course: &Course, stage: &Stage) -> Result<Self, Failure> {
+        let judge = Judge::new(course, stage.truth(1)?, 1).map_err(Failure::run)?;
+        let mut car = stage.robot(1)?;
+        let settings = LidarSettings { field_of_view: std::f64::consts::PI, tilt: 0.0, points: 180 };
+        let ready = car.configure_lidar(settings);
+        ready
+            .and_then(|()| car.set_motor(1, STROLL / RaceCarSpec::default().top_speed))
+            .map_err(Failure::run)?;
+        Ok(Self { car, driver: GapDriver::default(), scan: LidarScan::default(), judge, decisions: 0 })
+    }
+
+    /// Steers at every second decision of the racer, which is ten times a second.
+    fn act(&mut self) -> io::Result<()> {
+        self.decisions += 1;
+        if self.decisions.is_multiple_of(2) {
+            self.car.scan_into(&mut self.scan)?;
+            if let Some(position) = self.driver.step(&self.scan) {
+                self.car.set_servo(1, position)?;
+            }
+        }
+        Ok(())
+    }
 }
 
 /// What came out of a race.
 #[derive(Debug, Clone)]
 pub(crate) struct Outcome {
     pub(crate) verdict: Verdict,
-    pub(crate) phase: RacePhase,
-    pub(crate) truth: CarTruth,
+    /// How far it came, or what failed.
+    pub(crate) ending: Result<RacePhase, String>,
+    pub(crate) truth: RobotTruth,
     pub(crate) time: f64,
-    pub(crate) odometry: Pose,
-    /// Where the car was, how fast, and its heading, every 50 ms.
+    /// Where the car was, and how fast, at every decision.
     pub(crate) trail: Vec<(Pose, f64)>,
     /// The racing line in the frame of the world.
     pub(crate) line: Vec<Point>,
     pub(crate) standing: Vec<bool>,
+    /// Cones that the second car hit, and whether the two touched.
+    pub(crate) other: Option<(usize, bool)>,
 }
 
 impl Outcome {
+    /// Whether all laps were driven.
+    pub(crate) fn is_finished(&self) -> bool {
+        self.ending == Ok(RacePhase::Finished)
+    }
+
     /// Whether all laps were driven without a penalty.
     pub(crate) fn is_clean(&self) -> bool {
-        self.phase == RacePhase::Finished && self.verdict.cones_hit + self.verdict.off_course == 0
+        let touched = self.other.is_some_and(|(_, touched)| touched);
+        self.is_finished() && self.verdict.cones_hit + self.verdict.off_course == 0 && !touched
+    }
+}
+
+/// What a car sees cones with.
+struct Eyes {
+    sensors: Sensors,
+    camera: CameraSight,
+    scan: LidarScan,
+    image: RgbImage,
+}
+
+impl Eyes {
+    fn new(sensors: Sensors) -> Self {
+        let camera = CameraSight::new(CameraMount::default());
+        Self { sensors, camera, scan: LidarScan::default(), image: RgbImage::default() }
+    }
+
+    /// The cones around a car.
+    fn look<R: RobotIo + ?Sized>(&mut self, car: &mut R) -> io::Result<Vec<Sighting>> {
+        let mut seen = Vec::new();
+        if self.sensors != Sensors::Camera {
+            car.scan_into(&mut self.scan)?;
+            seen = sightings(&self.scan);
+        }
+        if self.sensors != Sensors::Lidar {
+            car.image_into(&mut self.image)?;
+            let found = self.camera.find(&self.image);
+            seen = if self.sensors == Sensors::Both { fuse(&seen, &found) } else { found };
+        }
+        Ok(seen)
     }
 }
 
 /// Races on a course.
-pub(crate) fn race(course: &Course, settings: &Settings) -> io::Result<Outcome> {
-    let Settings { laps, sensors, seed, noise, limit } = *settings;
-    let parameters = course.parameters(laps);
-    let options = RaceOptions { seed, noise: NoiseModel::real().scaled(noise), ..RaceOptions::default() };
-    let mut world = Race::new(&course.race_cones(), &[(RaceCarSpec::default(), course.start)], options)?;
-    let mut referee = Referee::new(course.corridor.clone(), Course::wheels());
+pub(crate) fn race(course: &Course, settings: &Settings, stage: &Stage) -> Result<Outcome, Failure> {
+    let mut judge = Judge::new(course, stage.truth(0)?, 0).map_err(Failure::run)?;
+    let mut car = stage.robot(0)?;
+    let mut other = settings.other.then(|| Other::new(course, stage)).transpose()?;
+    let mut line = Vec::new();
+    let driven = drive(course, settings, car.as_mut(), (&mut judge, other.as_mut()), &mut line);
+    drop(car);
+    Ok(Outcome {
+        verdict: judge.verdict().clone(),
+        ending: driven.map_err(|error| Failure::from(error).to_string()),
+        truth: judge.truth().clone(),
+        time: judge.time(),
+        trail: judge.trail().to_vec(),
+        line,
+        standing: judge.standing(),
+        other: other.map(|other| (other.judge.verdict().cones_hit, judge.touched())),
+    })
+}
+
+fn drive<R: RobotIo + ?Sized>(
+    course: &Course,
+    settings: &Settings,
+    car: &mut R,
+    (judge, mut other): (&mut Judge, Option<&mut Other>),
+    line: &mut Vec<Point>,
+) -> io::Result<RacePhase> {
+    let parameters = course.parameters(settings.laps);
     let mut racer = Racer::new(parameters);
-    let (mut scan, mut image) = (LidarScan::default(), RgbImage::default());
-    let mut camera = CameraSight::new(CameraMount::default());
-    world.car(0)?.set_resolution(Resolution::Vga)?;
+    let mut eyes = Eyes::new(settings.sensors);
+    if settings.sensors != Sensors::Lidar {
+        car.set_resolution(Resolution::Vga)?;
+    }
     // A first lap at a crawl, and all others at a walk.
-    let limit = limit.unwrap_or(course.corridor.length() * (1.0 + laps as f64 / 3.0));
-    let ticks = (parameters.period / 0.01).round().max(1.0) as usize;
-    let (mut trail, mut line) = (Vec::new(), Vec::new());
-    let mut odometry = Pose::default();
-    while world.time() < limit {
-        let mut car = world.car(0)?;
-        let mut seen = Vec::new();
-        if sensors != Sensors::Camera {
-            car.scan_into(&mut scan)?;
-            seen = sightings(&scan);
-        }
-        if sensors != Sensors::Lidar {
-            car.image_into(&mut image)?;
-            let found = camera.find(&image);
-            seen = if sensors == Sensors::Both { fuse(&seen, &found) } else { found };
-        }
+    let slow = if settings.other { 2.0 } else { 3.0 };
+    let limit = settings.limit.unwrap_or(course.corridor.length() * (1.0 + settings.laps as f64 / slow));
+    while judge.time() < limit {
+        let seen = eyes.look(car)?;
         let (pose, speed) = (car.pose()?, car.speed()?);
-        odometry = pose;
-        let command = racer.decide(pose, speed, &seen);
-        car.set_speed(command)?;
-        for _ in 0..ticks {
-            world.advance(0.01);
-            if let Some(truth) = world.truth(0) {
-                referee.see(world.time(), truth.pose, truth.hits);
+        car.set_speed(racer.decide(pose, speed, &seen))?;
+        match &mut other {
+            Some(other) => {
+                other.act()?;
+                pass(car, &mut [&mut *judge, &mut other.judge], parameters.period)?;
             }
-        }
-        if let Some(truth) = world.truth(0) {
-            trail.push((truth.pose, truth.twist.linear));
+            None => pass(car, &mut [&mut *judge], parameters.period)?,
         }
         if racer.phase() == RacePhase::Racing && line.is_empty() {
             // The map's frame is that of the start.
             let points = racer.line().map(|line| line.points().to_vec()).unwrap_or_default();
-            line = points.into_iter().map(|point| course.start.to_world(point)).collect();
+            line.extend(points.into_iter().map(|point| course.start.to_world(point)));
         }
         if racer.phase() == RacePhase::Finished && speed.linear.abs() < 0.05 {
             break;
         }
     }
-    let truth = world.truth(0).ok_or_else(|| io::Error::new(io::ErrorKind::Other, "the car is gone"))?;
-    Ok(Outcome {
-        verdict: referee.verdict().clone(),
-        phase: racer.phase(),
-        truth,
-        time: world.time(),
-        odometry,
-        trail,
-        line,
-        standing: world.standing().collect(),
-    })
+    Ok(racer.phase())
 }

@@ -17,13 +17,13 @@ mod lidar;
 mod mock;
 mod psd;
 mod radio;
-pub mod sim;
 #[macro_use]
 pub mod wrappers;
 #[cfg(feature = "log")]
 pub mod log;
 #[cfg(feature = "robios")]
 pub mod robios;
+pub mod sim;
 
 pub use actuators::{Encoders, Motors, Servos};
 pub use camera::{Camera, Resolution};

@@ -16,8 +16,8 @@ mod common;
 mod cone_drive;
 #[path = "../../examples/cone_race/mod.rs"]
 mod cone_race;
-#[path = "../../examples/cone_race/course.rs"]
-mod course;
+#[path = "../../examples/cones/mod.rs"]
+mod cones;
 #[path = "../../examples/coverage/mod.rs"]
 mod coverage;
 #[path = "../../examples/distbug/mod.rs"]
@@ -55,6 +55,8 @@ mod replay;
 #[path = "../../examples/room/mod.rs"]
 mod room;
 mod runs;
+#[path = "../../examples/safety/mod.rs"]
+mod safety;
 #[path = "../../examples/starman/mod.rs"]
 mod starman;
 mod support;

@@ -141,3 +141,58 @@ pub fn fuse(lidar: &[Sighting], camera: &[Sighting]) -> Vec<Sighting> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point, Pose};
+    use crate::io::sim::NoiseModel;
+    use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions};
+    use crate::io::{Camera, Resolution};
+    use crate::world::Colour;
+
+    #[test]
+    fn cones_are_found_in_place_and_colour() {
+        let painted = [
+            (Point::new(5.0, 1.5), 0x1f_4f_d8, ConeColour::Blue),
+            (Point::new(5.5, -1.5), 0xf2_c8_11, ConeColour::Yellow),
+            (Point::new(9.0, 0.5), 0xf0_70_10, ConeColour::Orange),
+        ];
+        let cones: Vec<RaceCone> =
+            painted.iter().map(|(place, paint, _)| RaceCone::new(*place, Colour::from_hex(*paint))).collect();
+        for noise in [0.0, 1.0] {
+            let options = RaceOptions { noise: NoiseModel::real().scaled(noise), ..RaceOptions::default() };
+            let mut race = Race::new(&cones, &[(RaceCarSpec::default(), Pose::default())], options).unwrap();
+            let mut car = race.car(0).unwrap();
+            car.set_resolution(Resolution::Vga).unwrap();
+            let found = CameraSight::new(CameraMount::default()).find(&car.image().unwrap());
+            assert_eq!(found.len(), 3, "{found:?}");
+            for (place, _, colour) in painted {
+                let seen = found.iter().find(|seen| seen.colour == colour).unwrap();
+                let away = (seen.position - place).norm();
+                assert!(away < 3.0 * seen.error && seen.is_cone(), "{colour:?}: {away} m off, {seen:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn colours_come_to_the_places_of_the_lidar() {
+        let at = |x, y, error, colour| {
+            let position = Point::new(x, y);
+            Sighting { position, size: 0.1, confidence: 1.0, range: position.coords.norm(), error, colour }
+        };
+        let lidar = [at(5.0, 1.0, 0.03, ConeColour::Unknown), at(5.0, -1.0, 0.03, ConeColour::Unknown)];
+        let camera = [at(5.3, 1.05, 0.2, ConeColour::Blue), at(9.0, -1.8, 0.3, ConeColour::Yellow)];
+        let both = fuse(&lidar, &camera);
+        assert_eq!(
+            both.iter().map(|seen| seen.colour).collect::<Vec<_>>(),
+            [ConeColour::Blue, ConeColour::Unknown]
+        );
+        assert_eq!(both[0].position, lidar[0].position);
+    }
+
+    #[test]
+    fn an_empty_image_shows_nothing() {
+        assert!(CameraSight::default().find(&RgbImage::default()).is_empty());
+    }
+}

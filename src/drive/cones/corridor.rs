@@ -105,30 +105,46 @@ impl Corridor {
                 expected: "0 or more, finite",
             });
         }
-        let edges = [self.edge(false), self.edge(true)];
-        let mut ranges = Vec::with_capacity(self.stations.len());
-        for (index, station) in self.stations.iter().enumerate() {
-            let limit = |edge: &[Point], width: f64, sign: f64| {
-                let mut offset = width - margin;
-                // Towards the middle by what is missing, until nothing is: where the edge is oblique, or bends in.
-                for _ in 0..12 {
-                    let missing =
-                        margin - self.distance_to_edge(edge, index, station.aside(sign * offset), margin);
-                    if missing <= 1e-9 {
-                        break;
-                    }
-                    offset -= missing * 1.05 + 1e-9;
-                }
-                sign * offset
-            };
-            let range = [limit(&edges[0], station.right, -1.0), limit(&edges[1], station.left, 1.0)];
-            if range[1] <= range[0] {
-                let free = (station.left + station.right).max(0.0);
-                return Err(PlanError::TooNarrow { index, free, needed: 2.0 * margin });
-            }
-            ranges.push(range);
+        let margins = vec![[margin; 2]; self.stations.len()];
+        let ranges = self.ranges(&margins);
+        let narrow = ranges.iter().position(|[low, high]| high <= low);
+        narrow.map_or(Ok(ranges), |index| {
+            let station = &self.stations[index];
+            let free = (station.left + station.right).max(0.0);
+            Err(PlanError::TooNarrow { index, free, needed: 2.0 * margin })
+        })
+    }
+
+    /// The same for margins of their own at each station, to the right and to the left. Where nothing is left between them, the
+    /// offset at which as much is missing on both sides.
+    pub(super) fn room(&self, margins: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let mut ranges = self.ranges(margins);
+        for range in ranges.iter_mut().filter(|[low, high]| high <= low) {
+            let middle = 0.5 * (range[0] + range[1]);
+            *range = [middle - 1e-6, middle + 1e-6];
         }
-        Ok(ranges)
+        ranges
+    }
+
+    fn ranges(&self, margins: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let edges = [self.edge(false), self.edge(true)];
+        let limit = |index: usize, left: bool| {
+            let station = &self.stations[index];
+            let (side, sign) = if left { (1, 1.0) } else { (0, -1.0) };
+            let margin = margins[index][side];
+            let mut offset = if left { station.left } else { station.right } - margin;
+            // Towards the middle by what is missing, until nothing is: where the edge is oblique, or bends in.
+            for _ in 0..12 {
+                let place = station.aside(sign * offset);
+                let missing = margin - self.distance_to_edge(&edges[side], index, place, margin);
+                if missing <= 1e-9 {
+                    break;
+                }
+                offset -= missing * 1.05 + 1e-9;
+            }
+            sign * offset
+        };
+        (0..self.stations.len()).map(|index| [limit(index, false), limit(index, true)]).collect()
     }
 
     /// The distance of a point from an edge near a station, as far as it may be below `reach`.

@@ -1,6 +1,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::cone::{Cone, ConeColour};
+use super::registration::{Expected, register, spread};
 use super::sight::Sighting;
 use crate::geometry::{Point, Pose, cross, direction, normalize_angle};
 
@@ -33,11 +34,25 @@ struct Landmark {
     missed: u32,
     /// Times that it was seen blue, yellow and orange.
     colours: [u16; 3],
+    /// Times that it was taken for one of the left edge, less those for the right one.
+    side: i16,
+    /// Metres that the car had gone when it was seen first, last, and in the mean.
+    first: f64,
+    last: f64,
+    mean: f64,
 }
 
 impl Landmark {
-    /// The colour that it was seen in most often, once that is more than chance.
+    /// The colour that it was seen in most often, or else that of the edge for which it was taken, once that is more than chance.
     fn colour(&self) -> ConeColour {
+        match self.painted() {
+            ConeColour::Unknown if self.side >= SURE => ConeColour::Blue,
+            ConeColour::Unknown if self.side <= -SURE => ConeColour::Yellow,
+            painted => painted,
+        }
+    }
+
+    fn painted(&self) -> ConeColour {
         let [blue, yellow, orange] = self.colours;
         let most = blue.max(yellow).max(orange);
         if most < 3 || blue + yellow + orange >= 2 * most {
@@ -64,29 +79,92 @@ impl Landmark {
         }
         self.colours[index] += 1;
     }
+
+    /// A cone that is seen for the first time.
+    fn new(position: Point, colour: ConeColour, way: f64) -> Self {
+        let mut new =
+            Self { position, seen: 1, missed: 0, colours: [0; 3], side: 0, first: way, last: way, mean: way };
+        new.vote(colour);
+        new
+    }
+
+    /// Takes in that it was seen again.
+    fn see(&mut self, place: Point, colour: ConeColour, way: f64) {
+        self.seen = (self.seen + 1).min(MEMORY);
+        self.missed = 0;
+        self.vote(colour);
+        let share = 1.0 / f64::from(self.seen);
+        self.position += (place - self.position) * share;
+        self.mean += (way - self.mean) * share;
+        self.last = way;
+    }
+
+    /// Takes in what was held to be another cone.
+    fn join(&mut self, other: &Self) {
+        let share = f64::from(other.seen) / f64::from(self.seen + other.seen);
+        self.position += (other.position - self.position) * share;
+        self.seen = (self.seen + other.seen).min(MEMORY);
+        self.missed = self.missed.min(other.missed);
+        for (mine, theirs) in self.colours.iter_mut().zip(other.colours) {
+            *mine = (*mine + theirs).min(1000);
+        }
+        self.side = (self.side + other.side).clamp(-MOST_VOTES, MOST_VOTES);
+        self.last = self.last.max(other.last);
+    }
 }
 
 /// A map of cones and the car's pose in it, from odometry and sightings (simultaneous localisation and mapping).
 ///
 /// The pose is predicted by odometry; sightings are matched to the nearest cone of the map; the pose that fits both best, by
 /// least squares, is the new one; then the cones move to the mean of where they were seen. The frame is that of the start.
+///
+/// In the first lap errors add up with the way, so a cone is matched only while it was seen lately. [`close`](Self::close) ends
+/// that: back at the start, it finds the first cones again and takes what has added up out of the whole lap.
 #[derive(Debug, Clone)]
 pub struct ConeMap {
     parameters: ConeMapParameters,
     landmarks: Vec<Landmark>,
     pose: Pose,
     odometry: Option<Pose>,
+    /// Metres that the car has gone.
+    way: f64,
+    /// Where it was in the first lap, and how far it had gone.
+    trail: Vec<(Pose, f64)>,
+    closed: bool,
 }
 
+/// Votes for an edge by which a cone belongs to it, and votes that are counted.
+const SURE: i16 = 6;
+const MOST_VOTES: i16 = 30;
 /// Sightings after which a cone moves no more slowly.
 const MEMORY: u32 = 80;
 /// Metres from the sensor, and radians from straight ahead, within which a cone that is not seen is missed.
 const VIEW: (f64, f64) = (9.0, 0.8);
+/// Metres that the car goes while a cone is fresh: so far, odometry and sightings are good.
+const FRESH: f64 = 25.0;
+/// Metres from place to place of the trail.
+const STRIDE: f64 = 2.0;
+/// Metres of the way in which the first cones were seen.
+const BEGINNING: f64 = 30.0;
+/// Metres of the way in which the last cones were seen.
+const END: f64 = 8.0;
+/// Metres between two cones that are the same one, after a loop was closed.
+const SAME: f64 = 0.6;
+/// By how much a map may be wrong when it is closed: metres, metres after one metre, radians.
+const WRONG: (f64, f64, f64) = (4.0, 0.02, 0.4);
 
 impl ConeMap {
     /// An empty map; the car is at its origin.
     pub fn new(parameters: ConeMapParameters) -> Self {
-        Self { parameters, landmarks: Vec::new(), pose: Pose::default(), odometry: None }
+        Self {
+            parameters,
+            landmarks: Vec::new(),
+            pose: Pose::default(),
+            odometry: None,
+            way: 0.0,
+            trail: Vec::new(),
+            closed: false,
+        }
     }
 
     /// The car's pose in the map.
@@ -96,8 +174,37 @@ impl ConeMap {
 
     /// The cones that were seen often enough.
     pub fn cones(&self) -> impl Iterator<Item = Cone> + '_ {
-        let confirmed = self.landmarks.iter().filter(|landmark| landmark.seen >= self.parameters.confirmed);
-        confirmed.map(|landmark| Cone::new(landmark.position, landmark.colour()))
+        self.confirmed().map(|landmark| Cone::new(landmark.position, landmark.colour()))
+    }
+
+    /// Those of them that fit where the car is now: all of them once the map is closed, and those that were seen lately before
+    /// that.
+    pub fn fresh_cones(&self) -> impl Iterator<Item = Cone> + '_ {
+        let fresh = self.confirmed().filter(|landmark| self.is_fresh(landmark));
+        fresh.map(|landmark| Cone::new(landmark.position, landmark.colour()))
+    }
+
+    /// Whether the first lap is closed to a loop.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Where the car was in the first lap, about every two metres.
+    pub fn trail(&self) -> impl Iterator<Item = Pose> + '_ {
+        self.trail.iter().map(|(pose, _)| *pose)
+    }
+
+    /// Metres by which the pose may be wrong that is compared with that of the start.
+    pub fn tolerance(&self) -> f64 {
+        if self.closed { WRONG.0 } else { WRONG.0 + WRONG.1 * self.way }
+    }
+
+    fn confirmed(&self) -> impl Iterator<Item = &Landmark> + '_ {
+        self.landmarks.iter().filter(|landmark| landmark.seen >= self.parameters.confirmed)
+    }
+
+    fn is_fresh(&self, landmark: &Landmark) -> bool {
+        self.closed || self.way - landmark.last < FRESH
     }
 
     /// Takes in where odometry is and what a scan showed there.
@@ -106,6 +213,7 @@ impl ConeMap {
             self.odometry.replace(odometry).map_or(Pose::default(), |last| last.inverse().compose(&odometry));
         self.pose = self.pose.compose(&step);
         let way = step.position().coords.norm();
+        self.way += way;
         let seen: Vec<&Sighting> = sightings.iter().filter(|s| s.is_cone()).collect();
         // Matched again after the first correction, which brings what was just outside of the gate into it.
         for _ in 0..2 {
@@ -116,6 +224,73 @@ impl ConeMap {
         }
         let matches = self.matches(&seen);
         self.learn(&seen, &matches);
+        if !self.closed && self.trail.last().is_none_or(|(_, way)| self.way - way >= STRIDE) {
+            self.trail.push((self.pose, self.way));
+        }
+    }
+
+    /// Takes in that cones at some places are those of an edge: 1 for the left one, -1 for the right one.
+    pub(super) fn vote_side(&mut self, places: impl Iterator<Item = Point>, side: i16) {
+        for place in places {
+            if let Some(landmark) = self.landmarks.iter_mut().find(|landmark| landmark.position == place) {
+                landmark.side = (landmark.side + side).clamp(-MOST_VOTES, MOST_VOTES);
+            }
+        }
+    }
+
+    /// Closes the first lap to a loop, if the first cones are among those that are seen now: what pose and map are wrong by is
+    /// spread over the lap, and cones that are there twice become one. Whether it is closed.
+    pub fn close(&mut self) -> bool {
+        if self.closed {
+            return true;
+        }
+        let first = |l: &&Landmark| l.first < BEGINNING && !self.is_fresh(l);
+        let last = |l: &&Landmark| self.way - l.last < END && l.first > BEGINNING;
+        let at = |landmark: &Landmark| landmark.position;
+        let onto: Vec<Point> = self.confirmed().filter(first).map(at).collect();
+        let points: Vec<Point> = self.confirmed().filter(last).map(at).collect();
+        let expected = Expected { place: self.pose.position(), wrong: (self.tolerance(), WRONG.2) };
+        let Some(motion) = register(&points, &onto, expected) else { return false };
+        self.bend(motion);
+        self.merge();
+        self.closed = true;
+        true
+    }
+
+    /// Moves the end of the lap by a motion, its beginning not at all, and what is between in proportion to the way.
+    fn bend(&mut self, motion: Pose) {
+        self.trail.push((self.pose, self.way));
+        let until = (self.way - END - BEGINNING).max(BEGINNING + STRIDE);
+        let share = |way: f64| ((way - BEGINNING) / (until - BEGINNING)).clamp(0.0, 1.0);
+        let (before, shares): (Vec<Pose>, Vec<f64>) =
+            self.trail.iter().map(|(pose, way)| (*pose, share(*way))).unzip();
+        let after = spread(&before, &shares, motion);
+        for landmark in &mut self.landmarks {
+            let node = self.trail.partition_point(|(_, way)| *way < landmark.mean).min(before.len() - 1);
+            landmark.position = after[node].to_world(before[node].to_local(landmark.position));
+        }
+        for ((pose, _), new) in self.trail.iter_mut().zip(&after) {
+            *pose = *new;
+        }
+        self.pose = after[after.len() - 1];
+        // The lap ends where it began, not where that was noticed.
+        let begin = self.trail[0].0.x;
+        while self.trail.len() > 2 && self.trail.last().is_some_and(|(pose, _)| pose.x > begin - STRIDE) {
+            self.trail.pop();
+        }
+    }
+
+    /// Makes one cone of those that are too near each other to be two.
+    fn merge(&mut self) {
+        let mut kept: Vec<Landmark> = Vec::with_capacity(self.landmarks.len());
+        for landmark in &self.landmarks {
+            let near = |other: &&mut Landmark| (other.position - landmark.position).norm() < SAME;
+            match kept.iter_mut().find(near) {
+                Some(other) => other.join(landmark),
+                None => kept.push(*landmark),
+            }
+        }
+        self.landmarks = kept;
     }
 
     fn matches(&self, seen: &[&Sighting]) -> Vec<Option<usize>> {
@@ -124,7 +299,7 @@ impl ConeMap {
             let mut best = (gate, None);
             for (index, landmark) in self.landmarks.iter().enumerate() {
                 let distance = (landmark.position - point).norm_squared();
-                if distance < best.0 {
+                if distance < best.0 && self.is_fresh(landmark) {
                     best = (distance, Some(index));
                 }
             }
@@ -179,28 +354,29 @@ impl ConeMap {
                     continue;
                 }
                 matched[index] = true;
-                landmark.seen = (landmark.seen + 1).min(MEMORY);
-                landmark.missed = 0;
-                landmark.vote(sighting.colour);
-                landmark.position += (place - landmark.position) / f64::from(landmark.seen);
+                landmark.see(place, sighting.colour, self.way);
             } else if sighting.range < self.parameters.farthest {
-                let mut landmark = Landmark { position: place, seen: 1, missed: 0, colours: [0; 3] };
-                landmark.vote(sighting.colour);
-                self.landmarks.push(landmark);
+                self.landmarks.push(Landmark::new(place, sighting.colour, self.way));
                 matched.push(true);
             }
         }
+        self.forget(&matched);
+    }
+
+    /// Forgets what should have been seen and was not.
+    fn forget(&mut self, matched: &[bool]) {
         let ahead = direction(self.pose.heading);
         let eye = self.pose.position() + ahead * self.parameters.sensor;
         let mut index = 0;
-        let confirmed = self.parameters.confirmed;
+        let (confirmed, closed, way) = (self.parameters.confirmed, self.closed, self.way);
         self.landmarks.retain_mut(|landmark| {
             index += 1;
             let away = landmark.position - eye;
             let distance = away.norm();
             let angle = crate::geometry::math::atan2(cross(ahead, away), ahead.dot(&away));
             let in_view = distance < VIEW.0 && distance > 1.0 && angle.abs() < VIEW.1;
-            if matched[index - 1] || !(in_view || landmark.seen < confirmed) {
+            let fresh = closed || way - landmark.last < FRESH;
+            if matched[index - 1] || !fresh || !(in_view || landmark.seen < confirmed) {
                 return true;
             }
             landmark.missed += 1;

@@ -19,6 +19,7 @@ mod error;
 mod files;
 mod gap;
 mod generate;
+mod lane;
 mod map;
 mod profile;
 mod racer;
@@ -26,6 +27,7 @@ mod racer;
 mod racer_tests;
 mod racing_line;
 mod referee;
+mod registration;
 mod sight;
 mod spline;
 #[cfg(test)]
@@ -44,10 +46,11 @@ pub use files::{
 };
 pub use gap::GapDriver;
 pub use generate::{GeneratedTrack, TrackOptions, generate, lined};
+pub use lane::{Lane, LaneParameters, lane};
 pub use map::{ConeMap, ConeMapParameters};
 pub use profile::{CarLimits, SpeedProfile};
 pub use racer::{RacePhase, Racer, RacerParameters};
-pub use racing_line::{LineSolver, RacingLine, RacingLineParameters, minimum_curvature};
+pub use racing_line::{CarOutline, LineSolver, RacingLine, RacingLineParameters, minimum_curvature};
 pub use referee::{Referee, Verdict};
 pub use sight::{Sighting, sightings};
 pub use spline::{ClosedSpline, SplinePoint};

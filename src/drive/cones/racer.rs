@@ -1,10 +1,12 @@
 use super::ClosedSpline;
 use super::centre_line::{CentreLine, CentreLineParameters};
 use super::cone::Cone;
+use super::corridor::{Corridor, Station};
 use super::error::PlanError;
+use super::lane::{Lane, LaneParameters, around_lap, lane};
 use super::map::{ConeMap, ConeMapParameters};
 use super::profile::{CarLimits, SpeedProfile};
-use super::racing_line::{LineSolver, RacingLineParameters};
+use super::racing_line::{CarOutline, LineSolver, RacingLineParameters};
 use super::sight::{Sighting, sightings};
 use super::tracker::{LineTracker, TrackerParameters};
 use crate::geometry::{Point, Pose, Twist};
@@ -19,12 +21,14 @@ pub struct RacerParameters {
     pub limits: CarLimits,
     /// The same while the track is not known; its top speed is that of the first lap.
     pub first_lap: CarLimits,
-    /// Metres that the racing line keeps from the middle of cones.
-    pub margin: f64,
+    /// The car's outline, by which the racing line keeps clear of cones.
+    pub outline: CarOutline,
     /// How the way between cones is found.
     pub centre_line: CentreLineParameters,
     /// How the map is made.
     pub map: ConeMapParameters,
+    /// How the lane ahead is found in the first lap.
+    pub lane: LaneParameters,
     /// How lines are followed.
     pub tracker: TrackerParameters,
     /// Seconds from decision to decision.
@@ -37,9 +41,10 @@ impl Default for RacerParameters {
             laps: 10,
             limits: CarLimits { grip: 7.5, drive: 4.5, brake: 6.0, top_speed: 20.0 },
             first_lap: CarLimits { grip: 5.0, drive: 3.0, brake: 5.0, top_speed: 6.0 },
-            margin: 1.12,
+            outline: CarOutline { half_width: 0.7, nose: 2.15, ahead: 0.9, room: 0.36 },
             centre_line: CentreLineParameters::default(),
             map: ConeMapParameters::default(),
+            lane: LaneParameters::default(),
             tracker: TrackerParameters::default(),
             period: 0.05,
         }
@@ -66,26 +71,32 @@ pub struct Racer {
     laps: usize,
     /// Metres by odometry since the start line was crossed.
     since_line: f64,
-    before: f64,
     last: Option<Pose>,
     tracker: Option<LineTracker>,
     solver: LineSolver,
     /// Decisions since the way was planned.
     stale: u32,
-    /// Where it drove in the first lap, every two metres.
-    driven: Vec<Point>,
     /// Whether a lap was ended since the racing line was planned.
     plan_again: bool,
     /// Decisions until the whole track is tried to be planned again.
     patience: u32,
+    /// The lane ahead in the first lap.
+    lane: Lane,
 }
 
 /// Metres around the car within which cones are planned with in the first lap.
 const NEAR: f64 = 24.0;
 /// Metres in front of where it stands at first, where the line lies at which the racer counts laps.
 const LINE: f64 = 6.0;
+/// Metres behind the line where it has just been crossed.
+const BEHIND: f64 = 25.0;
+/// Places behind the car that are taken for the lane.
+const BEHIND_POSES: usize = 4;
 /// Metres that a lap takes at least.
 const SHORTEST: f64 = 40.0;
+/// Metres from the line within which another car is in the way, metres ahead at which it begins to matter, and metres, from the
+/// middle of a car to the end of another one, that are kept.
+const OTHERS: (f64, f64, f64) = (1.5, 24.0, 4.5);
 /// Metres per second at which it feels its way where nothing is known.
 const CRAWL: f64 = 1.5;
 
@@ -98,14 +109,13 @@ impl Racer {
             phase: RacePhase::Mapping,
             laps: 0,
             since_line: 0.0,
-            before: -LINE,
             last: None,
             tracker: None,
             solver: LineSolver::default(),
             stale: 0,
-            driven: Vec::new(),
             plan_again: false,
             patience: 0,
+            lane: Lane::unknown(parameters.lane.usual),
         }
     }
 
@@ -138,6 +148,27 @@ impl Racer {
     pub fn decide(&mut self, odometry: Pose, speed: Twist, seen: &[Sighting]) -> Twist {
         self.map.update(odometry, seen);
         self.count(odometry);
+        let command = self.command(speed);
+        self.behind_others(command, seen)
+    }
+
+    /// A command that leaves room for what is too large for a cone, another car, on the way ahead.
+    fn behind_others(&self, command: Twist, seen: &[Sighting]) -> Twist {
+        let Some(line) = &self.tracker else { return command };
+        let others = seen.iter().filter(|sighting| !sighting.is_cone());
+        let places = others.map(|sighting| self.map.pose().to_world(sighting.position));
+        let gaps = places.filter_map(|place| line.distance_to(place, OTHERS.0, OTHERS.1));
+        let Some(gap) = gaps.min_by(f64::total_cmp) else { return command };
+        let fastest = (self.parameters.first_lap.brake * (gap - OTHERS.2).max(0.0)).sqrt();
+        if command.linear <= fastest {
+            return command;
+        }
+        // A curvature is kept by next to no speed as well.
+        let slower = fastest.max(1e-3);
+        Twist::new(slower, slower * curvature_of(command))
+    }
+
+    fn command(&mut self, speed: Twist) -> Twist {
         match self.phase {
             RacePhase::Finished => {
                 let command = self.follow(speed);
@@ -190,25 +221,28 @@ impl Racer {
         let way =
             self.last.replace(odometry).map_or(0.0, |last| (odometry.position() - last.position()).norm());
         self.since_line += way;
-        let pose = self.map.pose();
-        // The line lies across the start's heading, which is the x axis of the map.
-        let along = pose.x - LINE;
-        let crossed = self.before < 0.0 && along >= 0.0 && pose.y.abs() < 4.0 && pose.forward().x > 0.3;
-        self.before = along;
-        if !crossed {
+        // A line that was crossed lately is not crossed again.
+        if self.since_line < SHORTEST + 2.0 * self.map.tolerance() || !self.is_behind_line() {
             return;
         }
-        // The first time, the race begins.
-        let around = self.since_line >= SHORTEST;
+        // Without a loop, it has driven around once all the same.
+        let around = self.map.close() || self.map.pose().x > LINE + 0.6 * BEHIND;
+        if !(around && self.is_behind_line()) {
+            return;
+        }
         self.since_line = 0.0;
-        if !around {
-            return;
-        }
         self.laps += 1;
         self.plan_again = true;
         if self.laps >= self.parameters.laps {
             self.phase = RacePhase::Finished;
         }
+    }
+
+    /// Whether the car has crossed the line, which lies across the start's heading, the x axis of the map, some metres ago.
+    fn is_behind_line(&self) -> bool {
+        let pose = self.map.pose();
+        let wrong = self.map.tolerance();
+        (LINE..LINE + BEHIND + wrong).contains(&pose.x) && pose.y.abs() < wrong && pose.forward().x > 0.3
     }
 
     fn follow(&mut self, speed: Twist) -> Twist {
@@ -222,11 +256,7 @@ impl Racer {
 
     /// Plans with what is known: the whole track if it closes, else as far as it is seen.
     fn explore(&mut self) {
-        let own = self.map.pose().to_world(Point::new(self.parameters.tracker.ahead, 0.0));
-        if self.driven.last().is_none_or(|last| (own - last).norm() > 2.0) {
-            self.driven.push(own);
-        }
-        if self.laps > 0 && self.patience == 0 {
+        if self.map.is_closed() && self.laps > 0 && self.patience == 0 {
             self.patience = 20;
             if let Ok(tracker) = self.whole_track() {
                 self.tracker = Some(tracker);
@@ -239,13 +269,13 @@ impl Racer {
         let pose = self.map.pose();
         let near: Vec<Cone> = self
             .map
-            .cones()
+            .fresh_cones()
             .filter(|cone| {
                 let local = pose.to_local(cone.position);
                 local.x > -8.0 && local.coords.norm() < NEAR
             })
             .collect();
-        if let Ok(tracker) = self.local_way(&near, pose) {
+        if let Ok(tracker) = self.lane_ahead(&near, pose) {
             self.tracker = Some(tracker);
             self.stale = 0;
         } else {
@@ -256,51 +286,64 @@ impl Racer {
         }
     }
 
-    fn local_way(&self, near: &[Cone], pose: Pose) -> Result<LineTracker, PlanError> {
-        let parameters = CentreLineParameters {
-            horizon: 18.0,
-            shortest_loop: f64::INFINITY,
-            ..self.parameters.centre_line
-        };
-        let line = CentreLine::from_cones(near, pose, &parameters)?;
-        let mut points: Vec<Point> = line.corridor.stations().iter().map(|s| s.position).collect();
-        // From the car on, so that the line does not begin beyond it.
-        let own = pose.to_world(Point::new(self.parameters.tracker.ahead, 0.0));
-        let ahead = |p: &Point| (p - own).dot(&pose.forward());
-        if points.first().is_some_and(|first| ahead(first) > 0.5) {
-            let first = points[0];
-            let parts = ((first - own).norm() / 1.0).ceil().max(1.0);
-            let lead: Vec<Point> =
-                (0..parts as usize).map(|k| own + (first - own) * (k as f64 / parts)).collect();
-            points.splice(0..0, lead);
+    /// The middle of the lane ahead.
+    fn lane_ahead(&mut self, near: &[Cone], pose: Pose) -> Result<LineTracker, PlanError> {
+        let middle = Pose::new(self.parameters.tracker.ahead, 0.0, 0.0);
+        let trail: Vec<Pose> = self.map.trail().collect();
+        let behind = trail.iter().rev().take(BEHIND_POSES).rev().map(|pose| pose.compose(&middle));
+        let own = pose.compose(&middle);
+        let behind: Vec<Pose> = behind.filter(|pose| own.to_local(pose.position()).x < -0.5).collect();
+        let found = lane(near, &behind, own, &self.lane, &self.parameters.lane).ok_or(PlanError::NoWay)?;
+        for (edge, side) in found.edges.iter().zip([1, -1]) {
+            self.map.vote_side(edge.iter().map(|&cone| near[cone].position), side);
         }
         let limits = self.parameters.first_lap;
-        let end = if line.corridor.is_closed() { limits.top_speed } else { 2.0 };
-        let profile = SpeedProfile::open(&points, &limits, limits.top_speed, end)?;
-        Ok(LineTracker::new(points, profile, false, self.parameters.tracker))
+        let profile = SpeedProfile::open(&found.points, &limits, limits.top_speed, 2.0)?;
+        self.lane = found;
+        Ok(LineTracker::new(self.lane.points.clone(), profile, false, self.parameters.tracker))
     }
 
     fn whole_track(&mut self) -> Result<LineTracker, PlanError> {
         let cones: Vec<Cone> = self.map.cones().collect();
-        let line = CentreLine::along(&cones, self.map.pose(), &self.driven, &self.parameters.centre_line)?;
-        if !line.corridor.is_closed() || line.corridor.length() < SHORTEST {
-            return Err(PlanError::NoWay);
-        }
-        let p = &self.parameters;
-        let mut margin = p.margin;
-        let found = loop {
-            let parameters = RacingLineParameters { margin, ..RacingLineParameters::default() };
-            match self.solver.solve(&line.corridor, &parameters) {
-                // Where it is too narrow for the margin, the car goes through with less.
-                Err(PlanError::TooNarrow { .. }) if margin > 0.75 => margin -= 0.05,
-                other => break other?,
-            }
+        let ahead = Point::new(self.parameters.tracker.ahead, 0.0);
+        let driven: Vec<Point> = self.map.trail().map(|pose| pose.to_world(ahead)).collect();
+        let corridor = CentreLine::along(&cones, self.map.pose(), &driven, &self.parameters.centre_line)
+            .map(|line| line.corridor)
+            .ok()
+            .filter(|corridor| holds(corridor, &driven));
+        let corridor = if let Some(corridor) = corridor {
+            corridor
+        } else {
+            // Where too many cones are missing or false, by the way of the first lap.
+            let places: Vec<Point> = cones.iter().map(|cone| cone.position).collect();
+            around_lap(&places, &driven, &self.parameters.lane)?
         };
+        let p = &self.parameters;
+        let found = self.solver.solve_for(&corridor, &p.outline, &RacingLineParameters::default())?;
         let spline = ClosedSpline::through(&found.points)?;
         let points: Vec<Point> = spline.resample(0.5).iter().map(|place| place.position).collect();
         let profile = SpeedProfile::closed(&points, &p.limits)?;
+        // What the steering cannot follow comes of cones on the wrong side.
+        if profile.curvatures.iter().any(|bend| bend.abs() > p.tracker.curvature) {
+            return Err(PlanError::NoWay);
+        }
         Ok(LineTracker::new(points, profile, true, p.tracker))
     }
+}
+
+/// Metres from the middle of a corridor at which a lap may have been driven.
+const BESIDE: f64 = 1.0;
+
+/// Whether a corridor is a loop around a lap that was driven: the lap is near its middle everywhere, and it is nowhere else.
+fn holds(corridor: &Corridor, lap: &[Point]) -> bool {
+    let stations = corridor.stations();
+    let near = |a: Point, b: Point, most: f64| (a - b).norm_squared() < most * most;
+    let inside = |place: &Point| stations.iter().any(|station| near(station.position, *place, BESIDE));
+    let driven = |station: &Station| lap.iter().any(|place| near(station.position, *place, BESIDE + 1.0));
+    corridor.is_closed()
+        && corridor.length() > SHORTEST
+        && lap.iter().all(inside)
+        && stations.iter().all(driven)
 }
 
 fn curvature_of(twist: Twist) -> f64 {

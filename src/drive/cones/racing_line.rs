@@ -75,20 +75,45 @@ impl LineSolver {
         corridor: &Corridor,
         parameters: &RacingLineParameters,
     ) -> Result<RacingLine, PlanError> {
+        check(corridor)?;
+        Ok(self.solve_within(corridor, &corridor.free(parameters.margin)?, parameters))
+    }
+
+    /// The line for a car of some outline: in a bend, its nose needs more room outside, and its tail inside. Where a track is too
+    /// narrow, the car goes through in the middle.
+    pub(super) fn solve_for(
+        &mut self,
+        corridor: &Corridor,
+        outline: &CarOutline,
+        parameters: &RacingLineParameters,
+    ) -> Result<RacingLine, PlanError> {
+        check(corridor)?;
+        let n = corridor.stations().len();
+        let mut margins = vec![outline.sides(0.0); n];
+        for _ in 0..BENDS {
+            let rough = self.solve_within(corridor, &corridor.room(&margins), parameters);
+            let bends = bends(&rough.points);
+            margins = bends.iter().map(|bend| outline.sides(*bend)).collect();
+        }
+        Ok(self.solve_within(corridor, &corridor.room(&margins), parameters))
+    }
+
+    fn solve_within(
+        &mut self,
+        corridor: &Corridor,
+        free: &[[f64; 2]],
+        parameters: &RacingLineParameters,
+    ) -> RacingLine {
         let stations = corridor.stations();
         let n = stations.len();
-        if !corridor.is_closed() || n < 5 {
-            return Err(PlanError::TooFew { found: if corridor.is_closed() { n } else { 0 }, needed: 5 });
-        }
-        let free = corridor.free(parameters.margin)?;
         let mut offsets: Vec<f64> = free.iter().map(|[low, high]| 0.0_f64.clamp(*low, *high)).collect();
         let mut energy = energy(stations, &offsets);
         let (mut wanted, mut trial) = (vec![0.0; n], vec![0.0; n]);
         let mut iterations = 0;
         for _ in 0..parameters.iterations {
             iterations += 1;
-            self.linear_step(stations, &offsets, &free, &mut wanted);
-            let Some(share) = improve(stations, &free, &mut offsets, &wanted, &mut trial, &mut energy) else {
+            self.linear_step(stations, &offsets, free, &mut wanted);
+            let Some(share) = improve(stations, free, &mut offsets, &wanted, &mut trial, &mut energy) else {
                 break;
             };
             let moved = wanted.iter().fold(0.0_f64, |most, step| most.max(step.abs()));
@@ -97,7 +122,7 @@ impl LineSolver {
             }
         }
         let points = stations.iter().zip(&offsets).map(|(station, &offset)| station.aside(offset)).collect();
-        Ok(RacingLine { points, offsets, bending_energy: energy, iterations })
+        RacingLine { points, offsets, bending_energy: energy, iterations }
     }
 
     /// The change of the offsets that is best for the linear model.
@@ -131,6 +156,54 @@ impl LineSolver {
         let low: Vec<f64> = (0..n).map(|i| room(i, 0).min(-1e-9)).collect();
         let high: Vec<f64> = (0..n).map(|i| room(i, 1).max(1e-9)).collect();
         self.qp.solve(&matrix, &gradient, &low, &high, step);
+    }
+}
+
+/// Rounds of lines and of the margins that a car needs along them.
+const BENDS: usize = 2;
+
+fn check(corridor: &Corridor) -> Result<(), PlanError> {
+    let n = if corridor.is_closed() { corridor.stations().len() } else { 0 };
+    if n < 5 { Err(PlanError::TooFew { found: n, needed: 5 }) } else { Ok(()) }
+}
+
+/// The curvature at each point of a loop, in the mean with its neighbours.
+fn bends(points: &[Point]) -> Vec<f64> {
+    let n = points.len();
+    let own: Vec<f64> =
+        (0..n).map(|i| curvature([points[(i + n - 1) % n], points[i], points[(i + 1) % n]])).collect();
+    (0..n).map(|i| (own[(i + n - 1) % n] + own[i] + own[(i + 1) % n]) / 3.0).collect()
+}
+
+/// The outline of a car around the point of it that is kept on a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CarOutline {
+    /// Half its width, in metres.
+    pub half_width: f64,
+    /// Metres from the rear axle to its nose.
+    pub nose: f64,
+    /// Metres from the rear axle to the point on the line.
+    pub ahead: f64,
+    /// Metres to the middle of cones that are left over beside it: half the foot of a cone, and what controller and map are wrong
+    /// by.
+    pub room: f64,
+}
+
+impl CarOutline {
+    /// Metres that it needs to the right and to the left of its line, for a curvature of that.
+    ///
+    /// Its rear axle rolls on a smaller circle than the point ahead of it, its nose on a larger one.
+    fn sides(&self, curvature: f64) -> [f64; 2] {
+        let bend = curvature.abs();
+        let straight = self.half_width + self.room;
+        if bend < 1e-3 {
+            return [straight; 2];
+        }
+        let radius = (1.0 / bend).max(self.ahead + self.half_width);
+        let rear = (radius * radius - self.ahead * self.ahead).sqrt();
+        let inner = radius - rear + straight;
+        let outer = crate::geometry::math::hypot(rear + self.half_width, self.nose) - radius + self.room;
+        if curvature > 0.0 { [outer, inner] } else { [inner, outer] }
     }
 }
 

@@ -139,11 +139,11 @@ fn broken_files_are_told_where() {
         (String::new(), "t:1:1: found the end of the file; expected keys with lists"),
         (
             format!("{eufs}pink,1,2,0"),
-            "t:2:1: found 'pink'; expected blue, yellow, orange, big_orange, unknown, car_start or midpoint",
+            "t:2:1: found `pink`; expected blue, yellow, orange, big_orange, unknown, car_start or midpoint",
         ),
         (format!("{eufs}blue,1"), "t:2:7: found the end of the line; expected a number of metres"),
-        (format!("{eufs}blue,1,NaN,0"), "t:2:8: found 'NaN'; expected a number of metres"),
-        (format!("{eufs}blue,1,1e9,0"), "t:2:8: found '1e9'; expected a number of metres"),
+        (format!("{eufs}blue,1,NaN,0"), "t:2:8: found `NaN`; expected a number of metres"),
+        (format!("{eufs}blue,1,1e9,0"), "t:2:8: found `1e9`; expected a number of metres"),
         (
             format!("{eufs}car_start,0,0,0\ncar_start,0,0,0"),
             "t:3:1: found a second start; expected one start",
@@ -151,10 +151,10 @@ fn broken_files_are_told_where() {
         (eufs.into(), "t:1:1: found no cones; expected at least one cone"),
         (
             "tag,x\n".into(),
-            "t:1:1: found 'tag'; expected the line tag,x,y,direction,x_variance,y_variance,xy_covariance",
+            "t:1:1: found `tag`; expected the line tag,x,y,direction,x_variance,y_variance,xy_covariance",
         ),
         (format!("{tum}1,2,3\n"), "t:2:6: found the end of the line; expected a number of metres"),
-        (format!("{tum}1,2,3,4,5\n"), "t:2:9: found '5'; expected the end of the line"),
+        (format!("{tum}1,2,3,4,5\n"), "t:2:9: found `5`; expected the end of the line"),
         (format!("{tum}1,2,3,4\n"), "t:1:1: found 1 points; expected at least 4 points"),
         (
             format!("{tum}0,0,1,1\n9,0,1,1\n9,9,-1,1\n0,9,1,1\n"),
@@ -166,16 +166,16 @@ fn broken_files_are_told_where() {
         ),
         (
             "cones_left:\n- - 1.0\n  - here\n".into(),
-            "t:3:5: found 'here'; expected a number of metres or radians",
+            "t:3:5: found `here`; expected a number of metres or radians",
         ),
-        ("cones_left:\n- 1.0\n".into(), "t:2:3: found '1.0'; expected a list of x and y"),
-        ("cones_left:\n- [1, 2, 3]\n".into(), "t:2:10: found '3'; expected the end of the list"),
+        ("cones_left:\n- 1.0\n".into(), "t:2:3: found `1.0`; expected a list of x and y"),
+        ("cones_left:\n- [1, 2, 3]\n".into(), "t:2:10: found `3`; expected the end of the list"),
         ("cones_left: []\n".into(), "t:1:1: found no cones; expected at least one cone"),
-        ("cones_left: 3\n".into(), "t:1:13: found '3'; expected a list"),
+        ("cones_left: 3\n".into(), "t:1:13: found `3`; expected a list"),
         ("- 3\n".into(), "t:1:1: found a list; expected keys with lists"),
         (
             "cones_left: []\ncones_left: []\n".into(),
-            "t:2:1: found a second 'cones_left'; expected each key once",
+            "t:2:1: found a second `cones_left`; expected each key once",
         ),
         (
             "starting_pose_front_wing: [1, 2]\n".into(),

@@ -14,8 +14,10 @@ pub struct TrackerParameters {
     pub steering_lag: f64,
     /// Seconds by which the speed lags behind.
     pub speed_lag: f64,
-    /// Radians by which the rear tyres slip, for an acceleration across of 1 m/s².
+    /// Radians by which the rear tyres slip, for a small acceleration across, of 1 m/s².
     pub slip: f64,
+    /// The acceleration across, in m/s², near which they slip ever more.
+    pub grip: f64,
     /// Radians more of the steering, for an acceleration across of 1 m/s², that front tyres need which slide first.
     pub understeer: f64,
     /// The greatest curvature that is asked for, in 1/m.
@@ -28,9 +30,10 @@ impl Default for TrackerParameters {
             ahead: 0.9,
             length: 2.0,
             length_by_speed: 0.22,
-            steering_lag: 0.12,
+            steering_lag: 0.1,
             speed_lag: 0.08,
-            slip: 0.0052,
+            slip: 0.0047,
+            grip: 11.5,
             understeer: 0.0008,
             curvature: 0.42,
         }
@@ -94,13 +97,18 @@ impl LineTracker {
         let share = ((place - self.points[i]).dot(&along) / chord.norm().max(1e-9)).clamp(0.0, 1.0);
         let aside = cross(along, place - self.points[i]);
         let curvature_here = self.at(&self.profile.curvatures, i, share, 0.0);
+        // The rear axle bends as the point ahead of it has bent some time ago.
+        let bent = self.at(&self.profile.curvatures, i, share, -p.ahead);
         // The chord's heading is that of its middle; the point of the car that is followed does not move along the car.
         let heading = math::atan2(along.y, along.x) + curvature_here * (share - 0.5) * chord.norm();
-        let slip = math::asin((p.ahead * curvature_here).clamp(-0.9, 0.9));
+        let slip = math::asin((p.ahead * bent).clamp(-0.9, 0.9));
         // Tyres that slip let the nose point into the bend.
-        let inwards = p.slip * speed * speed * curvature_here;
+        let across = speed * speed * bent;
+        let strained = (across / p.grip).clamp(-0.95, 0.95);
+        let inwards = p.slip * across / (1.0 - strained * strained).sqrt();
         let turned = angle_difference(rear.heading, heading - slip + inwards);
-        let curvature = self.at(&self.profile.curvatures, i, share, speed.max(0.0) * p.steering_lag);
+        let beyond = speed.max(0.0) * p.steering_lag - p.ahead;
+        let curvature = self.at(&self.profile.curvatures, i, share, beyond);
         let length = p.length + p.length_by_speed * speed.abs();
         let wanted = curvature - aside / (length * length) - 1.6 * math::sin(turned) / length;
         // The rear axle drives a tighter bend than the point ahead of it.
@@ -109,6 +117,24 @@ impl LineTracker {
         let curvature = (wanted / inside + more).clamp(-p.curvature, p.curvature);
         let speed = self.at(&self.profile.speeds, i, share, (speed.max(0.0) + 0.5) * p.speed_lag);
         Some((Twist::new(speed, speed * curvature), aside))
+    }
+
+    /// Metres along the line, from where the car is, to a thing that stands on it or nearer to it than `aside`. `None` where it does
+    /// not, or is farther off than some metres.
+    pub fn distance_to(&self, thing: Point, aside: f64, farthest: f64) -> Option<f64> {
+        let (mut i, mut passed) = (self.nearest, 0.0);
+        while passed < farthest {
+            if (self.points[i] - thing).norm_squared() < aside * aside {
+                return Some(passed);
+            }
+            let next = self.next(i);
+            if next == i {
+                return None;
+            }
+            passed += self.profile.lengths[i];
+            i = next;
+        }
+        None
     }
 
     /// The point of the line before the place, near the last one.
@@ -129,9 +155,22 @@ impl LineTracker {
         }
     }
 
-    /// A value along the line, some metres beyond a share of a piece.
+    fn previous(&self, i: usize) -> usize {
+        let n = self.points.len();
+        if self.closed { (i + n - 1) % n } else { i.saturating_sub(1) }
+    }
+
+    /// A value along the line, some metres beyond a share of a piece, or before it.
     fn at(&self, values: &[f64], piece: usize, share: f64, beyond: f64) -> f64 {
         let (mut i, mut left) = (piece, beyond + share * self.profile.lengths[piece]);
+        while left < 0.0 {
+            let before = self.previous(i);
+            if before == i {
+                return values[i];
+            }
+            i = before;
+            left += self.profile.lengths[i];
+        }
         while left > self.profile.lengths[i] {
             left -= self.profile.lengths[i];
             let next = self.next(i);

@@ -66,6 +66,22 @@ impl Causes {
         !self.without(Self::HARD).without(Self::DRIVER).is_empty()
     }
 
+    /// What the causes are called, in the order of their bits.
+    pub fn names(self) -> impl Iterator<Item = &'static str> {
+        const NAMES: [&str; 9] = [
+            "emergency button",
+            "remote stop",
+            "heartbeat lost",
+            "outside the fence",
+            "watchdog",
+            "sensor",
+            "clock",
+            "link",
+            "driver",
+        ];
+        NAMES.into_iter().enumerate().filter(move |(bit, _)| self.0 >> bit & 1 == 1).map(|(_, name)| name)
+    }
+
     /// The set that these bits stand for; bits without a meaning are left out.
     pub const fn from_bits(bits: u16) -> Self {
         Self(bits & 0x1ff)

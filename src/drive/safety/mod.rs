@@ -22,17 +22,39 @@
 //!                               └──────────────────────┘
 //! ```
 //!
-//! A *hard* cause is an emergency stop, on board or remote; a *soft* one is a lost heartbeat, a place outside the fence, a
-//! program that hangs, or a sensor that is not to be trusted. The worse state always wins. A stop is left only by arming
-//! again: a new request, made while the vehicle stands and no cause is left. What counts as a request is its beginning, so
-//! that a button that is stuck arms nothing.
+//! | state | hard cause | soft cause | driver, or disarm | start | arm, standing, no cause |
+//! |---|---|---|---|---|---|
+//! | `Manual` | `EmergencyStop` | `Manual` | `Manual` | `Manual` | `Armed` |
+//! | `Armed` | `EmergencyStop` | `SafeStop` | `Manual` | `Auto` | `Armed` |
+//! | `Auto` | `EmergencyStop` | `SafeStop` | `Manual` | `Auto` | `Auto` |
+//! | `SafeStop` | `EmergencyStop` | `SafeStop` | `SafeStop` | `SafeStop` | `Armed` |
+//! | `EmergencyStop` | `EmergencyStop` | `EmergencyStop` | `EmergencyStop` | `EmergencyStop` | `Armed` |
+//!
+//! The column farthest to the left that applies decides. A *hard* cause is an emergency stop, on board or remote; a *soft* one
+//! is a lost heartbeat, a place outside the fence, a program that hangs, or a sensor that is not to be trusted. The worse state
+//! always wins. A stop is left only by arming again: a new request, made while the vehicle stands and no cause is left. What
+//! counts as a request is its beginning, so that a button that is stuck arms nothing.
+//!
+//! [`Supervised`] puts any robot under this system: it looks at buttons, heartbeats, fence, pedals, program and sensors in every
+//! control period, and brakes. [`BaseStation`] is its other end.
 
 mod cause;
+mod health;
 mod machine;
 mod monitor;
+mod parameters;
+mod station;
 mod stopping;
+mod supervised;
+mod supervised_robot;
+#[cfg(test)]
+mod supervised_tests;
 
 pub use cause::{Causes, Requests};
+pub use health::HealthLimits;
 pub use machine::{SafetyCore, SafetyInputs, SafetyState};
 pub use monitor::{Deadline, Debounce, SignalHealth, SignalLimits, SignalMonitor, is_inside};
+pub use parameters::SupervisorParameters;
+pub use station::{BaseStation, Beat, Panel, Station};
 pub use stopping::StoppingModel;
+pub use supervised::{StopRecord, Supervised};

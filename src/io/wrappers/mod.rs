@@ -28,6 +28,7 @@
 #[macro_use]
 mod signatures;
 
+mod deadman;
 mod fault;
 mod faulty;
 mod limited;
@@ -37,6 +38,7 @@ mod quantised;
 mod trace_text;
 mod traced;
 
+pub use deadman::Deadman;
 pub use fault::{Fault, FaultKind, Sensor};
 pub use faulty::Faulty;
 pub use limited::{Excess, Limited, Limits};

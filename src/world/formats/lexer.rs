@@ -111,7 +111,7 @@ fn word<'a>(input: &mut Input<'a>) -> ModalResult<(&'a str, bool)> {
 }
 
 /// A word for a message: in backquotes, on one line, not too long.
-pub(super) fn shown(word: &str) -> String {
+pub(crate) fn shown(word: &str) -> String {
     let mut short: String = word.chars().take(40).flat_map(char::escape_debug).collect();
     if word.chars().nth(40).is_some() {
         short.push('…');

@@ -19,9 +19,12 @@ pub mod sim;
 mod source;
 pub mod wld;
 mod yaml;
+mod yaml_events;
 
 pub use error::{FormatError, Location, Parsed, Warning};
 pub use load::{load_object, load_robot, load_scene, parse_robot, parse_scene, read_file};
 pub use source::{DiskFiles, FileSource, MemoryFiles, SourceFile};
 
+pub(crate) use lexer::shown;
 use load::stem;
+pub(crate) use yaml_events::YamlEvents;

@@ -42,6 +42,15 @@ fn the_printed_driver_drives_some_way() {
 }
 
 #[test]
+fn two_cars_do_not_touch() {
+    for seed in ["1", "2"] {
+        let (_, report, err) = race(&["--seed", seed, "--laps", "2", "--other"]);
+        assert_eq!(err, "", "{report}");
+        assert!(report["touched"] == false && report["laps"] == 2 && report["cones_hit"] == 0, "{report}");
+    }
+}
+
+#[test]
 fn the_same_seed_gives_the_same_race() {
     let options = ["--track", "tests/data/cones/oval.csv", "--laps", "2", "--seed", "4"];
     let [a, b] = [0, 1].map(|_| race(&options).1["lap_times_s"].clone());
@@ -65,10 +74,10 @@ fn pictures_are_drawn() {
 #[test]
 fn wrong_files_are_told_where() {
     let (status, _, err) = race(&["--track", "tests/data/cones/broken.csv"]);
-    let expected = "tests/data/cones/broken.csv:3:12: found 'oops'; expected a number of metres\n";
+    let expected = "tests/data/cones/broken.csv:3:12: found `oops`; expected a number of metres\n";
     assert_eq!((status, err.as_str()), (2, expected));
     let (status, _, err) = race(&["--track", "tests/data/cones/oval_line.csv"]);
     assert!(status == 2 && err.contains("expected a track"), "{err}");
-    let (status, _, err) = race(&["--fault", "link@3"]);
+    let (status, _, err) = race(&["--goal", "1,2"]);
     assert!(status == 2 && err.contains("has no meaning for a race"), "{err}");
 }

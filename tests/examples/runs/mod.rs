@@ -13,6 +13,7 @@ mod mazes;
 mod navigate;
 mod quadtree;
 mod recordings;
+mod safety;
 mod seeing;
 mod swarms;
 mod wall_following;

@@ -104,10 +104,12 @@ fn short(program: &str) -> &'static [&'static str] {
         "bug_compare" => &["--bugs", "bug1,tangentbug"],
         "camera" => &["--images", "3"],
         "color_tracking" => &["--job", "home"],
+        "cone_drive" | "cone_race" => &["--track", "tests/data/cones/oval.csv"],
         "edges" => &["--repeat", "3"],
         "follow_me" => &["--followers", "3", "--mode", "radio"],
         "genetic" => &["--task", "wall", "--generations", "1"],
         "random_drive" => &["--robots", "3"],
+        "safety" => &["--track", "tests/data/cones/oval.csv", "--event", "radio"],
         "starman" => &["--population", "4", "--generations", "2", "--seconds", "4"],
         _ => &[],
     }
@@ -155,17 +157,15 @@ fn other_jobs_check() {
     }
 }
 
-/// Every example with the shared command line is in the table, or drives no robot.
+/// Every example with the shared command line is in the table.
 #[test]
 fn no_program_is_forgotten() {
-    // Racing cars are in a world of their own, which refuses to be recorded.
-    const NO_ROBOT: [&str; 2] = ["cone_drive", "cone_race"];
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_stem().unwrap().to_str().unwrap();
         let is_shared = path.is_file() && fs::read_to_string(&path).unwrap().contains("common::main(");
-        if is_shared && !NO_ROBOT.contains(&name) {
+        if is_shared {
             assert!(programs::named(name).is_some(), "{name} is missing in examples/common/programs.rs");
         }
     }

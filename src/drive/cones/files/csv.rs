@@ -1,5 +1,5 @@
 use super::FARTHEST;
-use crate::world::formats::{FormatError, Location};
+use crate::world::formats::{FormatError, Location, shown};
 
 /// A field of a line of comma-separated values.
 #[derive(Debug, Clone, Copy)]
@@ -20,15 +20,6 @@ impl Field<'_> {
         let value = self.text.parse::<f64>().ok().filter(|value| value.abs() <= FARTHEST);
         value.ok_or_else(|| self.error(file, expected))
     }
-}
-
-/// A text in quotes, shortened where it is long.
-pub(super) fn shown(text: &str) -> String {
-    if text.chars().count() <= 40 {
-        return format!("'{}'", text.escape_debug());
-    }
-    let head: String = text.chars().take(40).collect();
-    format!("'{}…'", head.escape_debug())
 }
 
 /// The lines with their fields; empty ones are left out.

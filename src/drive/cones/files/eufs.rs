@@ -4,7 +4,7 @@ use super::MOST;
 use super::csv::{Field, field, rows};
 use crate::drive::cones::{Cone, ConeColour, ConeTrack};
 use crate::geometry::{Point, Pose};
-use crate::world::formats::{FormatError, Location};
+use crate::world::formats::{FormatError, Location, shown};
 
 const HEADER: &str = "tag,x,y,direction,x_variance,y_variance,xy_covariance";
 const TAGS: &str = "blue, yellow, orange, big_orange, unknown, car_start or midpoint";
@@ -14,7 +14,7 @@ pub fn parse_eufs(text: &str, file: &str) -> Result<ConeTrack, FormatError> {
     let mut rows = rows(text);
     let header = rows.next();
     if !header.as_ref().is_some_and(|row| is_header(row)) {
-        let found = header.map_or_else(|| "an empty file".into(), |row| super::csv::shown(row[0].text));
+        let found = header.map_or_else(|| "an empty file".into(), |row| shown(row[0].text));
         return Err(FormatError::new(file, Location::START, found, format!("the line {HEADER}")));
     }
     let mut track = ConeTrack::default();

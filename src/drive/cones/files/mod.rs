@@ -39,7 +39,7 @@ pub enum TrackFile {
 /// let Ok(TrackFile::Cones(track)) = parse_track(text, "two.csv") else { panic!() };
 /// assert_eq!(track.cones.len(), 2);
 /// let error = parse_track("tag,x,y\nblue,1.0,here\n", "bad.csv").unwrap_err();
-/// assert_eq!(error.to_string(), "bad.csv:2:10: found 'here'; expected a number of metres");
+/// assert_eq!(error.to_string(), "bad.csv:2:10: found `here`; expected a number of metres");
 /// ```
 pub fn parse_track(text: &str, file: &str) -> Result<TrackFile, FormatError> {
     let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or("");

@@ -1,10 +1,10 @@
 use std::fmt::Write as _;
 
 use super::MOST;
-use super::csv::{field, rows, shown};
+use super::csv::{field, rows};
 use crate::drive::cones::{Corridor, PlanError};
 use crate::geometry::Point;
-use crate::world::formats::{FormatError, Location};
+use crate::world::formats::{FormatError, Location, shown};
 
 const HEADER: &str = "# x_m,y_m,w_tr_right_m,w_tr_left_m";
 

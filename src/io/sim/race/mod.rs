@@ -24,10 +24,12 @@
 mod body;
 mod camera;
 mod robot;
+mod shared;
 mod sight;
 mod world;
 
 pub use body::{CarModel, RaceCarSpec};
 pub use camera::RaceCamera;
 pub use robot::RaceCar;
+pub use shared::{SharedCar, SharedRace};
 pub use world::{CarTruth, Race, RaceCone, RaceOptions};

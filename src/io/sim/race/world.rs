@@ -1,7 +1,7 @@
 use super::body::{Body, Command, RaceCarSpec};
 use super::robot::RaceCar;
 use crate::geometry::{Point, Pose, Twist};
-use crate::io::sim::{NoiseModel, TICK};
+use crate::io::sim::{NoiseModel, RobotTruth, TICK};
 use crate::io::{Error, LidarSettings, Resolution, Result};
 use crate::random::Stream;
 use crate::world::Colour;
@@ -86,8 +86,10 @@ pub(super) struct Entry {
     drive: Stream,
     scale: f64,
     drift: f64,
-    hits: usize,
-    touched: bool,
+    /// Cones that it knocked over, by their indices.
+    hits: Vec<usize>,
+    /// Where it was when it touched another car.
+    touched: Option<Point>,
     distance: f64,
 }
 
@@ -154,8 +156,8 @@ impl Race {
                 scale: 1.0 + options.noise.wheel_scale * drive.normal(),
                 drift: GYRO_BIAS * size * drive.normal(),
                 drive,
-                hits: 0,
-                touched: false,
+                hits: Vec::new(),
+                touched: None,
                 distance: 0.0,
             });
         }
@@ -166,8 +168,7 @@ impl Race {
     /// A car, by its number from 0. Time passes for all of them when it waits.
     pub fn car(&mut self, index: usize) -> Result<RaceCar<'_>> {
         if index >= self.cars.len() {
-            let expected = format!("less than {}", self.cars.len());
-            return Err(Error::invalid_input("number of the car", index, &expected));
+            return Err(self.no_car(index));
         }
         Ok(RaceCar { race: self, index })
     }
@@ -184,15 +185,43 @@ impl Race {
             twist: car.body.twist(),
             steering: car.body.steering,
             slip: car.body.slip(&car.spec),
-            hits: car.hits,
-            touched: car.touched,
+            hits: car.hits.len(),
+            touched: car.touched.is_some(),
             distance: car.distance,
         })
     }
 
+    /// All that is true about a car, as about any robot.
+    pub(super) fn robot_truth(&self, index: usize) -> Result<RobotTruth> {
+        let car = self.cars.get(index).ok_or_else(|| self.no_car(index))?;
+        let cones = car.hits.iter().map(|&cone| self.cones[cone].cone.position);
+        let contact_places: Vec<Point> = cones.chain(car.touched).collect();
+        Ok(RobotTruth {
+            pose: car.body.pose(&car.spec),
+            odometry: car.odometry,
+            contacts: contact_places.len() as u32,
+            contact_places,
+            path_length: car.distance,
+            trail: Vec::new(),
+        })
+    }
+
+    /// Where a cone stands or stood.
+    pub(super) fn cone_pose(&self, index: usize) -> Result<Pose> {
+        let place = self.cones.get(index).map(|cone| cone.cone.position);
+        let pose = place.map(|place| Pose::new(place.x, place.y, 0.0));
+        pose.ok_or_else(|| {
+            Error::invalid_input("number of the cone", index, &format!("less than {}", self.cones.len()))
+        })
+    }
+
+    fn no_car(&self, index: usize) -> Error {
+        Error::invalid_input("number of the car", index, &format!("less than {}", self.cars.len()))
+    }
+
     /// Cones that all cars have knocked over.
     pub fn hits(&self) -> usize {
-        self.cars.iter().map(|car| car.hits).sum()
+        self.cars.iter().map(|car| car.hits.len()).sum()
     }
 
     /// Which cones stand, in the order in which they were given.
@@ -219,8 +248,10 @@ impl Race {
         for i in 0..self.cars.len() {
             for j in i + 1..self.cars.len() {
                 if self.cars[i].outline_meets(&self.cars[j]) {
-                    self.cars[i].touched = true;
-                    self.cars[j].touched = true;
+                    for index in [i, j] {
+                        let car = &mut self.cars[index];
+                        car.touched.get_or_insert(car.body.pose(&car.spec).position());
+                    }
                 }
             }
         }
@@ -248,7 +279,8 @@ impl Entry {
         self.odometry = Pose::new(self.odometry.x + step.x, self.odometry.y + step.y, heading);
         let pose = self.body.pose(&self.spec);
         let reach = self.spec.nose + self.spec.width;
-        for Obstacle { cone, stands } in cones.iter_mut().filter(|cone| cone.stands) {
+        for (index, Obstacle { cone, stands }) in cones.iter_mut().enumerate().filter(|(_, cone)| cone.stands)
+        {
             let away = cone.position - pose.position();
             if away.norm_squared() > reach * reach {
                 continue;
@@ -258,7 +290,7 @@ impl Entry {
             let outside_y = (local.y.abs() - 0.5 * self.spec.width).max(0.0);
             if outside_x * outside_x + outside_y * outside_y < cone.radius * cone.radius {
                 *stands = false;
-                self.hits += 1;
+                self.hits.push(index);
             }
         }
     }

@@ -1,17 +1,16 @@
 //! What is raced on: a file, or a track of our own.
 
-#![allow(dead_code, reason = "every example uses its own part of this")]
-
 use std::path::Path;
+use std::sync::Arc;
 
 use roverlab::drive::cones::{
-    CentreLine, CentreLineParameters, Cone, ConeColour, ConeTrack, Corridor, GeneratedTrack, RacerParameters,
-    TrackFile, TrackOptions, generate, lined, parse_track,
+    CentreLine, CentreLineParameters, Cone, ConeColour, ConeTrack, Corridor, GeneratedTrack, LaneParameters,
+    RacerParameters, TrackFile, TrackOptions, generate, lined, parse_track,
 };
-use roverlab::geometry::{Point, Pose};
+use roverlab::geometry::{Aabb, Point, Pose, math};
 use roverlab::io::sim::race::RaceCone;
 use roverlab::random::Stream;
-use roverlab::world::Colour;
+use roverlab::world::{Colour, Object, ObjectKind, Scene, Settings, Shape, World};
 
 use crate::common::{CommonArgs, Failure};
 
@@ -24,6 +23,9 @@ pub(crate) struct Course {
     /// Whether it is much wider than a track of Formula Student.
     pub(crate) wide: bool,
 }
+
+/// Metres of ground around the cones.
+const MARGIN: f64 = 5.0;
 
 /// What is done to the cones before the race.
 #[derive(Debug, Clone, Copy, Default)]
@@ -72,7 +74,9 @@ impl Course {
             ))
         };
         let start = track.start_pose().ok_or_else(|| refused("no start".into()))?;
-        let line = CentreLine::from_cones(&track.cones, start, &CentreLineParameters::default())
+        // Colours in a file are right.
+        let parameters = CentreLineParameters { colour: 12.0, ..CentreLineParameters::default() };
+        let line = CentreLine::from_cones(&track.cones, start, &parameters)
             .map_err(|error| refused(error.to_string()))?;
         if !line.corridor.is_closed() {
             return Err(refused(format!("a way of {:.0} m that does not close", line.corridor.length())));
@@ -121,6 +125,38 @@ impl Course {
         self.cones.iter().map(cone).collect()
     }
 
+    /// The pose in the middle, so many metres behind the line.
+    pub(crate) fn ahead(&self, metres: f64) -> Pose {
+        let stations = self.corridor.stations();
+        let spacing = self.corridor.length() / stations.len() as f64;
+        let station = stations[(metres / spacing) as usize % stations.len()];
+        let heading = math::atan2(-station.normal.x, station.normal.y);
+        Pose::new(station.position.x, station.position.y, heading)
+    }
+
+    /// The ground around the cones.
+    pub(crate) fn ground(&self) -> World {
+        let around = Aabb::around(self.cones.iter().map(|cone| cone.position));
+        let mut world = World::empty(1.0, 1.0);
+        world.floor = around.unwrap_or(world.floor).inflated(MARGIN);
+        world
+    }
+
+    /// The ground with the cones, for recordings.
+    pub(crate) fn scene(&self) -> Scene {
+        let mut world = self.ground();
+        let kinds = ConeColour::ALL.map(|paint| {
+            let shape = Shape::Cylinder { radius: paint.radius(), height: paint.height() };
+            Arc::new(ObjectKind::new(format!("cone-{paint:?}").to_lowercase(), shape, colour(paint)))
+        });
+        let object = |cone: &Cone| {
+            let kind = Arc::clone(&kinds[cone.colour as usize]);
+            Object::new(kind, Pose::new(cone.position.x, cone.position.y, 0.0))
+        };
+        world.objects.extend(self.cones.iter().map(object));
+        Scene { world, robots: Vec::new(), settings: Settings::default() }
+    }
+
     /// How it is raced.
     pub(crate) fn parameters(&self, laps: usize) -> RacerParameters {
         let mut parameters = RacerParameters { laps, ..RacerParameters::default() };
@@ -128,6 +164,16 @@ impl Course {
             parameters.centre_line.width = [6.0, 24.0];
             parameters.map.farthest = 24.0;
             parameters.limits.top_speed = 28.0;
+            parameters.first_lap.top_speed = 10.0;
+            parameters.lane = LaneParameters {
+                piece: 4.0,
+                pieces: 6,
+                curvature: 0.12,
+                half_width: [3.0, 11.0],
+                usual: 5.5,
+                loose: 2.0,
+                ..LaneParameters::default()
+            };
         }
         parameters
     }

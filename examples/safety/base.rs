@@ -1,0 +1,100 @@
+//! The other end of the radio link: the base station with its crew, and a camera that sees how far the car truly goes.
+
+use roverlab::drive::safety::{BaseStation, Beat, Panel, SafetyState, Station};
+use roverlab::geometry::Pose;
+
+use super::crew::{Crew, Event};
+use crate::common::StageTruth;
+
+/// A stop as the camera saw it.
+#[derive(Debug, Clone)]
+pub(crate) struct SeenStop {
+    /// What had happened, and when.
+    pub(crate) event: Option<(Event, f64)>,
+    /// The speed when it began.
+    pub(crate) speed: f64,
+    /// Where it began, and where the car stood, and how far it had gone at both.
+    pub(crate) places: [Pose; 2],
+    pub(crate) metres: [f64; 2],
+}
+
+/// What the camera saw at a time.
+#[derive(Debug, Clone, Copy, Default)]
+struct Look {
+    time: f64,
+    pose: Pose,
+    metres: f64,
+    speed: f64,
+}
+
+/// The base station.
+pub(crate) struct Base {
+    station: BaseStation,
+    pub(crate) crew: Crew,
+    truth: StageTruth,
+    last: Look,
+    /// Whether the car of the last stop has not stood yet.
+    open: bool,
+    pub(crate) stops: Vec<SeenStop>,
+    /// When the state changed, and to what.
+    pub(crate) states: Vec<(f64, SafetyState)>,
+}
+
+/// Metres per second below which the car stands.
+const STANDING: f64 = 0.005;
+
+impl Base {
+    pub(crate) fn new(crew: Crew, truth: StageTruth, heartbeat: f64) -> Self {
+        Self {
+            station: BaseStation::new(heartbeat),
+            crew,
+            truth,
+            last: Look::default(),
+            open: false,
+            stops: Vec::new(),
+            states: vec![(0.0, SafetyState::Manual)],
+        }
+    }
+
+    fn look(&mut self, now: f64) -> Look {
+        let passed = (now - self.last.time).max(1e-6);
+        match self.truth.robot(0) {
+            Ok(truth) => Look {
+                time: now,
+                pose: truth.pose,
+                metres: truth.path_length,
+                speed: (truth.path_length - self.last.metres).abs() / passed,
+            },
+            Err(_) => self.last,
+        }
+    }
+
+    /// Takes in the state that the car has had since the last look.
+    fn note(&mut self, state: SafetyState, look: Look) {
+        let before = self.states.last().map_or(SafetyState::Manual, |(_, state)| *state);
+        if state != before {
+            self.states.push((self.last.time, state));
+        }
+        if state.severity() > before.severity() {
+            let Look { pose, metres, speed, .. } = self.last;
+            let event = self.crew.now;
+            self.stops.push(SeenStop { event, speed, places: [pose; 2], metres: [metres; 2] });
+            self.open = true;
+        }
+        if let Some(stop) = self.stops.last_mut().filter(|_| self.open) {
+            (stop.places[1], stop.metres[1]) = (look.pose, look.metres);
+            self.open = look.speed > STANDING;
+        }
+    }
+}
+
+impl Station for Base {
+    fn exchange(&mut self, now: f64, beat: Beat) -> Panel {
+        let look = self.look(now);
+        self.note(beat.state, look);
+        let passed = now - self.last.time;
+        self.last = look;
+        self.crew.act(&mut self.station, beat.state, look.speed < STANDING, (now, passed));
+        self.station.exchange(now, beat)
+    }
+}

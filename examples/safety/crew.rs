@@ -1,0 +1,115 @@
+//! The people around the car: they arm and start it, let something happen, and set it going again.
+
+use roverlab::drive::safety::{BaseStation, SafetyState};
+
+/// Something that happens while the car drives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Event {
+    /// The button on board is pressed.
+    Button,
+    /// A stop is ordered from the base station.
+    Remote,
+    /// The radio link breaks.
+    Radio,
+    /// The program hangs.
+    Hang,
+    /// The driver presses the brake.
+    Pedal,
+    /// The driver takes the steering wheel.
+    Wheel,
+}
+
+impl Event {
+    pub(crate) const ALL: [Self; 6] =
+        [Self::Button, Self::Remote, Self::Radio, Self::Hang, Self::Pedal, Self::Wheel];
+
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Button => "button",
+            Self::Remote => "remote",
+            Self::Radio => "radio",
+            Self::Hang => "hang",
+            Self::Pedal => "pedal",
+            Self::Wheel => "wheel",
+        }
+    }
+
+    /// Begins or ends it.
+    fn set(self, station: &mut BaseStation, on: bool) {
+        match self {
+            Self::Button => station.panel.emergency_button = on,
+            Self::Remote if on => station.stop(),
+            Self::Radio if on => station.connect(false),
+            // What the station orders, it takes back.
+            Self::Remote => station.take_back(),
+            Self::Radio => {
+                station.connect(true);
+                station.take_back();
+            }
+            // The program sees to it by itself.
+            Self::Hang => {}
+            Self::Pedal => station.panel.brake = if on { 0.6 } else { 0.0 },
+            Self::Wheel => station.panel.steering_force = if on { -0.4 } else { 0.0 },
+        }
+    }
+}
+
+/// Seconds that the car drives before something happens, and stands before it is armed again.
+const DRIVES: f64 = 5.0;
+const STANDS: f64 = 1.0;
+
+/// The crew, with what is to happen.
+#[derive(Debug)]
+pub(crate) struct Crew {
+    events: Vec<Event>,
+    next: usize,
+    /// Seconds that the car has driven, or stood, without a break.
+    driven: f64,
+    stood: f64,
+    /// What goes on, and when it began.
+    pub(crate) now: Option<(Event, f64)>,
+    hang: bool,
+}
+
+impl Crew {
+    pub(crate) fn new(events: Vec<Event>) -> Self {
+        Self { events, next: 0, driven: 0.0, stood: 0.0, now: None, hang: false }
+    }
+
+    /// Whether the program is to hang now, once.
+    pub(crate) fn lets_hang(&mut self) -> bool {
+        std::mem::take(&mut self.hang)
+    }
+
+    /// Whether everything has happened, and the car drives again.
+    pub(crate) fn is_done(&self) -> bool {
+        self.next == self.events.len() && self.now.is_none() && self.driven > 1.0
+    }
+
+    /// What the crew does in a step of some seconds.
+    pub(crate) fn act(
+        &mut self,
+        station: &mut BaseStation,
+        state: SafetyState,
+        standing: bool,
+        (time, step): (f64, f64),
+    ) {
+        self.driven = if state == SafetyState::Auto { self.driven + step } else { 0.0 };
+        self.stood = if standing && state != SafetyState::Auto { self.stood + step } else { 0.0 };
+        if self.driven > DRIVES && self.now.is_none() && self.next < self.events.len() {
+            let event = self.events[self.next];
+            self.next += 1;
+            self.now = Some((event, time));
+            event.set(station, true);
+            self.hang = event == Event::Hang;
+        }
+        if self.stood > 0.5 * STANDS
+            && let Some((event, _)) = self.now.take()
+        {
+            event.set(station, false);
+        }
+        // Buttons are pressed and let go.
+        station.panel.requests.arm = self.stood > STANDS && (self.stood / step).round() as u64 % 20 < 5;
+        station.panel.requests.start = state == SafetyState::Armed && self.stood > 1.5 * STANDS;
+    }
+}

@@ -1,0 +1,451 @@
+//! The lane ahead of a car that knows only some of its cones: where one side is missing, where gaps are wide, and where others
+//! stand about.
+
+use super::cone::Cone;
+use super::corridor::Corridor;
+use super::error::PlanError;
+use super::spline::ClosedSpline;
+use crate::geometry::{Point, Pose, Vector, direction, math};
+
+/// What a lane is looked for with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LaneParameters {
+    /// Metres of a piece, which has one curvature.
+    pub piece: f64,
+    /// Pieces.
+    pub pieces: usize,
+    /// The greatest curvature, in 1/m.
+    pub curvature: f64,
+    /// Ways that are followed at a time.
+    pub beam: usize,
+    /// Metres to a cone at which a car would touch it.
+    pub clearance: f64,
+    /// Metres from the middle to an edge, from least to most.
+    pub half_width: [f64; 2],
+    /// The same before cones say more.
+    pub usual: f64,
+    /// Metres by which a cone of an edge may stand off it.
+    pub loose: f64,
+}
+
+impl Default for LaneParameters {
+    fn default() -> Self {
+        Self {
+            piece: 2.5,
+            pieces: 7,
+            curvature: 0.28,
+            beam: 40,
+            clearance: 1.15,
+            half_width: [1.4, 2.8],
+            usual: 1.9,
+            loose: 0.8,
+        }
+    }
+}
+
+/// The middle of a lane.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lane {
+    /// Points along it, about a metre apart.
+    pub points: Vec<Point>,
+    /// The cones of its left and of its right edge, by their indices, in their order along it.
+    pub edges: [Vec<usize>; 2],
+    /// Metres from the middle to an edge, as its cones say.
+    pub half_width: f64,
+}
+
+/// What touching a cone costs, having it on the wrong side, leaving the lane found before, bending and steering.
+const TOUCH: f64 = 6.0;
+const WRONG_SIDE: f64 = 2.0;
+const KEEP: f64 = 0.35;
+const BEND: f64 = 4.0;
+const STEER: f64 = 16.0;
+/// Metres along the lane over which a cone speaks for its edge.
+const SPEAKS: f64 = 6.5;
+/// Metres along the lane within which a cone is next to a station.
+const NEXT_TO: f64 = 1.6;
+/// Different curvatures to one side.
+const BENDS: i32 = 4;
+
+/// A piece of a way.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    middle: Pose,
+    end: Pose,
+    bend: i32,
+    cost: f64,
+    parent: Option<usize>,
+}
+
+impl Lane {
+    /// A lane of which nothing is known but half its width.
+    pub(super) fn unknown(half_width: f64) -> Self {
+        Self { points: Vec::new(), edges: [Vec::new(), Vec::new()], half_width }
+    }
+
+    /// How far a place is from the lane, 0 to 1; 0 beyond its end.
+    fn away(&self, place: Point) -> f64 {
+        let squared = |i: &usize| (self.points[*i] - place).norm_squared();
+        let nearest = (0..self.points.len()).min_by(|a, b| squared(a).total_cmp(&squared(b)));
+        nearest.filter(|i| i + 2 < self.points.len()).map_or(0.0, |i| squared(&i).min(1.0))
+    }
+}
+
+/// Looks for the lane that most cones are the edges of: a way of arcs, by a beam search, that keeps clear of all cones and has as
+/// many as possible at half its width on both sides. Then its middle is moved to where the cones of both sides, or of the one that
+/// there is, say that it is. Colours count, if they are known.
+///
+/// `behind` is where the car was, oldest first, `car` where it is, at the point of it that is to be in the middle, and `before` the
+/// lane as it was found before. `None` without a cone at an edge. Takes O(n) for n cones.
+pub fn lane(
+    cones: &[Cone],
+    behind: &[Pose],
+    car: Pose,
+    before: &Lane,
+    parameters: &LaneParameters,
+) -> Option<Lane> {
+    let half_width = before.half_width;
+    let way = search(cones, car, before, parameters)?;
+    let mut stations = behind.to_vec();
+    stations.push(car);
+    stations.extend(way);
+    let found = settled(cones, &stations, half_width, parameters);
+    found.edges.iter().any(|edge| !edge.is_empty()).then_some(found)
+}
+
+fn search(cones: &[Cone], car: Pose, before: &Lane, p: &LaneParameters) -> Option<Vec<Pose>> {
+    let start = Piece { middle: car, end: car, bend: 0, cost: 0.0, parent: None };
+    let mut pieces = vec![start];
+    let mut beam = vec![0];
+    for depth in 0..p.pieces {
+        let mut next: Vec<Piece> = Vec::new();
+        for &parent in &beam {
+            let turns = if depth == 0 { -BENDS..=BENDS } else { -2..=2 };
+            for turn in turns {
+                let bend = pieces[parent].bend + turn;
+                if bend.abs() <= BENDS {
+                    let mut piece = extended(cones, &pieces, parent, (bend, turn), before.half_width, p);
+                    piece.cost += KEEP * before.away(piece.middle.position());
+                    next.push(piece);
+                }
+            }
+        }
+        next.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        beam.clear();
+        for piece in next {
+            let alike = |&other: &usize| {
+                (pieces[other].end.position() - piece.end.position()).norm() < 0.4
+                    && (pieces[other].end.heading - piece.end.heading).abs() < 0.12
+                    && pieces[other].bend == piece.bend
+            };
+            if beam.len() < p.beam && !beam.iter().any(alike) {
+                pieces.push(piece);
+                beam.push(pieces.len() - 1);
+            }
+        }
+    }
+    let mut way = Vec::new();
+    let mut at = *beam.first()?;
+    while let Some(parent) = pieces[at].parent {
+        way.extend([pieces[at].end, pieces[at].middle]);
+        at = parent;
+    }
+    way.reverse();
+    Some(way)
+}
+
+/// A way with one more piece.
+fn extended(
+    cones: &[Cone],
+    pieces: &[Piece],
+    parent: usize,
+    (bend, turn): (i32, i32),
+    half_width: f64,
+    p: &LaneParameters,
+) -> Piece {
+    let from = pieces[parent].end;
+    let curvature = p.curvature * f64::from(bend) / f64::from(BENDS);
+    let arc = |length: f64| {
+        let chord = direction(from.heading + 0.5 * curvature * length) * length;
+        Pose::new(from.x + chord.x, from.y + chord.y, from.heading + curvature * length)
+    };
+    let middle = arc(0.5 * p.piece);
+    let ahead = direction(middle.heading);
+    let steer = p.curvature * f64::from(turn) / f64::from(BENDS);
+    let mut cost = pieces[parent].cost + BEND * curvature * curvature + STEER * steer * steer;
+    for cone in cones {
+        let away = cone.position - middle.position();
+        let along = away.dot(&ahead);
+        if along.abs() > 0.5 * p.piece {
+            continue;
+        }
+        let left = crate::geometry::cross(ahead, away);
+        let aside = left.abs();
+        let wrong = f64::from(cone.colour.side()) * left < 0.0;
+        let close = ((p.clearance - aside) / 0.4).max(0.0);
+        let off = (aside - half_width) / p.loose;
+        cost += TOUCH * (close * close).min(1.0);
+        if !wrong {
+            cost -= (1.0 - off * off).max(0.0);
+        } else if aside < half_width + p.loose {
+            cost += WRONG_SIDE;
+        }
+    }
+    Piece { middle, end: arc(p.piece), bend, cost, parent: Some(parent) }
+}
+
+/// A cone of an edge.
+#[derive(Debug, Clone, Copy)]
+struct EdgeCone {
+    /// Metres along the lane, and aside of it.
+    along: f64,
+    aside: f64,
+    index: usize,
+}
+
+/// The middle between the edges along some stations.
+fn settled(cones: &[Cone], stations: &[Pose], half_width: f64, p: &LaneParameters) -> Lane {
+    let mut along = vec![0.0];
+    for pair in stations.windows(2) {
+        along.push(along[along.len() - 1] + (pair[1].position() - pair[0].position()).norm());
+    }
+    let edges = [1.0, -1.0].map(|side| edge(cones, stations, &along, (half_width, p.loose), side));
+    let mut offsets: Vec<f64> = along.iter().map(|at| offset(&edges, *at, half_width)).collect();
+    for _ in 0..3 {
+        let old = offsets.clone();
+        for i in 1..old.len().saturating_sub(1) {
+            offsets[i] = 0.25 * old[i - 1] + 0.5 * old[i] + 0.25 * old[i + 1];
+        }
+    }
+    // Beyond the last cone, nothing is known.
+    let last = edges.iter().flatten().map(|cone| cone.along).fold(0.0, f64::max);
+    let known = along.iter().position(|at| *at > last + 1.5).unwrap_or(along.len());
+    let normal = |pose: &Pose| Vector::new(-math::sin(pose.heading), math::cos(pose.heading));
+    let points: Vec<Point> = stations
+        .iter()
+        .zip(&offsets)
+        .take(known)
+        .map(|(pose, offset)| pose.position() + normal(pose) * *offset)
+        .collect();
+    let half_width = width(&edges, half_width, p);
+    Lane {
+        points: even(&points),
+        edges: edges.map(|edge| edge.iter().map(|cone| cone.index).collect()),
+        half_width,
+    }
+}
+
+/// The cones of a side, in their order along the lane: 1 for the left one.
+fn edge(
+    cones: &[Cone],
+    stations: &[Pose],
+    along: &[f64],
+    (half_width, loose): (f64, f64),
+    side: f64,
+) -> Vec<EdgeCone> {
+    let mut found: Vec<EdgeCone> = Vec::new();
+    for (index, cone) in cones.iter().enumerate() {
+        let nearest = (0..stations.len()).min_by(|&a, &b| {
+            let squared = |i: usize| (stations[i].position() - cone.position).norm_squared();
+            squared(a).total_cmp(&squared(b))
+        });
+        let Some(nearest) = nearest else { continue };
+        let local = stations[nearest].to_local(cone.position);
+        let aside = side * local.y;
+        let wrong = f64::from(cone.colour.side()) * side < 0.0;
+        if local.x.abs() < NEXT_TO && (aside - half_width).abs() < loose && !wrong {
+            found.push(EdgeCone { along: along[nearest] + local.x, aside, index });
+        }
+    }
+    found.sort_by(|a, b| a.along.total_cmp(&b.along));
+    found
+}
+
+/// How far the middle is to the left of the lane at a place.
+fn offset(edges: &[Vec<EdgeCone>; 2], at: f64, half_width: f64) -> f64 {
+    let [left, right] = [0, 1].map(|side| distance(&edges[side], at));
+    match (left, right) {
+        (Some(left), Some(right)) => 0.5 * (left - right),
+        (Some(left), None) => left - half_width,
+        (None, Some(right)) => half_width - right,
+        (None, None) => 0.0,
+    }
+}
+
+/// Metres to an edge at a place, between the cones before and behind it.
+fn distance(edge: &[EdgeCone], at: f64) -> Option<f64> {
+    let next = edge.partition_point(|cone| cone.along < at);
+    let near = |cone: Option<&EdgeCone>| cone.filter(|cone| (cone.along - at).abs() < SPEAKS).copied();
+    match (near(next.checked_sub(1).and_then(|k| edge.get(k))), near(edge.get(next))) {
+        (Some(before), Some(after)) => {
+            let share = (at - before.along) / (after.along - before.along).max(1e-6);
+            Some(before.aside + (after.aside - before.aside) * share)
+        }
+        (one, other) => one.or(other).map(|cone| cone.aside),
+    }
+}
+
+/// Half the width as the cones say, in small steps.
+fn width(edges: &[Vec<EdgeCone>; 2], before: f64, p: &LaneParameters) -> f64 {
+    let mut asides: Vec<f64> = edges.iter().flatten().map(|cone| cone.aside).collect();
+    if asides.len() < 3 {
+        return before;
+    }
+    asides.sort_by(f64::total_cmp);
+    let step = 0.1 * (asides[asides.len() / 2] - before);
+    (before + step).clamp(p.half_width[0], p.half_width[1])
+}
+
+/// Metres beyond the usual widths at which cones of an edge may stand beside the way of a lap.
+const BEYOND: f64 = 0.5;
+/// Stations of a lap to both sides within which the width of a track is about the same.
+const ALIKE: usize = 10;
+
+/// The corridor around a lap that was driven in the middle, between the cones beside it.
+pub(super) fn around_lap(cones: &[Point], lap: &[Point], p: &LaneParameters) -> Result<Corridor, PlanError> {
+    let stations: Vec<Pose> = ClosedSpline::through(lap)?
+        .resample(1.0)
+        .iter()
+        .map(|place| {
+            let heading = math::atan2(place.tangent.y, place.tangent.x);
+            Pose::new(place.position.x, place.position.y, heading)
+        })
+        .collect();
+    let n = stations.len();
+    let edges = p.half_width[0] - BEYOND..p.half_width[1] + BEYOND;
+    let beside = |side: f64| -> Vec<Option<f64>> {
+        let near = |pose: &Pose| {
+            let local = cones.iter().map(|cone| pose.to_local(*cone)).filter(|local| local.x.abs() < 0.8);
+            let asides = local.map(|local| side * local.y).filter(|aside| edges.contains(aside));
+            asides.min_by(f64::total_cmp)
+        };
+        stations.iter().map(near).collect()
+    };
+    let sides = [beside(1.0), beside(-1.0)];
+    let usual = |at: usize| {
+        let around = (at + n - ALIKE..=at + n + ALIKE).flat_map(|k| [sides[0][k % n], sides[1][k % n]]);
+        let mut asides: Vec<f64> = around.flatten().collect();
+        asides.sort_by(f64::total_cmp);
+        asides.get(asides.len() / 2).copied().unwrap_or(p.usual)
+    };
+    let rows: Vec<(Point, f64, f64)> = (0..n)
+        .map(|at| {
+            let usual = usual(at);
+            let [left, right] = [0, 1].map(|side| between(&sides[side], at, (usual, p.loose)));
+            // Without one edge, it is as far from the other as it usually is.
+            let [left, right] = match (left, right) {
+                (Some(left), Some(right)) => [left, right],
+                (Some(left), None) => [left, (2.0 * usual - left).max(0.5)],
+                (None, Some(right)) => [(2.0 * usual - right).max(0.5), right],
+                (None, None) => [usual; 2],
+            };
+            (stations[at].position(), left, right)
+        })
+        .collect();
+    Corridor::closed(&rows)
+}
+
+/// The distance of an edge at a station of a lap, between the cones before and behind it that are about as far off as is usual.
+fn between(asides: &[Option<f64>], at: usize, (usual, loose): (f64, f64)) -> Option<f64> {
+    let n = asides.len();
+    let good = |k: usize| asides[k % n].filter(|aside| (aside - usual).abs() < loose);
+    let ahead = (0..=SPEAKS as usize).find_map(|k| good(at + k).map(|aside| (k as f64, aside)));
+    let back = (0..=SPEAKS as usize).find_map(|k| good(at + n - k).map(|aside| (k as f64, aside)));
+    match (back, ahead) {
+        (Some((before, one)), Some((behind, other))) => {
+            let share = before / (before + behind).max(1e-6);
+            Some(one + (other - one) * share)
+        }
+        (one, other) => one.or(other).map(|(_, aside)| aside),
+    }
+}
+
+/// Points at even steps of about a metre along a chain, smoothed.
+fn even(chain: &[Point]) -> Vec<Point> {
+    let mut points: Vec<Point> = Vec::new();
+    let mut left = 0.0;
+    for pair in chain.windows(2) {
+        let leg = pair[1] - pair[0];
+        let length = leg.norm();
+        while left < length {
+            points.push(pair[0] + leg * (left / length));
+            left += 1.0;
+        }
+        left -= length;
+    }
+    for _ in 0..3 {
+        let old = points.clone();
+        for i in 1..old.len().saturating_sub(1) {
+            points[i] = nalgebra::center(&old[i], &nalgebra::center(&old[i - 1], &old[i + 1]));
+        }
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::cones::{TrackOptions, generate};
+
+    fn known(cones: &[Cone]) -> Lane {
+        let p = LaneParameters::default();
+        let mut found = Lane::unknown(p.usual);
+        // Its width is learnt from look to look.
+        for _ in 0..20 {
+            found = lane(cones, &[], Pose::default(), &found, &p).unwrap();
+        }
+        found
+    }
+
+    fn row(side: f64, places: impl Iterator<Item = u32>) -> Vec<Cone> {
+        places.map(|k| Cone::unknown(Point::new(3.0 * f64::from(k), side))).collect()
+    }
+
+    #[test]
+    fn one_edge_is_enough() {
+        let both = [row(1.6, 0..8), row(-1.6, 0..8)].concat();
+        let found = known(&both);
+        assert!(found.points.iter().all(|point| point.y.abs() < 0.05), "{found:?}");
+        assert_eq!((found.edges[0].len(), found.edges[1].len()), (7, 7));
+        // The left one ends after six metres; two false cones stand beside the right one.
+        let mut cones = [row(1.6, 0..3), row(-1.6, 0..8)].concat();
+        cones.extend([Point::new(8.0, -3.0), Point::new(13.0, -3.4)].map(Cone::unknown));
+        let found = known(&cones);
+        assert!(found.points.len() > 12 && found.points.iter().all(|p| p.y.abs() < 0.3), "{found:?}");
+    }
+
+    #[test]
+    fn there_is_no_lane_beside_a_row_of_known_cones() {
+        let left = |cone: Cone| Cone::new(cone.position, crate::drive::cones::ConeColour::Blue);
+        let cones: Vec<Cone> = row(1.8, 0..8).into_iter().map(left).collect();
+        let found = known(&cones);
+        assert!(found.points.iter().all(|point| point.y < 0.5), "{found:?}");
+        assert!(lane(&[], &[], Pose::default(), &found, &LaneParameters::default()).is_none());
+    }
+
+    #[test]
+    fn a_lap_has_its_corridor() {
+        let generated = generate(5, &TrackOptions::drawn(5)).unwrap();
+        let lap: Vec<Point> =
+            generated.corridor.stations().iter().step_by(2).map(|s| s.aside(0.15)).collect();
+        let mut places: Vec<Point> = generated.track.cones.iter().map(|cone| cone.position).collect();
+        // Every ninth one is missing.
+        let mut index = 0;
+        places.retain(|_| {
+            index += 1;
+            index % 9 != 4
+        });
+        let found = around_lap(&places, &lap, &LaneParameters::default()).unwrap();
+        let wrong = |a: f64, b: f64| (a - b).abs();
+        for station in found.stations() {
+            let truth = generated.corridor.stations().iter().min_by(|a, b| {
+                let squared =
+                    |s: &crate::drive::cones::Station| (s.position - station.position).norm_squared();
+                squared(a).total_cmp(&squared(b))
+            });
+            let truth = truth.unwrap();
+            let widths = [station.left + station.right, truth.left + truth.right];
+            assert!(wrong(widths[0], widths[1]) < 0.9, "{station:?} {truth:?}");
+        }
+    }
+}

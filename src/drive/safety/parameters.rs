@@ -1,0 +1,67 @@
+use super::StoppingModel;
+use super::health::HealthLimits;
+use crate::geometry::Point;
+use crate::io::{Error, Result};
+
+/// What a vehicle is supervised by.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SupervisorParameters {
+    /// Seconds between two looks at everything.
+    pub period: f64,
+    /// Seconds without a heartbeat of the base station that are allowed.
+    pub heartbeat: f64,
+    /// Seconds without a call of the driving program that are allowed.
+    pub watchdog: f64,
+    /// Corners of the area that must not be left, in the frame of odometry; without three of them there is no fence.
+    pub fence: Vec<Point>,
+    /// Looks in a row outside before it counts.
+    pub fence_debounce: u16,
+    /// How far a pedal has to be pressed, or how hard the wheel has to be held, before the driver has taken over.
+    pub override_threshold: f64,
+    /// The deceleration of a safe stop, in m/s²; an emergency stop takes all that there is.
+    pub gentle: f64,
+    /// Metres per second, and radians per second, below which the vehicle stands.
+    pub standing: [f64; 2],
+    /// What sensors may do.
+    pub health: HealthLimits,
+}
+
+impl Default for SupervisorParameters {
+    fn default() -> Self {
+        Self {
+            period: 0.02,
+            heartbeat: 0.5,
+            watchdog: 0.4,
+            fence: Vec::new(),
+            fence_debounce: 3,
+            override_threshold: 0.1,
+            gentle: 3.0,
+            standing: [0.01, 0.02],
+            health: HealthLimits::default(),
+        }
+    }
+}
+
+impl SupervisorParameters {
+    /// How a vehicle stops that follows speeds with a lag and a greatest deceleration: it reacts within one control period, and
+    /// brakes as gently as is allowed.
+    pub fn stopping(&self, lag: f64, deceleration: f64) -> StoppingModel {
+        StoppingModel { reaction: 2.0 * self.period, lag, deceleration: deceleration.min(self.gentle) }
+    }
+
+    pub(super) fn validate(&self) -> Result<()> {
+        for (name, value) in [
+            ("control period", self.period),
+            ("heartbeat", self.heartbeat),
+            ("watchdog", self.watchdog),
+            ("threshold of the override", self.override_threshold),
+            ("gentle deceleration", self.gentle),
+        ] {
+            crate::io::error::require_positive(name, value)?;
+        }
+        if self.fence.iter().any(|corner| !(corner.x.is_finite() && corner.y.is_finite())) {
+            return Err(Error::invalid_input("corner of the fence", "no number", "finite coordinates"));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,107 @@
+use super::{Deadline, Requests, SafetyState};
+
+/// What people and the base station tell a vehicle's safety system in one control period.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Panel {
+    /// The button on board that takes the power away.
+    pub emergency_button: bool,
+    /// The button on board that gives the wheel back to the driver.
+    pub disengage: bool,
+    /// A stop button of the base station, real or on the screen.
+    pub remote_stop: bool,
+    /// The base station's counter, as far as it was heard; it has to change.
+    pub heartbeat: Option<u64>,
+    /// How far the accelerator is pressed, 0 to 1.
+    pub accelerator: f64,
+    /// How far the brake is pressed, 0 to 1.
+    pub brake: f64,
+    /// The force on the steering wheel, as a share of the greatest.
+    pub steering_force: f64,
+    /// What people ask for.
+    pub requests: Requests,
+}
+
+/// What a vehicle tells its base station in each control period: the heartbeat's other direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Beat {
+    /// Counts up.
+    pub count: u64,
+    /// The state of the safety system.
+    pub state: SafetyState,
+}
+
+/// Whoever sits at the other end: people, buttons, the base station.
+pub trait Station {
+    /// Hears the vehicle's heartbeat and answers. `now` is the time in seconds.
+    fn exchange(&mut self, now: f64, beat: Beat) -> Panel;
+}
+
+impl<F: FnMut(f64, Beat) -> Panel> Station for F {
+    fn exchange(&mut self, now: f64, beat: Beat) -> Panel {
+        self(now, beat)
+    }
+}
+
+/// A base station (book, section 14.3): it has a heartbeat of its own, listens to the vehicle's, and orders a stop when that is
+/// missing; the order stays until it is taken back.
+///
+/// ```
+/// use roverlab::drive::safety::{BaseStation, Beat, SafetyState, Station};
+/// let mut station = BaseStation::new(0.5);
+/// let beat = |count| Beat { count, state: SafetyState::Auto };
+/// assert!(!station.exchange(0.0, beat(1)).remote_stop);
+/// // The same beat for too long: nobody is there.
+/// assert!(station.exchange(0.6, beat(1)).remote_stop);
+/// assert!(station.exchange(0.7, beat(2)).remote_stop, "an order stays");
+/// station.take_back();
+/// assert!(!station.exchange(0.8, beat(3)).remote_stop);
+/// ```
+#[derive(Debug, Clone)]
+pub struct BaseStation {
+    /// What is told beside heartbeat and stop: buttons and pedals on board.
+    pub panel: Panel,
+    vehicle: Deadline,
+    last: Option<u64>,
+    count: u64,
+    stop: bool,
+    /// Whether its heartbeat reaches the vehicle.
+    connected: bool,
+}
+
+impl BaseStation {
+    /// A station that waits so many seconds for a heartbeat.
+    pub fn new(limit: f64) -> Self {
+        let panel = Panel::default();
+        Self { panel, vehicle: Deadline::new(limit), last: None, count: 0, stop: false, connected: true }
+    }
+
+    /// Somebody presses a stop button.
+    pub fn stop(&mut self) {
+        self.stop = true;
+    }
+
+    /// Somebody takes the order back. The vehicle stands until it is armed.
+    pub fn take_back(&mut self) {
+        self.stop = false;
+    }
+
+    /// Cuts or mends the radio link.
+    pub fn connect(&mut self, connected: bool) {
+        self.connected = connected;
+    }
+}
+
+impl Station for BaseStation {
+    fn exchange(&mut self, now: f64, beat: Beat) -> Panel {
+        if self.connected && self.last != Some(beat.count) {
+            self.last = Some(beat.count);
+            self.vehicle.feed(now);
+        }
+        self.stop |= self.last.is_some() && self.vehicle.is_over(now);
+        if !self.connected {
+            return self.panel;
+        }
+        self.count += 1;
+        Panel { heartbeat: Some(self.count), remote_stop: self.stop || self.panel.remote_stop, ..self.panel }
+    }
+}

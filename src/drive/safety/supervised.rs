@@ -1,0 +1,301 @@
+use std::collections::BTreeMap;
+
+use ambassador::Delegate;
+use image::RgbImage;
+
+use super::health::{OdometryHealth, ReadingHealth};
+use super::{
+    Beat, Causes, Deadline, Debounce, Panel, SafetyCore, SafetyInputs, SafetyState, Station,
+    SupervisorParameters, is_inside,
+};
+use crate::geometry::{Pose, Twist};
+use crate::io::delegate::{
+    ambassador_impl_Display, ambassador_impl_Encoders, ambassador_impl_Keys, ambassador_impl_Radio,
+};
+use crate::io::{
+    Clock, Display, DisplayOption, Drive, Encoders, Error, ErrorKind, Fill, Font, Key, Keys, Picture, Pixel,
+    Psd, Radio, RadioMessage, Result, Viewport,
+};
+use crate::world::Colour;
+
+/// A stop that has begun.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StopRecord {
+    /// When, in seconds of the robot's clock as it was believed.
+    pub time: f64,
+    /// Why.
+    pub causes: Causes,
+    /// The state that it led to.
+    pub state: SafetyState,
+    /// The speed at which the vehicle went.
+    pub speed: f64,
+}
+
+/// A robot under the safety system of a car that drives by wire (book, sections 14.2 and 14.3).
+///
+/// It is a robot like the one inside, but a program's commands reach the wheels in the state [`SafetyState::Auto`] alone, and
+/// whenever time passes, every control period, it looks at the buttons, the heartbeat of the base station, the fence, the
+/// pedals, the program and the sensors. When something is wrong, it brakes, and keeps the curvature that was being driven
+/// until the vehicle stands; then it stands until somebody arms it again.
+///
+/// A program that hangs does so between two calls, or in a [`wait`](Clock::wait) that is longer than the watchdog allows.
+///
+/// ```
+/// use roverlab::drive::safety::{Beat, Panel, Requests, SafetyState, Supervised, SupervisorParameters};
+/// use roverlab::geometry::Twist;
+/// use roverlab::io::{Clock, Drive, MockRobot};
+///
+/// # fn main() -> roverlab::io::Result<()> {
+/// // Armed and started at once; the stop button is pressed after a second.
+/// let station = |now: f64, beat: Beat| Panel {
+///     heartbeat: Some(beat.count),
+///     requests: Requests { arm: now > 0.0, start: now > 0.05, disarm: false },
+///     remote_stop: now > 1.0,
+///     ..Panel::default()
+/// };
+/// let robot = MockRobot::new().with_ideal_drive();
+/// let mut car = Supervised::new(robot, station, SupervisorParameters::default())?;
+/// car.wait(0.1)?;
+/// for _ in 0..20 {
+///     car.set_speed(Twist::new(0.5, 0.0))?;
+///     car.wait(0.1)?;
+/// }
+/// assert_eq!((car.state(), car.speed()?), (SafetyState::EmergencyStop, Twist::STOP));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Delegate)]
+#[expect(clippy::duplicated_attributes, reason = "every capability has the same target")]
+#[delegate(Display, target = "inner")]
+#[delegate(Keys, target = "inner")]
+#[delegate(Radio, target = "inner")]
+#[delegate(Encoders, target = "inner")]
+pub struct Supervised<R, S> {
+    pub(super) inner: R,
+    station: S,
+    pub(super) parameters: SupervisorParameters,
+    pub(super) core: SafetyCore,
+    /// What calls of the program have shown since the last look.
+    pub(super) seen: Causes,
+    heartbeat: Deadline,
+    heard: Option<u64>,
+    beat: u64,
+    /// Time that passed by waiting, which is what the watchdog goes by: a clock may stop.
+    pub(super) waited: f64,
+    /// When it looks next, in that time.
+    pub(super) due: f64,
+    watchdog: Deadline,
+    outside: Debounce,
+    pub(super) odometry: OdometryHealth,
+    pub(super) scans: ReadingHealth,
+    pub(super) images: ReadingHealth,
+    pub(super) distances: BTreeMap<Psd, ReadingHealth>,
+    clock: Option<f64>,
+    pub(super) pose: Pose,
+    /// The speed measured last, and the curvature driven last.
+    speed: f64,
+    pub(super) curvature: f64,
+    /// The speed asked for while it brakes.
+    braking: Option<f64>,
+    causes: Causes,
+    stop: Option<StopRecord>,
+}
+
+impl<R: Clock + Drive, S: Station> Supervised<R, S> {
+    /// A robot in the hands of a person, with somebody at the other end.
+    ///
+    /// Fails with the name of the parameter that is out of range.
+    pub fn new(inner: R, station: S, parameters: SupervisorParameters) -> Result<Self> {
+        parameters.validate()?;
+        let mut watchdog = Deadline::new(parameters.watchdog);
+        watchdog.feed(0.0);
+        Ok(Self {
+            inner,
+            station,
+            core: SafetyCore::new(),
+            seen: Causes::NONE,
+            heartbeat: Deadline::new(parameters.heartbeat),
+            heard: None,
+            beat: 0,
+            waited: 0.0,
+            due: 0.0,
+            watchdog,
+            outside: Debounce::new(parameters.fence_debounce),
+            odometry: OdometryHealth::new(),
+            scans: ReadingHealth::default(),
+            images: ReadingHealth::default(),
+            distances: BTreeMap::new(),
+            clock: None,
+            pose: Pose::default(),
+            speed: 0.0,
+            curvature: 0.0,
+            braking: None,
+            causes: Causes::NONE,
+            stop: None,
+            parameters,
+        })
+    }
+
+    /// The present state.
+    pub fn state(&self) -> SafetyState {
+        self.core.state()
+    }
+
+    /// What is wrong now.
+    pub fn causes(&self) -> Causes {
+        self.causes
+    }
+
+    /// The last stop.
+    pub fn last_stop(&self) -> Option<StopRecord> {
+        self.stop
+    }
+
+    /// The other end.
+    pub fn station_mut(&mut self) -> &mut S {
+        &mut self.station
+    }
+
+    /// The robot inside.
+    pub fn inner(&self) -> &R {
+        &self.inner
+    }
+
+    /// The robot inside, unsupervised.
+    pub fn into_inner(self) -> R {
+        self.inner
+    }
+
+    /// The driver drives: reaches the wheels in the state [`SafetyState::Manual`] alone. Whether it did.
+    pub fn drive_by_hand(&mut self, twist: Twist) -> Result<bool> {
+        let manual = self.core.state() == SafetyState::Manual;
+        if manual {
+            self.inner.set_speed(twist)?;
+        }
+        Ok(manual)
+    }
+
+    /// The program is alive.
+    pub(super) fn alive(&mut self) {
+        self.watchdog.feed(self.waited);
+    }
+
+    /// One look at everything, and what follows from it.
+    pub(super) fn look(&mut self) {
+        let mut causes = std::mem::take(&mut self.seen);
+        causes = causes.with(self.read_clock());
+        let (odometry, standing) = self.read_odometry();
+        causes = causes.with(odometry);
+        causes = causes.with_if(self.watchdog.is_over(self.waited), Causes::WATCHDOG);
+        self.beat += 1;
+        let beat = Beat { count: self.beat, state: self.core.state() };
+        let panel = self.station.exchange(self.waited, beat);
+        causes = causes.with(self.read_panel(&panel));
+        let before = self.core.state();
+        let state = self.core.step(SafetyInputs { causes, requests: panel.requests, standing });
+        self.causes = causes;
+        if state.severity() > before.severity() {
+            self.stop = Some(StopRecord { time: self.waited, causes, state, speed: self.speed });
+        }
+        self.act(before, state, standing);
+    }
+
+    /// The clock has to go on while time passes.
+    fn read_clock(&mut self) -> Causes {
+        match self.inner.now() {
+            Err(_) => Causes::LINK,
+            Ok(now) => {
+                let went_on = self.clock.replace(now).is_none_or(|before| {
+                    let passed = now - before;
+                    // It may also have passed in calls, but not stood, and not leapt.
+                    passed > 0.2 * self.parameters.period && passed < self.parameters.period + 0.5
+                });
+                Causes::NONE.with_if(!went_on, Causes::CLOCK)
+            }
+        }
+    }
+
+    /// What odometry says, and whether the vehicle stands.
+    fn read_odometry(&mut self) -> (Causes, bool) {
+        match (self.inner.pose(), self.inner.speed()) {
+            (Ok(pose), Ok(speed)) => {
+                let limits = self.parameters.health;
+                if !self.odometry.read(self.waited, pose, speed, &limits) {
+                    return (Causes::SENSOR, false);
+                }
+                self.pose = pose;
+                self.speed = speed.linear;
+                let corners: Vec<[f64; 2]> = self.parameters.fence.iter().map(|p| [p.x, p.y]).collect();
+                let outside = corners.len() >= 3 && !is_inside(&corners, [pose.x, pose.y]);
+                let outside = self.outside.update(outside);
+                let [linear, angular] = self.parameters.standing;
+                let standing = speed.linear.abs() < linear && speed.angular.abs() < angular;
+                (Causes::NONE.with_if(outside, Causes::OUTSIDE_FENCE), standing)
+            }
+            (Err(error), _) | (_, Err(error)) => (fault(&error), false),
+        }
+    }
+
+    fn read_panel(&mut self, panel: &Panel) -> Causes {
+        if panel.heartbeat.is_some() && panel.heartbeat != self.heard {
+            self.heard = panel.heartbeat;
+            self.heartbeat.feed(self.waited);
+        }
+        let threshold = self.parameters.override_threshold;
+        // What is no number is taken for a driver who does something.
+        let quiet = |value: f64| value.abs() <= threshold;
+        let driver = panel.disengage
+            || !(quiet(panel.accelerator) && quiet(panel.brake) && quiet(panel.steering_force));
+        Causes::NONE
+            .with_if(panel.emergency_button, Causes::EMERGENCY_BUTTON)
+            .with_if(panel.remote_stop, Causes::REMOTE_STOP)
+            .with_if(self.heartbeat.is_over(self.waited), Causes::HEARTBEAT_LOST)
+            .with_if(driver, Causes::DRIVER)
+    }
+
+    /// Brakes where the state asks for it. Errors are looked at in the next period, when the link is asked again.
+    fn act(&mut self, before: SafetyState, state: SafetyState, standing: bool) {
+        if !state.is_stop() {
+            self.braking = None;
+            if before == SafetyState::Auto && state == SafetyState::Manual {
+                // The driver has it: nothing of the program's is left.
+                let _ = self.inner.set_speed(Twist::STOP);
+            }
+            return;
+        }
+        let slower = match (state, self.braking) {
+            (SafetyState::EmergencyStop, _) => 0.0,
+            (_, None) => self.speed,
+            (_, Some(speed)) => speed,
+        };
+        let step = self.parameters.gentle * self.parameters.period;
+        let speed = slower - slower.clamp(-step, step);
+        self.braking = Some(speed);
+        // The curvature is kept, by a speed next to none: brakes act before the steering does.
+        let least = if standing { 0.0 } else { 1e-6_f64.copysign(self.speed) };
+        let speed = if speed == 0.0 { least } else { speed };
+        let _ = self.inner.set_speed(Twist::new(speed, speed * self.curvature));
+    }
+
+    /// Whether the program may drive now; it lives, in any case.
+    pub(super) fn may_drive(&mut self) -> bool {
+        self.alive();
+        self.core.state().lets_drive()
+    }
+
+    pub(super) fn note<T>(&mut self, answer: Result<T>) -> Result<T> {
+        if let Err(error) = &answer {
+            self.seen = self.seen.with(fault(error));
+        }
+        answer
+    }
+}
+
+/// What an error of a sensor is a sign of. That it was never there, or that the program asked for nonsense, is none.
+pub(super) fn fault(error: &Error) -> Causes {
+    match error.kind() {
+        ErrorKind::Unsupported | ErrorKind::InvalidInput => Causes::NONE,
+        ErrorKind::Disconnected => Causes::SENSOR.with(Causes::LINK),
+        _ => Causes::SENSOR,
+    }
+}

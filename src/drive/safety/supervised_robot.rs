@@ -1,0 +1,195 @@
+//! What a supervised robot does for a program: the commands that reach the wheels, and the readings that are looked at.
+
+use image::RgbImage;
+
+use super::health::digest;
+use super::supervised::{Supervised, fault};
+use super::{Causes, Station};
+use crate::geometry::{Pose, Twist};
+use crate::io::{
+    Camera, Clock, DistanceSensors, Drive, ErrorKind, Lidar, LidarScan, LidarSettings, Motors, Psd,
+    Resolution, Result, Servos,
+};
+
+impl<R: Clock + Drive, S: Station> Clock for Supervised<R, S> {
+    fn now(&mut self) -> Result<f64> {
+        self.alive();
+        self.inner.now()
+    }
+
+    fn wait(&mut self, seconds: f64) -> Result<()> {
+        self.alive();
+        let mut left = seconds;
+        let mut answer = Ok(());
+        while left > 1e-9 {
+            let part = left.min(self.due - self.waited).max(1e-9);
+            let waited = self.inner.wait(part);
+            self.waited += part;
+            left -= part;
+            if let Err(error) = waited {
+                self.seen =
+                    self.seen.with(fault(&error)).with_if(error.kind() == ErrorKind::TimedOut, Causes::LINK);
+                answer = Err(error);
+            }
+            if self.waited >= self.due - 1e-9 {
+                self.due = self.waited + self.parameters.period;
+                self.look();
+            }
+            if answer.is_err() {
+                break;
+            }
+        }
+        answer
+    }
+
+    fn peek_time(&mut self) -> Result<f64> {
+        self.inner.peek_time()
+    }
+}
+
+impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
+    fn set_speed(&mut self, twist: Twist) -> Result<()> {
+        if !self.may_drive() {
+            return Ok(());
+        }
+        if twist.linear.abs() > 1e-3 {
+            self.curvature = twist.angular / twist.linear;
+        } else {
+            self.curvature = 0.0;
+        }
+        let answer = self.inner.set_speed(twist);
+        self.note(answer)
+    }
+
+    fn speed(&mut self) -> Result<Twist> {
+        self.alive();
+        let answer = self.inner.speed();
+        self.note(answer)
+    }
+
+    fn pose(&mut self) -> Result<Pose> {
+        self.alive();
+        let answer = self.inner.pose();
+        self.note(answer)
+    }
+
+    fn set_pose(&mut self, pose: Pose) -> Result<()> {
+        self.alive();
+        self.odometry.forget();
+        self.inner.set_pose(pose)
+    }
+
+    fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
+        if !self.may_drive() {
+            return Ok(());
+        }
+        self.curvature = 0.0;
+        self.inner.straight(distance, speed)
+    }
+
+    fn turn(&mut self, angle: f64, speed: f64) -> Result<()> {
+        if !self.may_drive() {
+            return Ok(());
+        }
+        self.curvature = 0.0;
+        self.inner.turn(angle, speed)
+    }
+
+    fn curve(&mut self, length: f64, angle: f64, speed: f64) -> Result<()> {
+        if !self.may_drive() {
+            return Ok(());
+        }
+        self.curvature = if length.abs() > 1e-3 { angle / length } else { 0.0 };
+        self.inner.curve(length, angle, speed)
+    }
+
+    fn remaining(&mut self) -> Result<f64> {
+        self.alive();
+        self.inner.remaining()
+    }
+
+    fn is_done(&mut self) -> Result<bool> {
+        self.alive();
+        self.inner.is_done()
+    }
+
+    fn wait_done(&mut self) -> Result<()> {
+        // A manoeuvre that stopped is none that runs: what brakes is a speed.
+        while !self.inner.is_done()? && !self.inner.is_stalled()? && self.core.state().lets_drive() {
+            self.wait(self.parameters.period)?;
+        }
+        Ok(())
+    }
+
+    fn is_stalled(&mut self) -> Result<bool> {
+        self.alive();
+        self.inner.is_stalled()
+    }
+}
+
+impl<R: Clock + Drive + Motors, S: Station> Motors for Supervised<R, S> {
+    fn set_motor(&mut self, motor: u8, fraction: f64) -> Result<()> {
+        if self.may_drive() { self.inner.set_motor(motor, fraction) } else { Ok(()) }
+    }
+}
+
+impl<R: Clock + Drive + Servos, S: Station> Servos for Supervised<R, S> {
+    fn set_servo(&mut self, servo: u8, position: f64) -> Result<()> {
+        if self.may_drive() { self.inner.set_servo(servo, position) } else { Ok(()) }
+    }
+}
+
+impl<R: Clock + Drive + Lidar, S: Station> Lidar for Supervised<R, S> {
+    fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()> {
+        self.alive();
+        let answer = self.inner.scan_into(scan);
+        if answer.is_ok() {
+            let number = !scan.ranges.iter().any(|range| range.is_nan());
+            let shows = scan.ranges.iter().any(|range| range.is_finite());
+            let digest = shows.then(|| digest(scan.ranges.iter().map(|range| range.to_bits())));
+            let good = self.scans.read(digest, self.pose, &self.parameters.health);
+            self.seen = self.seen.with_if(!(number && good), Causes::SENSOR);
+        }
+        self.note(answer)
+    }
+
+    fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
+        self.inner.configure_lidar(settings)
+    }
+}
+
+impl<R: Clock + Drive + DistanceSensors, S: Station> DistanceSensors for Supervised<R, S> {
+    fn distance(&mut self, sensor: Psd) -> Result<f64> {
+        self.alive();
+        let answer = self.inner.distance(sensor);
+        if let Ok(distance) = answer {
+            let digest = distance.is_finite().then(|| distance.to_bits());
+            let health = self.distances.entry(sensor).or_default();
+            let good = health.read(digest, self.pose, &self.parameters.health);
+            self.seen = self.seen.with_if(distance.is_nan() || !good, Causes::SENSOR);
+        }
+        self.note(answer)
+    }
+}
+
+impl<R: Clock + Drive + Camera, S: Station> Camera for Supervised<R, S> {
+    fn set_resolution(&mut self, resolution: Resolution) -> Result<()> {
+        self.inner.set_resolution(resolution)
+    }
+
+    fn resolution(&mut self) -> Result<Resolution> {
+        self.inner.resolution()
+    }
+
+    fn image_into(&mut self, image: &mut RgbImage) -> Result<()> {
+        self.alive();
+        let answer = self.inner.image_into(image);
+        if answer.is_ok() {
+            let black = image.as_raw().iter().all(|level| *level == 0);
+            let digest = digest(image.as_raw().iter().map(|level| u64::from(*level)));
+            let good = self.images.read(Some(digest), self.pose, &self.parameters.health);
+            self.seen = self.seen.with_if(black || !good, Causes::SENSOR);
+        }
+        self.note(answer)
+    }
+}

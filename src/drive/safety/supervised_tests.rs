@@ -1,0 +1,245 @@
+use super::*;
+use crate::drive::cones::GapDriver;
+use crate::geometry::{Point, Pose, Twist};
+use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions};
+use crate::io::sim::{NoiseModel, SimOptions, Simulation};
+use crate::io::wrappers::{Fault, Faulty};
+use crate::io::{Clock, Drive, Lidar, LidarScan, MockRobot};
+use crate::world::{Colour, RobotSpec, Scene, World};
+
+/// Armed and started at once, a heartbeat, and what else is asked for.
+fn station(change: impl Fn(f64, &mut Panel)) -> impl FnMut(f64, Beat) -> Panel {
+    move |now, beat| {
+        let requests = Requests { arm: now > 0.03, start: now > 0.07, disarm: false };
+        let mut panel = Panel { heartbeat: Some(beat.count), requests, ..Panel::default() };
+        change(now, &mut panel);
+        panel
+    }
+}
+
+/// Drives with 0.5 m/s for some seconds, a command every 0.1 s.
+fn drive<R: Clock + Drive, S: Station>(car: &mut Supervised<R, S>, seconds: f64) {
+    for _ in 0..(10.0 * seconds).round() as usize {
+        let _ = car.set_speed(Twist::new(0.5, 0.1));
+        let _ = car.wait(0.1);
+    }
+}
+
+fn mock() -> MockRobot {
+    MockRobot::new().with_ideal_drive()
+}
+
+#[test]
+fn nothing_drives_before_it_is_armed_and_started() {
+    let never = |_: f64, beat: Beat| Panel { heartbeat: Some(beat.count), ..Panel::default() };
+    let mut car = Supervised::new(mock(), never, SupervisorParameters::default()).unwrap();
+    drive(&mut car, 1.0);
+    assert_eq!((car.state(), car.pose().unwrap()), (SafetyState::Manual, Pose::default()));
+    assert!(car.drive_by_hand(Twist::new(0.2, 0.0)).unwrap(), "a person drives");
+    car.wait(0.1).unwrap();
+    assert!(car.pose().unwrap().x > 0.0);
+}
+
+#[test]
+fn every_cause_stops_it_within_a_period() {
+    type Change = fn(f64, &mut Panel);
+    let causes: [(Change, SafetyState, Causes); 4] = [
+        (
+            |now, panel| panel.emergency_button = now > 1.0,
+            SafetyState::EmergencyStop,
+            Causes::EMERGENCY_BUTTON,
+        ),
+        (|now, panel| panel.remote_stop = now > 1.0, SafetyState::EmergencyStop, Causes::REMOTE_STOP),
+        (
+            |now, panel| panel.heartbeat = panel.heartbeat.filter(|_| now < 0.5),
+            SafetyState::SafeStop,
+            Causes::HEARTBEAT_LOST,
+        ),
+        (
+            |now, panel| panel.remote_stop = (1.0..1.05).contains(&now),
+            SafetyState::EmergencyStop,
+            Causes::REMOTE_STOP,
+        ),
+    ];
+    for (change, state, cause) in causes {
+        let mut car = Supervised::new(mock(), station(change), SupervisorParameters::default()).unwrap();
+        drive(&mut car, 0.9);
+        assert_eq!(car.state(), SafetyState::Auto);
+        drive(&mut car, 2.0);
+        let stop = car.last_stop().unwrap();
+        assert!(stop.state == state && stop.causes.has(cause), "{stop:?}");
+        assert!(stop.time <= 1.0 + 2.0 * 0.02 + 1e-9, "{stop:?}");
+        assert_eq!((car.state(), car.speed().unwrap().linear.abs() < 1e-3), (state, true));
+        let there = car.pose().unwrap();
+        drive(&mut car, 1.0);
+        assert!((car.pose().unwrap().position() - there.position()).norm() < 1e-3, "it stands");
+    }
+}
+
+#[test]
+fn the_driver_takes_over_by_pedals_and_wheel() {
+    type Change = fn(f64, &mut Panel);
+    let touches: [Change; 5] = [
+        |now, panel| panel.accelerator = if now > 1.0 { 0.5 } else { 0.05 },
+        |now, panel| panel.brake = if now > 1.0 { 0.2 } else { 0.0 },
+        |now, panel| panel.steering_force = if now > 1.0 { -0.3 } else { 0.02 },
+        |now, panel| panel.disengage = now > 1.0,
+        |now, panel| panel.brake = if now > 1.0 { f64::NAN } else { 0.0 },
+    ];
+    for touch in touches {
+        let mut car = Supervised::new(mock(), station(touch), SupervisorParameters::default()).unwrap();
+        drive(&mut car, 1.5);
+        assert_eq!(car.state(), SafetyState::Manual);
+        assert!(car.drive_by_hand(Twist::new(0.1, 0.0)).unwrap());
+    }
+}
+
+#[test]
+fn the_fence_holds_and_is_not_jumpy() {
+    let fence = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+    let parameters = SupervisorParameters { fence, ..SupervisorParameters::default() };
+    let mut car = Supervised::new(mock(), station(|_, _| {}), parameters.clone()).unwrap();
+    drive(&mut car, 8.0);
+    let stop = car.last_stop().unwrap();
+    assert!(stop.causes.has(Causes::OUTSIDE_FENCE) && stop.state == SafetyState::SafeStop);
+    let bound = parameters.stopping(0.0, f64::INFINITY).distance(0.5) + 0.5 * 0.02 * 4.0;
+    let pose = car.pose().unwrap();
+    assert!(pose.x.max(pose.y) < 1.0 + bound, "{pose:?} beyond {bound}");
+}
+
+#[test]
+fn a_program_that_hangs_is_stopped() {
+    let mut car = Supervised::new(mock(), station(|_, _| {}), SupervisorParameters::default()).unwrap();
+    drive(&mut car, 1.0);
+    car.wait(5.0).unwrap();
+    let stop = car.last_stop().unwrap();
+    assert!(stop.causes.has(Causes::WATCHDOG) && stop.time < 1.0 + 0.4 + 0.05);
+    assert_eq!(car.state(), SafetyState::SafeStop);
+}
+
+#[test]
+fn the_base_station_hears_and_is_heard() {
+    let mut base = BaseStation::new(0.5);
+    base.panel.requests.arm = true;
+    let mut car = Supervised::new(mock(), base, SupervisorParameters::default()).unwrap();
+    drive(&mut car, 0.2);
+    car.station_mut().panel.requests.start = true;
+    drive(&mut car, 1.0);
+    assert_eq!(car.state(), SafetyState::Auto);
+    car.station_mut().connect(false);
+    drive(&mut car, 1.0);
+    assert_eq!(car.state(), SafetyState::SafeStop);
+    // With the link back, the station, which has missed the car as well, orders a stop.
+    car.station_mut().connect(true);
+    drive(&mut car, 0.2);
+    assert_eq!(car.state(), SafetyState::EmergencyStop);
+    car.station_mut().take_back();
+    drive(&mut car, 0.5);
+    assert_eq!(car.state(), SafetyState::EmergencyStop, "it is left by arming alone");
+    car.station_mut().panel.requests = Requests::default();
+    drive(&mut car, 0.1);
+    car.station_mut().panel.requests.arm = true;
+    drive(&mut car, 0.1);
+    assert_eq!(car.state(), SafetyState::Armed);
+}
+
+/// Eight faults, and what they are seen by.
+const FAULTS: [&str; 8] = [
+    "stuck:odometry@3",
+    "lost:odometry@3",
+    "nan:odometry@3",
+    "jump=400,200,40@3",
+    "late:odometry=1@3",
+    "link@3",
+    "hang=2@3",
+    "clock@3",
+];
+
+#[test]
+fn a_robot_in_the_simulator_stands_after_every_fault() {
+    for (index, text) in FAULTS.iter().enumerate() {
+        let scene = Scene::with_robot(World::walled(8.0, 8.0), RobotSpec::s4(), Pose::new(2.0, 4.0, 0.0));
+        let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, index as u64)).unwrap();
+        let robot = Faulty::new(simulation.robot(0).unwrap(), vec![text.parse::<Fault>().unwrap()]);
+        let mut car = Supervised::new(robot, station(|_, _| {}), SupervisorParameters::default()).unwrap();
+        for _ in 0..60 {
+            let _ = car.set_speed(Twist::new(0.3, 0.2));
+            let _ = car.wait(0.1);
+        }
+        let stop = car.last_stop();
+        assert!(stop.is_some(), "{text}: no stop");
+        let before = simulation.truth().pose(0).unwrap();
+        for _ in 0..10 {
+            let _ = car.wait(0.1);
+        }
+        let way = simulation.truth().pose(0).unwrap().distance_to(before.position());
+        // Without a link nothing reaches the wheels: that is for the watchdog on the other side of it.
+        assert!(way < 1e-3 || text.starts_with("link"), "{text}: goes on {way} m after {stop:?}");
+    }
+}
+
+#[test]
+fn a_racing_car_brakes_on_its_line() {
+    // Cones that are never met, so that the lidar shows something.
+    let cones: Vec<RaceCone> = (0..40)
+        .flat_map(|i| [-3.0, 3.0].map(|y| RaceCone::new(Point::new(5.0 * f64::from(i), y), Colour::BLUE)))
+        .collect();
+    for text in ["stuck:lidar@4", "lost:lidar@4", "nan:lidar@4", "nan:odometry@4", "clock@4"] {
+        let options = RaceOptions { noise: NoiseModel::real(), ..RaceOptions::default() };
+        let mut race = Race::new(&cones, &[(RaceCarSpec::default(), Pose::default())], options).unwrap();
+        let parameters = SupervisorParameters::default();
+        let speed = 10.1;
+        let bound = parameters.stopping(1.0 / 12.0, 11.0).distance(speed);
+        {
+            let car = Faulty::new(race.car(0).unwrap(), vec![text.parse::<Fault>().unwrap()]);
+            let mut car = Supervised::new(car, station(|_, _| {}), parameters.clone()).unwrap();
+            let mut scan = LidarScan::default();
+            while car.last_stop().is_none() {
+                assert!(car.peek_time().unwrap() < 8.0, "{text}: no stop");
+                let _ = car.scan_into(&mut scan);
+                let _ = car.set_speed(Twist::new(10.0, 0.0));
+                let _ = car.wait(0.05);
+            }
+        }
+        let from = race.truth(0).unwrap().pose;
+        {
+            let mut car =
+                Supervised::new(race.car(0).unwrap(), station(|_, _| {}), parameters.clone()).unwrap();
+            // Another supervisor finds it in motion: nobody has armed it, and the car is braked by hand.
+            for k in 0..300 {
+                let slower = (speed - 3.0 * 0.02 * f64::from(k)).max(0.0);
+                car.drive_by_hand(Twist::new(slower, 0.0)).unwrap();
+                car.wait(0.02).unwrap();
+            }
+        }
+        let way = (race.truth(0).unwrap().pose.position() - from.position()).norm();
+        assert!(way < bound, "{text}: {way} of {bound}");
+    }
+}
+
+#[test]
+fn programs_run_supervised_as_they_are() {
+    let cones: Vec<RaceCone> = (0..30)
+        .flat_map(|i| [-1.8, 1.8].map(|y| RaceCone::new(Point::new(3.0 * f64::from(i), y), Colour::BLUE)))
+        .collect();
+    let mut race =
+        Race::new(&cones, &[(RaceCarSpec::default(), Pose::default())], RaceOptions::default()).unwrap();
+    let mut car = Supervised::new(
+        race.car(0).unwrap(),
+        station(|now, panel| panel.remote_stop = now > 10.0),
+        SupervisorParameters::default(),
+    )
+    .unwrap();
+    car.wait(0.2).unwrap();
+    GapDriver::default().run(&mut car, 0.1, 15.0).unwrap();
+    assert_eq!(car.state(), SafetyState::EmergencyStop);
+    let truth = race.truth(0).unwrap();
+    assert!(truth.twist.linear.abs() < 0.01 && truth.pose.x > 15.0 && truth.pose.x < 40.0, "{truth:?}");
+}
+
+#[test]
+fn parameters_that_are_none() {
+    let parameters = SupervisorParameters { watchdog: 0.0, ..SupervisorParameters::default() };
+    let error = Supervised::new(mock(), station(|_, _| {}), parameters).err().unwrap();
+    assert_eq!(error.to_string(), "watchdog is 0; expected a positive, finite number");
+}
