@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::io::Write;
 
 use crate::common::run;
+use crate::maze_drive::{maze_explore, maze_left, maze_lidar};
 use crate::{
     a_to_b, ackermann, bug_compare, camera, color_tracking, coverage, distbug, edges, follow_me, genetic,
     lidar_scan, localise, micromouse, motion, navigate, omni, random_drive, wall_following,
@@ -43,6 +44,9 @@ programs!(
     genetic,
     lidar_scan,
     localise,
+    maze_explore,
+    maze_left,
+    maze_lidar,
     micromouse,
     motion,
     navigate,
