@@ -81,6 +81,13 @@ impl FastPlanner {
         Ok(Self { repertoire, scale, tables, memory })
     }
 
+    /// The same, which searches in all directions alike.
+    #[cfg(test)]
+    pub(super) fn unled(mut self) -> Self {
+        self.memory.bounds = Bounds::none();
+        self
+    }
+
     /// The fastest run from the start of a maze to its goal, with unknown walls taken as said; `None` if no way leads there.
     pub fn plan(&mut self, maze: &Maze, unknown: Unknown) -> Option<FastPlan> {
         self.plan_from(maze, unknown, (maze.start(), maze.heading()), |cell| maze.is_goal(cell))
