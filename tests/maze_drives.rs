@@ -28,7 +28,7 @@ fn run(example: &'static str, options: &[&str]) -> (u8, Value, String) {
 
 #[test]
 fn the_left_hand_finds_the_goal_when_controlled() {
-    for options in [&["--drive", "p"][..], &["--drive", "pid"], &["--drive", "pid", "--micromouse"]] {
+    for options in [&[][..], &["--micromouse"], &["--micromouse", "--drive", "p"]] {
         let (status, report, err) = run("maze_left", options);
         assert_eq!((status, err.as_str()), (0, ""), "{report}");
         assert_eq!((&report["outcome"], &report["collisions"]), (&"goal".into(), &0.into()), "{report}");
@@ -37,8 +37,11 @@ fn the_left_hand_finds_the_goal_when_controlled() {
     let (status, report, _) = run("maze_left", &["--drive", "open", "--noise", "0"]);
     assert_eq!((status, &report["outcome"]), (0, &"goal".into()), "{report}");
     // As in the book, errors of the drive lead into a wall.
-    let (status, report, _) = run("maze_left", &["--drive", "open", "--noise", "3"]);
-    assert_eq!((status, &report["outcome"]), (1, &"collided".into()), "{report}");
+    let collided = ["1", "2", "3", "4", "5", "6", "7", "8"].map(|seed| {
+        let (status, report, _) = run("maze_left", &["--drive", "open", "--noise", "5", "--seed", seed]);
+        status == 1 && report["outcome"] == "collided"
+    });
+    assert!(collided.iter().filter(|&&collided| collided).count() >= 4, "{collided:?}");
 }
 
 #[test]
@@ -51,9 +54,9 @@ fn worlds_of_eyesim_are_driven() {
     let (status, _, err) = run("maze_left", &["--start", "1,2,3"]);
     assert_eq!(status, 2);
     assert!(err.starts_with("--start: found one; expected none"), "{err}");
-    let (status, _, err) = run("maze_lidar", &["--world", "tests/mazes.rs"]);
+    let (status, _, err) = run("maze_lidar", &["--world", "LICENSE-MIT"]);
     assert_eq!(status, 2, "{err}");
-    assert!(err.starts_with("tests/mazes.rs:"), "{err}");
+    assert!(err.starts_with("LICENSE-MIT:"), "{err}");
 }
 
 #[test]

@@ -11,9 +11,9 @@ use crate::driving::{Conditions, drawn, paced};
 pub(crate) enum Drive {
     /// By odometry alone, as the book's first program.
     Open,
-    /// In the middle between the walls, by a proportional controller as the book's second program.
+    /// In the middle between the walls, by a proportional controller as the book's second program: it swings.
     P,
-    /// The same by a PID controller.
+    /// The same by a PID controller, which odometry helps to see through the noise of the readings.
     Pid,
 }
 
@@ -38,7 +38,7 @@ Outcomes: goal, returned, lost (it is not where it takes itself to be), stuck, t
 )]
 pub(crate) struct LeftArgs {
     /// How to drive from cell to cell.
-    #[arg(long, value_enum, default_value_t = Drive::P)]
+    #[arg(long, value_enum, default_value_t = Drive::Pid)]
     pub(crate) drive: Drive,
 
     /// A micromouse in a maze of competition size.
