@@ -10,5 +10,8 @@ mod driving;
 mod micromouse;
 
 fn main() -> std::process::ExitCode {
+    if micromouse::mms::is_wanted(std::env::args_os()) {
+        return micromouse::mms::main().into();
+    }
     common::main("micromouse", micromouse::work)
 }

@@ -35,6 +35,8 @@ mod genetic;
 mod lidar_scan;
 #[path = "localise/mod.rs"]
 mod localise;
+#[path = "maze_drive/mod.rs"]
+mod maze_drive;
 #[path = "micromouse/mod.rs"]
 mod micromouse;
 #[path = "motion/mod.rs"]

@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::io::Write;
 
 use crate::common::run;
+use crate::maze_drive::{maze_explore, maze_left, maze_lidar};
 use crate::{
     a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, edges,
     follow_me, genetic, lidar_scan, localise, micromouse, motion, navigate, omni, random_drive, safety,
@@ -46,6 +47,9 @@ programs!(
     genetic,
     lidar_scan,
     localise,
+    maze_explore,
+    maze_left,
+    maze_lidar,
     micromouse,
     motion,
     navigate,

@@ -1,7 +1,7 @@
 use std::num::NonZero;
 use std::path::PathBuf;
 
-use crate::common::CommonArgs;
+use crate::common::{CommonArgs, parse_seconds};
 
 /// The command line of the example `micromouse`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -46,8 +46,16 @@ With --campaign:
                               2 percent of the plan, the worst relative difference, the largest localisation error in mm
   failures                    maze, seed, and what went wrong, of each run that is not good
 A run is good if it proves its maze without a contact, plans the fastest run of the true maze, and keeps to that plan.
-Outcomes: planned, raced, unreachable, timed_out, collided, failed; of a campaign passed, wrong."
+With --mms-run, after the fields of the maze, whose start is the lower left corner, facing north, and whose goal is the centre:
+  program                     the command that was run
+  solved, score               whether a run came to the goal; the simulator's score, the lower the better, 2000 unsolved
+  commands, ignored_lines     lines of the program that were commands, and that were none
+  total_distance, total_turns, total_effective_distance   cells, quarter turns, cells with long straights counted by half
+  best_run_distance, best_run_turns, best_run_effective_distance   the same of the best run; null without one
+Outcomes: planned, raced, unreachable, timed_out, collided, failed; of a campaign passed, wrong; of a program solved,
+unsolved, failed."
 )]
+#[allow(clippy::struct_excessive_bools, reason = "a switch each")]
 pub(crate) struct Args {
     /// The maze.
     #[arg(long, value_name = "FILE")]
@@ -76,6 +84,22 @@ pub(crate) struct Args {
     /// How many threads drive a campaign [default: one for each core].
     #[arg(long, value_name = "N", requires = "campaign")]
     pub(crate) threads: Option<NonZero<usize>>,
+
+    /// Be a mouse for the simulator mms: commands on standard output, answers on standard input.
+    #[arg(long, conflicts_with_all = ["maze", "plan", "explore", "campaign", "mms_run"])]
+    pub(crate) mms: bool,
+
+    /// Run a mouse that was written for mms, with its arguments after blanks, in the maze.
+    #[arg(long, value_name = "PROGRAM", conflicts_with_all = ["plan", "explore", "campaign"])]
+    pub(crate) mms_run: Option<String>,
+
+    /// Seconds without a word from the program after which it is stopped.
+    #[arg(long, value_name = "S", value_parser = parse_seconds, default_value = "10", allow_hyphen_values = true)]
+    pub(crate) patience: f64,
+
+    /// Seconds after which the program is stopped in any case.
+    #[arg(long, value_name = "S", value_parser = parse_seconds, default_value = "600", allow_hyphen_values = true)]
+    pub(crate) mms_limit: f64,
 
     #[command(flatten)]
     pub(crate) common: CommonArgs,

@@ -5,6 +5,7 @@
 mod args;
 mod campaign;
 mod explore;
+pub(crate) mod mms;
 mod picture;
 mod plan;
 mod scene;
@@ -16,6 +17,9 @@ use crate::common::{Failure, Report};
 /// The work of the example.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     args.common.check_picture()?;
+    if let Some(command) = &args.mms_run {
+        return mms::run_program(args, command);
+    }
     match &args.campaign {
         Some(folder) => campaign::campaign(args, folder),
         None if args.plan => plan::plan(args),

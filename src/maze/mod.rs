@@ -3,7 +3,7 @@
 //! A [`Maze`] is what a robot knows of a maze: its walls are present, absent or unknown. [`files`] reads and writes all
 //! formats that people use for them. [`FloodFill`] counts steps, [`shortest_route`] finds the way with the fewest steps
 //! or turns, [`FastPlanner`] the fastest run with smooth turns and diagonals. An [`Explorer`] says what to look at next, and a
-//! [`MazeRunner`] drives a robot there: it explores, and then races.
+//! [`MazeRunner`] drives a robot there: it explores, and then races. [`mms`] speaks the protocol of a simulator for solvers.
 //!
 //! ```
 //! use roverlab::maze::{Preference, Unknown, files, shortest_route};
@@ -29,8 +29,10 @@ mod explore;
 mod fast;
 pub mod files;
 mod flood;
+mod follow;
 #[cfg(any(test, feature = "proptest"))]
 pub mod generate;
+pub mod mms;
 mod model;
 mod route;
 mod run;
@@ -41,6 +43,10 @@ pub use defect::{Defect, defects};
 pub use explore::{Explorer, Goals, RecursiveExplorer, Step, TwoPhaseExplorer, Verdict};
 pub use fast::{FastPlan, FastPlanner, LimitsError, Piece, RunLimits, Trajectory, TrajectoryPoint, TurnKind};
 pub use flood::{Distances, FloodFill, IncrementalFlood, Passages, distances_from_start, distances_to_goal};
+pub use follow::{
+    CellDrive, CellDriveParameters, LeftHand, LeftHandOutcome, LeftHandParameters, LidarLeft,
+    LidarLeftParameters, Straight,
+};
 pub use model::{Maze, SizeError, Unknown, Wall};
 pub use route::{Preference, Route, shortest_route, shortest_route_between};
 pub use run::{

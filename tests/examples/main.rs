@@ -36,6 +36,8 @@ mod grid_benchmark;
 mod lidar_scan;
 #[path = "../../examples/localise/mod.rs"]
 mod localise;
+#[path = "../../examples/maze_drive/mod.rs"]
+mod maze_drive;
 #[path = "../../examples/micromouse/mod.rs"]
 mod micromouse;
 #[path = "../../examples/motion/mod.rs"]

@@ -1,5 +1,6 @@
 //! Fast runs: the time-optimal way through a known maze, and its speed profile (book, section 9.8).
 
+mod bound;
 mod builder;
 mod limits;
 mod plan;

@@ -1,16 +1,18 @@
+use super::bound::Bounds;
 use super::builder::Builder;
 use super::limits::{LimitsError, Repertoire, RunLimits};
 use super::plan::FastPlan;
 use super::search::{Grid, Node, Tables};
 use super::turn::TurnKind;
-use crate::maze::{Cell, Direction, Maze, Scale, Unknown};
+use crate::maze::{Cell, Direction, FloodFill, Maze, Passages, Scale, Unknown};
 
 /// Plans time-optimal runs.
 ///
 /// A run is made of straights along rows, columns and diagonals, of smooth turns between them ([`TurnKind`]), each with its
 /// own shape and speed, and of turns on the spot in the middles of cells. It begins and ends standing in the middle of a
-/// cell. Of all such runs the planner finds one that takes the shortest time, by Dijkstra's algorithm over the ends of
-/// turns; every straight in between is driven with full acceleration, top speed and full braking.
+/// cell. Of all such runs the planner finds one that takes the shortest time, by A* over the ends of turns; every straight in
+/// between is driven with full acceleration, top speed and full braking. The search is led by the time that the robot would
+/// take without walls for as many steps as flood fill counts to the goal.
 ///
 /// # Complexity
 ///
@@ -33,16 +35,21 @@ pub struct FastPlanner {
     memory: Memory,
 }
 
-/// What is kept between searches, so that none allocates.
-#[derive(Debug, Clone, Default)]
+/// What is kept between searches, so that they need not allocate it anew.
+#[derive(Debug, Clone)]
 struct Memory {
+    bounds: Bounds,
     grid: Grid,
+    /// Steps from each cell to the goal.
+    flood: FloodFill,
     /// Microseconds to each node.
     costs: Vec<u32>,
     parents: Vec<Parent>,
-    /// Costs and nodes, by costs in multiples of `width`.
+    /// Costs and nodes, by the least time of a run through the node in multiples of `width`.
     buckets: Vec<Vec<(u32, u32)>>,
     width: u32,
+    /// The bucket that is being emptied.
+    bucket: usize,
     touched: Vec<u32>,
 }
 
@@ -54,6 +61,8 @@ struct Parent {
 }
 
 const NO_PARENT: u32 = u32::MAX;
+/// How finely runs are ordered by their least time: so many buckets for the time of the shortest turn.
+const BUCKETS_PER_TURN: u32 = 8;
 
 /// The best way to a goal so far.
 #[derive(Debug, Clone, Copy)]
@@ -68,7 +77,15 @@ impl FastPlanner {
     pub fn new(scale: Scale, limits: RunLimits) -> Result<Self, LimitsError> {
         let repertoire = Repertoire::new(scale, limits)?;
         let tables = Tables::new(&repertoire);
-        Ok(Self { repertoire, scale, tables, memory: Memory::default() })
+        let memory = Memory::new(&tables);
+        Ok(Self { repertoire, scale, tables, memory })
+    }
+
+    /// The same, which searches in all directions alike.
+    #[cfg(test)]
+    pub(super) fn unled(mut self) -> Self {
+        self.memory.bounds = Bounds::none();
+        self
     }
 
     /// The fastest run from the start of a maze to its goal, with unknown walls taken as said; `None` if no way leads there.
@@ -87,8 +104,7 @@ impl FastPlanner {
         if !maze.contains(start.0) {
             return None;
         }
-        self.memory.prepare(maze, unknown);
-        self.memory.width = self.tables.bucket;
+        self.memory.prepare(maze, unknown, &goal);
         let arrival = self.search(start, &goal)?;
         Some(self.trace(start, arrival))
     }
@@ -100,19 +116,19 @@ impl FastPlanner {
     ) -> Option<Arrival> {
         let (tables, memory) = (&self.tables, &mut self.memory);
         let first = memory.grid.index(cell);
+        memory.flood.distances().get(cell)?;
         for direction in Direction::ALL {
             let cost = tables.pivots[heading.quarters_to(direction)];
             memory.reach(cost, Node::row(first, direction, None), NO_PARENT, 0);
         }
         let mut best: Option<Arrival> = None;
-        let mut bucket = 0;
-        while bucket < memory.buckets.len() {
-            if best.is_some_and(|best| best.cost / tables.bucket <= bucket as u32) {
+        while memory.bucket < memory.buckets.len() {
+            // No run through what is left is faster than the beginning of its bucket.
+            if best.is_some_and(|best| best.cost / memory.width < memory.bucket as u32) {
                 break;
             }
-            // No straight and turn together take less than a bucket is wide, so that a bucket never grows while it is
-            // emptied.
-            let mut open = std::mem::take(&mut memory.buckets[bucket]);
+            // The bucket may grow while it is emptied.
+            let mut open = std::mem::take(&mut memory.buckets[memory.bucket]);
             for &(cost, id) in &open {
                 if memory.costs[id as usize] != cost {
                     continue;
@@ -125,9 +141,10 @@ impl FastPlanner {
                 }
             }
             open.clear();
-            if memory.buckets[bucket].is_empty() {
-                memory.buckets[bucket] = open;
-                bucket += 1;
+            let refilled = &mut memory.buckets[memory.bucket];
+            if refilled.is_empty() {
+                *refilled = open;
+                memory.bucket += 1;
             }
         }
         memory.clear_buckets();
@@ -157,8 +174,23 @@ impl FastPlanner {
 }
 
 impl Memory {
-    fn prepare(&mut self, maze: &Maze, unknown: Unknown) {
+    fn new(tables: &Tables) -> Self {
+        Self {
+            bounds: Bounds::new(tables),
+            grid: Grid::default(),
+            flood: FloodFill::default(),
+            costs: Vec::new(),
+            parents: Vec::new(),
+            buckets: Vec::new(),
+            width: (tables.shortest / BUCKETS_PER_TURN).max(1),
+            bucket: 0,
+            touched: Vec::new(),
+        }
+    }
+
+    fn prepare(&mut self, maze: &Maze, unknown: Unknown, goal: &impl Fn(Cell) -> bool) {
         self.grid.read(maze, unknown);
+        self.flood.run(&Passages::new(maze, unknown), maze.cells().filter(|&cell| goal(cell)));
         let nodes = Node::count(maze.cell_count());
         if self.costs.len() == nodes {
             for id in self.touched.drain(..) {
@@ -174,6 +206,7 @@ impl Memory {
 
     fn clear_buckets(&mut self) {
         self.buckets.iter_mut().for_each(Vec::clear);
+        self.bucket = 0;
     }
 
     #[inline]
@@ -188,7 +221,10 @@ impl Memory {
         }
         *known = cost;
         self.parents[id as usize] = Parent { node: parent, count };
-        let bucket = (cost / self.width) as usize;
+        let steps = self.flood.distances().as_slice()[node.cell() as usize];
+        let least = cost.saturating_add(self.bounds.get(steps, node.end()));
+        // What is rounded may lead back by a microsecond.
+        let bucket = ((least / self.width) as usize).max(self.bucket);
         if bucket >= self.buckets.len() {
             self.buckets.resize(bucket + 1, Vec::new());
         }
@@ -273,7 +309,7 @@ impl Memory {
     #[inline]
     fn extend(&mut self, cost: u32, more: u32, node: Node, parent: u32, count: u16) {
         if more != u32::MAX {
-            self.reach(cost + more, node, parent, count);
+            self.reach(cost.saturating_add(more), node, parent, count);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 
+use super::bound::Hop;
 use super::limits::Repertoire;
 use super::turn::TurnKind;
 use crate::maze::{Cell, Direction, Maze, Unknown};
@@ -32,6 +33,8 @@ const DIAGONAL_KINDS: [TurnKind; 4] =
     [TurnKind::In45, TurnKind::In135, TurnKind::Diagonal90, TurnKind::TightIn45];
 const ROWS: u8 = ROW_KINDS.len() as u8;
 const DIAGONALS: u8 = DIAGONAL_KINDS.len() as u8;
+/// Kinds of turns, one on the spot included.
+pub(super) const ENDS: usize = ROW_KINDS.len() + DIAGONAL_KINDS.len();
 /// Of a cell's nodes, the first on a diagonal: there are 4 headings before, and 8 pairs of headings from there.
 const FIRST_DIAGONAL: u8 = 4 * ROWS;
 const PER_CELL: u32 = FIRST_DIAGONAL as u32 + 8 * DIAGONALS as u32;
@@ -93,6 +96,16 @@ impl Node {
             Some(DIAGONAL_KINDS[usize::from(self.local - FIRST_DIAGONAL) % DIAGONAL_KINDS.len()])
         } else {
             ROW_KINDS[usize::from(self.local) % ROW_KINDS.len()]
+        }
+    }
+
+    /// The number of the turn among all kinds: first those into rows and columns, then those into diagonals.
+    #[inline]
+    pub(super) fn end(self) -> usize {
+        if self.is_diagonal() {
+            usize::from(ROWS + (self.local - FIRST_DIAGONAL) % DIAGONALS)
+        } else {
+            usize::from(self.local % ROWS)
         }
     }
 
@@ -197,8 +210,10 @@ pub(super) struct Tables {
     diagonals: [Vec<DiagonalTimes>; DIAGONAL_KINDS.len()],
     /// Microseconds for turns on the spot, by quarters of a full turn.
     pub(super) pivots: [u32; 4],
-    /// Microseconds that are shorter than any straight with a turn.
-    pub(super) bucket: u32,
+    /// Microseconds of the shortest turn.
+    pub(super) shortest: u32,
+    /// Microseconds for a cell of a row or column, and for an edge of a diagonal, at top speed; rounded down.
+    top_speed: [u32; 2],
 }
 
 /// Straights and turns are counted in whole microseconds.
@@ -215,8 +230,67 @@ impl Tables {
             .map(|from| counts.clone().map(|count| diagonal_times(repertoire, from, count)).collect());
         let pivots = [0.0, FRAC_PI_2, PI, FRAC_PI_2].map(|angle| micros(Some(repertoire.pivot_time(angle))));
         let turns = TurnKind::ALL.map(|kind| micros(Some(repertoire.turn(kind).time)));
-        let bucket = turns.into_iter().chain([pivots[1]]).min().unwrap_or(1).max(1);
-        Self { rows, diagonals, pivots, bucket }
+        let shortest = turns.into_iter().chain([pivots[1]]).min().unwrap_or(1).max(1);
+        let top_speed = [(1.0, false), (FRAC_1_SQRT_2, true)].map(|(cells, diagonal)| {
+            let seconds = cells * repertoire.cell / repertoire.top_speed(diagonal);
+            micros(Some(seconds)).saturating_sub(1)
+        });
+        Self { rows, diagonals, pivots, shortest, top_speed }
+    }
+
+    /// All straights of up to `most` cells or edges behind one kind of turn, with what may follow each of them.
+    pub(super) fn hops(&self, end: usize, most: usize) -> Vec<Hop> {
+        let mut hops = Vec::new();
+        let mut add = |count, list: &[(u32, usize, Option<usize>)]| {
+            hops.extend(list.iter().map(|&(time, more, to)| Hop { count, steps: count + more, time, to }));
+        };
+        let row = |kind| Some(usize::from(place(kind)));
+        let diagonal = |kind| Some(ROW_KINDS.len() + usize::from(place(Some(kind))));
+        match end.checked_sub(ROW_KINDS.len()) {
+            None => {
+                for (count, time) in self.rows[end].iter().enumerate().take(most + 1) {
+                    add(
+                        count,
+                        &[
+                            (time.stop, 0, None),
+                            (time.pivot, 0, row(None)),
+                            (time.short, 0, row(Some(TurnKind::Short90))),
+                            (time.wide, 0, row(Some(TurnKind::Wide90))),
+                            (time.u_turn, 1, row(Some(TurnKind::UTurn))),
+                            (time.in_45, 1, diagonal(TurnKind::In45)),
+                            (time.tight_in_45, 1, diagonal(TurnKind::TightIn45)),
+                            (time.in_135, 0, diagonal(TurnKind::In135)),
+                        ],
+                    );
+                }
+            }
+            Some(end) => {
+                for (count, time) in self.diagonals[end].iter().enumerate().take(most + 1).skip(1) {
+                    add(
+                        count,
+                        &[
+                            (time.out_45, 0, row(Some(TurnKind::Out45))),
+                            (time.tight_out_45, 0, row(Some(TurnKind::TightOut45))),
+                            (time.quarter, 0, diagonal(TurnKind::Diagonal90)),
+                            (time.out_135, 0, row(Some(TurnKind::Out135))),
+                        ],
+                    );
+                }
+            }
+        }
+        hops
+    }
+
+    /// For each kind of turn the least time for a step on the straight behind it, and on the one before it.
+    pub(super) fn least_per_step(&self) -> ([u32; ENDS], [u32; ENDS]) {
+        let [row, diagonal] = self.top_speed;
+        let behind = |end: usize| if end < ROW_KINDS.len() { row } else { diagonal };
+        let before = |end: usize| match ROW_KINDS.get(end) {
+            Some(Some(TurnKind::Out45 | TurnKind::TightOut45 | TurnKind::Out135)) => diagonal,
+            None if DIAGONAL_KINDS[end - ROW_KINDS.len()] == TurnKind::Diagonal90 => diagonal,
+            _ => row,
+        };
+        (std::array::from_fn(behind), std::array::from_fn(before))
     }
 
     /// One more than the most cells or edges that a straight passes.

@@ -138,6 +138,20 @@ proptest! {
     }
 
     #[test]
+    fn bounds_lead_the_search_and_change_no_time(maze in prop_oneof![mazes(14), partly_known(14)]) {
+        for mut led in [planner(), FastPlanner::new(Scale::DOUBLED, RunLimits::EYEBOT).unwrap()] {
+            let mut unled = led.clone().unled();
+            for unknown in [Unknown::Open, Unknown::Closed] {
+                // Every hop is rounded to a microsecond.
+                match (led.plan(&maze, unknown), unled.plan(&maze, unknown)) {
+                    (Some(a), Some(b)) => prop_assert!((a.time - b.time).abs() < 2e-4, "{a:?} {b:?}"),
+                    (a, b) => prop_assert_eq!(a.is_some(), b.is_some()),
+                }
+            }
+        }
+    }
+
+    #[test]
     fn a_mirrored_maze_takes_the_same_time(maze in mazes(10)) {
         match (plan(&maze), plan(&mirrored(&maze))) {
             (Some(a), Some(b)) => prop_assert!((a.time - b.time).abs() < 1e-4),
@@ -204,8 +218,11 @@ fn limits_are_checked() {
 
 #[test]
 fn large_mazes_are_planned() {
-    for maze in [competition(32, 1).unwrap(), braided(60, 60, 0.1, 3).unwrap()] {
-        assert_drivable(&maze, &plan(&maze).unwrap());
+    for maze in [competition(32, 1).unwrap(), braided(60, 60, 0.1, 3).unwrap(), Maze::open(48, 40).unwrap()] {
+        let plan = plan(&maze).unwrap();
+        assert_drivable(&maze, &plan);
+        let unled = planner().unled().plan(&maze, Unknown::Closed).unwrap();
+        assert!((plan.time - unled.time).abs() < 2e-4, "{} {}", plan.time, unled.time);
     }
     let eyebot = FastPlanner::new(Scale::DOUBLED, RunLimits::EYEBOT)
         .unwrap()

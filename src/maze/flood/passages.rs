@@ -8,13 +8,16 @@ pub struct Passages {
     pub(super) grid: Grid,
 }
 
+/// Cells of the largest maze.
+pub(super) const LARGEST: usize = Maze::MAX_SIDE * Maze::MAX_SIDE;
+
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Grid {
     /// Up to 16 x 16 cells, in rows of 16 bits.
     Small(Boards<4>),
     /// Up to 32 x 32 cells, in rows of 32 bits.
     Medium(Box<Boards<16>>),
-    /// Any more: for each cell its open directions, north in the lowest bit.
+    /// Any more: for each cell its open directions, north in the lowest bit; always as many as the largest maze has.
     Large(Vec<u8>),
 }
 
@@ -65,7 +68,7 @@ impl Passages {
     /// As [`new`](Self::new), but always in the form of large mazes, which are filled from a queue: for comparisons.
     pub fn listed(maze: &Maze, unknown: Unknown) -> Self {
         let (width, height) = (maze.width(), maze.height());
-        let mut passages = Self { width, height, grid: Grid::Large(vec![0; width * height]) };
+        let mut passages = Self { width, height, grid: Grid::Large(vec![0; LARGEST]) };
         for cell in maze.cells() {
             for direction in [Direction::North, Direction::East] {
                 if maze.passage(cell, direction, unknown).is_some() {

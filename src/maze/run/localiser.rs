@@ -2,15 +2,16 @@ use nalgebra::{SMatrix, SVector};
 
 use super::rig::{Rig, Sensor};
 use super::sight::{Crossing, Crossings};
-use crate::geometry::{Pose, Vector, angle_difference, direction, math, normalize_angle};
-use crate::maze::{Maze, Scale, Wall};
+use crate::geometry::{Point, Pose, Vector, angle_difference, direction, math, normalize_angle};
+use crate::maze::{Cell, Direction, Maze, Scale, Wall};
 
 /// Where a robot is in a maze whose walls are partly known, from odometry and three distance sensors.
 ///
 /// An extended Kalman filter estimates the pose together with what is systematic about the robot: how far it really goes for
 /// a metre of odometry, how far it really turns, and how it bends to one side. Each reading is compared with the known wall
 /// that it should come from, which centres the robot between walls and tells how far it is from one ahead. Where a wall ends
-/// beside the robot, a reading from the wrong side of the end tells how far along the robot is (*wall-edge correction*).
+/// beside the robot, a reading from the wrong side of the end tells how far along the robot is (*wall-edge correction*). Posts
+/// that stand alone are all that there is to see on diagonals of open places.
 #[derive(Debug, Clone)]
 pub struct MazeLocaliser {
     rig: Rig,
@@ -61,6 +62,11 @@ const GATE: f64 = 4.0;
 const CORNER: f64 = 0.012;
 /// Beams square to a wall, up to 14 degrees: others may see what stands behind an opening beside it.
 const SQUARE: f64 = 0.97;
+/// Cells within which a slanted beam tells posts from what is behind them, and by how much one may seem to be off.
+const POST_RANGE: f64 = 0.8;
+const POST_GATE: f64 = 0.25;
+/// Of half of its width, how far before its middle a post is met on average.
+const MET: f64 = 0.8;
 /// How sharply a beam sees an edge, in metres.
 const EDGE: f64 = 0.004;
 
@@ -156,6 +162,9 @@ impl MazeLocaliser {
         let offset = Vector::new(x * cos - y * sin, x * sin + y * cos);
         let ray = direction(yaw);
         let deviation = self.rig.range_error.max(LEAST_RANGE);
+        if ray.x.abs().max(ray.y.abs()) <= SQUARE && self.notice_post(maze, offset, ray, reading) {
+            return;
+        }
         for (passed, crossing) in Crossings::new(maze, self.scale, pose.position() + offset, ray).enumerate()
         {
             // A blunt angle onto the walls tells little about where the robot is.
@@ -228,6 +237,35 @@ impl MazeLocaliser {
         }
     }
 
+    /// Learns from a reading of a post without walls that a slanted beam meets. Returns whether it seems to come from one.
+    fn notice_post(&mut self, maze: &Maze, offset: Vector, ray: Vector, reading: f64) -> bool {
+        let (cell, half) = (self.scale.cell, 0.5 * self.scale.wall);
+        if reading > POST_RANGE * cell {
+            return false;
+        }
+        let sensor = self.pose().position() + offset;
+        // A post is met a little before its middle.
+        let met = sensor + ray * (reading + MET * half);
+        let [x, y] = [met.x, met.y].map(|place| (place / cell).round());
+        let post = Point::new(x * cell, y * cell);
+        if (post - met).norm() > POST_GATE * cell || !is_bare(maze, x as i64, y as i64) {
+            return false;
+        }
+        let aside = Vector::new(-ray.y, ray.x);
+        let moved = Vector::new(-offset.y, offset.x);
+        let range = self.rig.range_error.max(LEAST_RANGE);
+        for (towards, expected, variance) in
+            [(ray, reading + MET * half, range * range + 0.25 * half * half), (aside, 0.0, half * half)]
+        {
+            let view = post - (self.pose().position() + offset);
+            // How far the middle of the post is along the direction, by x, y and heading.
+            let turned = view.dot(&Vector::new(-towards.y, towards.x)) - moved.dot(&towards);
+            let slope = SVector::from([-towards.x, -towards.y, turned, 0.0, 0.0, 0.0]);
+            self.update(&slope, expected - view.dot(&towards), variance);
+        }
+        true
+    }
+
     /// The standard deviation of something that depends on the state with a slope.
     fn deviation(&self, slope: &SVector<f64, 6>) -> f64 {
         slope.dot(&(self.covariance * slope)).max(0.0).sqrt()
@@ -246,6 +284,20 @@ impl MazeLocaliser {
         // Rounding must not make it lopsided.
         self.covariance = 0.5 * (self.covariance + self.covariance.transpose());
     }
+}
+
+/// Whether a post is known to stand without walls; posts are counted from the lower left corner of the maze.
+fn is_bare(maze: &Maze, x: i64, y: i64) -> bool {
+    let inside = 0 < x && x < maze.width() as i64 && 0 < y && y < maze.height() as i64;
+    if !inside {
+        return false;
+    }
+    let (x, y) = (x as u16, y as u16);
+    let below = Cell::new(x - 1, y - 1);
+    let above = Cell::new(x, y);
+    [(below, Direction::North), (below, Direction::East), (above, Direction::South), (above, Direction::West)]
+        .into_iter()
+        .all(|(cell, side)| maze.wall(cell, side) == Wall::Absent)
 }
 
 /// How a reading depends on the state.

@@ -64,6 +64,73 @@ fn a_campaign_tells_of_every_maze() {
     assert_eq!(err, format!("{}: found no file that holds a maze; expected one or more\n", empty.display()));
 }
 
+/// A left-hand mouse for mms, as a shell script.
+const LEFT_HAND: &str = r#"ask() { echo "$1"; read -r answer; }
+for i in $(seq 300); do
+    ask wallLeft; [ "$answer" = false ] && ask turnLeft
+    ask wallFront
+    while [ "$answer" = true ]; do ask turnRight; ask wallFront; done
+    ask moveForward; echo nonsense
+    ask "getStat best-run-turns"; [ "$answer" != -1 ] && exit 0
+done
+"#;
+
+/// Runs a shell script as a mouse.
+#[cfg(unix)]
+fn run_script(name: &str, script: &str) -> (u8, Value, String) {
+    let file = std::env::temp_dir().join(format!("roverlab-{}-{name}.sh", std::process::id()));
+    fs::write(&file, script).unwrap();
+    let command = format!("sh {}", file.display());
+    let result = run(&["--maze", "tests/data/mazes/tiny.maz", "--mms-run", &command, "--patience", "1"]);
+    fs::remove_file(&file).unwrap();
+    result
+}
+
+#[cfg(unix)]
+#[test]
+fn a_mouse_of_another_language_is_run() {
+    let (status, report, err) = run_script("left", LEFT_HAND);
+    assert_eq!((status, err.as_str()), (0, ""), "{report}");
+    assert_eq!((&report["outcome"], &report["solved"]), (&"solved".into(), &true.into()));
+    assert_eq!(report["ignored_lines"], report["total_distance"]);
+    assert!(report["score"].as_f64().unwrap() < 100.0, "{report}");
+}
+
+#[cfg(unix)]
+#[test]
+fn hostile_mice_are_stopped_and_named() {
+    for (name, script, expected) in [
+        ("dies", "echo mazeWidth; exit 3", "ended with exit status: 3; expected exit status 0"),
+        ("hangs", "echo mazeWidth; exec sleep 60", "found silence for 1 s; expected commands"),
+        ("floods", "exec yes mazeWidth", "does not read its answers"),
+        ("raves", "exec yes abracadabra", "lines that are no commands, the first \"abracadabra\""),
+        ("rants", "exec head -c 100000 /dev/zero", "found a line of more than 4096 bytes"),
+        ("mumbles", "exec >&-; exec sleep 60", "closed its output and goes on"),
+    ] {
+        let (status, report, err) = run_script(name, script);
+        assert_eq!((status, &report["outcome"]), (1, &"failed".into()), "{name}");
+        assert!(err.contains(expected), "{name}: {err}");
+        assert_eq!(report["score"], 2000.0);
+    }
+    let (status, report, err) = run(&["--mms-run", "no/such/mouse"]);
+    assert_eq!((status, report), (2, Value::Null));
+    assert!(err.starts_with("--mms-run no/such/mouse: found "), "{err}");
+    let (status, report, _) = run_script("quits", "exit 0");
+    assert_eq!((status, &report["outcome"]), (1, &"unsolved".into()));
+}
+
+#[test]
+fn a_simulator_that_goes_away_is_named() {
+    for (answers, expected) in [
+        ("16\n", "the simulator has ended"),
+        ("16\n16\nmaybe\n", "found the answer \"maybe\""),
+        ("16\n16\nfalse\ntrue\ntrue\ncrash\n", "expected ack"),
+    ] {
+        let error = micromouse::mms::converse(&mut answers.as_bytes(), &mut Vec::new()).unwrap_err();
+        assert!(error.to_string().contains(expected), "{error}");
+    }
+}
+
 #[test]
 fn a_file_that_is_missing_is_named() {
     let (status, report, err) = run(&["--plan", "--maze", "no/such.maze"]);

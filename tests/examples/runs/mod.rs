@@ -9,6 +9,7 @@ mod driving;
 mod evolution;
 mod grids;
 mod lidar;
+mod maze_drives;
 mod mazes;
 mod navigate;
 mod quadtree;

@@ -149,6 +149,8 @@ fn other_jobs_check() {
         ("follow_me", &["--followers", "1"][..]),
         ("follow_me", &["--followers", "5"]),
         ("random_drive", &[]),
+        ("maze_explore", &["--micromouse"]),
+        ("maze_left", &["--drive", "open"]),
         ("micromouse", &["--doubled"]),
         ("omni", &["--seed", "9"]),
         ("wall_following", &["--seed", "9"]),

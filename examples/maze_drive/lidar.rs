@@ -1,0 +1,90 @@
+use roverlab::geometry::{Point, Pose};
+use roverlab::maze::{LidarLeft, LidarLeftParameters};
+use roverlab::picture::Style;
+
+use super::place::Place;
+use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres};
+use crate::driving::{Conditions, drawn, paced};
+
+/// The command line of the example `maze_lidar`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    name = "maze_lidar",
+    about = "Follows the left wall of a maze by a lidar until the goal or the start is reached, and draws what it saw",
+    after_help = "\
+--world takes a maze of any format (EyeSim's .maz, the micromouse text format, .maze, map, num); it says where the robot starts.
+Cells are 360 mm wide. The map has every point that the lidar saw where odometry put it, so that it bends as odometry errs.
+
+JSON fields:
+  width, height               cells
+  cells                       cells that the robot has really been in
+  map_points                  points of the map
+  map_error_mm                mean distance of the map's points from the nearest wall
+  odometry_error_mm           where odometry takes the robot to be in the end, from where it is
+  picture                     always
+Outcomes: goal, returned, timed_out, collided, failed."
+)]
+pub(crate) struct LidarArgs {
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for LidarArgs {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// The work of the example.
+pub(crate) fn lidar(args: &LidarArgs) -> Result<Report, Failure> {
+    args.common.check_picture()?;
+    let place = Place::new(&args.common, false)?;
+    let (maze, scale) = (place.maze(), place.scale);
+    let scene = place.scene();
+    let start = scene.robots[0].pose;
+    let conditions = Conditions::new(&args.common, 60.0 + 12.0 * maze.cell_count() as f64)?;
+    let parameters = LidarLeftParameters::for_corridor(scale.cell - scale.wall);
+    let mut follower = LidarLeft::new(parameters).map_err(Failure::input)?;
+    let mut map: Vec<Point> = Vec::new();
+    let mut visited = vec![false; maze.cell_count()];
+    let mut steps = 0_u32;
+    let run = conditions.run_watched(&scene, paced(&args.common), |robot, step| {
+        let mut left_start = false;
+        follower.run(robot, |_, points| {
+            let truth: Pose = step();
+            // One scan in ten is enough for a map.
+            if steps.is_multiple_of(10) {
+                map.extend(points.iter().map(|&point| start.to_world(point)));
+            }
+            steps += 1;
+            let Some(cell) = scale.cell_of(maze, truth.position()) else { return true };
+            visited[maze.index(cell)] = true;
+            let middle = (scale.centre(cell) - truth.position()).norm() < 0.3 * scale.cell;
+            left_start |= cell != maze.start();
+            middle && (maze.is_goal(cell) || (left_start && cell == maze.start()))
+        })
+    })?;
+    let at_goal = place.is_at_goal(run.truth.pose.position());
+    let (picture, trouble) = drawn(&args.common, "maze_lidar.svg", || {
+        let mut picture = place.picture_of("Left wall by lidar", format!("{} points", map.len()), &run);
+        picture.points(map.iter().copied(), Style::lidar().labelled("map by odometry"));
+        picture
+    });
+    let walls = &scene.world.walls;
+    let off = |point: &Point| {
+        let distances = walls.iter().map(|wall| wall.line.distance_to(*point) - 0.5 * wall.thickness);
+        distances.fold(f64::INFINITY, f64::min).max(0.0)
+    };
+    let error = map.iter().map(off).sum::<f64>() / map.len().max(1) as f64;
+    let report = run.report(|()| Outcome::verdict(if at_goal { "goal" } else { "returned" }));
+    let lost = run.truth.pose.distance_to(run.odometry.position());
+    let report = report
+        .field("width", maze.width())
+        .field("height", maze.height())
+        .field("cells", visited.iter().filter(|&&visited| visited).count())
+        .field("map_points", map.len())
+        .field("map_error_mm", millimetres(error))
+        .field("odometry_error_mm", millimetres(lost))
+        .field("picture", picture);
+    Ok(Report { trouble, ..report })
+}

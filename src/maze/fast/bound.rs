@@ -1,0 +1,120 @@
+//! The least time that the rest of a run can take, which leads the search to the goal.
+
+use super::search::{ENDS, Tables};
+
+/// Steps from which on the bound grows no more.
+const STEPS: usize = 256;
+/// Cells or edges of a straight behind which every further one counts as driven at top speed.
+const LONG: usize = 16;
+
+/// The least microseconds from the end of each turn to a stand that is so many steps away, were there no walls.
+///
+/// Walls can only make the way longer, and a way of more steps takes no less time; so that no run is faster than the bound of
+/// the steps that flood fill counts. Along a hop it never falls by more than the hop takes.
+#[derive(Debug, Clone)]
+pub(super) struct Bounds {
+    /// By steps, and by the turn's number among the ends.
+    times: Vec<[u32; ENDS]>,
+}
+
+/// A straight and the turn behind it, or the stand.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hop {
+    /// Cells or edges that the straight passes.
+    pub(super) count: usize,
+    /// The steps from the cell of one end to that of the next.
+    pub(super) steps: usize,
+    pub(super) time: u32,
+    /// The number of the turn among the ends; none for a stand.
+    pub(super) to: Option<usize>,
+}
+
+impl Bounds {
+    pub(super) fn new(tables: &Tables) -> Self {
+        let hops: [Vec<Hop>; ENDS] = std::array::from_fn(|end| tables.hops(end, LONG));
+        let (per_step, before_turn) = tables.least_per_step();
+        let mut times = vec![[u32::MAX; ENDS]; STEPS + 1];
+        // The same with any number of cells or edges at top speed before the turn.
+        let mut cruising = times.clone();
+        for steps in 0..=STEPS {
+            // A hop within a cell leads to where as many steps are left.
+            loop {
+                let before = times[steps];
+                for end in 0..ENDS {
+                    let onward =
+                        hops[end].iter().map(|hop| bound(hop, steps, &times, &cruising, per_step[end]));
+                    times[steps][end] = onward.min().unwrap_or(u32::MAX);
+                    let further = steps.checked_sub(1).map_or(u32::MAX, |fewer| cruising[fewer][end]);
+                    cruising[steps][end] = times[steps][end].min(further.saturating_add(before_turn[end]));
+                }
+                if times[steps] == before {
+                    break;
+                }
+            }
+        }
+        Self { times }
+    }
+
+    /// Bounds that say nothing.
+    #[cfg(test)]
+    pub(super) fn none() -> Self {
+        Self { times: vec![[0; ENDS]] }
+    }
+
+    /// The bound for so many steps behind a turn.
+    #[inline]
+    pub(super) fn get(&self, steps: u32, end: usize) -> u32 {
+        self.times[(steps as usize).min(self.times.len() - 1)][end]
+    }
+}
+
+/// The least time of a way of so many steps that begins with a hop, or with one that is longer if this one is long.
+fn bound(hop: &Hop, steps: usize, times: &[[u32; ENDS]], cruising: &[[u32; ENDS]], per_step: u32) -> u32 {
+    let rest = steps.saturating_sub(hop.steps);
+    let onward = match hop.to {
+        Some(to) if hop.count == LONG => cruising[rest][to],
+        Some(to) => times[rest][to],
+        None if hop.count == LONG => per_step * rest as u32,
+        None if rest == 0 => 0,
+        None => u32::MAX,
+    };
+    hop.time.saturating_add(onward)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::limits::{Repertoire, RunLimits};
+    use super::*;
+    use crate::maze::Scale;
+
+    #[test]
+    fn bounds_grow_with_the_steps_and_fall_by_no_more_than_a_hop_takes() {
+        for (scale, limits) in
+            [(Scale::MICROMOUSE, RunLimits::MICROMOUSE), (Scale::DOUBLED, RunLimits::EYEBOT)]
+        {
+            let tables = Tables::new(&Repertoire::new(scale, limits).unwrap());
+            let bounds = Bounds::new(&tables);
+            for end in 0..ENDS {
+                let hops = tables.hops(end, 40);
+                for steps in 0..100 {
+                    let bound = bounds.get(steps, end);
+                    assert!(bound <= bounds.get(steps + 1, end));
+                    for hop in hops.iter().filter(|hop| hop.time != u32::MAX) {
+                        let rest = steps.saturating_sub(hop.steps as u32);
+                        let onward = hop.to.map(|to| bounds.get(rest, to));
+                        if let Some(onward) = onward.or((rest == 0).then_some(0)) {
+                            assert!(bound <= hop.time + onward, "{end} {steps} {hop:?}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_straight_from_standstill_meets_the_bound() {
+        let tables = Tables::new(&Repertoire::new(Scale::MICROMOUSE, RunLimits::MICROMOUSE).unwrap());
+        // Of one step nothing is faster than the straight.
+        assert_eq!(Bounds::new(&tables).get(1, 0), tables.row(None)[1].stop);
+    }
+}

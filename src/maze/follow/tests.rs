@@ -1,0 +1,174 @@
+use proptest::prelude::*;
+
+use super::*;
+use crate::geometry::Pose;
+use crate::io::sim::{NoiseModel, SimOptions, Simulation};
+use crate::kinematics::OdometryErrors;
+use crate::maze::generate::perfect;
+use crate::maze::{Cell, Direction, Maze, Rig, Scale, Wall, mouse};
+use crate::world::{RobotSpec, Scene};
+
+const NO_ERRORS: OdometryErrors =
+    OdometryErrors { wheel_scale: 0.0, wheel_mismatch: 0.0, track: 0.0, slip: 0.0 };
+
+fn rig(spec: &RobotSpec) -> Rig {
+    Rig::new(spec, NO_ERRORS, 0.01).unwrap()
+}
+
+/// A maze whose only way out of the start leads north.
+fn maze(seed: u64) -> Maze {
+    let mut maze = perfect(6, 6, seed).unwrap();
+    maze.set_goals([]);
+    if maze.wall(Cell::default(), Direction::North) == Wall::Present {
+        maze.set_start(Cell::default(), Direction::East);
+    }
+    maze
+}
+
+/// How a robot that keeps to the middle is tuned.
+type Tuning = fn(&Rig, Scale, f64) -> CellDriveParameters;
+
+/// All the way round, back where it began and without a contact.
+const GOOD: (LeftHandOutcome, bool, u32) = (LeftHandOutcome::Finished, true, 0);
+
+/// A drive all the way round. Returns how it ended, whether the robot was where it took itself to be, and contacts.
+fn round(
+    maze: &Maze,
+    spec: &RobotSpec,
+    scale: Scale,
+    parameters: LeftHandParameters,
+    noise: NoiseModel,
+    seed: u64,
+) -> (LeftHandOutcome, bool, u32) {
+    let start = scale.pose(maze.start(), maze.heading());
+    let scene = Scene::with_robot(scale.world(maze), spec.clone(), start);
+    let simulation = Simulation::new(&scene, SimOptions { seed, noise, ..SimOptions::default() }).unwrap();
+    let mut robot = simulation.robot(0).unwrap();
+    let mut cells = 0;
+    let outcome = LeftHand::new(parameters)
+        .unwrap()
+        .run(
+            &mut robot,
+            maze.heading(),
+            |at, _| {
+                cells += 1;
+                at == (0, 0) || cells > 200
+            },
+            || (),
+        )
+        .unwrap();
+    let end = simulation.truth().robot(0).unwrap();
+    let home = cells == 2 * (maze.cell_count() - 1);
+    let there = scale.cell_of(maze, end.pose.position()) == Some(maze.start());
+    (outcome, home && there, end.contacts)
+}
+
+#[test]
+fn open_loop_goes_round_without_errors_and_fails_with_the_books() {
+    let spec = RobotSpec::s4();
+    let printed = LeftHandParameters::as_printed();
+    let drive = |noise, seed| round(&maze(seed), &spec, Scale::DOUBLED, printed, noise, seed);
+    assert_eq!(drive(NoiseModel::ideal(), 1), GOOD);
+    let failures = (0..10).filter(|&seed| drive(NoiseModel::textbook(), seed) != GOOD);
+    assert!(failures.count() >= 8);
+}
+
+#[test]
+fn controlled_it_goes_round_with_them() {
+    let (eyebot, mouse) = ((RobotSpec::s4(), Scale::DOUBLED), (mouse(), Scale::MICROMOUSE));
+    let pid: Tuning = CellDriveParameters::pid;
+    for ((spec, scale), tuned) in [(&eyebot, pid), (&mouse, pid), (&mouse, CellDriveParameters::proportional)]
+    {
+        let parameters = LeftHandParameters::controlled(tuned(&rig(spec), *scale, 0.5 * scale.cell));
+        for noise in [NoiseModel::ideal(), NoiseModel::textbook(), NoiseModel::real()] {
+            for seed in 0..4 {
+                let end = round(&maze(seed), spec, *scale, parameters, noise, seed);
+                assert_eq!(end, GOOD, "{} {noise:?} {seed}", spec.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn of_a_hundred_mazes_the_controlled_rule_fails_in_none() {
+    let (spec, scale) = (RobotSpec::s4(), Scale::DOUBLED);
+    let controlled = CellDriveParameters::pid(&rig(&spec), scale, 0.180);
+    let failed = |parameters: LeftHandParameters| {
+        let drive = |seed: u64| round(&maze(seed), &spec, scale, parameters, NoiseModel::real(), seed);
+        (0..100).filter(|&seed| drive(seed) != GOOD).count()
+    };
+    let printed = failed(LeftHandParameters::as_printed());
+    assert!(printed >= 60, "the printed rule fails in {printed} of 100");
+    assert_eq!(failed(LeftHandParameters::controlled(controlled)), 0);
+}
+
+#[test]
+fn a_lidar_leads_round() {
+    for seed in 0..4 {
+        let (maze, scale) = (maze(seed), Scale::DOUBLED);
+        let start = scale.pose(maze.start(), maze.heading());
+        let scene = Scene::with_robot(scale.world(&maze), RobotSpec::s4(), start);
+        let options = SimOptions { time_limit: Some(600.0), ..SimOptions::with_noise(1.0, seed) };
+        let simulation = Simulation::new(&scene, options).unwrap();
+        let truth = simulation.truth();
+        let mut visited = vec![false; maze.cell_count()];
+        let mut robot = simulation.robot(0).unwrap();
+        let parameters = LidarLeftParameters::for_corridor(scale.cell - scale.wall);
+        let mut seen = 0;
+        let drive = LidarLeft::new(parameters).unwrap().run(&mut robot, |_, points| {
+            seen += points.len();
+            let cell = scale.cell_of(&maze, truth.robot(0).unwrap().pose.position()).unwrap();
+            visited[maze.index(cell)] = true;
+            visited.iter().all(|&visited| visited)
+        });
+        drive.unwrap();
+        assert_eq!(truth.robot(0).unwrap().contacts, 0, "seed {seed}");
+        assert!(seen > 10_000);
+    }
+}
+
+proptest! {
+    #[test]
+    fn off_the_middle_is_what_the_walls_say(off in -0.02..0.02f64, left in any::<bool>(), right in any::<bool>()) {
+        let spec = RobotSpec::s4();
+        let drive = CellDriveParameters::proportional(&rig(&spec), Scale::DOUBLED, 0.18);
+        let controller = CellDrive::new(drive).unwrap();
+        let reading = |stands: bool, aside: f64| if stands { aside } else { aside + 0.36 };
+        let readings = [1.0, reading(left, drive.aside - off), reading(right, drive.aside + off)];
+        match controller.off_middle(readings) {
+            Some(found) => prop_assert!((left || right) && (found - off).abs() < 1e-12),
+            None => prop_assert!(!left && !right),
+        }
+    }
+
+    #[test]
+    fn the_left_hand_turns_to_what_is_free(readings in prop::array::uniform3(0.05..1.0f64)) {
+        let rule = LeftHand::new(LeftHandParameters::as_printed()).unwrap();
+        let [front, left, right] = readings.map(|reading| reading > 0.4);
+        let expected = if left { 1 } else if front { 0 } else if right { -1 } else { 2 };
+        prop_assert_eq!(rule.choose(readings), expected);
+    }
+}
+
+#[test]
+fn it_steers_to_the_middle_and_stops_at_walls() {
+    let spec = RobotSpec::s4();
+    let drive = CellDriveParameters::proportional(&rig(&spec), Scale::DOUBLED, 0.18);
+    let mut controller = CellDrive::new(drive).unwrap();
+    let mut step = |x: f64, readings| controller.step(Pose::new(x, 0.0, 0.0), readings, 0.01).unwrap();
+    // Left of the middle it turns right.
+    let twist = step(0.0, [1.0, drive.aside - 0.01, drive.aside + 0.01]).unwrap();
+    assert!(twist.angular < 0.0 && twist.linear == 0.18);
+    assert_eq!(step(0.2, [1.0, 1.0, 1.0]).map(|twist| twist.angular), Some(0.0));
+    // A wall ahead ends the way before odometry, and odometry does without one.
+    let nearly = 0.355 - drive.coast;
+    assert_eq!(step(nearly, [drive.ahead - 0.001, 1.0, 1.0]), None);
+    assert!(step(nearly, [1.0, 1.0, 1.0]).is_some());
+    assert_eq!(step(nearly + 0.006, [1.0, 1.0, 1.0]), None);
+    let broken = CellDriveParameters { speed: -1.0, ..drive };
+    assert!(CellDrive::new(broken).unwrap_err().to_string().contains("speed"));
+    let printed = LeftHandParameters { threshold: f64::NAN, ..LeftHandParameters::as_printed() };
+    assert!(LeftHand::new(printed).unwrap_err().to_string().contains("threshold"));
+    let lidar = LidarLeftParameters { period: 0.0, ..LidarLeftParameters::for_corridor(0.3) };
+    assert!(LidarLeft::new(lidar).unwrap_err().to_string().contains("period"));
+}
