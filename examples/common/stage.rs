@@ -2,10 +2,18 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::ops::{Deref, DerefMut};
 use std::path::Path;
+#[cfg(feature = "robios")]
+use std::path::PathBuf;
+#[cfg(feature = "robios")]
+use std::sync::{Mutex, PoisonError};
 
+#[cfg(feature = "robios")]
+use roverlab::geometry::Pose;
 use roverlab::io::log::{Attachment, Header, LogError, LogWriter, Player, Troop, Witness};
+#[cfg(feature = "robios")]
+use roverlab::io::robios::{RobiosRobot, RobiosTruth};
 use roverlab::io::sim::{Fleet, SimOptions, Simulation};
-use roverlab::io::wrappers::{Fault, Faulty};
+use roverlab::io::wrappers::{Fault, Faulty, Quantised};
 use roverlab::io::{self, Key, RobotIo};
 use roverlab::world::{Scene, formats};
 
@@ -24,6 +32,8 @@ pub(crate) type StageTruth = Box<dyn Witness + Send>;
 pub(crate) struct Stage {
     play: Play,
     faults: Vec<Fault>,
+    /// Whether simulated robots round as RoBIOS does.
+    quantised: bool,
     recording: Recording,
 }
 
@@ -33,6 +43,9 @@ enum Play {
     /// Each robot alone in a world of its own.
     Apart(Vec<Simulation>),
     Recording(Player),
+    /// The one robot behind a library, until it is taken, and what is known about it.
+    #[cfg(feature = "robios")]
+    Library(PathBuf, Mutex<(Option<RobiosRobot>, Option<RobiosTruth>)>),
 }
 
 /// Where a run is recorded, and what it replays.
@@ -68,13 +81,29 @@ impl DerefMut for StagedTroop<'_> {
 impl CommonArgs {
     /// The stage that the options describe: a simulation of a scene, or the recording that `--replay` names.
     pub(crate) fn stage(&self, scene: &Scene, options: SimOptions) -> Result<Stage, Failure> {
-        let stage = match self.player() {
-            Some(player) => {
-                Stage { play: Play::Recording(player), faults: Vec::new(), recording: Recording::default() }
+        let stage = match (self.player(), &self.robios) {
+            (Some(player), _) => Stage {
+                play: Play::Recording(player),
+                faults: Vec::new(),
+                quantised: false,
+                recording: Recording::default(),
+            },
+            #[cfg(feature = "robios")]
+            (None, Some(library)) => {
+                let start = scene.robots.first().map_or(Pose::default(), |robot| robot.pose);
+                let robot = RobiosRobot::open(library).map_err(Failure::input)?;
+                let truth = robot.truth(start);
+                let play = Play::Library(library.clone(), Mutex::new((Some(robot), Some(truth))));
+                Stage { play, faults: self.faults()?, quantised: false, recording: Recording::default() }
             }
-            None => Stage::simulated(scene, options, self.faults()?)?,
+            _ => Stage { quantised: self.quantised, ..Stage::simulated(scene, options, self.faults()?)? },
         };
         self.recorded(scene, stage)
+    }
+
+    /// Fails where many robots drive at once, and a library has only one.
+    fn check_no_library(&self) -> Result<(), Failure> {
+        self.robios.as_ref().map_or(Ok(()), |library| Err(alone(library)))
     }
 
     /// As [`stage`](Self::stage), with copies of the scene's first robot that drive each alone in a copy of its world.
@@ -84,13 +113,17 @@ impl CommonArgs {
         options: &SimOptions,
         robots: usize,
     ) -> Result<Stage, Failure> {
+        self.check_no_library()?;
         let play = if let Some(player) = self.player() {
             Play::Recording(player)
         } else {
             let simulations = (0..robots).map(|_| Simulation::new(scene, options.clone()));
             Play::Apart(simulations.collect::<io::Result<_>>().map_err(Failure::input)?)
         };
-        self.recorded(scene, Stage { play, faults: Vec::new(), recording: Recording::default() })
+        self.recorded(
+            scene,
+            Stage { play, faults: Vec::new(), quantised: false, recording: Recording::default() },
+        )
     }
 
     fn recorded(&self, scene: &Scene, stage: Stage) -> Result<Stage, Failure> {
@@ -103,6 +136,7 @@ impl CommonArgs {
 
     /// As [`stage`](Self::stage), with all robots stepped in one thread.
     pub(crate) fn troop<'a>(&self, scene: &Scene, options: SimOptions) -> Result<StagedTroop<'a>, Failure> {
+        self.check_no_library()?;
         let player = self.player();
         let troop: Box<dyn Troop<'a> + 'a> = match &player {
             Some(player) => Box::new(player.troop()),
@@ -171,7 +205,12 @@ impl Stage {
     /// A simulation that nobody records, with faults of the first robot.
     pub(crate) fn simulated(scene: &Scene, options: SimOptions, faults: Vec<Fault>) -> Result<Self, Failure> {
         let simulation = Simulation::new(scene, options).map_err(Failure::input)?;
-        Ok(Self { play: Play::Simulation(simulation), faults, recording: Recording::default() })
+        Ok(Self {
+            play: Play::Simulation(simulation),
+            faults,
+            quantised: false,
+            recording: Recording::default(),
+        })
     }
 
     /// A robot, by its index in the scene. Take all robots that drive at once before the first one does.
@@ -180,11 +219,21 @@ impl Stage {
         match &self.play {
             Play::Simulation(simulation) => {
                 let faults = if index == 0 { self.faults.clone() } else { Vec::new() };
-                Ok(self.recorded(Faulty::new(simulated(simulation, index)?, faults), index))
+                let robot = simulated(simulation, index)?;
+                if self.quantised {
+                    return Ok(self.recorded(Faulty::new(Quantised::new(robot), faults), index));
+                }
+                Ok(self.recorded(Faulty::new(robot, faults), index))
             }
             Play::Apart(simulations) => Ok(self.recorded(simulated(&simulations[index], 0)?, index)),
             Play::Recording(player) => {
                 Ok(self.recorded(player.robot(index).map_err(|error| foreign(&error))?, index))
+            }
+            #[cfg(feature = "robios")]
+            Play::Library(library, taken) => {
+                let robot = taken.lock().unwrap_or_else(PoisonError::into_inner).0.take();
+                let robot = robot.filter(|_| index == 0).ok_or_else(|| alone(library))?;
+                Ok(self.recorded(Faulty::new(robot, self.faults.clone()), index))
             }
         }
     }
@@ -204,6 +253,11 @@ impl Stage {
             Play::Recording(player) => {
                 Ok(self.witnessed(player.truth(index).map_err(|error| foreign(&error))?, index))
             }
+            #[cfg(feature = "robios")]
+            Play::Library(library, taken) => {
+                let truth = taken.lock().unwrap_or_else(PoisonError::into_inner).1.take();
+                Ok(self.witnessed(truth.ok_or_else(|| alone(library))?, index))
+            }
         }
     }
 
@@ -220,8 +274,19 @@ impl Stage {
             Play::Simulation(simulation) => simulation.press_key(index, time, key),
             Play::Apart(simulations) => simulations[index].press_key(0, time, key),
             Play::Recording(_) => Ok(()),
+            // Whoever stands beside the robot presses its keys.
+            #[cfg(feature = "robios")]
+            Play::Library(..) => Ok(()),
         }
     }
+}
+
+/// A library has one robot.
+fn alone(library: &Path) -> Failure {
+    let library = library.display();
+    Failure::input(format!(
+        "--robios {library}: found several robots that drive; expected a run of one robot"
+    ))
 }
 
 /// A recording that lacks a robot belongs to another scene.
