@@ -53,9 +53,13 @@ pub(crate) struct CommonArgs {
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) replay: Option<PathBuf>,
 
-    /// Drive a real EyeBot through this C library.
+    /// Drive a real EyeBot, or what speaks RoBIOS, through this C library; the world is what the robot is told of.
     #[arg(long, value_name = "LIB")]
     pub(crate) robios: Option<PathBuf>,
+
+    /// Round what the simulated robot is told and tells as RoBIOS does: to whole millimetres and degrees.
+    #[arg(long)]
+    pub(crate) quantised: bool,
 
     /// Print exactly one JSON object on standard output, and nothing else there.
     #[arg(long)]
@@ -85,25 +89,21 @@ impl CommonArgs {
             check_writable("--record", file)?;
         }
         match &self.robios {
-            Some(library) if cfg!(feature = "robios") => Err(Failure::input(format!(
-                "--robios {}: the examples know what is true about their robots; expected a program of your own, which \
-                 the feature `robios` lets drive a real one (`roverlab::io::robios`)",
+            Some(library) if self.replay.is_some() => Err(Failure::input(format!(
+                "--robios {} and --replay; expected one of them, a recording needs no robot",
                 library.display()
             ))),
-            Some(library) => Err(Failure::input(format!(
-                "--robios {}: this build lacks the feature `robios`; expected `cargo run --features robios ...`",
-                library.display()
-            ))),
+            Some(library) => check_library(library),
             None => Ok(()),
         }
     }
 
     /// Fails if the options ask for a recording that there cannot be, because no robot drove.
     pub(crate) fn check_recorded(&self) -> Result<(), Failure> {
-        let option = [("--record", &self.record), ("--replay", &self.replay)];
+        let option = [("--record", &self.record), ("--replay", &self.replay), ("--robios", &self.robios)];
         match option.into_iter().find_map(|(option, file)| file.as_ref().map(|file| (option, file))) {
             Some((option, file)) if !self.origin.is_staged() => Err(Failure::input(format!(
-                "{option} {}: found no robot that drives; expected a run that can be recorded",
+                "{option} {}: found no robot that drives; expected a run of one robot that drives",
                 file.display()
             ))),
             _ => Ok(()),
@@ -134,6 +134,14 @@ impl CommonArgs {
         let parse = |text: &String| text.parse().map_err(|error| Failure::input(format!("--fault: {error}")));
         self.fault.iter().map(parse).collect()
     }
+}
+
+/// Fails if a library cannot be loaded.
+fn check_library(library: &Path) -> Result<(), Failure> {
+    let opened = roverlab::io::robios::RobiosRobot::open(library);
+    opened
+        .map(|_| ())
+        .map_err(|error| Failure::input(format!("--robios {error}; expected a library of RoBIOS")))
 }
 
 /// Fails if a file cannot be written where an option asks for one.

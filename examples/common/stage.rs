@@ -1,13 +1,16 @@
 use std::fs::File;
 use std::io::BufWriter;
 use std::ops::{Deref, DerefMut};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use roverlab::drive::safety::StoppingModel;
+use roverlab::geometry::Pose;
 use roverlab::io::log::{Attachment, Header, LogError, LogWriter, Player, Troop, Witness};
+use roverlab::io::robios::{RobiosRobot, RobiosTruth};
 use roverlab::io::sim::race::{Race, RaceCarSpec, SharedRace};
 use roverlab::io::sim::{Fleet, SimOptions, Simulation};
-use roverlab::io::wrappers::{Deadman, Fault, Faulty};
+use roverlab::io::wrappers::{Deadman, Fault, Faulty, Quantised};
 use roverlab::io::{self, Key, RobotIo};
 use roverlab::world::{MotorSpec, Scene, formats};
 
@@ -27,6 +30,8 @@ pub(crate) type StageTruth = Box<dyn Witness + Send>;
 pub(crate) struct Stage {
     play: Play,
     faults: Vec<Fault>,
+    /// Whether simulated robots round as RoBIOS does.
+    quantised: bool,
     recording: Recording,
     guard: Option<Guard>,
 }
@@ -47,6 +52,8 @@ enum Play {
     Apart(Vec<Simulation>),
     Race(SharedRace),
     Recording(Player),
+    /// The one robot behind a library, until it is taken, and what is known about it.
+    Library(PathBuf, Mutex<(Option<RobiosRobot>, Option<RobiosTruth>)>),
 }
 
 /// Where a run is recorded, and what it replays.
@@ -104,11 +111,23 @@ impl DerefMut for StagedRobot {
 impl CommonArgs {
     /// The stage that the options describe: a simulation of a scene, or the recording that `--replay` names.
     pub(crate) fn stage(&self, scene: &Scene, options: SimOptions) -> Result<Stage, Failure> {
-        let stage = match self.player() {
-            Some(player) => Stage::new(Play::Recording(player), Vec::new()),
-            None => Stage::simulated(scene, options, self.faults()?)?,
+        let stage = match (self.player(), &self.robios) {
+            (Some(player), _) => Stage::new(Play::Recording(player), Vec::new()),
+            (None, Some(library)) => {
+                let start = scene.robots.first().map_or(Pose::default(), |robot| robot.pose);
+                let robot = RobiosRobot::open(library).map_err(Failure::input)?;
+                let truth = robot.truth(start);
+                let play = Play::Library(library.clone(), Mutex::new((Some(robot), Some(truth))));
+                Stage::new(play, self.faults()?)
+            }
+            _ => Stage { quantised: self.quantised, ..Stage::simulated(scene, options, self.faults()?)? },
         };
         self.recorded(scene, stage, motors(scene))
+    }
+
+    /// Fails where many robots drive at once, and a library has only one.
+    fn check_no_library(&self) -> Result<(), Failure> {
+        self.robios.as_ref().map_or(Ok(()), |library| Err(alone(library)))
     }
 
     /// As [`stage`](Self::stage), with copies of the scene's first robot that drive each alone in a copy of its world.
@@ -118,6 +137,7 @@ impl CommonArgs {
         options: &SimOptions,
         robots: usize,
     ) -> Result<Stage, Failure> {
+        self.check_no_library()?;
         let play = if let Some(player) = self.player() {
             Play::Recording(player)
         } else {
@@ -158,6 +178,7 @@ impl CommonArgs {
 
     /// As [`stage`](Self::stage), with all robots stepped in one thread.
     pub(crate) fn troop<'a>(&self, scene: &Scene, options: SimOptions) -> Result<StagedTroop<'a>, Failure> {
+        self.check_no_library()?;
         let player = self.player();
         let troop: Box<dyn Troop<'a> + 'a> = match &player {
             Some(player) => Box::new(player.troop()),
@@ -262,16 +283,23 @@ impl Stage {
     }
 
     fn new(play: Play, faults: Vec<Fault>) -> Self {
-        Self { play, faults, recording: Recording::default(), guard: None }
+        Self { play, faults, quantised: false, recording: Recording::default(), guard: None }
     }
 
     /// A robot, by its index in the scene. Take all robots that drive at once before the first one does.
     pub(crate) fn robot(&self, index: usize) -> Result<Driven, Failure> {
         let simulated = |simulation: &Simulation, index| simulation.robot(index).map_err(Failure::input);
         let robot = match &self.play {
+            Play::Simulation(simulation) if self.quantised => {
+                self.faulty(Quantised::new(simulated(simulation, index)?), index)?
+            }
             Play::Simulation(simulation) => self.faulty(simulated(simulation, index)?, index)?,
             Play::Race(race) => self.faulty(race.car(index).map_err(Failure::input)?, index)?,
             Play::Apart(simulations) => self.faulty(simulated(&simulations[index], 0)?, index)?,
+            Play::Library(library, taken) => {
+                let robot = taken.lock().unwrap_or_else(PoisonError::into_inner).0.take();
+                self.faulty(robot.filter(|_| index == 0).ok_or_else(|| alone(library))?, index)?
+            }
             Play::Recording(player) => {
                 self.recording.recorder(player.robot(index).map_err(|error| foreign(&error))?, index)
             }
@@ -302,6 +330,10 @@ impl Stage {
             Play::Recording(player) => {
                 Ok(self.witnessed(player.truth(index).map_err(|error| foreign(&error))?, index))
             }
+            Play::Library(library, taken) => {
+                let truth = taken.lock().unwrap_or_else(PoisonError::into_inner).1.take();
+                Ok(self.witnessed(truth.ok_or_else(|| alone(library))?, index))
+            }
         }
     }
 
@@ -317,10 +349,18 @@ impl Stage {
         match &self.play {
             Play::Simulation(simulation) => simulation.press_key(index, time, key),
             Play::Apart(simulations) => simulations[index].press_key(0, time, key),
-            // A racing car has no keys.
-            Play::Race(_) | Play::Recording(_) => Ok(()),
+            // A racing car has no keys, and whoever stands beside a real robot presses its keys.
+            Play::Race(_) | Play::Recording(_) | Play::Library(..) => Ok(()),
         }
     }
+}
+
+/// A library has one robot.
+fn alone(library: &Path) -> Failure {
+    let library = library.display();
+    Failure::input(format!(
+        "--robios {library}: found several robots that drive; expected a run of one robot"
+    ))
 }
 
 /// A recording that lacks a robot belongs to another scene.

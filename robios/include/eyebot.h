@@ -187,6 +187,31 @@ void SIMGetPose(int *x, int *y, int *phi);
 void SIMSetPose(int x, int y, int phi);
 int SIMLaserScan(int *distance);
 
+#ifndef EYESIM_FEW_NAMES
+/* Names of the first years */
+int VWDriveRemain(void);
+int VWDriveDone(void);
+int VWDriveWait(void);
+int LCDInit(void);
+int LCDPixelInvert(int x, int y);
+int LCDLineInvert(int x1, int y1, int x2, int y2);
+int LCDAreaInvert(int x1, int y1, int x2, int y2);
+int LCDCircleInvert(int x1, int y1, int size);
+int AUTone(int freq, int time);
+int AUCheckTone(void);
+int AUCheckPlay(void);
+int AURecord(BYTE *buf, int time, long freq);
+int AUCheckRecord(void);
+int MTInit(void);
+int MTSleep(int n); /* hundredths of a second */
+TASK MTSpawn(void *(*fct)(void *), int id);
+int MTGetUID(TASK t);
+int MTKill(TASK t);
+int SEMAInit(SEMA *sem, int val);
+int SEMALock(SEMA *sem);
+int SEMAUnlock(SEMA *sem);
+#endif
+
 #ifdef __cplusplus
 }
 

@@ -89,6 +89,7 @@ typedef BYTE CAMHDgray[CAMHD_PIXELS];
 typedef BYTE CAM5MPgray[CAM5MP_PIXELS];
 
 #define CAM_SUCCESS 0
+#define CAM_FAILURE 1
 
 /* Colours */
 #define RED 0xFF0000
@@ -129,6 +130,7 @@ typedef BYTE CAM5MPgray[CAM5MP_PIXELS];
 #define KEY_LIST6 0x00000200
 #define KEY_LIST7 0x00000400
 #define KEY_LIST8 0x00000800
+#define KEY_INVALID 0xFFFFFFFF
 #define KEYTM_MAX_REGIONS 32
 #define MENU_HEIGHT 38
 
@@ -182,6 +184,9 @@ typedef BYTE CAM5MPgray[CAM5MP_PIXELS];
 #define LCD_FGCOL_INVERSE 0x040000
 #define LCD_FGCOL_NOINVERSE 0x400000
 
+/* What headers of some years lack, so that programs may have names of their own like these: left out on demand. */
+#ifndef EYESIM_FEW_NAMES
+
 /* Distance sensors, by the simulator's numbers */
 #define PSD_FRONT 1
 #define PSD_LEFT 2
@@ -191,6 +196,19 @@ typedef BYTE CAM5MPgray[CAM5MP_PIXELS];
 /* Serial ports */
 #define NONE 0
 #define RTSCTS 1
+
+#define PLATFORM 2
+#define WALKER 3
+#define LIDAR_POINTS LIDAR_RESOLUTION
+#define LIDAR_RANGE 360
+
+typedef sem_t SEMA;
+typedef struct {
+    pthread_t thread;
+    int identifier;
+} TASK;
+
+#endif
 
 #define VERSION "1.0"
 #define VEHICLE 1
@@ -214,7 +232,5 @@ int XInitThreads(void);
 #ifdef __cplusplus
 }
 #endif
-
-#define LIDAR_POINTS LIDAR_RESOLUTION
 
 #endif

@@ -6,14 +6,17 @@ C through pointers return a list here; functions that fill an image return an ar
 Importing it makes time virtual: `time.sleep`, `time.time` and the other clocks of the module `time` follow the robot's.
 """
 
+import ctypes
 import ctypes as _ctypes
 import os as _os
+import sys
 import sys as _sys
 import threading as _threading
 import time as _time
 
-# These hold on to the real clock before it is replaced.
-import queue as _queue  # noqa: F401
+# `ctypes` and `sys` come with `from eye import *`, as programs expect. What follows holds on to the real clock before
+# it is replaced.
+import queue as _queue
 from ctypes import *  # noqa: F401,F403  programs use its types
 
 _here = _os.path.dirname(_os.path.abspath(__file__))
@@ -51,6 +54,12 @@ QQVGA_PIXELS, QVGA_PIXELS, VGA_PIXELS = QQVGA_X * QQVGA_Y, QVGA_X * QVGA_Y, VGA_
 CAM1MP_PIXELS, CAMHD_PIXELS, CAM5MP_PIXELS = CAM1MP_X * CAM1MP_Y, CAMHD_X * CAMHD_Y, CAM5MP_X * CAM5MP_Y
 QQVGA_SIZE, QVGA_SIZE, VGA_SIZE = 3 * QQVGA_PIXELS, 3 * QVGA_PIXELS, 3 * VGA_PIXELS
 CAM1MP_SIZE, CAMHD_SIZE, CAM5MP_SIZE = 3 * CAM1MP_PIXELS, 3 * CAMHD_PIXELS, 3 * CAM5MP_PIXELS
+
+_X = [QQVGA_X, QVGA_X, VGA_X, CAM1MP_X, CAMHD_X, CAM5MP_X]
+_Y = [QQVGA_Y, QVGA_Y, VGA_Y, CAM1MP_Y, CAMHD_Y, CAM5MP_Y]
+CAMWIDTHARR, CAMHEIGHTARR = {**dict(enumerate(_X)), CUSTOM: 0}, {**dict(enumerate(_Y)), CUSTOM: 0}
+CAMPIXELSARR = {key: CAMWIDTHARR[key] * CAMHEIGHTARR[key] for key in CAMWIDTHARR}
+CAMSIZEARR = {key: 3 * pixels for key, pixels in CAMPIXELSARR.items()}
 
 RED, GREEN, BLUE, WHITE, GRAY, BLACK = 0xFF0000, 0x00FF00, 0x0000FF, 0xFFFFFF, 0x808080, 0x000000
 SILVER, LIGHTGRAY, DARKGRAY, NAVY, CYAN, TEAL = 0xC0C0C0, 0xD3D3D3, 0xA9A9A9, 0x000080, 0x00EEEE, 0x008080
@@ -91,14 +100,14 @@ _SIGNATURES = {
     # Functions of whole numbers, by how many they take.
     0: """LCDClear LCDRefresh KEYGet KEYRead CAMRelease OSMachineSpeed OSMachineType OSMachineID OSGetCount AUBeep AUDone
         AUMicrophone VWRemain VWDone VWWait VWStalled VWControlOff DIGITALReadAll ANALOGVoltage IRTVGet IRTVRead
-        IRTVFlush IRTVGetStatus RADIOInit RADIOGetID RADIOCheck RADIORelease SIMGetRobotCount SIMGetObjectCount""",
+        IRTVFlush IRTVGetStatus VWDriveRemain VWDriveDone VWDriveWait LCDInit RADIOInit RADIOGetID RADIOCheck RADIORelease SIMGetRobotCount SIMGetObjectCount""",
     1: """LCDSetFontSize LCDFontSize LCDSetMode LCDImageSize KEYWait CAMInit IPSetSize OSWait OSDetachTimer SERReceiveChar
         SERCheck SERFlush SERClose PSDGet PSDGetRaw MOTORPIDOff MOTORPIDoff ENCODERRead ENCODERReset SERVOGet SERVODone
         SERVOWait SERVOStalled DIGITALRead ANALOGRead""",
-    2: """LCDSetPos LCDSetColor LCDSetFont LCDGetPixel SERVOSet SERVOSetRaw SERVOSetAngle SERVOSetExtension MOTORDrive
+    2: """LCDPixelInvert LCDSetPos LCDSetColor LCDSetFont LCDGetPixel SERVOSet SERVOSetRaw SERVOSetAngle SERVOSetExtension MOTORDrive
         MOTORDriveRaw MOTORSpeed VWSetSpeed VWStraight VWTurn DIGITALWrite ANALOGRecord""",
     3: "LCDPixel OSSetTime SERInit SERVORange VWSetPosition VWCurve VWDrive LIDARSet SIMSetPose",
-    4: "LCDImageStart MOTORPID VWControl",
+    4: "LCDImageStart MOTORPID VWControl LCDLineInvert LCDAreaInvert",
     5: "LCDLine LCDCircle SIMSetRobot SIMSetObject",
     6: "LCDArea",
 }
@@ -286,10 +295,14 @@ def LCDMenuI(pos, string, fg=WHITE, bg=BLACK):
 
 
 def _pair(function, x, y):
-    """Two numbers: to where the program's pointers say, or as a list."""
+    """Two numbers: to where the program wants them, with the code, or as a list."""
+    places = [_ctypes.c_int(0), _ctypes.c_int(0)]
+    code = function(*[_ctypes.byref(place) for place in places])
+    values = [place.value for place in places]
     if x is None or y is None:
-        return _several(function, 2)
-    return function(_ctypes.cast(x, _ints), _ctypes.cast(y, _ints))
+        return values
+    _store((x, y), values)
+    return code
 
 
 def LCDGetPos(row=None, column=None):
@@ -308,29 +321,32 @@ def LCDCircle(x1, y1, size, col, fill=1):
     return lib.LCDCircle(int(x1), int(y1), int(size), int(col), int(fill))
 
 
-_lcd_pixels = None
-_SIZES = [QQVGA_PIXELS, QVGA_PIXELS, VGA_PIXELS, CAM1MP_PIXELS, CAMHD_PIXELS, CAM5MP_PIXELS]
+_lcd_pixels = 0
+_is_custom = False
+_window = QVGA_PIXELS
 
 
 def LCDImageSize(t):
-    global _lcd_pixels
+    global _lcd_pixels, _is_custom
     code = lib.LCDImageSize(int(t))
     if code == 0:
-        _lcd_pixels = _SIZES[int(t)] if int(t) < len(_SIZES) else _window
+        _lcd_pixels, _is_custom = CAMPIXELSARR[int(t)], int(t) == CUSTOM
     return code
-
-
-_window = 0
 
 
 def LCDImageStart(x, y, xs, ys):
     global _window
-    _window = max(0, int(xs)) * max(0, int(ys))
-    return lib.LCDImageStart(int(x), int(y), int(xs), int(ys))
+    code = lib.LCDImageStart(int(x), int(y), int(xs), int(ys))
+    if code == 0:
+        _window = int(xs) * int(ys)
+    return code
 
 
 def _shown():
-    return _lcd_pixels or _variable("IP_PIXELS") or QVGA_PIXELS
+    """Pixels of the images that the display takes, as the library sees it."""
+    if _is_custom:
+        return _window
+    return _lcd_pixels or _variable("IP_PIXELS") or _window
 
 
 def LCDImage(img):
@@ -392,8 +408,7 @@ def IPReadFile(filename, img=None):
     if img is not None:
         return lib.IPReadFile(_bytes(filename), img)
     image = _gray(3 * _ip())
-    lib.IPReadFile(_bytes(filename), image)
-    return image
+    return [lib.IPReadFile(_bytes(filename), image), image]
 
 
 def IPWriteFile(filename, img):
@@ -426,8 +441,8 @@ def IPGray2Col(gray, imgOut=None):
     return _map(lib.IPGray2Col, gray, 1, 3, imgOut)
 
 
-def IPRGB2Col(r, g, b):
-    target = _gray(3 * _ip())
+def IPRGB2Col(r, g, b, imgOut=None):
+    target = _gray(3 * _ip()) if imgOut is None else imgOut
     lib.IPRGB2Col(*[_pixels(plane, _ip()) for plane in (r, g, b)], target)
     return target
 
@@ -454,30 +469,42 @@ def _channels(*values):
     return [int(value) & 0xFF for value in values]
 
 
-def _planes(function, *arguments):
+def _planes(function, arguments, targets=()):
     values = [_ctypes.c_ubyte(0) for _ in range(3)]
     function(*arguments, *[_ctypes.addressof(value) for value in values])
+    _store(targets, [value.value for value in values])
     return [value.value for value in values]
+
+
+def _store(targets, values):
+    """Values to where a program wants them: numbers of ctypes, or pointers to them."""
+    for target, value in zip(targets, values):
+        if hasattr(target, "contents"):
+            target.contents.value = value
+        elif hasattr(target, "_obj"):
+            target._obj.value = value
+        elif hasattr(target, "value"):
+            target.value = value
 
 
 def IPPRGB2Col(r, g, b):
     return lib.IPPRGB2Col(*_channels(r, g, b))
 
 
-def IPPCol2RGB(col):
-    return _planes(lib.IPPCol2RGB, int(col))
+def IPPCol2RGB(col, *rgb):
+    return _planes(lib.IPPCol2RGB, [int(col)], rgb)
 
 
-def IPPCol2HSI(c):
-    return _planes(lib.IPPCol2HSI, int(c))
+def IPPCol2HSI(c, *hsi):
+    return _planes(lib.IPPCol2HSI, [int(c)], hsi)
 
 
 def IPPRGB2Hue(r, g, b):
     return lib.IPPRGB2Hue(*_channels(r, g, b))
 
 
-def IPPRGB2HSI(r, g, b):
-    return _planes(lib.IPPRGB2HSI, *_channels(r, g, b))
+def IPPRGB2HSI(r, g, b, *hsi):
+    return _planes(lib.IPPRGB2HSI, _channels(r, g, b), hsi)
 
 
 # --- system ---
@@ -493,16 +520,24 @@ def OSExecute(command):
     return _answer(lib.OSExecute, _bytes(command))
 
 
-def OSVersion():
-    return _answer(lib.OSVersion)
+def _told(function, buf):
+    """A text, also in the buffer that a program hands over."""
+    answer = _answer(function)
+    if buf is not None and hasattr(buf, "raw"):
+        buf.value = _bytes(answer)[: _ctypes.sizeof(buf) - 1]
+    return answer
 
 
-def OSVersionIO():
-    return _answer(lib.OSVersionIO)
+def OSVersion(buf=None):
+    return _told(lib.OSVersion, buf)
 
 
-def OSMachineName():
-    return _answer(lib.OSMachineName)
+def OSVersionIO(buf=None):
+    return _told(lib.OSVersionIO, buf)
+
+
+def OSMachineName(buf=None):
+    return _told(lib.OSMachineName, buf)
 
 
 _timers = {}
@@ -520,8 +555,10 @@ def OSDetachTimer(t):
     return lib.OSDetachTimer(int(t))
 
 
-def OSGetTime():
-    return _several(lib.OSGetTime, 4)
+def OSGetTime(*targets):
+    time = _several(lib.OSGetTime, 4)
+    _store(targets, time)
+    return time
 
 
 # --- serial ports, sound, lines ---
@@ -544,9 +581,13 @@ def SERReceiveChar(interface):
     return lib.SERReceiveChar(int(interface)).decode("latin-1")
 
 
-def SERReceive(interface, size=1024):
+def SERReceive(interface, buf=None, size=1024):
+    if isinstance(buf, int):
+        buf, size = None, buf
     buffer = _ctypes.create_string_buffer(int(size) + 1)
     count = lib.eyesim_SERReceiveN(int(interface), buffer, int(size) + 1)
+    if hasattr(buf, "raw"):
+        buf.value = buffer.raw[: min(count, _ctypes.sizeof(buf) - 1)]
     return buffer.raw[:count].decode("utf-8", "replace")
 
 
@@ -558,13 +599,16 @@ def DIGITALSetup(io, direction):
     return lib.DIGITALSetup(int(io), _bytes(direction)[:1] or b"i")
 
 
-def ANALOGTransfer():
+def ANALOGTransfer(_buffer=None):
     buffer = (_ctypes.c_ubyte * 65536)()
     count = lib.ANALOGTransfer(buffer)
     return list(buffer[:count])
 
 
 # --- distance sensors and driving ---
+
+
+LIDAR_POINTS = LIDAR_RANGE = 360
 
 
 def LIDARGet():
@@ -583,12 +627,16 @@ def SIMLaserScan():
     return LIDARGet()
 
 
-def VWGetSpeed():
-    return _several(lib.VWGetSpeed, 2)
+def VWGetSpeed(*targets):
+    speed = _several(lib.VWGetSpeed, 2)
+    _store(targets, speed)
+    return speed
 
 
-def VWGetPosition():
-    return _several(lib.VWGetPosition, 3)
+def VWGetPosition(*targets):
+    pose = _several(lib.VWGetPosition, 3)
+    _store(targets, pose)
+    return pose
 
 
 # --- radio ---
@@ -653,6 +701,32 @@ def _nanoseconds(clock):
     return lambda: int(1e9 * clock())
 
 
+_LOOK = 0.01
+
+
+def _wait(self, timeout=None):
+    """In the place of `threading.Condition.wait`, on which events and queues are built: with a time limit it waits by
+    the program's clock, and looks again and again whether somebody has notified."""
+    if timeout is None or timeout <= 0 or lib.eyesim_time() < 0:
+        return _wait_really(self, timeout)
+    if not self._is_owned():
+        raise RuntimeError("cannot wait on un-acquired lock")
+    waiter = _threading.Lock()
+    waiter.acquire()
+    self._waiters.append(waiter)
+    state = self._release_save()
+    end, notified = _time.monotonic() + timeout, False
+    try:
+        while not notified and _time.monotonic() < end:
+            _time.sleep(min(_LOOK, timeout))
+            notified = waiter.acquire(False)
+    finally:
+        self._acquire_restore(state)
+        if not notified and waiter in self._waiters:
+            self._waiters.remove(waiter)
+    return notified
+
+
 def _note_thread(self, *arguments, **options):
     lib.eyesim_note_thread()
     return _start(self, *arguments, **options)
@@ -671,3 +745,7 @@ if not hasattr(_time, "_eyesim"):
     _time.sleep = _sleep
     _start = _threading.Thread.start
     _threading.Thread.start = _note_thread
+    _wait_really = _threading.Condition.wait
+    _threading.Condition.wait = _wait
+    # What these have taken from the module `time` when they were loaded.
+    _threading._time = _queue.time = _time.monotonic

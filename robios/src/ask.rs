@@ -245,15 +245,27 @@ impl Seat {
                 done(self.truth.set_pose(index, pose)?)
             }
             Request::ObjectAt(id) => {
-                let index = index_of("object", id)?;
+                let index = self.object_index(id)?;
                 Reply::Pose(self.truth.object(index)?, elevation(&self.elevations.1, index))
             }
-            Request::PlaceObject(id, pose) => done(self.truth.set_object(index_of("object", id)?, pose)?),
+            Request::PlaceObject(id, pose) => done(self.truth.set_object(self.object_index(id)?, pose)?),
         })
     }
 
+    /// Robots are numbered from 1, or, where objects were placed first, behind them.
     fn robot_index(&self, id: u32) -> Result<usize> {
-        if id == 0 { Ok(self.index) } else { index_of("robot", id) }
+        let Identity { robots, objects, .. } = self.identity;
+        match id {
+            0 => Ok(self.index),
+            _ if id <= robots => index_of("robot", id),
+            _ => index_of("robot", id.saturating_sub(objects)),
+        }
+    }
+
+    /// Objects are numbered behind the robots; numbers that are robots' mean objects by their own count, from 1.
+    fn object_index(&self, id: u32) -> Result<usize> {
+        let robots = self.identity.robots;
+        index_of("object", if id > robots { id - robots } else { id })
     }
 
     fn receive(&mut self, seconds: f64) -> Result<Option<RadioMessage>> {

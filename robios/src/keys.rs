@@ -1,6 +1,7 @@
 //! Who presses the keys: a script, or nobody in particular.
 
 use std::collections::VecDeque;
+use std::fmt;
 use std::str::FromStr;
 
 /// How the keys of a run are pressed.
@@ -8,6 +9,7 @@ use std::str::FromStr;
 /// ```text
 /// AUTO                          as a patient visitor would; see [`KeyDesk`]
 /// NONE                          never
+/// TERMINAL                      by whoever sits there; see [`Typed`]
 /// KEY1@2s,KEY4@60s              at these times
 /// TOUCH:120:80@3,IRTV_OK@5      the display is touched there; a button of the remote control
 /// ```
@@ -18,6 +20,8 @@ pub enum KeyPlan {
     Auto,
     /// At given times.
     Script(Vec<Press>),
+    /// By somebody at a terminal.
+    Terminal,
 }
 
 /// A press that is due at a time, in seconds since the start.
@@ -63,6 +67,7 @@ impl FromStr for KeyPlan {
         match text.trim().to_ascii_uppercase().as_str() {
             "AUTO" => return Ok(Self::Auto),
             "" | "NONE" => return Ok(Self::Script(Vec::new())),
+            "TERMINAL" => return Ok(Self::Terminal),
             _ => {}
         }
         let mut presses = text.split(',').map(press).collect::<Result<Vec<_>, _>>()?;
@@ -72,7 +77,7 @@ impl FromStr for KeyPlan {
 }
 
 fn press(text: &str) -> Result<Press, String> {
-    let wrong = || format!("{text:?}; expected AUTO, NONE, or presses such as KEY1@2s,KEY4@60s");
+    let wrong = || format!("{text:?}; expected AUTO, NONE, TERMINAL, or presses such as KEY1@2s,KEY4@60s");
     let (what, time) = text.trim().split_once('@').ok_or_else(wrong)?;
     let time: f64 = time.trim().trim_end_matches(['s', 'S']).parse().map_err(|_| wrong())?;
     if !(time.is_finite() && time >= 0.0) {
@@ -100,7 +105,8 @@ fn button(name: &str) -> Option<Button> {
 ///
 /// With [`KeyPlan::Auto`], a program that waits for a key gets, after a second, the first labelled soft key that it
 /// accepts, the next one when it waits again under the same labels, and so on in a circle; without labels, the first
-/// key that it accepts. A program that asks again and again whether a key is pressed gets every labelled key once,
+/// key that it accepts. What was pressed under labels is remembered when they come back, as those of a menu that has
+/// others below it. A program that asks again and again whether a key is pressed gets every labelled key once,
 /// each after the robot has stood still for a second; but a key that ends programs, by its label, is pressed only
 /// when the robot has stood still for ten seconds, and when nine tenths of the time are over. If that does not help,
 /// the keys without a label follow.
@@ -108,19 +114,51 @@ fn button(name: &str) -> Option<Button> {
 pub struct KeyDesk {
     plan: Plan,
     labels: [String; 4],
-    /// How many of the accepted keys have been pressed under these labels.
-    turn: usize,
-    /// Keys that were pressed under these labels while the program asked.
-    pressed: u32,
+    pressed: Pressed,
+    /// What was pressed under other labels.
+    others: Vec<([String; 4], Pressed)>,
     /// When the program began to wait, or to ask.
     since: Option<f64>,
+}
+
+/// What has been pressed under labels.
+#[derive(Debug, Clone, Copy, Default)]
+struct Pressed {
+    /// How many of the accepted keys, while the program waited.
+    waited: usize,
+    /// How many of those that come last, while it asked.
+    asked: usize,
+    /// The keys.
+    keys: u32,
 }
 
 #[derive(Debug)]
 enum Plan {
     Auto,
     Script(VecDeque<Press>),
+    Terminal(Box<dyn Typed>),
 }
+
+/// Soft keys that somebody types.
+pub trait Typed: fmt::Debug + Send {
+    /// The next key of [`KEYS`], if there is one.
+    fn next(&mut self) -> Option<u32>;
+}
+
+/// Nobody types.
+#[derive(Debug)]
+struct Nobody;
+
+impl Typed for Nobody {
+    fn next(&mut self) -> Option<u32> {
+        None
+    }
+}
+
+/// Seconds after which a program looks again whether somebody has typed.
+const GLANCE: f64 = 0.02;
+/// Sets of labels that are remembered.
+const MOST_LABELS: usize = 100;
 
 /// What becomes of a program that waits.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -143,11 +181,28 @@ const LATE: f64 = 0.9;
 impl KeyDesk {
     /// The keys by a plan.
     pub fn new(plan: KeyPlan) -> Self {
+        Self::with_typed(plan, None)
+    }
+
+    /// The keys by a plan, and where those of a terminal come from.
+    pub fn with_typed(plan: KeyPlan, typed: Option<Box<dyn Typed>>) -> Self {
         let plan = match plan {
             KeyPlan::Auto => Plan::Auto,
             KeyPlan::Script(presses) => Plan::Script(presses.into()),
+            KeyPlan::Terminal => Plan::Terminal(typed.unwrap_or(Box::new(Nobody))),
         };
-        Self { plan, labels: Default::default(), turn: 0, pressed: 0, since: None }
+        Self {
+            plan,
+            labels: Default::default(),
+            pressed: Pressed::default(),
+            others: Vec::new(),
+            since: None,
+        }
+    }
+
+    /// Whether somebody sits at a terminal, for whom a second should take a second.
+    pub fn is_live(&self) -> bool {
+        matches!(self.plan, Plan::Terminal(_))
     }
 
     /// Whether it matters how long the robot has stood.
@@ -157,10 +212,17 @@ impl KeyDesk {
 
     /// Labels the keys anew.
     pub fn label(&mut self, labels: [String; 4]) {
-        if labels != self.labels {
-            self.labels = labels;
-            (self.turn, self.pressed, self.since) = (0, 0, None);
+        if labels == self.labels {
+            return;
         }
+        let known = self.others.iter().position(|(others, _)| *others == labels);
+        let pressed = known.map_or_else(Pressed::default, |place| self.others.swap_remove(place).1);
+        if self.others.len() < MOST_LABELS {
+            self.others.push((std::mem::replace(&mut self.labels, labels), self.pressed));
+        } else {
+            self.labels = labels;
+        }
+        (self.pressed, self.since) = (pressed, None);
     }
 
     /// The labels.
@@ -171,16 +233,15 @@ impl KeyDesk {
     /// The key of [`KEYS`] that a program gets which asks without waiting. `standing` is the time since when the robot
     /// stands, `limit` the time limit.
     pub fn read(&mut self, now: f64, standing: f64, limit: f64) -> Option<u32> {
-        if let Plan::Script(_) = self.plan {
-            return self.due(now, |button| match button {
-                Button::Key(key) => Some(key),
-                _ => None,
-            });
+        match &mut self.plan {
+            Plan::Script(_) => return self.due(now, key),
+            Plan::Terminal(typed) => return typed.next(),
+            Plan::Auto => {}
         }
         let since = *self.since.get_or_insert(now);
         let idle = now - since.max(standing);
         let labelled = self.labelled();
-        let fresh = labelled.iter().find(|&&(key, ends)| !ends && self.pressed & key == 0);
+        let fresh = labelled.iter().find(|&&(key, ends)| !ends && self.pressed.keys & key == 0);
         if let Some(&(key, _)) = fresh.filter(|_| idle >= REACTION) {
             return Some(self.press_once(key, now));
         }
@@ -193,25 +254,26 @@ impl KeyDesk {
         let rest = [KEYS[3], KEYS[0], KEYS[1], KEYS[2]];
         let rest = rest.into_iter().filter(|key| labelled.iter().all(|(labelled, _)| labelled != key));
         let last: Vec<u32> = of_kind(true).chain(rest).chain(of_kind(false)).collect();
-        let key = last[self.turn % last.len()];
-        self.turn += 1;
+        let key = last[self.pressed.asked % last.len()];
+        self.pressed.asked += 1;
         Some(self.press_once(key, now))
     }
 
     fn press_once(&mut self, key: u32, now: f64) -> u32 {
-        self.pressed |= key;
+        self.pressed.keys |= key;
         self.since = Some(now);
         key
     }
 
     /// What a program gets that waits for one of the keys in `mask`.
     pub fn wait(&mut self, now: f64, mask: u32) -> Waiting<u32> {
-        if let Plan::Script(_) = self.plan {
-            return self.scripted(now, |button| match button {
-                // RoBIOS drops presses of other keys than the one that a program waits for.
-                Button::Key(key) => Some(key),
-                _ => None,
-            });
+        match &mut self.plan {
+            // RoBIOS drops presses of other keys than the one that a program waits for.
+            Plan::Script(_) => return self.scripted(now, key),
+            Plan::Terminal(typed) => {
+                return typed.next().map_or(Waiting::Until(now + GLANCE), Waiting::Pressed);
+            }
+            Plan::Auto => {}
         }
         let since = *self.since.get_or_insert(now);
         if now < since + REACTION {
@@ -226,8 +288,9 @@ impl KeyDesk {
         if accepted.is_empty() {
             return Waiting::Forever;
         }
-        let key = accepted[self.turn % accepted.len()];
-        self.turn += 1;
+        let key = accepted[self.pressed.waited % accepted.len()];
+        self.pressed.waited += 1;
+        self.pressed.keys |= key;
         Waiting::Pressed(key)
     }
 
@@ -239,8 +302,8 @@ impl KeyDesk {
     /// The place that a program gets which waits for a touch of the display: its middle, if nobody else says so.
     pub fn wait_touch(&mut self, now: f64, middle: (i32, i32)) -> Waiting<(i32, i32)> {
         match self.plan {
-            Plan::Auto => self.after_a_second(now, middle),
             Plan::Script(_) => self.scripted(now, touch),
+            _ => self.after_a_second(now, middle),
         }
     }
 
@@ -252,8 +315,8 @@ impl KeyDesk {
     /// The button of the remote control that a program gets which waits: `OK`, if nobody else says so.
     pub fn wait_remote(&mut self, now: f64) -> Waiting<i32> {
         match self.plan {
-            Plan::Auto => self.after_a_second(now, i32::from(b'O')),
             Plan::Script(_) => self.scripted(now, remote),
+            _ => self.after_a_second(now, i32::from(b'O')),
         }
     }
 
@@ -289,6 +352,13 @@ impl KeyDesk {
     }
 }
 
+fn key(button: Button) -> Option<u32> {
+    match button {
+        Button::Key(key) => Some(key),
+        _ => None,
+    }
+}
+
 fn touch(button: Button) -> Option<(i32, i32)> {
     match button {
         Button::Touch(x, y) => Some((x, y)),
@@ -303,10 +373,14 @@ fn remote(button: Button) -> Option<i32> {
     }
 }
 
+/// The labels of keys that end programs.
+const ENDS: [&str; 11] =
+    ["END", "EXIT", "QUIT", "STOP", "BYE", "DONE", "FINISH", "FINISHED", "OFF", "CLOSE", "TERMINATE"];
+
 /// Whether a label says that its key ends the program.
 fn ends(label: &str) -> bool {
     let label = label.trim().to_ascii_uppercase();
-    ["END", "EXIT", "QUIT", "STOP", "BYE", "DONE", "FINISH", "OFF", "CLOSE"].iter().any(|word| label == *word)
+    ENDS.contains(&label.as_str())
 }
 
 #[cfg(test)]
@@ -359,6 +433,47 @@ mod tests {
         let mut desk = self::desk("AUTO", ["", "", "", "END"]);
         let pressed = (0..100).map(f64::from).find(|&now| desk.read(now, 3.0, 100.0).is_some());
         assert_eq!(pressed, Some(13.0), "it stands");
+    }
+
+    #[test]
+    fn a_program_that_has_waited_and_then_asks_is_ended() {
+        let mut desk = desk("AUTO", ["GO", "", "", "END"]);
+        desk.wait(0.0, 1);
+        assert_eq!(desk.wait(1.0, 1), Waiting::Pressed(1));
+        let pressed = (2..100).map(f64::from).find_map(|now| desk.read(now, 0.0, 1000.0));
+        assert_eq!(pressed, Some(8));
+    }
+
+    #[test]
+    fn what_was_pressed_in_a_menu_is_remembered() {
+        let menu = |desk: &mut KeyDesk, labels: [&str; 4]| desk.label(labels.map(str::to_owned));
+        let mut desk = desk("AUTO", ["RUN", "SET", "", "END"]);
+        let press = |desk: &mut KeyDesk, now: f64| {
+            desk.read(now, 0.0, 1000.0);
+            desk.read(now + 1.0, 0.0, 1000.0)
+        };
+        assert_eq!(press(&mut desk, 10.0), Some(1));
+        menu(&mut desk, ["", "", "", "BACK"]);
+        assert_eq!(press(&mut desk, 20.0), Some(8));
+        menu(&mut desk, ["RUN", "SET", "", "END"]);
+        assert_eq!(press(&mut desk, 30.0), Some(2));
+    }
+
+    #[test]
+    fn typed_keys_are_passed_on() {
+        #[derive(Debug)]
+        struct Typist(Vec<u32>);
+        impl Typed for Typist {
+            fn next(&mut self) -> Option<u32> {
+                self.0.pop()
+            }
+        }
+        let mut desk = KeyDesk::with_typed("terminal".parse().unwrap(), Some(Box::new(Typist(vec![8, 1]))));
+        assert!(desk.is_live());
+        assert_eq!(desk.read(0.0, 0.0, 9.0), Some(1));
+        assert_eq!(desk.wait(1.0, u32::MAX), Waiting::Pressed(8));
+        assert_eq!(desk.wait(2.0, u32::MAX), Waiting::Until(2.0 + GLANCE));
+        assert_eq!(desk.read(3.0, 0.0, 9.0), None);
     }
 
     #[test]

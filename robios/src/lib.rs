@@ -33,11 +33,14 @@
 //! Functions return 0 when they succeed and 1 when they fail, unless RoBIOS says otherwise: null pointers, numbers out
 //! of range, sensors that the robot lacks, and calls after a `fork` or from within a signal handler that has
 //! interrupted another call. `SIMGetRobot` and `SIMSetRobot` take headings as world files do: 0 along the x axis,
-//! counter-clockwise; what was read can be set. Robots and objects are numbered separately, from 1, as they were
-//! placed. Of several robots, each is numbered for the radio as it is for `SIMGetRobot`.
+//! counter-clockwise; what was read can be set. Robots are numbered from 1 as they were placed, for the radio too, and
+//! objects behind them, as EyeSim does where robots are placed first. A number that this gives to a robot means an object
+//! by its own count in `SIMGetObject`, and one that it gives to an object a robot behind all objects in `SIMGetRobot`.
 
 pub mod ask;
 mod ffi;
+pub mod files;
+pub mod keyboard;
 pub mod keys;
 pub mod link;
 pub mod plan;

@@ -9,6 +9,8 @@ use roverlab::io::sim::SimOptions;
 use roverlab::world::formats;
 use roverlab::world::{RobotPlacement, RobotSpec, Scene, World};
 
+use crate::files::LenientFiles;
+
 /// The world of a run, and which robot of it a program drives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
@@ -70,6 +72,8 @@ pub mod names {
     pub const LCD: &str = "ROBIOS_LCD";
     /// The number of the open socket to a world that several share.
     pub const SOCKET: &str = "ROBIOS_SOCKET";
+    /// The number of the open socket through which somebody types.
+    pub const KEYBOARD: &str = "ROBIOS_KEYBOARD";
     /// The library's file, for `eye.py`.
     pub const LIBRARY: &str = "ROBIOS_LIBRARY";
 }
@@ -129,7 +133,11 @@ impl Plan {
         let found = self.world.clone().or_else(|| only_world(&self.folder));
         let mut scene = match found {
             Some(file) => {
-                let parsed = formats::load_scene(&file).map_err(|error| error.to_string())?;
+                let bytes = formats::read_file(&file).map_err(|error| error.to_string())?;
+                let mut files = LenientFiles::of(&bytes);
+                let parsed = formats::parse_scene(bytes, &file.display().to_string(), &mut files);
+                let parsed = parsed.map_err(|error| error.to_string())?;
+                warnings.append(&mut files.warnings);
                 warnings.extend(parsed.warnings.iter().map(ToString::to_string));
                 parsed.value
             }

@@ -8,10 +8,10 @@ use std::os::unix::net::UnixStream;
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command};
 
-/// Starts a program in a process group of its own, that ends with this process at the latest. The socket, if there is
-/// one, stays open in it under the number that [`socket_number`] tells.
-pub fn start(command: &mut Command, socket: Option<&UnixStream>) -> io::Result<Child> {
-    let socket = socket.map(socket_number);
+/// Starts a program in a process group of its own, that ends with this process at the latest. The sockets stay open in
+/// it under the numbers that [`socket_number`] tells.
+pub fn start(command: &mut Command, sockets: &[&UnixStream]) -> io::Result<Child> {
+    let sockets: Vec<RawFd> = sockets.iter().map(|socket| socket_number(socket)).collect();
     command.process_group(0);
     let prepare = move || {
         #[cfg(target_os = "linux")]
@@ -19,7 +19,7 @@ pub fn start(command: &mut Command, socket: Option<&UnixStream>) -> io::Result<C
         unsafe {
             libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
         }
-        if let Some(socket) = socket {
+        for &socket in &sockets {
             // SAFETY: the descriptor is open in the parent, so it is here; without flags it stays open in the program.
             if unsafe { libc::fcntl(socket, libc::F_SETFD, 0) } != 0 {
                 return Err(io::Error::last_os_error());
@@ -35,6 +35,13 @@ pub fn start(command: &mut Command, socket: Option<&UnixStream>) -> io::Result<C
 /// The number of a socket, for the environment of a program.
 pub fn socket_number(socket: &UnixStream) -> RawFd {
     socket.as_raw_fd()
+}
+
+/// Whether there is something to read from a socket, or its other end is closed, after so many milliseconds at most.
+pub fn is_readable(socket: &UnixStream, milliseconds: i32) -> bool {
+    let mut state = libc::pollfd { fd: socket_number(socket), events: libc::POLLIN, revents: 0 };
+    // SAFETY: the kernel reads and writes one record, which lives until it returns.
+    unsafe { libc::poll(&raw mut state, 1, milliseconds) > 0 }
 }
 
 /// Ends a program that [`start`] has started, and what it has started itself.

@@ -2,8 +2,9 @@
 //!
 //! Without a C compiler, or without Python, the tests that need one say so and pass.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
 use serde_json::Value;
@@ -87,6 +88,9 @@ fn check(program: &str, options: &[&str]) -> Value {
     report
 }
 
+/// What `keys.c` and `keys.py` expect.
+const SCRIPT: &str = "KEY2@1s,KEY1@2s,KEY4@4s,TOUCH:12:34@5s,IRTV_OK@6s";
+
 #[test]
 fn every_group_of_functions_does_what_it_should() {
     if !compiler() {
@@ -101,7 +105,9 @@ fn every_group_of_functions_does_what_it_should() {
     check("motors.c", &[]);
     check("driving.c", &[]);
     check("threads.c", &[]);
-    check("keys.c", &["--keys", "KEY2@1s,KEY1@2s,KEY4@4s,TOUCH:12:34@5s,IRTV_OK@6s"]);
+    check("keys.c", &["--keys", SCRIPT]);
+    check("older.c", &[]);
+    check("timers.c", &[]);
     check("sensors.c", &["--start", "1000,2000,0"]);
 }
 
@@ -110,14 +116,26 @@ fn every_chapter_has_its_program() {
     if !compiler() {
         return;
     }
+    check("chapter02.c", &["--start", "1000,1000,0"]);
     check("chapter03.c", &["--start", "1000,1000,0"]);
     check("chapter04.c", &["--start", "2000,2000,0"]);
     check("chapter06.c", &["--start", "2000,2000,0", "--time-limit", "300"]);
     check("chapter07.c", &["--robot", "Omni", "--start", "2000,2000,0"]);
+    check("chapter08.c", &["--robot", "Omni", "--start", "2000,2000,0", "--time-limit", "300"]);
     check("chapter11.c", &["--start", "1000,1000,0"]);
+    check("chapter12.c", &["--start", "2000,2000,0", "--time-limit", "300"]);
+    check("chapter13.c", &["--start", "1000,2000,0"]);
     check("chapter14.c", &["--robot", "Car", "--start", "2000,2000,0"]);
 
     let folder = Folder::new("chapters");
+    let field = folder.write(
+        "wall.wld",
+        "floor 4000 4000\n0 0 4000 0\n4000 0 4000 4000\n4000 4000 0 4000\n0 4000 0 0\n1800 1500 1800 2200\n",
+    );
+    let file = folder.copy("chapter10.c", "chapter10.c");
+    let around =
+        report(&["--world", field.to_str().unwrap(), "--start", "500,2000,0", file.to_str().unwrap()]);
+    assert_eq!((&around["exit"], &around["collisions"]), (&0.into(), &0.into()), "{around}");
     folder.copy("chapter05.c", "follow.c");
     folder.write("lead.py", "from eye import *\nVWSetSpeed(200, 15)\n");
     folder
@@ -225,7 +243,7 @@ fn what_one_program_does_wrong_harms_no_other() {
     let all = report(&["--time-limit", "40", "--hang-limit", "1", script.to_str().unwrap()]);
     let outcomes: Vec<&str> =
         all["robots"].as_array().unwrap().iter().map(|robot| robot["outcome"].as_str().unwrap()).collect();
-    assert_eq!(outcomes, ["finished", "crashed", "failed", "timed_out", "failed", "failed"], "{all}");
+    assert_eq!(outcomes, ["finished", "crashed", "timed_out", "timed_out", "failed", "failed"], "{all}");
     assert_eq!(all["robots"][0]["lcd_text"], "done");
     assert_eq!(all["robots"][1]["lcd_text"], "before");
     assert_eq!(all["robots"][2]["lcd_text"], "hanging");
@@ -284,6 +302,117 @@ fn python_programs_run() {
     if cfg!(target_os = "linux") {
         assert_eq!(check("foreign.py", &[])["lcd_text"], "number 7");
     }
+}
+
+#[test]
+fn every_group_of_functions_does_what_it_should_in_python() {
+    if !python() {
+        return;
+    }
+    check("display.py", &[]);
+    check("keys.py", &["--keys", SCRIPT]);
+    check("images.py", &[]);
+    check("system.py", &[]);
+    check("lines.py", &[]);
+    check("driving.py", &["--start", "1000,2000,0"]);
+    let folder = Folder::new("simulation-py");
+    folder.copy("simulation.py", "simulation.py");
+    let script = folder
+        .write("two.sim", "S4 500 600 90 simulation.py\nS4 1500 600 180 simulation.py\ncan 1000 1200 0\n");
+    let all = report(&[script.to_str().unwrap()]);
+    let texts: Vec<_> = all["robots"].as_array().unwrap().iter().map(|robot| &robot["lcd_text"]).collect();
+    assert_eq!(texts, ["robot 1 is done", "robot 2 is done"], "{all}");
+}
+
+#[test]
+fn somebody_at_the_terminal_presses_keys() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("terminal");
+    let file = folder.write(
+        "typed.c",
+        "#include \"eyebot.h\"\nint main(void)\n{\n    LCDMenu(\"ONE\", \"TWO\", \"\", \"END\");\n    \
+         LCDPrintf(\"%d \", KEYGet());\n    LCDPrintf(\"%d\", KEYWait(KEY4));\n    return 0;\n}\n",
+    );
+    let mut runner = Command::new(env!("CARGO_BIN_EXE_robios"))
+        .args(["--json", "--keys", "TERMINAL", file.to_str().unwrap()])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    runner.stdin.take().unwrap().write_all(b"2\n1\n4\n").unwrap();
+    let output = runner.wait_with_output().unwrap();
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&report["outcome"], &report["lcd_text"]), (&"finished".into(), &"2 8".into()), "{report}");
+    let shown = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(shown.contains("[1] ONE  [2] TWO  [3]   [4] END"), "{shown}");
+}
+
+#[test]
+fn programs_are_compiled_as_their_authors_meant() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("meant");
+    folder.write("helper.h", "int twice(int number);\n");
+    folder.write("helper.c", "#include \"helper.h\"\nint twice(int number) { return 2 * number; }\n");
+    for (name, text) in [
+        // A main function that returns nothing, functions without prototypes, types that go without saying.
+        (
+            "lax.c",
+            "#include \"eyebot.h\"\nvoid main() { start(3); LCDPrintf(\"good\"); PSDGet(PSD_FRONT); }\nstart(n) { }\n",
+        ),
+        // Names of its own that headers of other years have.
+        (
+            "names.c",
+            "#include \"eyebot.h\"\nenum { NONE, WALKER };\nconst int PSD_FRONT = 1;\nint LCDInit(char *text)\n\
+             { return LCDPrintf(\"%s\", text); }\nint main() { return LCDInit(\"good\") + NONE; }\n",
+        ),
+        // A source text of its own behind a header.
+        (
+            "parts.c",
+            "#include \"eyebot.h\"\n#include \"helper.h\"\nint main() { if (twice(2) == 4) LCDPrintf(\"good\"); return 0; }\n",
+        ),
+        // The newest standard.
+        (
+            "newest.cpp",
+            "#include \"eyebot++.h\"\n#include <set>\nint main() { std::set<int> s{1}; if (s.contains(1)) \
+             LCDPrintf(\"good\"); return 0; }\n",
+        ),
+    ] {
+        let report = report(&[folder.write(name, text).to_str().unwrap()]);
+        assert_eq!((&report["exit"], &report["lcd_text"]), (&0.into(), &"good".into()), "{name}: {report}");
+    }
+}
+
+#[test]
+fn scripts_run_without_files_that_they_name() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("without");
+    folder.copy("square.c", "square.c");
+    let script = folder.write(
+        "alone.sim",
+        "world ../worlds/Missing.wld\nrobot robots/Cubot.robi\nobject Sign.esObj\nSign 3000 3000 0\n\
+         Cubot 7000 7000 0 square.x\n",
+    );
+    let report = report(&[script.to_str().unwrap()]);
+    assert_eq!((&report["outcome"], &report["lcd_text"]), (&"finished".into(), &"done".into()), "{report}");
+}
+
+#[test]
+fn a_program_that_fails_is_quoted() {
+    if !python() {
+        return;
+    }
+    let folder = Folder::new("quoted");
+    let file = folder.write("fails.py", "import no_such_module\n");
+    let report = report(&[file.to_str().unwrap()]);
+    let error = report["error"].as_str().unwrap();
+    assert!(report["outcome"] == "failed" && error.contains("no_such_module"), "{report}");
 }
 
 #[test]

@@ -13,6 +13,18 @@
 extern "C" {
 #endif
 
+/* Types that headers of EyeBot programs name; nothing is behind them. */
+typedef unsigned long XID, Window, Drawable, Font, Pixmap, Colormap, Atom;
+typedef struct eyesim_Display Display;
+typedef struct eyesim_Screen Screen;
+typedef struct eyesim_GC *GC;
+typedef struct eyesim_XFontStruct XFontStruct;
+typedef struct {
+    unsigned long pixel;
+    unsigned short red, green, blue;
+    char flags, pad;
+} XColor;
+
 int XInitThreads(void);
 
 #ifdef __cplusplus

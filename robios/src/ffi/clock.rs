@@ -3,11 +3,12 @@
 //!
 //! They take effect in programs that are linked against this library before the C library, as `gccsim` does, from the
 //! first call of a function of RoBIOS on, or from the start if the runner has started the program. Everybody else gets
-//! the system's own. What is not replaced runs by the real clock: timers of the kernel (`alarm`, `setitimer`), waiting
-//! for files and sockets, and waiting for condition variables with a time limit.
+//! the system's own. What is not replaced runs by the real clock: `setitimer`, waiting for files and sockets, and for
+//! semaphores and mutexes with a time limit.
 
 use std::ffi::{c_int, c_long, c_uint, c_void};
 use std::sync::atomic::{AtomicU8, Ordering};
+use std::time::Duration;
 
 use libc::{clockid_t, pthread_attr_t, pthread_t, time_t, timespec, timeval};
 
@@ -62,9 +63,10 @@ fn spec(seconds: f64) -> timespec {
     timespec { tv_sec: whole as time_t, tv_nsec: ((seconds - whole) * BILLION) as c_long }
 }
 
-/// Sleeps for so many real nanoseconds.
-pub(super) fn real_nap(nanoseconds: i64) {
-    let time = timespec { tv_sec: 0, tv_nsec: nanoseconds };
+/// Sleeps for a real time.
+pub(super) fn real_nap(time: Duration) {
+    let time =
+        timespec { tv_sec: time.as_secs() as time_t, tv_nsec: c_long::from(time.subsec_nanos() as i32) };
     // SAFETY: the kernel reads the time, which lives until it returns, and writes nothing.
     unsafe { libc::syscall(libc::SYS_nanosleep, &raw const time, std::ptr::null_mut::<timespec>()) };
 }
@@ -154,6 +156,12 @@ fn real_time() -> timespec {
     time
 }
 
+/// Real seconds since 1970.
+pub(super) fn real_seconds() -> f64 {
+    let time = real_time();
+    time.tv_sec as f64 + time.tv_nsec as f64 / BILLION
+}
+
 fn wall_time() -> timespec {
     now().map_or_else(real_time, |now| spec(EPOCH + now))
 }
@@ -184,6 +192,28 @@ extern "C" fn clock() -> libc::clock_t {
     time.tv_sec * 1_000_000 + time.tv_nsec / 1000
 }
 
+extern "C" fn ring() {
+    // SAFETY: sends this process the signal of its alarm clock.
+    unsafe { libc::kill(libc::getpid(), libc::SIGALRM) };
+}
+
+/// The alarm clock goes by the program's clock.
+#[unsafe(no_mangle)]
+extern "C" fn alarm(time: c_uint) -> c_uint {
+    let after = (time > 0).then_some(f64::from(time));
+    let earlier = if is_virtual() { enter(|robios| Ok(robios.call_after(after, ring))) } else { None };
+    let Some(earlier) = earlier else {
+        let found = original(c"alarm");
+        if found.is_null() {
+            return 0;
+        }
+        // SAFETY: the C library's function of this name has this type.
+        return unsafe { std::mem::transmute::<*mut c_void, extern "C" fn(c_uint) -> c_uint>(found)(time) };
+    };
+    super::watch::start();
+    earlier.map_or(0, |rest| rest.max(1.0).round() as c_uint)
+}
+
 /// The C library's function of a name.
 fn original(name: &std::ffi::CStr) -> *mut c_void {
     // SAFETY: looks up a name that ends with a zero byte.
@@ -211,6 +241,78 @@ extern "C" fn pthread_create(
         let create = std::mem::transmute::<*mut c_void, Create>(found);
         create(thread, attributes, start, argument)
     }
+}
+
+type ConditionWait = unsafe extern "C" fn(*mut c_void, *mut c_void, clockid_t, *const timespec) -> c_int;
+
+type TimedWait = unsafe extern "C" fn(*mut c_void, *mut c_void, *const timespec) -> c_int;
+
+/// Real time that a thread waits for a condition before it looks at the program's clock.
+const GLANCE: f64 = 50e-6;
+
+/// Waits for a condition until a time on the program's clock: in short waits by the real one, between which the
+/// program's time passes.
+fn wait_virtually(condition: *mut c_void, mutex: *mut c_void, end: f64) -> Option<c_int> {
+    let found = original(c"pthread_cond_clockwait");
+    if found.is_null() {
+        return None;
+    }
+    // SAFETY: the C library's function of this name has this type.
+    let wait = unsafe { std::mem::transmute::<*mut c_void, ConditionWait>(found) };
+    loop {
+        let until = spec(real_seconds() + GLANCE);
+        // SAFETY: the program has passed condition and mutex for this, and the time lives until the function returns.
+        let result = unsafe { wait(condition, mutex, libc::CLOCK_REALTIME, &raw const until) };
+        if result != libc::ETIMEDOUT {
+            return Some(result);
+        }
+        let now = now()?;
+        if now >= end {
+            return Some(libc::ETIMEDOUT);
+        }
+        sleep_virtually((end - now).min(roverlab::io::sim::TICK))?;
+    }
+}
+
+/// The program's time at an absolute one; `None` if the program has no clock of its own.
+fn end_of_wait(clock: clockid_t, time: *const timespec) -> Option<f64> {
+    let time = input(time, 1).and_then(|times| seconds(times[0]))?;
+    now().filter(|_| is_wall_clock(clock)).map(|_| time - EPOCH)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn pthread_cond_clockwait(
+    condition: *mut c_void,
+    mutex: *mut c_void,
+    clock: clockid_t,
+    time: *const timespec,
+) -> c_int {
+    if let Some(end) = end_of_wait(clock, time) {
+        return wait_virtually(condition, mutex, end).unwrap_or(libc::ETIMEDOUT);
+    }
+    let found = original(c"pthread_cond_clockwait");
+    if found.is_null() {
+        return libc::ENOSYS;
+    }
+    // SAFETY: the C library's function of this name has this type, and gets what the program has passed.
+    unsafe { std::mem::transmute::<*mut c_void, ConditionWait>(found)(condition, mutex, clock, time) }
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn pthread_cond_timedwait(
+    condition: *mut c_void,
+    mutex: *mut c_void,
+    time: *const timespec,
+) -> c_int {
+    if let Some(end) = end_of_wait(libc::CLOCK_REALTIME, time) {
+        return wait_virtually(condition, mutex, end).unwrap_or(libc::ETIMEDOUT);
+    }
+    let found = original(c"pthread_cond_timedwait");
+    if found.is_null() {
+        return libc::ENOSYS;
+    }
+    // SAFETY: the C library's function of this name has this type, and gets what the program has passed.
+    unsafe { std::mem::transmute::<*mut c_void, TimedWait>(found)(condition, mutex, time) }
 }
 
 type Select = unsafe extern "C" fn(c_int, *mut c_void, *mut c_void, *mut c_void, *mut timeval) -> c_int;

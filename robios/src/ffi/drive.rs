@@ -48,18 +48,18 @@ extern "C" fn VWDrive(forward: c_int, left: c_int, speed: c_int) -> c_int {
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn VWRemain() -> c_int {
+pub(super) extern "C" fn VWRemain() -> c_int {
     enter(|robios| robios.vw_remain()).unwrap_or(-1)
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn VWDone() -> c_int {
+pub(super) extern "C" fn VWDone() -> c_int {
     // A program that waits for the end of a drive that is not there should not wait.
     c_int::from(enter(|robios| robios.vw_done()).unwrap_or(true))
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn VWWait() -> c_int {
+pub(super) extern "C" fn VWWait() -> c_int {
     if may_block() {
         return code(enter(|robios| robios.vw_wait()));
     }

@@ -112,7 +112,7 @@ extern "C" fn ANALOGTransfer(buffer: *mut u8) -> c_int {
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn AUBeep() -> c_int {
+pub(super) extern "C" fn AUBeep() -> c_int {
     code(enter(|robios| robios.au_play()))
 }
 
@@ -122,7 +122,7 @@ extern "C" fn AUPlay(sample: *const c_char) -> c_int {
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn AUDone() -> c_int {
+pub(super) extern "C" fn AUDone() -> c_int {
     c_int::from(enter(|robios| robios.au_done()).unwrap_or(true))
 }
 

@@ -17,8 +17,11 @@ mod images;
 mod keys;
 mod lines;
 mod memory;
+#[cfg(target_os = "linux")]
+mod older;
 mod radio;
 mod runtime;
 mod sensing;
 mod system;
 mod variadic;
+mod watch;

@@ -8,12 +8,14 @@ use std::os::unix::net::UnixStream;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicI32, AtomicU64, AtomicUsize, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError, TryLockError};
+use std::time::Duration;
 
 use roverlab::io::sim::TICK;
 use roverlab::io::{ErrorKind, Result};
 
-use crate::keys::{KeyPlan, Waiting};
+use crate::keyboard::Keyboard;
+use crate::keys::{KeyDesk, KeyPlan, Typed, Waiting};
 use crate::link::{Link, Remote, own_world};
 use crate::plan::{Plan, names};
 use crate::report::{Report, ReportFile, Stage};
@@ -47,6 +49,22 @@ thread_local! {
     static INSIDE: Cell<bool> = const { Cell::new(false) };
     /// Counts this thread while it lives.
     static PRESENT: Present = Present::new();
+    /// Whether this thread is the library's own, or about to start one: it is none of the program's.
+    static OURS: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Says whether this thread acts for the library.
+pub(super) fn set_ours(ours: bool) {
+    let _ = OURS.try_with(|flag| flag.set(ours));
+}
+
+fn is_the_programs() -> bool {
+    !OURS.try_with(Cell::get).unwrap_or(false)
+}
+
+/// Calls so far.
+pub(super) fn calls() -> u64 {
+    CALLS.load(Ordering::Relaxed)
 }
 
 struct Present;
@@ -70,7 +88,8 @@ struct Inside;
 impl Inside {
     fn new() -> Option<Self> {
         let free = INSIDE.try_with(|inside| !inside.replace(true)).unwrap_or(false);
-        free.then_some(Self)
+        // Made only where it is needed: to drop it is to say that the thread has left.
+        if free { Some(Self) } else { None }
     }
 }
 
@@ -98,7 +117,9 @@ pub(super) fn is_alive() -> bool {
 
 /// Notes that the program has started a thread.
 pub(super) fn note_thread() {
-    STARTED_THREADS.store(true, Ordering::Relaxed);
+    if is_the_programs() {
+        STARTED_THREADS.store(true, Ordering::Relaxed);
+    }
 }
 
 fn alone() -> bool {
@@ -107,7 +128,9 @@ fn alone() -> bool {
 
 /// Calls the robot. `None` if there is none, or if it cannot do what is asked. Ends the program when its time is over.
 pub(super) fn enter<T>(call: impl FnOnce(&mut Robios) -> Result<T>) -> Option<T> {
-    CALLS.fetch_add(1, Ordering::Relaxed);
+    if is_the_programs() {
+        CALLS.fetch_add(1, Ordering::Relaxed);
+    }
     enter_quietly(call)
 }
 
@@ -117,33 +140,83 @@ fn enter_quietly<T>(call: impl FnOnce(&mut Robios) -> Result<T>) -> Option<T> {
         return None;
     }
     let inside = Inside::new()?;
-    let _ = PRESENT.try_with(|_| ());
+    if is_the_programs() {
+        let _ = PRESENT.try_with(|_| ());
+    }
     let mut state = lock();
     if let State::Unborn = *state {
         *state = born();
     }
+    serve(state, inside, call)
+}
+
+/// Calls the robot behind the lock, and what is due of the timers' functions without it.
+fn serve<T>(
+    mut state: MutexGuard<'static, State>,
+    inside: Inside,
+    call: impl FnOnce(&mut Robios) -> Result<T>,
+) -> Option<T> {
     let State::Alive(robios) = &mut *state else { return None };
     // A panic would be a mistake of this library. The robot is as consistent after it as before each step.
     let answer = catch_unwind(AssertUnwindSafe(|| call(robios))).ok();
     robios.publish();
+    let now = robios.now();
+    let ahead = if robios.keys.is_live() { lead(now) } else { Duration::ZERO };
     if let Some(Err(error)) = &answer {
         match error.kind() {
             ErrorKind::TimedOut => end(state, Stage::TimedOut),
             ErrorKind::Disconnected => end(state, Stage::Disconnected),
             _ => {}
         }
-    } else if !robios.timers.is_empty() && !IN_TIMER.load(Ordering::Relaxed) {
-        let now = robios.now();
+    } else if !robios.timers.is_empty() && !IN_TIMER.swap(true, Ordering::Acquire) {
         let due = robios.timers.due(now);
         drop(state);
         drop(inside);
-        IN_TIMER.store(true, Ordering::Relaxed);
         for function in due {
             function();
         }
-        IN_TIMER.store(false, Ordering::Relaxed);
+        IN_TIMER.store(false, Ordering::Release);
+    } else {
+        drop(state);
+        drop(inside);
+    }
+    if !ahead.is_zero() {
+        nap(ahead);
     }
     answer.and_then(Result::ok)
+}
+
+/// What became of time that was to pass without a call.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Unasked {
+    /// It passed, or there was no reason that it should.
+    Passed,
+    /// Somebody is calling.
+    Busy,
+    /// There is no robot any more.
+    Over,
+}
+
+/// Lets time pass that nobody has asked for: so many seconds to where the next timer is due, or without timers.
+pub(super) fn pass_unasked(with_timers: f64, without: f64) -> Unasked {
+    let Some(inside) = Inside::new().filter(|_| is_ours()) else { return Unasked::Over };
+    let state = match STATE.try_lock() {
+        Ok(state) => state,
+        Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
+        Err(TryLockError::WouldBlock) => return Unasked::Busy,
+    };
+    if !matches!(*state, State::Alive(_)) {
+        return Unasked::Over;
+    }
+    serve(state, inside, |robios| match robios.timers.next() {
+        Some(due) => {
+            let rest = due - robios.now();
+            robios.pass(rest.min(with_timers))
+        }
+        None if without > 0.0 => robios.pass(without),
+        None => Ok(()),
+    });
+    Unasked::Passed
 }
 
 fn lock() -> MutexGuard<'static, State> {
@@ -157,6 +230,11 @@ fn born() -> State {
         Ok(Ok(robios)) => {
             // SAFETY: the function lives as long as the library, which is never unloaded before the handlers run.
             unsafe { libc::atexit(at_exit) };
+            super::sensing::publish_points(robios.lidar_points());
+            if env::var_os(names::SOCKET).is_none() {
+                // A world that is shared goes on by itself.
+                super::watch::start();
+            }
             State::Alive(Box::new(robios))
         }
         Ok(Err(message)) => {
@@ -169,10 +247,17 @@ fn born() -> State {
 }
 
 fn robot() -> std::result::Result<Robios, String> {
-    let keys = env::var(names::KEYS).ok().filter(|keys| !keys.is_empty());
-    let keys = keys.map(|keys| keys.parse::<KeyPlan>().map_err(|error| format!("{}: {error}", names::KEYS)));
     let outlets = Outlets { report: report_file(), lcd: env::var_os(names::LCD).map(PathBuf::from) };
-    Robios::new(link()?, keys.transpose()?.unwrap_or_default(), outlets).map_err(|error| error.to_string())
+    Robios::new(link()?, keys()?, outlets).map_err(|error| error.to_string())
+}
+
+fn keys() -> std::result::Result<KeyDesk, String> {
+    let plan = env::var(names::KEYS).ok().filter(|keys| !keys.is_empty());
+    let plan = plan.map(|keys| keys.parse::<KeyPlan>().map_err(|error| format!("{}: {error}", names::KEYS)));
+    let keyboard = inherited(names::KEYBOARD)?.map(Keyboard::new).transpose();
+    let keyboard = keyboard.map_err(|error| format!("{}: {error}", names::KEYBOARD))?;
+    let typed = keyboard.map(|keyboard| Box::new(keyboard) as Box<dyn Typed>);
+    Ok(KeyDesk::with_typed(plan.transpose()?.unwrap_or_default(), typed))
 }
 
 fn report_file() -> Option<ReportFile> {
@@ -186,18 +271,23 @@ fn refuse() {
 }
 
 fn link() -> std::result::Result<Box<dyn Link>, String> {
-    let Ok(socket) = env::var(names::SOCKET) else {
-        return Ok(Box::new(own_world(&Plan::from_environment()?)?));
-    };
-    let number: c_int =
-        socket.parse().map_err(|_| format!("{} is {socket:?}; expected a number", names::SOCKET))?;
+    match inherited(names::SOCKET)? {
+        Some(stream) => Ok(Box::new(Remote::new(stream))),
+        None => Ok(Box::new(own_world(&Plan::from_environment()?)?)),
+    }
+}
+
+/// The socket that whoever started this process has left open, under the number in a variable.
+fn inherited(name: &str) -> std::result::Result<Option<UnixStream>, String> {
+    let Ok(text) = env::var(name) else { return Ok(None) };
+    let number: c_int = text.parse().map_err(|_| format!("{name} is {text:?}; expected a number"))?;
     // SAFETY: only asks whether the number stands for something that is open.
     let open = number > 2 && unsafe { libc::fcntl(number, libc::F_SETFD, libc::FD_CLOEXEC) } == 0;
     if !open {
-        return Err(format!("{} is {number}; expected an open socket", names::SOCKET));
+        return Err(format!("{name} is {number}; expected an open socket"));
     }
     // SAFETY: the descriptor is open, and whoever started the process has left it to this library.
-    Ok(Box::new(Remote::new(unsafe { UnixStream::from_raw_fd(number) })))
+    Ok(Some(unsafe { UnixStream::from_raw_fd(number) }))
 }
 
 /// Writes down how the run ended, and ends the program.
@@ -234,8 +324,8 @@ pub(super) fn sleep_for(seconds: f64) -> Option<()> {
     sleep_until(start + seconds)
 }
 
-/// Real microseconds that other threads get to do something before a thread that sleeps lets time pass.
-const GRACE: i64 = 50;
+/// Real time that other threads get to do something before a thread that sleeps lets time pass.
+const GRACE: Duration = Duration::from_micros(50);
 
 /// Lets the program wait until a time, in seconds since the start. Timers' functions are called in between.
 ///
@@ -258,7 +348,7 @@ fn sleep_until(end: f64) -> Option<()> {
         if alone {
             continue;
         }
-        nap();
+        nap(GRACE);
         if CALLS.load(Ordering::Relaxed) == calls {
             enter_quietly(|robios| {
                 let rest = end - robios.now();
@@ -268,14 +358,35 @@ fn sleep_until(end: f64) -> Option<()> {
     }
 }
 
+/// How far a program is ahead of the real time since its first call.
+fn lead(now: f64) -> Duration {
+    static START: OnceLock<f64> = OnceLock::new();
+    let real = real_seconds();
+    let lead = now - (real - *START.get_or_init(|| real - now));
+    Duration::try_from_secs_f64(lead).unwrap_or_default()
+}
+
 #[cfg(target_os = "linux")]
-fn nap() {
-    super::clock::real_nap(GRACE * 1000);
+fn real_seconds() -> f64 {
+    super::clock::real_seconds()
 }
 
 #[cfg(not(target_os = "linux"))]
-fn nap() {
-    std::thread::sleep(std::time::Duration::from_micros(GRACE as u64));
+#[allow(clippy::disallowed_methods, reason = "for programs with somebody at the terminal alone")]
+fn real_seconds() -> f64 {
+    std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default().as_secs_f64()
+}
+
+/// Sleeps for a real time.
+#[cfg(target_os = "linux")]
+pub(super) fn nap(time: Duration) {
+    super::clock::real_nap(time);
+}
+
+/// Sleeps for a real time.
+#[cfg(not(target_os = "linux"))]
+pub(super) fn nap(time: Duration) {
+    std::thread::sleep(time);
 }
 
 /// Whether a call may wait in the world, because the program has nothing else to do meanwhile.

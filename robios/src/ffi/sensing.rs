@@ -8,6 +8,11 @@ use super::runtime::{code, enter};
 #[unsafe(no_mangle)]
 static LIDAR_RESOLUTION: AtomicI32 = AtomicI32::new(360);
 
+/// Robots' scanners differ: a program learns by this number how many points theirs has.
+pub(super) fn publish_points(points: usize) {
+    LIDAR_RESOLUTION.store(points as i32, Ordering::Relaxed);
+}
+
 #[unsafe(no_mangle)]
 extern "C" fn PSDGet(psd: c_int) -> c_int {
     enter(|robios| robios.psd_get(psd)).unwrap_or(0)
@@ -20,11 +25,7 @@ extern "C" fn PSDGetRaw(psd: c_int) -> c_int {
 
 #[unsafe(no_mangle)]
 extern "C" fn LIDARGet(distances: *mut c_int) -> c_int {
-    let scan = enter(|robios| {
-        // Robots' scanners differ; a program learns how many points there are by this number.
-        LIDAR_RESOLUTION.store(robios.lidar_points() as i32, Ordering::Relaxed);
-        robios.lidar_get()
-    });
+    let scan = enter(|robios| robios.lidar_get());
     code(scan.filter(|scan| output(distances, scan)).map(|_| ()))
 }
 
@@ -32,7 +33,7 @@ extern "C" fn LIDARGet(distances: *mut c_int) -> c_int {
 extern "C" fn LIDARSet(range: c_int, tilt: c_int, points: c_int) -> c_int {
     let set = enter(|robios| robios.lidar_set(range, tilt, points));
     if set.is_some() {
-        LIDAR_RESOLUTION.store(points, Ordering::Relaxed);
+        publish_points(points as usize);
     }
     code(set)
 }

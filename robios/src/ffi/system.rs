@@ -3,6 +3,7 @@ use std::process::{Command, Stdio};
 
 use super::memory::{output_text, scatter, text};
 use super::runtime::{code, enter, sleep_for};
+use super::watch;
 use crate::robios::Callback;
 
 /// Bytes that are written to memory whose size the program does not state.
@@ -72,6 +73,9 @@ extern "C" fn OSWait(milliseconds: c_int) -> c_int {
 #[unsafe(no_mangle)]
 extern "C" fn OSAttachTimer(scale: c_int, function: Option<Callback>) -> c_int {
     let timer = function.and_then(|function| enter(|robios| robios.os_attach_timer(scale, function)));
+    if timer.is_some() {
+        watch::start();
+    }
     timer.unwrap_or(0)
 }
 

@@ -4,12 +4,14 @@ use roverlab::io::{
     Display, DisplayOption, Fill, Font, FontFamily, FontStyle, Key, Picture, Result, Viewport,
 };
 
-use super::{Robios, images, invalid};
+use super::{ImageSize, Robios, images, invalid};
 use crate::keys::{KEYS, Waiting};
 use crate::screen::{colour, number};
 
 /// The images that the display takes unless a program says otherwise: QVGA.
 const DEFAULT_IMAGE: (usize, usize) = (320, 240);
+/// Columns and rows of the largest window for an image.
+const WIDEST: i32 = 10_000;
 /// RoBIOS's number of images of a size of the program's own.
 const CUSTOM: i32 = 10;
 
@@ -39,6 +41,10 @@ impl Robios {
     /// `LCDPrintf`, formatted.
     pub fn lcd_print(&mut self, text: &str) -> Result<()> {
         self.text_changed = true;
+        if self.keys.is_live() {
+            // Whoever sits at the terminal has no other display.
+            eprint!("{text}");
+        }
         self.screen.print(text)?;
         self.charge()
     }
@@ -120,6 +126,10 @@ impl Robios {
     /// `LCDMenu`.
     pub fn lcd_menu(&mut self, labels: [String; 4]) -> Result<()> {
         self.screen.lcd.set_menu(labels.each_ref().map(String::as_str))?;
+        if self.keys.is_live() && *self.keys.labels() != labels {
+            let [first, second, third, fourth] = &labels;
+            eprintln!("\n[1] {first}  [2] {second}  [3] {third}  [4] {fourth}");
+        }
         self.keys.label(labels);
         self.charge()
     }
@@ -172,30 +182,45 @@ impl Robios {
         self.charge()
     }
 
+    /// `LCDPixelInvert`, and `LCDAreaInvert` and `LCDLineInvert` pixel by pixel.
+    pub fn lcd_invert(&mut self, pixels: impl IntoIterator<Item = (i32, i32)>) -> Result<()> {
+        for place in pixels {
+            if let Some(found) = self.screen.lcd.pixel(place)? {
+                self.screen.lcd.set_pixel(place, colour(!number(found)))?;
+            }
+        }
+        self.charge()
+    }
+
     /// `LCDImageSize`.
     pub fn lcd_image_size(&mut self, resolution: i32) -> Result<()> {
-        if resolution == CUSTOM {
-            // The size that LCDImageStart gives.
-            self.lcd_image = self.window.map(|w| (w.width.max(0) as usize, w.height.max(0) as usize));
-        } else {
-            self.lcd_image = Some(images::named_size(resolution)?);
-        }
+        self.lcd_image = match resolution {
+            CUSTOM => ImageSize::Custom,
+            named => ImageSize::Named(images::named_size(named)?),
+        };
         self.charge()
     }
 
     /// `LCDImageStart`.
     pub fn lcd_image_start(&mut self, corner: (i32, i32), width: i32, height: i32) -> Result<()> {
-        if width <= 0 || height <= 0 {
-            return Err(invalid("image size", format!("{width} x {height}"), "at least one pixel"));
+        if !(1..=WIDEST).contains(&width) || !(1..=WIDEST).contains(&height) {
+            return Err(invalid("image size", format!("{width} x {height}"), "1 to 10000 columns and rows"));
         }
         self.window = Some(Viewport::new(corner, width, height));
         self.charge()
     }
 
     /// Columns and rows of the images that the display takes now: those that `LCDImageSize` says, or else those that
-    /// the camera and the functions of image processing have been set to, or else QVGA.
+    /// the camera and the functions of image processing have been set to, or else those of the window that
+    /// `LCDImageStart` gives, or else QVGA.
     pub fn lcd_image_dimensions(&self) -> (usize, usize) {
-        self.lcd_image.unwrap_or(if self.image_size_set { self.image_size } else { DEFAULT_IMAGE })
+        let window =
+            self.window.map_or(DEFAULT_IMAGE, |w| (w.width.max(0) as usize, w.height.max(0) as usize));
+        match self.lcd_image {
+            ImageSize::Named(size) => size,
+            ImageSize::Unsaid if self.image_size_set => self.image_size,
+            ImageSize::Unsaid | ImageSize::Custom => window,
+        }
     }
 
     /// `LCDImage`, `LCDImageGray` and `LCDImageBinary`.

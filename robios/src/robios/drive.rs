@@ -12,6 +12,7 @@ impl Robios {
     pub fn vw_set_speed(&mut self, linear: i32, angular: i32) -> Result<()> {
         let twist = Twist::new(units::from_mm(linear.into()), units::from_deg(angular.into()));
         self.order(&Request::SetSpeed(twist))?;
+        self.turning = 0;
         self.drives(if (linear, angular) == (0, 0) { Moving::No } else { Moving::Speeds });
         Ok(())
     }
@@ -83,6 +84,7 @@ impl Robios {
     fn manoeuvre(&mut self, length: f64, angle: f64, speed: f64) -> Result<()> {
         self.turns = length == 0.0;
         self.order(&Request::Curve(length, angle, speed.abs()))?;
+        self.turning = 0;
         self.drives(Moving::Manoeuvre);
         Ok(())
     }
@@ -131,10 +133,9 @@ impl Robios {
     fn motor(&mut self, motor: i32, fraction: f64) -> Result<()> {
         let number = motor_number(motor)?;
         self.order(&Request::Motor(number, fraction.clamp(-1.0, 1.0)))?;
-        // Other motors may turn; they count as driving until the speeds are set anew.
-        if fraction != 0.0 {
-            self.drives(Moving::Speeds);
-        }
+        let bit = 1 << number;
+        self.turning = if fraction == 0.0 { self.turning & !bit } else { self.turning | bit };
+        self.drives(if self.turning == 0 { Moving::No } else { Moving::Speeds });
         Ok(())
     }
 

@@ -22,7 +22,7 @@ use roverlab::io::sim::TICK;
 use roverlab::io::{Error, ErrorKind, Resolution, Result, Viewport};
 
 use crate::ask::{Identity, Reply, Request};
-use crate::keys::{KeyDesk, KeyPlan};
+use crate::keys::KeyDesk;
 use crate::link::Link;
 use crate::report::{Report, ReportFile, Stage};
 use crate::screen::Screen;
@@ -47,11 +47,13 @@ pub struct Robios {
     image_size_set: bool,
     inbox: radio::Inbox,
     /// The size of the images that the display takes, and where it puts them.
-    lcd_image: Option<(usize, usize)>,
+    lcd_image: ImageSize,
     window: Option<Viewport>,
     /// Whether the last drive command was one for a turn on the spot.
     turns: bool,
     moving: Moving,
+    /// The motors that have been set to turn, a bit for each.
+    turning: u8,
     standing_since: f64,
     servos: [i32; 15],
     /// Seconds by which a program has set the clock forward.
@@ -62,6 +64,16 @@ pub struct Robios {
     file: Option<ReportFile>,
     text_changed: bool,
     lcd_file: Option<std::path::PathBuf>,
+}
+
+/// What `LCDImageSize` has said last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum ImageSize {
+    Unsaid,
+    /// Columns and rows.
+    Named((usize, usize)),
+    /// That of the window.
+    Custom,
 }
 
 /// What the last drive command was.
@@ -90,24 +102,25 @@ pub struct Outlets {
 
 impl Robios {
     /// A robot at the other end of a link.
-    pub fn new(mut link: Box<dyn Link>, keys: KeyPlan, outlets: Outlets) -> Result<Self> {
+    pub fn new(mut link: Box<dyn Link>, keys: KeyDesk, outlets: Outlets) -> Result<Self> {
         let Reply::Identity(identity) = link.ask(0.0, &Request::Identity)? else { return Err(foreign()) };
         Ok(Self {
             link,
             identity,
             debt: 0,
             screen: Screen::default(),
-            keys: KeyDesk::new(keys),
+            keys,
             lines: Lines::default(),
             timers: Timers::default(),
             camera: None,
             image_size: images::size(Resolution::Qqvga),
             image_size_set: false,
             inbox: radio::Inbox::new(),
-            lcd_image: None,
+            lcd_image: ImageSize::Unsaid,
             window: None,
             turns: false,
             moving: Moving::No,
+            turning: 0,
             standing_since: 0.0,
             servos: [128; 15],
             clock_offset: 0.0,

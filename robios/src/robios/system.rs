@@ -20,6 +20,8 @@ struct Timer {
     function: Callback,
 }
 
+/// The handle of the one that the system's alarm clock is.
+const ONCE: i32 = 0;
 /// RoBIOS has so many timers.
 const MOST: usize = 17;
 
@@ -43,6 +45,7 @@ impl Timers {
                 timer.due = (timer.due + timer.period).max(now);
             }
         }
+        self.all.retain(|timer| timer.due.is_finite());
         due
     }
 }
@@ -61,10 +64,23 @@ impl Robios {
         Ok(self.timers.last)
     }
 
+    /// Calls a function once, after so many seconds; earlier calls of the same function are forgotten, and none at all
+    /// is made after `None`. Returns how long the earlier one would still have taken.
+    pub(crate) fn call_after(&mut self, seconds: Option<f64>, function: Callback) -> Option<f64> {
+        let now = self.now();
+        let earlier = self.timers.all.iter().position(|timer| timer.id == ONCE);
+        let earlier = earlier.map(|index| self.timers.all.swap_remove(index).due - now);
+        if let Some(seconds) = seconds {
+            let timer = Timer { id: ONCE, period: f64::INFINITY, due: now + seconds, function };
+            self.timers.all.push(timer);
+        }
+        earlier
+    }
+
     /// `OSDetachTimer`.
     pub fn os_detach_timer(&mut self, id: i32) -> Result<()> {
         let before = self.timers.all.len();
-        self.timers.all.retain(|timer| timer.id != id);
+        self.timers.all.retain(|timer| timer.id != id || id == ONCE);
         if self.timers.all.len() == before {
             return Err(invalid("timer", id, "one that is attached"));
         }

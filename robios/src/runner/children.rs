@@ -24,12 +24,14 @@ use super::work_folder::WorkFolder;
 pub(crate) struct Running {
     child: Child,
     report: PathBuf,
-    relays: Vec<JoinHandle<()>>,
+    relays: Vec<JoinHandle<String>>,
     stopwatch: Stopwatch,
 }
 
 /// Bytes that a program may print on each of its outputs; the rest is dropped.
 const MOST_OUTPUT: usize = 1 << 16;
+/// Bytes of a last line that are kept.
+const MOST_OF_LINE: usize = 500;
 /// How often the runner looks whether a program has ended.
 const LOOK: Duration = Duration::from_millis(1);
 
@@ -87,6 +89,8 @@ pub(crate) fn start(
         command.env_remove(name);
     }
     command.envs(variables).env(names::REPORT, &report).env(names::KEYS, &options.keys);
+    command.env_remove(names::KEYBOARD);
+    let keyboard = if options.is_live() { keyboard(program, &mut command)? } else { None };
     command.env(names::LIBRARY, &library).env("PYTHONDONTWRITEBYTECODE", "1");
     if let Some(lcd) = &options.lcd {
         command.env(names::LCD, whole(lcd));
@@ -98,7 +102,8 @@ pub(crate) fn start(
     if options.json {
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
     }
-    match process::start(&mut command, socket) {
+    let sockets: Vec<&UnixStream> = socket.into_iter().chain(&keyboard).collect();
+    match process::start(&mut command, &sockets) {
         Err(error) => Ok(Err(format!("{}: cannot be started: {error}", file.display()))),
         Ok(mut child) => {
             let stdout = child.stdout.take().map(relay);
@@ -107,6 +112,21 @@ pub(crate) fn start(
             Ok(Ok(Running { child, report, relays, stopwatch: Stopwatch::start() }))
         }
     }
+}
+
+/// The socket through which the first program gets what is typed; the others' keys are pressed by nobody in particular.
+fn keyboard(program: &Program, command: &mut Command) -> Result<Option<UnixStream>, String> {
+    if !program.is_first {
+        command.env(names::KEYS, "AUTO");
+        return Ok(None);
+    }
+    let (mut ours, theirs) = UnixStream::pair().map_err(|error| format!("no socket: {error}"))?;
+    command.env(names::KEYBOARD, process::socket_number(&theirs).to_string());
+    thread::spawn(move || {
+        // Ends with the input, with the program, or with this process.
+        let _ = std::io::copy(&mut std::io::stdin().lock(), &mut ours);
+    });
+    Ok(Some(theirs))
 }
 
 fn python(file: &Path) -> Command {
@@ -134,15 +154,21 @@ fn second_name(library: &Path, folder: &WorkFolder) {
     }
 }
 
-/// Passes on what a program prints, to standard error, up to a limit; what comes after it is read and dropped.
-fn relay(mut output: impl Read + Send + 'static) -> JoinHandle<()> {
+/// Passes on what a program prints, to standard error, up to a limit; what comes after it is read and dropped. Returns
+/// the last line.
+fn relay(mut output: impl Read + Send + 'static) -> JoinHandle<String> {
     thread::spawn(move || {
         let (mut passed, mut buffer) = (0, vec![0; 1 << 14]);
+        let mut tail = Vec::new();
         while let Ok(count @ 1..) = output.read(&mut buffer) {
             let fitting = count.min(MOST_OUTPUT - passed);
             passed += fitting;
             let _ = std::io::stderr().write_all(&buffer[..fitting]);
+            tail.extend_from_slice(&buffer[..count]);
+            tail.drain(..tail.len().saturating_sub(MOST_OF_LINE));
         }
+        let text = String::from_utf8_lossy(&tail);
+        text.lines().rfind(|line| !line.trim().is_empty()).unwrap_or_default().trim().to_owned()
     })
 }
 
@@ -165,13 +191,20 @@ impl Running {
         // What it has started goes with it, and holds no pipe open.
         process::kill_all(self.child.id());
         let _ = self.child.wait();
+        let mut last_words = String::new();
         for relay in self.relays {
-            let _ = relay.join();
+            // Standard error comes last.
+            last_words = relay.join().unwrap_or_default();
         }
         let report = Report::read(&self.report).unwrap_or_default();
         let ending = match report.stage {
             Stage::TimedOut => Ending::OutOfTime("its simulated time was over".into()),
-            _ => ending,
+            _ => match ending {
+                Ending::Exit(code, _) if code != 0 && !last_words.is_empty() => {
+                    Ending::Exit(code, Some(last_words))
+                }
+                ending => ending,
+            },
         };
         (ending, report)
     }
@@ -179,7 +212,7 @@ impl Running {
 
 fn of_status(status: ExitStatus) -> Ending {
     match (status.code(), status.signal()) {
-        (Some(code), _) => Ending::Exit(code),
+        (Some(code), _) => Ending::Exit(code, None),
         (None, signal) => Ending::Signal(signal.unwrap_or_default()),
     }
 }

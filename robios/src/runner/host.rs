@@ -7,7 +7,7 @@ use std::path::Path;
 use std::thread;
 use std::time::Duration;
 
-use eyesim::ask::Seat;
+use eyesim::ask::{Request, Seat};
 use eyesim::plan::{Plan, names};
 use eyesim::process;
 use eyesim::report::Report;
@@ -31,7 +31,7 @@ struct Served {
     /// The program's own time.
     time: f64,
     /// What the host has ended it for.
-    offence: Option<String>,
+    ended: Option<Ending>,
 }
 
 /// Seconds between two points of a path in a picture.
@@ -90,8 +90,8 @@ pub(crate) fn run_together(
         picture::draw(scene, &world, file)?;
     }
     let verdicts = endings.into_iter().map(|(program, (served, (ending, report)))| {
-        let ending = match served.offence {
-            Some(offence) if !matches!(ending, Ending::Exit(_)) => Ending::Offence(offence),
+        let ending = match served.ended {
+            Some(ended) if !matches!(ending, Ending::Exit(..)) => ended,
             _ => ending,
         };
         let time = program_time(served.time, report.time);
@@ -142,7 +142,7 @@ fn attend(
 ) -> (Served, (Ending, Report)) {
     match running {
         Err(message) => {
-            let served = Served { time: seat.now(), offence: None };
+            let served = Served { time: seat.now(), ended: None };
             (served, (Ending::NotStarted(message), Report::default()))
         }
         Ok(running) => {
@@ -156,18 +156,28 @@ fn attend(
 fn serve(mut seat: Seat, mut stream: UnixStream, process: u32, hang_limit: f64) -> Served {
     let mut frame = Vec::new();
     let patience = Duration::try_from_secs_f64(hang_limit).ok();
-    // A program that neither asks nor takes its answers is ended: others wait for it.
+    // Others wait for a program that neither asks nor takes its answers.
     let _ = stream.set_read_timeout(patience).and_then(|()| stream.set_write_timeout(patience));
-    let offence = loop {
+    let ended = loop {
         match receive(&mut stream, LONGEST_REQUEST, &mut frame) {
             Ok(true) => {}
-            Err(error) if is_timeout(&error) => break Some(format!("no call for {hang_limit} real seconds")),
-            Err(error) if error.kind() == StreamError::InvalidData => break Some(error.to_string()),
+            Err(error) if is_timeout(&error) => {
+                if drift(&mut seat, &stream) {
+                    continue;
+                }
+                let message =
+                    format!("its simulated time was over, after {hang_limit} real seconds without a call");
+                break Some(Ending::OutOfTime(message));
+            }
+            Err(error) if error.kind() == StreamError::InvalidData => {
+                break Some(Ending::Offence(error.to_string()));
+            }
             // It has ended, after a question or in the middle of one.
             Ok(false) | Err(_) => break None,
         }
         let Some(Question { debt, request }) = Question::decode(&frame) else {
-            break Some(format!("a question of {} bytes that makes no sense", frame.len()));
+            let message = format!("a question of {} bytes that makes no sense", frame.len());
+            break Some(Ending::Offence(message));
         };
         let reply = seat.ask(debt, &request);
         let over = reply.as_ref().is_err_and(|error| error.kind() == ErrorKind::TimedOut);
@@ -176,10 +186,21 @@ fn serve(mut seat: Seat, mut stream: UnixStream, process: u32, hang_limit: f64) 
             break None;
         }
     };
-    if offence.is_some() {
+    if ended.is_some() {
         process::kill_all(process);
     }
-    Served { time: seat.now(), offence }
+    Served { time: seat.now(), ended }
+}
+
+/// Lets time pass for a program that has not called for long, so that the world goes on without it: it may have nothing
+/// more to ask, as after `VWSetSpeed(0, 100); while (1);`. Returns whether it calls again, before its time is over.
+fn drift(seat: &mut Seat, stream: &UnixStream) -> bool {
+    while !process::is_readable(stream, 1) {
+        if seat.ask(0.0, &Request::Pass(LOOK)).is_err() {
+            return false;
+        }
+    }
+    true
 }
 
 fn is_timeout(error: &std::io::Error) -> bool {

@@ -46,11 +46,12 @@ pub(crate) struct Options {
     #[arg(long, value_name = "S", default_value = "60", value_parser = parse_seconds)]
     pub(crate) real_limit: f64,
 
-    /// Real seconds without a call after which a program that others wait for is ended.
-    #[arg(long, value_name = "S", default_value = "10", value_parser = parse_seconds)]
+    /// Real seconds without a call after which others no longer wait for a program: its time passes without it.
+    #[arg(long, value_name = "S", default_value = "5", value_parser = parse_seconds)]
     pub(crate) hang_limit: f64,
 
-    /// The keys: AUTO, NONE, or presses such as `KEY1@2s,KEY4@60s,TOUCH:120:80@3s,IRTV_OK@4s`.
+    /// The keys: AUTO; NONE; presses such as `KEY1@2s,KEY4@60s,TOUCH:120:80@3s,IRTV_OK@4s`; or TERMINAL: the digits 1 to
+    /// 4 and Enter press the first robot's soft keys, and a simulated second takes a second.
     #[arg(long, value_name = "PLAN", default_value = "AUTO", value_parser = parse_keys)]
     pub(crate) keys: String,
 
@@ -93,6 +94,11 @@ impl Options {
             [folder] if self.program == Path::new("install") => Command::Install(folder.into()),
             _ => Command::Run,
         }
+    }
+
+    /// Whether somebody types the keys.
+    pub(crate) fn is_live(&self) -> bool {
+        self.keys.parse() == Ok(KeyPlan::Terminal)
     }
 
     /// Whether the program is a script that names programs.

@@ -18,6 +18,8 @@ pub(crate) struct Program {
     /// Where it runs: in its own folder.
     pub(crate) folder: PathBuf,
     pub(crate) arguments: Vec<String>,
+    /// Whether it gets the keys that somebody types.
+    pub(crate) is_first: bool,
 }
 
 /// The programs of a run.
@@ -29,27 +31,24 @@ pub(crate) fn of(options: &Options, scene: &Scene, folder: &WorkFolder) -> Resul
                 "{program}: no such file; expected a program, .py, .c, .cpp, or a script, .sim"
             ));
         }
-        return Ok(vec![program(
-            &options.program.display().to_string(),
-            &whole(&options.program),
-            0,
-            options,
-            folder,
-        )]);
+        let name = options.program.display().to_string();
+        let alone = program(&name, &whole(&options.program), 0, options, folder);
+        return Ok(vec![Program { is_first: true, ..alone }]);
     }
     let base = whole(&options.program);
     let base = base.parent().unwrap_or(Path::new("/"));
     let named =
         scene.robots.iter().enumerate().filter_map(|(robot, placed)| Some((robot, placed.program.as_ref()?)));
-    let programs: Vec<Program> = named
+    let mut programs: Vec<Program> = named
         .map(|(robot, name)| program(name, &base.join(name.replace('\\', "/")), robot, options, folder))
         .collect();
-    if programs.is_empty() {
+    let Some(first) = programs.first_mut() else {
         let script = options.program.display();
         return Err(format!(
             "{script}: no robot has a program; expected a line such as `S4 500 500 0 program.x`"
         ));
-    }
+    };
+    first.is_first = true;
     Ok(programs)
 }
 
@@ -68,6 +67,7 @@ fn program(name: &str, path: &Path, robot: usize, options: &Options, folder: &Wo
         file,
         folder: found.parent().map_or_else(|| PathBuf::from("/"), Path::to_owned),
         arguments: options.arguments.clone(),
+        is_first: false,
     }
 }
 
@@ -104,21 +104,57 @@ fn starts_here(path: &Path) -> bool {
     read.is_ok() && (magic == *b"\x7fELF" || magic[..2] == *b"#!" || !cfg!(target_os = "linux"))
 }
 
-/// Compiles a program with the script that is meant for it.
+/// Compiles a program with the script that is meant for it, with the other source texts that it needs.
 fn compile(source: &Path, folder: &WorkFolder, robot: usize) -> Result<PathBuf, String> {
-    let script = if CPP.iter().any(|ending| ends_in(source, ending)) { "g++sim" } else { "gccsim" };
     let program = folder.file(&format!("program{robot}.x"));
+    let Some(message) = compile_files(&[source.to_owned()], &program)? else { return Ok(program) };
+    let mut files = vec![source.to_owned()];
+    companions(source, &mut files, MOST_HEADERS);
+    if files.len() > 1
+        && message.contains("undefined reference")
+        && compile_files(&files, &program)?.is_none()
+    {
+        return Ok(program);
+    }
+    let first = message.lines().find(|line| line.contains("error")).or(message.lines().next());
+    Err(format!("{}: does not compile: {}", source.display(), first.unwrap_or("the compiler says nothing")))
+}
+
+/// Compiles files into a program. Returns what the compiler says if it fails.
+fn compile_files(files: &[PathBuf], program: &Path) -> Result<Option<String>, String> {
+    let is_cpp = files.iter().any(|file| CPP.iter().any(|ending| ends_in(file, ending)));
+    let script = if is_cpp { "g++sim" } else { "gccsim" };
     let mut command = Command::new(home()?.join("bin").join(script));
-    command.arg("-w").arg(source).arg("-o").arg(&program).stdin(Stdio::null()).stdout(Stdio::null());
+    command.arg("-w").args(files).arg("-o").arg(program).stdin(Stdio::null()).stdout(Stdio::null());
     command.env("ROBIOS_LIBRARY_DIR", library()?.parent().unwrap_or(Path::new(".")));
     let output =
         command.output().map_err(|error| format!("{script}: {error}; expected a script to compile with"))?;
-    if output.status.success() {
-        return Ok(program);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    Ok((!output.status.success()).then_some(message))
+}
+
+/// Headers within headers that are looked into.
+const MOST_HEADERS: usize = 3;
+
+/// Adds the source texts that stand beside the headers which a file includes, under the same names.
+fn companions(file: &Path, found: &mut Vec<PathBuf>, depth: usize) {
+    let (Ok(text), Some(folder)) = (std::fs::read(file), file.parent()) else { return };
+    for line in String::from_utf8_lossy(&text).lines() {
+        let rest = line.trim_start().strip_prefix('#').map(str::trim_start);
+        let name =
+            rest.and_then(|rest| rest.strip_prefix("include")?.trim().strip_prefix('"')?.split('"').next());
+        let Some(header) = name.map(|name| folder.join(name)).filter(|header| header.is_file()) else {
+            continue;
+        };
+        let endings = C.iter().chain(&CPP);
+        let beside = endings.map(|ending| header.with_extension(ending)).find(|file| file.is_file());
+        if let Some(file) = beside.filter(|file| *file != header && !found.contains(file)) {
+            found.push(file);
+        }
+        if depth > 0 {
+            companions(&header, found, depth - 1);
+        }
     }
-    let message = String::from_utf8_lossy(&output.stderr);
-    let first = message.lines().find(|line| line.contains("error")).or(message.lines().next());
-    Err(format!("{}: does not compile: {}", source.display(), first.unwrap_or("the compiler says nothing")))
 }
 
 /// Headers, scripts and Python modules: beside this program's folder, or where the project was built.

@@ -27,7 +27,8 @@ impl Stopwatch {
 /// How a program's process ended.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Ending {
-    Exit(i32),
+    /// The status, and what it has said last if it has failed.
+    Exit(i32, Option<String>),
     Signal(i32),
     OutOfTime(String),
     Offence(String),
@@ -73,15 +74,15 @@ impl Verdict {
         match self.ending {
             Ending::Signal(_) => "crashed",
             Ending::OutOfTime(_) => "timed_out",
-            Ending::Exit(0) if self.truth.contacts > 0 => "collided",
-            Ending::Exit(0) => "finished",
-            Ending::Exit(_) | Ending::Offence(_) | Ending::NotStarted(_) => "failed",
+            Ending::Exit(0, _) if self.truth.contacts > 0 => "collided",
+            Ending::Exit(0, _) => "finished",
+            Ending::Exit(..) | Ending::Offence(_) | Ending::NotStarted(_) => "failed",
         }
     }
 
     fn error(&self) -> Option<String> {
         match &self.ending {
-            Ending::Exit(_) => None,
+            Ending::Exit(_, words) => words.clone(),
             Ending::Signal(signal) => Some(format!("ended by signal {signal}")),
             Ending::OutOfTime(message) | Ending::Offence(message) | Ending::NotStarted(message) => {
                 Some(message.clone())
@@ -91,7 +92,7 @@ impl Verdict {
 
     fn value(&self) -> Value {
         let exit = match self.ending {
-            Ending::Exit(code) => Some(code),
+            Ending::Exit(code, _) => Some(code),
             _ => None,
         };
         let mut value = json!({

@@ -9,6 +9,27 @@
 #undef SIMSetObject
 #undef RADIOCheck
 
+static volatile sig_atomic_t rings;
+
+/* Interrupts calls, and calls itself. */
+static void ring(int number)
+{
+    (void)number;
+    rings++;
+    PSDGet(1), LCDPixel(1, 1, RED), PSDGet(2), OSWait(0);
+}
+
+static void interrupted(void)
+{
+    struct itimerval often = {{0, 500}, {0, 500}}, never = {{0, 0}, {0, 0}};
+
+    signal(SIGALRM, ring);
+    setitimer(ITIMER_REAL, &often, NULL);
+    while (rings < 100)
+        PSDGet(PSD_FRONT), LCDPixel(2, 2, GREEN);
+    setitimer(ITIMER_REAL, &never, NULL);
+}
+
 int main(void)
 {
     const int odd[] = {INT_MIN, -1000000, -1, 0, 1, 255, 1000000, INT_MAX};
@@ -47,6 +68,7 @@ int main(void)
             SERInit(a, b, a), SERCheck(a), OSSetTime(a, b, a), OSDetachTimer(a), OSMachineID();
         }
     VWSetSpeed(0, 0);
+    interrupted();
     /* A child has no robot, and does not disturb its parent's. */
     child = fork();
     if (child == 0) {

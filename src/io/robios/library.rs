@@ -1,9 +1,11 @@
 use std::ffi::{c_char, c_int, c_uchar};
 use std::path::Path;
+use std::ptr::NonNull;
+use std::sync::atomic::{AtomicI32, Ordering};
 
 use libloading::Library;
 
-use crate::io::{Error, ErrorKind, Result};
+use crate::io::{Error, ErrorKind, LidarSettings, Result};
 
 /// Declares the functions that are called, and how they are found.
 macro_rules! functions {
@@ -13,13 +15,19 @@ macro_rules! functions {
         #[derive(Debug)]
         pub(super) struct Functions {
             $($name: Option<unsafe extern "C" fn($($argument),* $(, $more)?) -> $result>,)*
-            /// Keeps the functions where they are.
+            /// The variable that says how many distances `LIDARGet` writes.
+            lidar_resolution: Option<NonNull<AtomicI32>>,
+            /// Keeps functions and variable where they are.
             _library: Library,
         }
 
         impl Functions {
             fn find(library: Library) -> Self {
+                // SAFETY: RoBIOS's variable of this name is an int, which lives as long as the library.
+                let found = unsafe { library.get::<*mut AtomicI32>(b"LIDAR_RESOLUTION\0") };
+                let lidar_resolution = found.ok().and_then(|symbol| NonNull::new(*symbol));
                 Self {
+                    lidar_resolution,
                     $(
                         // SAFETY: RoBIOS's functions have these types; a library that calls itself so and has others
                         // cannot be told from it.
@@ -38,6 +46,7 @@ macro_rules! functions {
         impl Functions {
             /// The function, or an error that names it.
             #[allow(non_snake_case, reason = "RoBIOS's own names")]
+            #[cfg_attr(not(feature = "log"), allow(dead_code, reason = "the truth is asked for with it alone"))]
             pub(super) fn $name(
                 &self,
             ) -> Result<unsafe extern "C" fn($($argument),* $(, $more)?) -> $result> {
@@ -102,9 +111,23 @@ functions! {
     ENCODERRead: fn(c_int) -> c_int;
     ENCODERReset: fn(c_int) -> c_int;
     LCDPrintf: fn(*const c_char; ...) -> c_int;
+    SIMGetRobot: fn(c_int, *mut c_int, *mut c_int, *mut c_int, *mut c_int) -> ();
 }
 
+// SAFETY: the variable is read as an atomic number alone, and everything else may be sent.
+unsafe impl Send for Functions {}
+
+// SAFETY: as above; who may call the functions at once is up to the library.
+unsafe impl Sync for Functions {}
+
 impl Functions {
+    /// How many distances `LIDARGet` writes, if the library says so, at most as many as a scan may have.
+    pub(super) fn lidar_points(&self) -> Option<usize> {
+        // SAFETY: the variable lives as long as the library, which is loaded.
+        let points = unsafe { self.lidar_resolution?.as_ref() }.load(Ordering::Relaxed);
+        usize::try_from(points).ok().filter(|points| (1..=LidarSettings::MAX_POINTS).contains(points))
+    }
+
     /// Loads a library. Fails if it cannot be loaded, or is none that drives robots.
     pub(super) fn load(path: &Path) -> Result<Self> {
         // SAFETY: loading a library runs what it does at its beginning; the user has named this one to be run.

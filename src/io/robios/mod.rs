@@ -25,5 +25,9 @@
 
 mod library;
 mod robot;
+#[cfg(feature = "log")]
+mod truth;
 
 pub use robot::RobiosRobot;
+#[cfg(feature = "log")]
+pub use truth::RobiosTruth;

@@ -1,6 +1,7 @@
 use std::f64::consts::TAU;
 use std::ffi::{CString, c_char, c_int, c_uchar};
 use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use image::RgbImage;
 
@@ -18,12 +19,23 @@ use crate::world::Colour;
 /// A library drives the one robot of its process: two of these with the same library are the same robot.
 #[derive(Debug)]
 pub struct RobiosRobot {
-    robios: Functions,
+    robios: Arc<Functions>,
+    told: Arc<Mutex<Told>>,
     lidar: LidarSettings,
+    /// Room for a scan, whatever the scanner is like.
+    distances: Vec<c_int>,
     resolution: Resolution,
     camera_is_on: bool,
     radio_is_on: bool,
     turns: bool,
+}
+
+/// What a library has said last.
+#[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(not(feature = "log"), allow(dead_code, reason = "who asks for the truth logs it"))]
+pub(super) struct Told {
+    pub(super) odometry: Pose,
+    pub(super) time: f64,
 }
 
 /// What RoBIOS says where there is nothing within range.
@@ -97,21 +109,44 @@ fn number(colour: Colour) -> c_int {
     c_int::from(colour.red) << 16 | c_int::from(colour.green) << 8 | c_int::from(colour.blue)
 }
 
+/// Where a robot truly is, if its library is a simulator that tells it.
+#[cfg(feature = "log")]
+pub(super) fn simulated_pose(robios: &Functions) -> Option<Pose> {
+    let (mut x, mut y, mut z, mut phi) = (0, 0, 0, 0);
+    let function = robios.SIMGetRobot().ok()?;
+    // SAFETY: the library is loaded, and the numbers live until the function returns.
+    unsafe { function(0, &raw mut x, &raw mut y, &raw mut z, &raw mut phi) };
+    Some(Pose::new(metres(x), metres(y), radians(phi)))
+}
+
 fn fills(fill: Fill) -> c_int {
     c_int::from(fill == Fill::Solid)
 }
 
 impl RobiosRobot {
-    /// Loads a library. Its scanner is taken to have 360 beams all round, as RoBIOS's has at first.
+    /// Loads a library. Its scanner is taken to look all round at first, with 360 beams, unless the library says how
+    /// many it has.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
         Ok(Self {
-            robios: Functions::load(path.as_ref())?,
+            robios: Arc::new(Functions::load(path.as_ref())?),
+            told: Arc::default(),
             lidar: LidarSettings { field_of_view: TAU, tilt: 0.0, points: 360 },
+            distances: vec![NOTHING; LidarSettings::MAX_POINTS],
             resolution: Resolution::default(),
             camera_is_on: false,
             radio_is_on: false,
             turns: false,
         })
+    }
+
+    /// What is known about the robot where somebody asks for the truth. It starts at a pose in the world.
+    #[cfg(feature = "log")]
+    pub fn truth(&self, start: Pose) -> super::RobiosTruth {
+        super::RobiosTruth::new(Arc::clone(&self.robios), Arc::clone(&self.told), start)
+    }
+
+    fn note(&mut self, note: impl FnOnce(&mut Told)) {
+        note(&mut self.told.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
     fn start_camera(&mut self) -> Result<()> {
@@ -132,7 +167,9 @@ impl RobiosRobot {
 
 impl Clock for RobiosRobot {
     fn now(&mut self) -> Result<f64> {
-        Ok(f64::from(call!(self, OSGetCount())) / 1000.0)
+        let time = f64::from(call!(self, OSGetCount())) / 1000.0;
+        self.note(|told| told.time = time);
+        Ok(time)
     }
 
     fn wait(&mut self, seconds: f64) -> Result<()> {
@@ -157,7 +194,9 @@ impl Drive for RobiosRobot {
     fn pose(&mut self) -> Result<Pose> {
         let (mut x, mut y, mut phi) = (0, 0, 0);
         order!(self, VWGetPosition(&raw mut x, &raw mut y, &raw mut phi))?;
-        Ok(Pose::new(metres(x), metres(y), radians(phi)))
+        let pose = Pose::new(metres(x), metres(y), radians(phi));
+        self.note(|told| told.odometry = pose);
+        Ok(pose)
     }
 
     fn set_pose(&mut self, pose: Pose) -> Result<()> {
@@ -225,9 +264,13 @@ impl DistanceSensors for RobiosRobot {
 
 impl Lidar for RobiosRobot {
     fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()> {
-        let points = self.lidar.points;
-        let mut distances = vec![NOTHING; points];
-        order!(self, LIDARGet(distances.as_mut_ptr()))?;
+        let room = self.distances.as_mut_ptr();
+        order!(self, LIDARGet(room))?;
+        // Known by now: the library has begun to work.
+        if let Some(points) = self.robios.lidar_points() {
+            self.lidar.points = points;
+        }
+        let distances = &mut self.distances[..self.lidar.points];
         if self.lidar.field_of_view > TAU - 1e-9 {
             // The beam behind comes first, clockwise and counter-clockwise.
             distances.rotate_left(1);
@@ -237,7 +280,7 @@ impl Lidar for RobiosRobot {
         scan.range_max = metres(NOTHING);
         scan.mount = Pose::default();
         scan.ranges.clear();
-        scan.ranges.extend(distances.into_iter().rev().map(range));
+        scan.ranges.extend(distances.iter().rev().copied().map(range));
         Ok(())
     }
 

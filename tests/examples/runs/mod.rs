@@ -14,6 +14,7 @@ mod mazes;
 mod navigate;
 mod quadtree;
 mod recordings;
+mod robios;
 mod safety;
 mod seeing;
 mod swarms;

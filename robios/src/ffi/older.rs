@@ -1,0 +1,168 @@
+//! Functions that RoBIOS-7 had in its first years under these names, and that programs still call: drives, inverted
+//! pixels, tones, threads and semaphores.
+
+use std::ffi::{c_int, c_long, c_uint, c_void};
+
+use libc::{pthread_t, sem_t};
+
+use super::drive::{VWDone, VWRemain, VWWait};
+use super::lines::{AUBeep, AUDone};
+use super::runtime::{code, enter, sleep_for};
+
+#[unsafe(no_mangle)]
+extern "C" fn VWDriveRemain() -> c_int {
+    VWRemain()
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn VWDriveDone() -> c_int {
+    VWDone()
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn VWDriveWait() -> c_int {
+    VWWait()
+}
+
+/// The display needs no beginning.
+#[unsafe(no_mangle)]
+extern "C" fn LCDInit() -> c_int {
+    code(enter(|robios| robios.charge()))
+}
+
+/// No display reaches further than this, in pixels.
+const FAR: c_int = 2000;
+
+fn near(coordinate: c_int) -> c_int {
+    coordinate.clamp(-FAR, FAR)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn LCDPixelInvert(x: c_int, y: c_int) -> c_int {
+    code(enter(|robios| robios.lcd_invert([(x, y)])))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn LCDLineInvert(x1: c_int, y1: c_int, x2: c_int, y2: c_int) -> c_int {
+    let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(near);
+    let steps = (x2 - x1).abs().max((y2 - y1).abs()).max(1);
+    let at = |from: c_int, to: c_int, step: c_int| from + (2 * (to - from) * step + steps) / (2 * steps);
+    code(enter(|robios| robios.lcd_invert((0..=steps).map(|step| (at(x1, x2, step), at(y1, y2, step))))))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn LCDAreaInvert(x1: c_int, y1: c_int, x2: c_int, y2: c_int) -> c_int {
+    let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(near);
+    let rows = y1.min(y2)..=y1.max(y2);
+    let pixels = rows.flat_map(|y| (x1.min(x2)..=x1.max(x2)).map(move |x| (x, y)));
+    code(enter(|robios| robios.lcd_invert(pixels)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn LCDCircleInvert(x: c_int, y: c_int, size: c_int) -> c_int {
+    let (x, y, radius) = (near(x), near(y), near(size).abs());
+    let square = (-radius..=radius).flat_map(|dy| (-radius..=radius).map(move |dx| (dx, dy)));
+    let disc = square.filter(|(dx, dy)| dx * dx + dy * dy <= radius * radius);
+    code(enter(|robios| robios.lcd_invert(disc.map(|(dx, dy)| (x + dx, y + dy)))))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn AUTone(_frequency: c_int, _time: c_int) -> c_int {
+    AUBeep()
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn AUCheckTone() -> c_int {
+    AUDone()
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn AUCheckPlay() -> c_int {
+    AUDone()
+}
+
+/// There is nothing to hear, so nothing is written.
+#[unsafe(no_mangle)]
+extern "C" fn AURecord(_buffer: *mut u8, _time: c_int, _frequency: c_long) -> c_int {
+    code(enter(|robios| robios.charge()))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn AUCheckRecord() -> c_int {
+    c_int::from(enter(|robios| robios.charge()).is_some())
+}
+
+/// A thread.
+#[derive(Clone, Copy)]
+#[repr(C)]
+struct Task {
+    thread: pthread_t,
+    identifier: c_int,
+}
+
+type Body = extern "C" fn(*mut c_void) -> *mut c_void;
+
+#[unsafe(no_mangle)]
+extern "C" fn MTInit() -> c_int {
+    code(enter(|robios| robios.charge()))
+}
+
+/// Sleeps for hundredths of a second.
+#[unsafe(no_mangle)]
+extern "C" fn MTSleep(time: c_int) -> c_int {
+    code(sleep_for(f64::from(time.max(0)) / 100.0))
+}
+
+/// Starts a thread, which gets its identifier as its argument.
+#[unsafe(no_mangle)]
+extern "C" fn MTSpawn(function: Option<Body>, identifier: c_int) -> Task {
+    super::runtime::note_thread();
+    let mut thread: pthread_t = 0;
+    if let Some(function) = function {
+        let argument = std::ptr::without_provenance_mut(identifier as usize);
+        // SAFETY: the place for the handle lives until the function returns, there are no attributes, and the function
+        // gets a number that it does not follow.
+        unsafe { libc::pthread_create(&raw mut thread, std::ptr::null(), function, argument) };
+    }
+    Task { thread, identifier }
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn MTGetUID(task: Task) -> c_int {
+    task.identifier
+}
+
+/// Ends a thread where it may be ended.
+#[unsafe(no_mangle)]
+extern "C" fn MTKill(task: Task) -> c_int {
+    if task.thread == 0 {
+        return 1;
+    }
+    // SAFETY: the handle is one of MTSpawn's, which is not joined.
+    c_int::from(unsafe { libc::pthread_cancel(task.thread) } != 0)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SEMAInit(semaphore: *mut sem_t, value: c_int) -> c_int {
+    let Ok(value) = c_uint::try_from(value) else { return 1 };
+    // SAFETY: the pointer is not null, and points to a semaphore of the program's.
+    c_int::from(semaphore.is_null() || unsafe { libc::sem_init(semaphore, 0, value) } != 0)
+}
+
+/// Waits for a semaphore, by the program's clock.
+#[unsafe(no_mangle)]
+extern "C" fn SEMALock(semaphore: *mut sem_t) -> c_int {
+    // SAFETY: the pointer is not null, and points to a semaphore that SEMAInit has made.
+    while !semaphore.is_null() && unsafe { libc::sem_trywait(semaphore) } != 0 {
+        if sleep_for(roverlab::io::sim::TICK).is_none() {
+            return 1;
+        }
+    }
+    c_int::from(semaphore.is_null())
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn SEMAUnlock(semaphore: *mut sem_t) -> c_int {
+    // SAFETY: the pointer is not null, and points to a semaphore that SEMAInit has made.
+    c_int::from(semaphore.is_null() || unsafe { libc::sem_post(semaphore) } != 0)
+}

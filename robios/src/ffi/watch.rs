@@ -1,0 +1,54 @@
+//! Lets time pass for a program that calls nothing: it may be waiting for what its timers' functions do, as in
+//! `while (count < 100);`, or have set its robot going for good, as in `VWSetSpeed(100, 0); while (1);`.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use super::runtime::{Unasked, calls, nap, pass_unasked, set_ours};
+
+/// Real time between two looks.
+const LOOK: Duration = Duration::from_millis(5);
+/// Looks without a call after which a program with timers seems to wait.
+const PATIENCE: u32 = 4;
+/// Looks in which the time that passes at each doubles.
+const DOUBLING: u32 = 20;
+/// Most seconds that pass at a look.
+const MOST: f64 = 0.2;
+/// Looks without a call after which time passes for a program without timers: most that compute are done by then.
+const LONG: u32 = 1000;
+
+static WATCHING: AtomicBool = AtomicBool::new(false);
+
+/// Starts the thread that watches, unless it is there.
+pub(super) fn start() {
+    if WATCHING.swap(true, Ordering::Relaxed) {
+        return;
+    }
+    set_ours(true);
+    let started = std::thread::Builder::new().name("robios".into()).spawn(watch);
+    set_ours(false);
+    // Without the thread, time passes as the program calls.
+    drop(started);
+}
+
+/// With timers, time passes as the real one at first, and then faster and faster: a program that computes for a while
+/// loses little, and one that waits need not wait for long. Without timers it passes as the real one.
+fn watch() {
+    set_ours(true);
+    let (mut before, mut idle) = (calls(), 0_u32);
+    loop {
+        nap(LOOK);
+        let now = calls();
+        idle = if now == before { idle.saturating_add(1) } else { 0 };
+        before = now;
+        let Some(waited) = idle.checked_sub(PATIENCE) else { continue };
+        let doublings = (waited / DOUBLING).min(30);
+        let fast = (LOOK.as_secs_f64() * f64::from(1_u32 << doublings)).min(MOST);
+        let slow = if idle > LONG { LOOK.as_secs_f64() } else { 0.0 };
+        match pass_unasked(fast, slow) {
+            Unasked::Passed => {}
+            Unasked::Busy => idle = 0,
+            Unasked::Over => return,
+        }
+    }
+}

@@ -1,0 +1,72 @@
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::library::Functions;
+use super::robot::{Told, simulated_pose};
+use crate::geometry::Pose;
+use crate::io::log::Witness;
+use crate::io::sim::RobotTruth;
+use crate::io::{Error, ErrorKind, Result};
+
+/// What is known about the robot behind a library where a program asks for the truth: on a simulator, where the robot
+/// truly is, if the library tells it (`SIMGetRobot`); otherwise where its odometry said that it was, when the program
+/// asked last. Nothing of it takes the robot's time.
+///
+/// Nobody counts its contacts, and its path is as long as the way between the places where it was asked for.
+#[derive(Debug)]
+pub struct RobiosTruth {
+    robios: Arc<Functions>,
+    told: Arc<Mutex<Told>>,
+    start: Pose,
+    last: Option<Pose>,
+    path_length: f64,
+}
+
+impl RobiosTruth {
+    pub(super) fn new(robios: Arc<Functions>, told: Arc<Mutex<Told>>, start: Pose) -> Self {
+        Self { robios, told, start, last: None, path_length: 0.0 }
+    }
+
+    fn told(&self) -> Told {
+        *self.told.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn locate(&mut self) -> Pose {
+        let pose = simulated_pose(&self.robios).unwrap_or_else(|| self.start.compose(&self.told().odometry));
+        self.path_length += self.last.map_or(0.0, |last| last.distance_to(pose.position()));
+        self.last = Some(pose);
+        pose
+    }
+}
+
+fn only_one(robot: usize) -> Result<()> {
+    if robot == 0 { Ok(()) } else { Err(Error::invalid_input("robot", robot, "0: a library has one robot")) }
+}
+
+impl Witness for RobiosTruth {
+    /// What the clock said when the program looked last.
+    fn time(&mut self) -> Result<f64> {
+        Ok(self.told().time)
+    }
+
+    fn pose(&mut self, robot: usize) -> Result<Pose> {
+        only_one(robot)?;
+        Ok(self.locate())
+    }
+
+    fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
+        only_one(robot)?;
+        Ok(RobotTruth {
+            pose: self.locate(),
+            odometry: self.told().odometry,
+            contacts: 0,
+            contact_places: Vec::new(),
+            path_length: self.path_length,
+            trail: Vec::new(),
+        })
+    }
+
+    fn object(&mut self, object: usize) -> Result<Pose> {
+        let message = format!("where object {object} is; RoBIOS does not tell");
+        Err(Error::new(ErrorKind::Unsupported, message))
+    }
+}
