@@ -8,7 +8,7 @@ use std::thread;
 use std::time::Duration;
 
 use roverlab::maze::mms::{MmsMouse, Move, Referee};
-use roverlab::maze::{Cell, Direction, Verdict};
+use roverlab::maze::{Cell, Direction, Maze, Verdict};
 
 use super::plan::with_maze;
 use super::{Args, scene};
@@ -32,7 +32,7 @@ pub(crate) fn main() -> u8 {
     let (out, err) = (&mut io::stderr(), &mut io::stderr());
     run_printing(std::env::args_os(), out, err, |_: &Args| {
         let (mouse, verdict) = converse(&mut io::stdin().lock(), &mut io::stdout())?;
-        let unknown = mouse.maze().map_or(0, |maze| maze.unknown_walls());
+        let unknown = mouse.maze().map_or(0, Maze::unknown_walls);
         let text = match verdict {
             Verdict::Unreachable => "no way leads to the goal".into(),
             _ => format!("the best route is proved with {unknown} walls unknown, and driven"),
