@@ -132,9 +132,6 @@ fn wrong_values_are_named_with_what_was_expected() {
         (&["--picture", "run.gif"], &["--picture", "run.gif", ".svg or .png"]),
         (&["--record", "no/such/run.mcap"], &["--record no/such/run.mcap", "expected one that exists"]),
         (&["--replay", "no-such.mcap"], &["--replay no-such.mcap"]),
-        #[cfg(not(feature = "robios"))]
-        (&["--robios", "libeyebot.so"], &["libeyebot.so", "feature `robios`"]),
-        #[cfg(feature = "robios")]
         (&["--robios", "libeyebot.so"], &["libeyebot.so", "no library that can be loaded"]),
         (&["--robios", "libeyebot.so", "--replay", "no-such.mcap"], &["--replay"]),
     ];
