@@ -8,7 +8,7 @@ use roverlab::drive::safety::{
 };
 use roverlab::geometry::{Pose, Twist};
 use roverlab::io::delegate::{
-    RgbImage, ambassador_impl_Camera, ambassador_impl_Clock, ambassador_impl_Display,
+    GrayImage, RgbImage, ambassador_impl_Camera, ambassador_impl_Clock, ambassador_impl_Display,
     ambassador_impl_DistanceSensors, ambassador_impl_Drive, ambassador_impl_Encoders, ambassador_impl_Keys,
     ambassador_impl_Lidar, ambassador_impl_Motors, ambassador_impl_Radio, ambassador_impl_Servos,
 };
