@@ -79,10 +79,12 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 }
 
 fn report(course: &Course, driven: &Driven) -> Report {
-    let word = match driven.done {
-        _ if driven.stops.iter().any(|stop| !stop.is_within()) => Outcome::failure("overran"),
-        false => Outcome::failure("timed_out"),
-        true => Outcome::verdict("stood"),
+    let word = if driven.stops.iter().any(|stop| !stop.is_within()) {
+        Outcome::failure("overran")
+    } else if driven.done {
+        Outcome::verdict("stood")
+    } else {
+        Outcome::failure("timed_out")
     };
     let states: Vec<(f64, String)> =
         driven.states.iter().map(|(time, state)| (rounded(*time), format!("{state:?}"))).collect();
