@@ -2,7 +2,7 @@
 
 use image::RgbImage;
 use roverlab::drive::cones::{
-    CameraMount, CameraSight, RacePhase, Racer, Sighting, Verdict, fuse, sightings,
+    CameraMount, CameraSight, GapDriver, RacePhase, Racer, Sighting, Verdict, fuse, sightings,
 };
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};

@@ -77,8 +77,8 @@ impl fmt::Display for Stopped {
 pub(crate) struct Driven {
     pub(crate) stops: Vec<Stopped>,
     pub(crate) states: Vec<(f64, SafetyState)>,
-    /// Whether everything happened in time, or what failed.
-    pub(crate) ending: Result<bool, String>,
+    /// Whether everything happened in time.
+    pub(crate) done: bool,
     pub(crate) judge: Judge,
 }
 
@@ -100,19 +100,14 @@ pub(crate) fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Drive
     let base = Base::new(Crew::new(events), stage.truth(0)?, parameters.heartbeat);
     let mut car = Supervised::new(stage.robot(0)?, base, parameters).map_err(Failure::run)?;
     let mut records = Vec::new();
-    let ending = program(&mut car, &mut judge, limit, &mut records);
+    let done = program(&mut car, &mut judge, limit, &mut records);
     let base = car.station_mut();
     let stops = base.stops.iter().zip(&records).map(|(seen, record)| Stopped {
         seen: seen.clone(),
         record: *record,
         bound: stopping.distance(seen.speed),
     });
-    Ok(Driven {
-        stops: stops.collect(),
-        states: base.states.clone(),
-        ending: ending.map_err(|error| Failure::from(error).to_string()),
-        judge,
-    })
+    Ok(Driven { stops: stops.collect(), states: base.states.clone(), done, judge })
 }
 
 fn fence(half: Option<f64>) -> Vec<Point> {
@@ -127,7 +122,7 @@ fn program(
     judge: &mut Judge,
     limit: f64,
     records: &mut Vec<StopRecord>,
-) -> io::Result<bool> {
+) -> bool {
     let mut racer = Racer::new(RacerParameters { laps: 100, ..RacerParameters::default() });
     let mut scan = LidarScan::default();
     while judge.time() < limit && !car.station_mut().crew.is_done() {
@@ -146,7 +141,7 @@ fn program(
         let _ = pass(car, &mut [judge], 0.05);
         note(car, records);
     }
-    Ok(car.station_mut().crew.is_done())
+    car.station_mut().crew.is_done()
 }
 
 /// Notes the last stop, if it is new.

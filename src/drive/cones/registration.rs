@@ -46,8 +46,8 @@ fn hypotheses(points: &[Point], onto: &[Point], expected: Expected) -> impl Iter
     };
     let (from, to) = (arms(points), arms(onto));
     from.into_iter().flat_map(move |(point, arm)| {
-        let fits = to.iter().filter(move |(_, wanted)| (arm.norm() - wanted.norm()).abs() < STRETCH);
-        let fits = fits.map(move |(other, wanted)| bringing(point, arm, *other, *wanted));
+        let alike = to.iter().filter(move |(_, wanted)| (arm.norm() - wanted.norm()).abs() < STRETCH);
+        let fits = alike.map(move |(other, wanted)| bringing(point, arm, *other, *wanted));
         let near = fits.filter(move |motion| {
             let way = (motion.to_world(expected.place) - expected.place).norm();
             way < expected.wrong.0 && motion.heading.abs() < expected.wrong.1
