@@ -113,13 +113,17 @@ pub(crate) fn ride_with(
                     follows.push((path.len() - 1, usize::MAX));
                 }
                 BugEvent::Leave { .. } => {
-                    follows.iter_mut().rev().take(1).for_each(|follow| follow.1 = path.len())
+                    if let Some(follow) = follows.last_mut() {
+                        follow.1 = path.len();
+                    }
                 }
                 _ => {}
             }
         }
     });
-    follows.iter_mut().for_each(|follow| follow.1 = follow.1.min(path.len()));
+    for follow in &mut follows {
+        follow.1 = follow.1.min(path.len());
+    }
     // The robot lets go of the world, so that what is true stays as it is.
     drop(robot);
     let (sim_time, truth) = (truth.time().map_err(Failure::run)?, truth.robot(0).map_err(Failure::run)?);

@@ -12,6 +12,7 @@ use super::{Failure, Origin};
 /// The options that all examples have. Flatten it into an example's own.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Options of all examples (millimetres and degrees)")]
+#[allow(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct CommonArgs {
     /// World or scene to run in: .sim, .wld, .maz, a ROS map.yaml, or a MovingAI .map.
     #[arg(long, value_name = "FILE")]
