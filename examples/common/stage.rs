@@ -1,15 +1,17 @@
+use std::collections::BTreeMap;
+use std::fmt;
 use std::fs::File;
 use std::io::BufWriter;
 use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use roverlab::drive::safety::StoppingModel;
 use roverlab::geometry::Pose;
 use roverlab::io::log::{Attachment, Header, LogError, LogWriter, Player, Troop, Witness};
 use roverlab::io::robios::{RobiosRobot, RobiosTruth};
 use roverlab::io::sim::race::{Race, RaceCarSpec, SharedRace};
-use roverlab::io::sim::{Fleet, SimOptions, Simulation};
+use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, Simulation};
 use roverlab::io::wrappers::{Deadman, Fault, Faulty, Quantised};
 use roverlab::io::{self, Key, RobotIo};
 use roverlab::world::{MotorSpec, Scene, formats};
@@ -32,6 +34,8 @@ pub(crate) struct Stage {
     faults: Vec<Fault>,
     /// Whether simulated robots round as RoBIOS does.
     quantised: bool,
+    /// Who knows what is true, for each robot. Let go before the recording is finished.
+    truths: Mutex<BTreeMap<usize, SharedTruth>>,
     recording: Recording,
     guard: Option<Guard>,
 }
@@ -105,6 +109,40 @@ impl Deref for StagedRobot {
 impl DerefMut for StagedRobot {
     fn deref_mut(&mut self) -> &mut Self::Target {
         &mut self.robot
+    }
+}
+
+/// A witness that several programs ask.
+#[derive(Clone)]
+struct SharedTruth(Arc<Mutex<StageTruth>>);
+
+impl SharedTruth {
+    fn ask<T>(&self, question: impl FnOnce(&mut StageTruth) -> io::Result<T>) -> io::Result<T> {
+        question(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl fmt::Debug for SharedTruth {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SharedTruth").finish_non_exhaustive()
+    }
+}
+
+impl Witness for SharedTruth {
+    fn time(&mut self) -> io::Result<f64> {
+        self.ask(|truth| truth.time())
+    }
+
+    fn pose(&mut self, robot: usize) -> io::Result<Pose> {
+        self.ask(|truth| truth.pose(robot))
+    }
+
+    fn robot(&mut self, robot: usize) -> io::Result<RobotTruth> {
+        self.ask(|truth| truth.robot(robot))
+    }
+
+    fn object(&mut self, object: usize) -> io::Result<Pose> {
+        self.ask(|truth| truth.object(object))
     }
 }
 
@@ -256,13 +294,15 @@ fn texts(scene: &Scene) -> Vec<Attachment> {
         data: text.into_bytes(),
     };
     let mut files = vec![text("scene.wld".into(), formats::wld::print(&scene.world))];
-    let script = formats::sim::SimFile::for_scene(scene, "scene.wld");
-    files.push(text("scene.sim".into(), formats::sim::print(&script)));
+    let mut script = formats::sim::SimFile::for_scene(scene, "scene.wld");
     for (index, robot) in scene.robots.iter().enumerate() {
         if !scene.robots[..index].iter().any(|other| other.spec == robot.spec) {
-            files.push(text(format!("scene.robot{}.robi", index + 1), formats::robi::print(&robot.spec)));
+            let name = format!("scene.robot{}.robi", index + 1);
+            script.statements.insert(1, formats::sim::Statement::Robot(name.clone()));
+            files.push(text(name, formats::robi::print(&robot.spec)));
         }
     }
+    files.push(text("scene.sim".into(), formats::sim::print(&script)));
     files
 }
 
@@ -283,7 +323,14 @@ impl Stage {
     }
 
     fn new(play: Play, faults: Vec<Fault>) -> Self {
-        Self { play, faults, quantised: false, recording: Recording::default(), guard: None }
+        Self {
+            play,
+            faults,
+            quantised: false,
+            truths: Mutex::default(),
+            recording: Recording::default(),
+            guard: None,
+        }
     }
 
     /// A robot, by its index in the scene. Take all robots that drive at once before the first one does.
@@ -322,26 +369,32 @@ impl Stage {
     }
 
     /// What is true, for the program that drives or watches a robot. Of robots apart, each is the first one of its world.
+    /// All who ask about a robot share one witness: a recording keeps one order of questions.
     pub(crate) fn truth(&self, index: usize) -> Result<StageTruth, Failure> {
-        match &self.play {
-            Play::Simulation(simulation) => Ok(self.witnessed(simulation.truth(), index)),
-            Play::Apart(simulations) => Ok(self.witnessed(simulations[index].truth(), index)),
-            Play::Race(race) => Ok(self.witnessed(race.clone(), index)),
-            Play::Recording(player) => {
-                Ok(self.witnessed(player.truth(index).map_err(|error| foreign(&error))?, index))
-            }
-            Play::Library(library, taken) => {
-                let truth = taken.lock().unwrap_or_else(PoisonError::into_inner).1.take();
-                Ok(self.witnessed(truth.ok_or_else(|| alone(library))?, index))
-            }
+        let mut truths = self.truths.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = truths.get(&index) {
+            return Ok(Box::new(known.clone()));
         }
+        let witness = SharedTruth(Arc::new(Mutex::new(self.witness(index)?)));
+        truths.insert(index, witness.clone());
+        Ok(Box::new(witness))
     }
 
-    fn witnessed(&self, witness: impl Witness + Send + 'static, index: usize) -> StageTruth {
-        match &self.recording.writer {
+    fn witness(&self, index: usize) -> Result<StageTruth, Failure> {
+        let witness: StageTruth = match &self.play {
+            Play::Simulation(simulation) => Box::new(simulation.truth()),
+            Play::Apart(simulations) => Box::new(simulations[index].truth()),
+            Play::Race(race) => Box::new(race.clone()),
+            Play::Recording(player) => Box::new(player.truth(index).map_err(|error| foreign(&error))?),
+            Play::Library(library, taken) => {
+                let truth = taken.lock().unwrap_or_else(PoisonError::into_inner).1.take();
+                Box::new(truth.ok_or_else(|| alone(library))?)
+            }
+        };
+        Ok(match &self.recording.writer {
             Some(writer) => Box::new(writer.witness(witness, index)),
-            None => Box::new(witness),
-        }
+            None => witness,
+        })
     }
 
     /// Schedules a key press, in seconds since the start. A replayed robot's keys are in the recording.

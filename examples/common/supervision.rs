@@ -154,7 +154,8 @@ impl Drop for Guarded {
     fn drop(&mut self) {
         let mut waited = 0.0;
         let mut stood = false;
-        while self.inner.state().is_stop() && !stood && waited < PATIENCE {
+        // What made the program end may be known to the safety system only when time passes.
+        while (waited == 0.0 || self.inner.state().is_stop()) && !stood && waited < PATIENCE {
             // What fails is the fault's; time passes all the same.
             let before = self.read().metres;
             let _ = self.inner.wait(0.1);

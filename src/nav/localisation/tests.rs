@@ -80,7 +80,10 @@ fn a_round_room_is_not_taken_for_itself_turned() {
         let mut localiser = localiser(&world);
         look_round(&simulation, &mut localiser, 8);
         assert_eq!(localiser.localisation().count(), 1, "{start:?}");
-        assert_found(&localiser, simulation.truth().pose(0).unwrap());
+        let (found, truth) = (localiser.hypotheses()[0].pose, simulation.truth().pose(0).unwrap());
+        // A third of a piece: the door alone tells the heading.
+        let turn = angle_difference(found.heading, truth.heading).abs();
+        assert!(turn < TAU / 120.0 && found.distance_to(truth.position()) < 0.03, "{found:?} at {truth:?}");
     }
 }
 

@@ -117,7 +117,8 @@ fn short(program: &str) -> &'static [&'static str] {
 
 /// Records a short run of an example twice, which gives the same, and checks a recording with `replay check`.
 fn assert_checks(program: &programs::Program, options: &[&str]) {
-    let logs = [1, 2].map(|n| file(&format!("check-{}{}-{n}.mcap", program.name, options.concat())));
+    let words = options.concat().replace('/', "-");
+    let logs = [1, 2].map(|n| file(&format!("check-{}{words}-{n}.mcap", program.name)));
     for log in &logs {
         let words = [&[program.name, "--json"], options, &["--time-limit", "6", "--record"]].concat();
         let words = words.iter().map(OsString::from).chain([log.into()]).collect();

@@ -103,7 +103,12 @@ fn compare(words: &[&str]) {
         .unwrap();
     assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stdout));
     let library = Log::read(std::fs::read(folder.join("library.mcap")).unwrap()).unwrap();
-    let (direct, library) = (calls(&direct), calls(&library));
+    let (mut direct, mut library) = (calls(&direct), calls(&library));
+    // The time limit is the simulator's; the library's program goes on.
+    if direct.last().is_some_and(|call| call.ends_with(" error")) {
+        direct.pop();
+        library.truncate(direct.len());
+    }
     assert!(direct.len() > 20, "{name}: {} calls", direct.len());
     for (number, (found, expected)) in library.iter().zip(&direct).enumerate() {
         assert_eq!(found, expected, "{name}, call {} of {}", number + 1, direct.len());

@@ -290,6 +290,13 @@ impl<'f> Reader<'f> {
         self.spec.drive = self.drive_spec(drive)?;
         self.place_sensors();
         self.place_footprint(drive);
+        let radius = self.spec.footprint.bounding_radius();
+        if radius > MAX_METRES {
+            // It may come of wheels or of a solid, each within its limits.
+            let found = format!("a robot with a radius of {} mm", number::print(radius, MILLI));
+            let expected = "at most 1000000000";
+            return Err(FormatError::new(self.notes.file, Location::START, found, expected));
+        }
         Ok(self.notes.finish(self.spec))
     }
 
