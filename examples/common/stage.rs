@@ -130,7 +130,7 @@ impl fmt::Debug for SharedTruth {
 
 impl Witness for SharedTruth {
     fn time(&mut self) -> io::Result<f64> {
-        self.ask(|truth| truth.time())
+        self.ask(Witness::time)
     }
 
     fn pose(&mut self, robot: usize) -> io::Result<Pose> {
