@@ -78,7 +78,7 @@ fn compare(words: &[&str]) {
     let with = |more: &[&str]| -> Vec<String> {
         words
             .iter()
-            .chain(&["--seed", "3", "--noise", "1"])
+            .chain(&["--json", "--seed", "3", "--noise", "1"])
             .chain(more)
             .map(|&word| word.to_owned())
             .collect()
