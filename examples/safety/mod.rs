@@ -6,7 +6,8 @@ mod drive;
 
 use std::path::PathBuf;
 
-use roverlab::picture::{Mark, Picture, Style};
+use roverlab::picture::{Picture, Style};
+use roverlab::world::Colour;
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
 use crate::cones::{Course, colour};
@@ -111,8 +112,9 @@ fn picture(course: &Course, driven: &Driven) -> Picture {
     }
     picture.speed_path(driven.judge.trail().iter().map(|(pose, speed)| (pose.position(), *speed)));
     for stop in &driven.stops {
-        picture.mark(Mark::Contact, stop.places()[0].position());
-        picture.mark(Mark::Goal, stop.places()[1].position());
+        let [from, to] = stop.places().map(|pose| pose.position());
+        picture.disc(from, 0.5, Style::new(Colour::RED).filled(1.0).labelled("a stop begins"));
+        picture.disc(to, 0.5, Style::new(Colour::GREEN).filled(1.0).labelled("it stands"));
     }
     let worst = driven.stops.iter().map(Stopped::share).fold(0.0, f64::max);
     picture.caption(format!("{} stops, {:.0} % of the bound at worst", driven.stops.len(), 100.0 * worst));
