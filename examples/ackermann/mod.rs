@@ -28,7 +28,7 @@ JSON fields:
   heading_error_deg           true error of the heading, or null
   turning_radius_mm           radius of the turning circle
   time_limit_s, picture
-Outcomes: reached, blocked, timed_out, collided, failed."
+Outcomes: reached, missed, blocked, timed_out, collided, failed."
 )]
 pub(crate) struct Args {
     /// How to get there.
@@ -145,6 +145,7 @@ fn driver(spec: &RobotSpec) -> Result<CarDriver, Failure> {
 fn report(args: &Args, trip: &Trip, run: &Run<Arrival>, heading: Option<f64>) -> Report {
     let report = run.report(|arrival| match arrival.outcome {
         CarOutcome::Reached => Outcome::verdict("reached"),
+        CarOutcome::Missed => Outcome::failure("missed"),
         CarOutcome::Blocked => Outcome::failure("blocked"),
         _ => Outcome::failure("timed_out"),
     });

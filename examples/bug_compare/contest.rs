@@ -78,15 +78,15 @@ pub(crate) fn shown(args: &Args) -> Result<Setting, Failure> {
     of_family(args.families()[0], args.common.seed)
 }
 
-/// Lets all algorithms drive in the setting that is shown, side by side in one recording.
+/// Lets all algorithms drive in the setting that is shown, one after the other in one recording.
 pub(crate) fn recorded(args: &Args) -> Result<Entry, Failure> {
     let setting = shown(args)?;
     let (trip, conditions, bugs) = (&setting.trip, setting.conditions(args), args.bugs());
     let stage = args.common.stage_apart(&trip.scene, &conditions.sim_options(), bugs.len())?;
-    let robots = (0..bugs.len()).map(|index| Ok((stage.robot(index)?, stage.truth(index)?)));
-    let robots: Vec<(Driven, StageTruth)> = robots.collect::<Result<_, Failure>>()?;
-    let drive = |(&kind, (robot, mut truth))| ride_with(trip, kind, conditions, robot, &mut truth);
-    let rides = bugs.iter().zip(robots).map(drive).collect::<Result<_, Failure>>()?;
+    // Each robot is taken when its turn comes: a recording would keep what one did until all others have driven as far.
+    let drive =
+        |(index, &kind)| ride_with(trip, kind, conditions, stage.robot(index)?, &mut stage.truth(index)?);
+    let rides = bugs.iter().enumerate().map(drive).collect::<Result<_, Failure>>()?;
     Ok(Entry { setting, rides })
 }
 

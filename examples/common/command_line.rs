@@ -27,6 +27,9 @@ const NOT_RECORDED: [&str; 12] = [
     "checkpoint",
 ];
 
+/// Options that say what a robot meets: in a replay that is as it was.
+const MET: [&str; 4] = ["seed", "noise", "quantised", "fault"];
+
 /// Options that name files which a run reads.
 const FILES: [&str; 5] = ["world", "robot", "maze", "track", "line"];
 
@@ -59,6 +62,9 @@ where
     let mut matches = command.try_get_matches_from_mut(words).map_err(Refusal::Parser)?;
     check_recorded(&matches).map_err(Refusal::Recording)?;
     let options = options(&command, &matches);
+    if let Some(log) = &log {
+        check_met(&options, &log.header().options).map_err(Refusal::Recording)?;
+    }
     let args =
         A::from_arg_matches_mut(&mut matches).map_err(|error| Refusal::Parser(error.format(&mut command)))?;
     args.as_ref().origin.set(Facts { program: example.into(), options, log });
@@ -80,6 +86,16 @@ fn check_recorded(matches: &ArgMatches) -> Result<(), Failure> {
     }
 }
 
+/// Fails if a replay is to meet something other than what was recorded.
+fn check_met(options: &[String], recorded: &[String]) -> Result<(), Failure> {
+    let changed = |option: &&String| MET.contains(&name_of(option)) && !recorded.contains(option);
+    options.iter().find(changed).map_or(Ok(()), |option| {
+        Err(Failure::input(format!(
+            "found {option} and --replay; expected none, what the robot meets is in the recording"
+        )))
+    })
+}
+
 /// The file behind `--replay`.
 fn replayed(words: &[OsString]) -> Option<OsString> {
     let words = || words.iter().skip(1).take_while(|word| *word != "--");
@@ -98,13 +114,23 @@ fn recording(example: &str, file: &OsString) -> Result<Log, Failure> {
             "found a recording of the program `{program}`; expected one of `{example}`"
         )));
     }
-    Ok(log)
+    // A recording comes from anywhere: it may not have files written.
+    match log.header().options.iter().find(|option| NOT_RECORDED.contains(&name_of(option))) {
+        Some(option) => Err(refused(&format!(
+            "found the option {option} in the recording; expected options that affect the run"
+        ))),
+        None => Ok(log),
+    }
 }
 
-/// Whether a recorded option, `--name=value` or `--name`, is given anew.
+/// Whether a recorded option is given anew.
 fn repeats(option: &str, given: &[OsString]) -> bool {
-    let name = option.split('=').next().unwrap_or(option);
-    given.iter().filter_map(|word| word.to_str()).any(|word| word.split('=').next() == Some(name))
+    given.iter().filter_map(|word| word.to_str()).any(|word| name_of(word) == name_of(option))
+}
+
+/// The name in `--name=value` or `--name`.
+fn name_of(option: &str) -> &str {
+    option.split('=').next().unwrap_or(option).trim_start_matches("--")
 }
 
 /// The options that affect a run, as they were given, in the order of the command.

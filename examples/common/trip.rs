@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use roverlab::geometry::{Aabb, Point, Pose, units};
+use roverlab::geometry::{Aabb, Point, Pose, direction, units};
 use roverlab::world::formats::{FormatError, Parsed};
 use roverlab::world::space::{Solid, Space, Span};
 use roverlab::world::{DriveSpec, Object, RobotPlacement, RobotSpec, Scene, Shape};
@@ -105,10 +105,15 @@ impl CommonArgs {
         stand_in: &StandIn,
         own: impl FnOnce() -> Scene,
     ) -> Result<Scene, Failure> {
-        let mut scene = match &self.world {
+        let scene = match &self.world {
             Some(file) => Self::parsed(self.load_scene("world", file))?,
             None => own(),
         };
+        self.placed_in(scene, stand_in)
+    }
+
+    /// A scene with the robot and the start that the options give, or else the scene.
+    pub(crate) fn placed_in(&self, mut scene: Scene, stand_in: &StandIn) -> Result<Scene, Failure> {
         let mut robot = self.driver(&scene, stand_in)?;
         if let Some(file) = &self.robot {
             robot.spec = Arc::new(Self::parsed(self.load_robot("robot", file))?);
@@ -224,6 +229,31 @@ impl CommonArgs {
     }
 }
 
+/// A free place for one more robot in a scene: the wished one, or one as near to it as may be. `None` if all is taken two
+/// metres around.
+pub(crate) fn free_place(scene: &Scene, spec: &Arc<RobotSpec>, wished: Pose) -> Option<Pose> {
+    /// Metres from circle to circle of places that are tried, how many circles, and the places on each.
+    const STEP: f64 = 0.1;
+    const CIRCLES: u32 = 20;
+    const PLACES: u32 = 16;
+    /// Metres around the robot.
+    const ROOM: f64 = 0.05;
+    let space = space_with(scene, &scene.robots);
+    let bounds = scene.world.bounds();
+    let is_free = |pose: &Pose| {
+        let solid = Solid::from(&RobotPlacement::new(Arc::clone(spec), *pose));
+        let span = Span { bottom: solid.bottom, top: solid.top };
+        bounds.contains(pose.position())
+            && space.clearance(&solid.outline, &solid.pose, span, 2.0 * ROOM, None) > ROOM
+    };
+    let around = (0..CIRCLES).flat_map(|circle| (0..PLACES).map(move |place| (circle, place)));
+    let mut places = around.map(|(circle, place)| {
+        let away = direction(TAU * f64::from(place) / f64::from(PLACES)) * (STEP * f64::from(circle));
+        Pose { x: wished.x + away.x, y: wished.y + away.y, ..wished }
+    });
+    places.find(is_free)
+}
+
 fn in_mm(point: Point) -> String {
     let [x, y] = [point.x, point.y].map(|metres| units::to_mm(metres).round() + 0.0);
     format!("{x}, {y}")
@@ -236,14 +266,17 @@ fn within(bounds: &Aabb) -> String {
 /// Metres from the first robot's outline to the nearest wall, object or other robot; 0 in contact.
 fn clearance(scene: &Scene) -> f64 {
     const NEAR: f64 = 0.1;
-    let mut space = Space::new(&scene.world.walls);
-    for object in &scene.world.objects {
-        space.add(Solid::from(object));
-    }
-    for other in &scene.robots[1..] {
-        space.add(Solid::from(other));
-    }
+    let space = space_with(scene, &scene.robots[1..]);
     let solid = Solid::from(&scene.robots[0]);
     let span = Span { bottom: solid.bottom, top: solid.top };
     space.clearance(&solid.outline, &solid.pose, span, NEAR, None)
+}
+
+/// What stands in a world, and some robots.
+fn space_with(scene: &Scene, robots: &[RobotPlacement]) -> Space {
+    let mut space = Space::new(&scene.world.walls);
+    for solid in scene.world.objects.iter().map(Solid::from).chain(robots.iter().map(Solid::from)) {
+        space.add(solid);
+    }
+    space
 }

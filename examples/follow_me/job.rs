@@ -1,12 +1,13 @@
 use roverlab::geometry::{Point, units};
 use roverlab::io::sim::SimOptions;
 use roverlab::picture::{Mark, Picture, Style};
-use roverlab::world::Scene;
+use roverlab::random::Stream;
+use roverlab::world::{RobotPlacement, RobotSpec, Scene};
 
 use super::campaign;
-use super::scene::{Mode, hall};
+use super::scene::{Mode, behind, hall};
 use super::swarm::{SwarmRun, run};
-use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
+use crate::common::{CommonArgs, Failure, Outcome, Report, StandIn, free_place, millimetres, rounded};
 use crate::driving::{counted, drawn, paced};
 
 /// The command line of the example `follow_me`.
@@ -16,7 +17,8 @@ use crate::driving::{counted, drawn, paced};
     about = "Lets robots follow a leader: one by lidar, five by raised lidars, a chain, or a formation by radio",
     after_help = "\
 Without --world, a LabBot leads round a hall that is another one for each seed. With --world, the first robot of a .sim leads
-and all others follow; letters in a maze stand for robots there. It leads past the world's markers, or past the corners of
+and all others follow; letters in a maze stand for robots there. A world with one robot or none gets --followers behind the
+one that leads from its place, or a LabBot at --start. It leads past the world's markers, or past the corners of
 the floor without any.
 
 --robios and --fault are for one robot alone, and refused.
@@ -35,9 +37,9 @@ Collisions, pose, odometry and path length: contacts are those of all robots, th
 Outcomes: followed, lost, collided; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// How many robots follow.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100), allow_hyphen_values = true)]
-    pub(crate) followers: u16,
+    /// How many robots follow [default: those of the world, or 1].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=100), allow_hyphen_values = true)]
+    pub(crate) followers: Option<u16>,
 
     /// How they know where to go [default: lidar for one, raised up to five, chain beyond].
     #[arg(long, value_enum)]
@@ -124,29 +126,53 @@ fn refuse(common: &CommonArgs) -> Result<(), Failure> {
 
 /// The robots in their world, and the leader's waypoints.
 fn scene(args: &Args) -> Result<(Scene, Vec<Point>), Failure> {
-    let Some(file) = &args.common.world else {
-        let followers = usize::from(args.followers);
-        let mode = args.mode.unwrap_or(Mode::for_followers(followers));
-        return Ok(hall(mode, followers, usize::from(args.obstacles), args.common.seed));
+    let common = &args.common;
+    let wanted = args.followers.map(usize::from);
+    let followers = wanted.unwrap_or(1);
+    let mode = args.mode.unwrap_or(Mode::for_followers(followers));
+    let Some(file) = &common.world else {
+        return Ok(hall(mode, followers, usize::from(args.obstacles), common.seed));
     };
-    let parsed = args.common.load_scene("world", file).map_err(Failure::input)?;
+    let parsed = common.load_scene("world", file).map_err(Failure::input)?;
     for warning in &parsed.warnings {
         CommonArgs::warn(warning);
     }
     let mut scene = parsed.value;
     if scene.robots.len() < 2 {
+        let leader = StandIn { spec: RobotSpec::labbot().into(), ..StandIn::default() };
+        scene = common.placed_in(scene, &leader)?;
+        add_followers(&mut scene, mode, followers, common.seed)?;
+    }
+    let found = scene.robots.len() - 1;
+    if let Some(wanted) = wanted.filter(|&wanted| wanted != found) {
         return Err(Failure::input(format!(
-            "{}: found {} robots; expected a .sim with a leader and at least one follower",
-            file.display(),
-            scene.robots.len()
+            "--followers {wanted}: found {found} in {}; expected the same, or none in the file",
+            file.display()
         )));
     }
-    if let Some(start) = args.common.start {
+    if let Some(start) = common.start {
         scene.robots[0].pose = start;
     }
     let markers: Vec<Point> = scene.world.markers.iter().map(|marker| marker.position).collect();
     let waypoints = if markers.is_empty() { corners(&scene) } else { markers };
     Ok((scene, waypoints))
+}
+
+/// Puts followers behind the leader of a scene, or where there is room.
+fn add_followers(scene: &mut Scene, mode: Mode, followers: usize, seed: u64) -> Result<(), Failure> {
+    let start = scene.robots[0].pose;
+    let mut stream = Stream::new(seed).child("followers", 0);
+    for wished in behind(start, mode, followers, &mut stream) {
+        let spec = mode.spec();
+        let place = free_place(scene, &spec, wished).ok_or_else(|| {
+            let number = scene.robots.len();
+            Failure::input(format!(
+                "--followers: found no room for follower {number}; expected fewer of them"
+            ))
+        })?;
+        scene.robots.push(RobotPlacement::new(spec, place));
+    }
+    Ok(())
 }
 
 /// Places well inside of the corners of the floor, counter-clockwise.

@@ -29,6 +29,11 @@ impl Mode {
         }
     }
 
+    /// The robots that follow so.
+    pub(crate) fn spec(self) -> Arc<RobotSpec> {
+        Arc::new(if self == Self::Raised { lidarbot() } else { RobotSpec::s4() })
+    }
+
     /// What suits a number of followers.
     pub(crate) fn for_followers(followers: usize) -> Self {
         match followers {
@@ -79,13 +84,18 @@ pub(crate) fn hall(mode: Mode, followers: usize, obstacles: usize, seed: u64) ->
     add_obstacles(&mut world, &mut stream, obstacles, &waypoints, start.position());
     let mut scene = Scene::new(world);
     scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::labbot()), start));
-    let spec = Arc::new(if mode == Mode::Raised { lidarbot() } else { RobotSpec::s4() });
-    for follower in 1..=followers {
-        let place = start.to_world(place(mode, follower));
-        let heading = stream.between(-0.2, 0.2);
-        scene.robots.push(RobotPlacement::new(Arc::clone(&spec), Pose::new(place.x, place.y, heading)));
-    }
+    let (spec, places) = (mode.spec(), behind(start, mode, followers, &mut stream));
+    scene.robots.extend(places.into_iter().map(|pose| RobotPlacement::new(Arc::clone(&spec), pose)));
     (scene, waypoints)
+}
+
+/// Where followers stand at first, each turned a little.
+pub(crate) fn behind(start: Pose, mode: Mode, followers: usize, stream: &mut Stream) -> Vec<Pose> {
+    let pose = |follower| {
+        let place = start.to_world(place(mode, follower));
+        Pose::new(place.x, place.y, start.heading + stream.between(-0.2, 0.2))
+    };
+    (1..=followers).map(pose).collect()
 }
 
 /// Where a follower stands at first, in the leader's frame: one behind the other, or in rows of three and two as in the book.

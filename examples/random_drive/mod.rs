@@ -1,6 +1,7 @@
 //! What the example `random_drive` is made of.
 
 use std::cell::Cell;
+use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -13,7 +14,7 @@ use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
 use roverlab::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
+use crate::common::{CommonArgs, Failure, Outcome, Report, free_place, rounded};
 use crate::driving::{Conditions, counted, drawn, paced};
 
 /// The command line of the example `random_drive`.
@@ -22,8 +23,8 @@ use crate::driving::{Conditions, counted, drawn, paced};
     name = "random_drive",
     about = "Drives straight on, turns by a random angle where something is ahead, and so on; one robot or several",
     after_help = "\
-Without --world, the robots drive in a room with two crates and a can. With a .sim, all of its robots drive, and --robots is
-not looked at. --fault is for one robot alone.
+Without --world, the robots drive in a room with two crates and a can. With a .sim, all of its robots drive. If these
+are fewer than --robots, more stand at places that --seed chooses. --fault is for one robot alone.
 
 JSON fields:
   robots                      how many drive
@@ -35,9 +36,9 @@ Collisions are those of all robots; pose, odometry and path length are the first
 Outcomes: driven, collided, failed."
 )]
 pub(crate) struct Args {
-    /// How many robots drive.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=6), allow_hyphen_values = true)]
-    pub(crate) robots: u8,
+    /// How many robots drive [default: those of the world, or 1].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=6), allow_hyphen_values = true)]
+    pub(crate) robots: Option<u8>,
 
     #[command(flatten)]
     pub(crate) common: CommonArgs,
@@ -51,6 +52,8 @@ impl AsRef<CommonArgs> for Args {
 
 /// Simulated seconds of a run.
 const SECONDS: f64 = 120.0;
+/// Places around which room for one more robot is looked for.
+const PLACES_TRIED: u32 = 50;
 /// Seconds between points of the paths of several robots.
 const STEP: f64 = 0.1;
 
@@ -67,8 +70,11 @@ struct Outing {
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
-    let own = || scene(usize::from(args.robots));
-    let scene = common.placed_without_goal("the robots have none", own)?;
+    let own = || scene(usize::from(args.robots.unwrap_or(1)));
+    let mut scene = common.placed_without_goal("the robots have none", own)?;
+    if let Some(robots) = args.robots {
+        add_robots(&mut scene, usize::from(robots), common.seed)?;
+    }
     let seconds = common.time_limit.unwrap_or(SECONDS);
     let outing = if scene.robots.len() == 1 {
         alone(args, &scene, seconds)?
@@ -108,6 +114,34 @@ fn scene(robots: usize) -> Scene {
         scene.robots.push(RobotPlacement::new(Arc::new(spec), pose));
     }
     scene
+}
+
+/// Puts more robots like the first one anywhere into a scene, until it has so many.
+fn add_robots(scene: &mut Scene, robots: usize, seed: u64) -> Result<(), Failure> {
+    let found = scene.robots.len();
+    if found > robots {
+        return Err(Failure::input(format!(
+            "--robots {robots}: found {found} robots in the world; expected at least as many"
+        )));
+    }
+    let (spec, floor) = (Arc::clone(&scene.robots[0].spec), scene.world.bounds());
+    let mut stream = Stream::new(seed).child("places", 0);
+    for _ in found..robots {
+        let mut anywhere = || {
+            let x = stream.between(floor.min.x, floor.max.x);
+            let y = stream.between(floor.min.y, floor.max.y);
+            Pose::new(x, y, stream.between(-PI, PI))
+        };
+        let place =
+            (0..PLACES_TRIED).find_map(|_| free_place(scene, &spec, anywhere())).ok_or_else(|| {
+                let more = robots - scene.robots.len();
+                Failure::input(format!(
+                    "--robots {robots}: found no room for {more} more; expected fewer robots"
+                ))
+            })?;
+        scene.robots.push(RobotPlacement::new(Arc::clone(&spec), place));
+    }
+    Ok(())
 }
 
 fn behaviour(scene: &Scene, robot: usize, seed: u64) -> Result<RandomDrive, Failure> {

@@ -9,10 +9,10 @@ use crate::common::parse_picture;
     about = "Replays recordings, shows what is in them, saves what is left of damaged ones",
     after_help = "\
 JSON fields: example, command, outcome;
-  check     program, differences: null, or {robot, time_s, found, expected}
+  check     program, difference: null, or {robot, time_s, found, expected}
   recover   chunks, messages, header (whether it is saved), lost_bytes
   info      program, version, schema, seed, options, robots, start_s, end_s, bytes, chunks, topics, attachments,
-            attachments_hash, compression
+            attachments_hash, attachments_lost (whether some are), compression
   export    rows, csv, picture
 Outcomes: same, different, recovered, read, exported. The exit status is 1 for `different`."
 )]

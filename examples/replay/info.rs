@@ -19,7 +19,8 @@ pub(super) fn info(log: &Log) -> Result<Found, Failure> {
         "program": header.program, "version": header.version, "schema": SCHEMA_VERSION, "seed": header.seed,
         "options": header.options, "robots": log.robots(), "start_s": start, "end_s": end,
         "bytes": log.bytes().len(), "chunks": log.chunks(), "topics": log.topics(), "attachments": attachments,
-        "attachments_hash": format!("{:016x}", header.digest()), "compression": header.compression.name(),
+        "attachments_hash": format!("{:016x}", header.digest()),
+        "attachments_lost": log.lacks_attachments(), "compression": header.compression.name(),
     });
     let mut lines = vec![format!("{} {}", header.program, header.options.join(" "))];
     let mut add = |name: &str, value: String| lines.push(format!("  {name:<22} {value}"));
@@ -32,6 +33,9 @@ pub(super) fn info(log: &Log) -> Result<Found, Failure> {
     }
     for file in &header.attachments {
         add(&file.name, format!("{} bytes", file.data.len()));
+    }
+    if log.lacks_attachments() {
+        lines.push("  some attachments are lost".into());
     }
     Ok(Found { fields, text: lines.join("\n"), good: true })
 }

@@ -168,6 +168,9 @@ pub struct AToB {
     pub(super) parameters: AToBParameters,
     phase: Phase,
     corrections: u32,
+    /// How far along its path the robot had come when it last got on, and the steps since then.
+    got_to: f64,
+    idle: u32,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -184,6 +187,10 @@ enum Phase {
 
 /// Metres before the end of a path at which manoeuvres take over.
 const HANDOVER: f64 = 0.02;
+/// Metres of path in which the robot gets on, and seconds without that after which manoeuvres take over: pure pursuit
+/// circles round the end of a path that bends within its lookahead.
+const PROGRESS: f64 = 0.001;
+const LONGEST_IDLING: f64 = 3.0;
 /// Seconds in which a dog curve turns towards its goal.
 const HOMING_TIME: f64 = 0.5;
 /// Radians up to which the last millimetres are driven without turning first.
@@ -194,7 +201,16 @@ impl AToB {
     pub fn new(method: Method, goal: Goal, parameters: AToBParameters) -> Result<Self> {
         parameters.validate()?;
         goal.check()?;
-        Ok(Self { method, goal, via: Vec::new(), parameters, phase: Phase::Begin, corrections: 0 })
+        Ok(Self {
+            method,
+            goal,
+            via: Vec::new(),
+            parameters,
+            phase: Phase::Begin,
+            corrections: 0,
+            got_to: 0.0,
+            idle: 0,
+        })
     }
 
     /// The same by way of some points, in this order: a chain of splines without a kink. Fails for another method.
@@ -223,7 +239,13 @@ impl AToB {
             }
             Phase::Following(follower) => {
                 let twist = follower.step(pose);
-                if follower.rest() > HANDOVER {
+                let gets_on = follower.travelled() >= self.got_to + PROGRESS;
+                if gets_on {
+                    self.got_to = follower.travelled();
+                }
+                self.idle = if gets_on { 0 } else { self.idle + 1 };
+                let idles = f64::from(self.idle) * self.parameters.period > LONGEST_IDLING;
+                if follower.rest() > HANDOVER && !idles {
                     return Ok(AToBCommand::Speed(twist));
                 }
                 self.phase = Phase::Correcting;

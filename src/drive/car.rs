@@ -50,6 +50,12 @@ pub struct CarParameters {
     pub margin: f64,
     /// The book's k of splines; more is taken where the spline would bend too tightly.
     pub spline_scale: f64,
+    /// How far from the goal, in metres, the car may stop.
+    pub tolerance: f64,
+    /// How far from the goal's heading, in radians, it may stop.
+    pub heading_tolerance: f64,
+    /// How many times it may drive back and come again, if it stopped farther off.
+    pub corrections: u32,
     /// Seconds that the servo takes to turn the wheels from the middle to one side.
     pub steering_time: f64,
     /// Seconds from one control step to the next.
@@ -69,6 +75,9 @@ impl Default for CarParameters {
             },
             margin: 1.15,
             spline_scale: 1.0,
+            tolerance: 0.01,
+            heading_tolerance: 0.02,
+            corrections: 4,
             steering_time: 1.1,
             period: 0.02,
         }
@@ -81,6 +90,8 @@ impl Default for CarParameters {
 pub enum CarOutcome {
     /// The car takes itself to be there.
     Reached,
+    /// It stopped too far from the goal or its heading each time that it came.
+    Missed,
     /// Something holds the car.
     Blocked,
     /// The time was over first.
@@ -92,6 +103,9 @@ pub enum CarOutcome {
 /// What a robot that turns on the spot does in a turn, a car does on a circle, and so every plan keeps to the circle:
 /// [`Method::Turn`] is a Dubins path; an arc or a spline that would be too tight becomes one. A dog curve drives straight on
 /// past a goal beside it until it can turn towards it. A goal's heading is met by all; after a dog curve, by a last path.
+///
+/// A path that ends in a tight bend is not met well, as the wheels turn too slowly for it: then the car drives straight back
+/// and comes again.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CarToB {
     method: Method,
@@ -99,6 +113,7 @@ pub struct CarToB {
     driver: CarDriver,
     parameters: CarParameters,
     phase: Phase,
+    corrections: u32,
     /// The pieces of the path that come next, the last one first.
     next: Vec<Path>,
 }
@@ -110,9 +125,13 @@ enum Phase {
     Aiming(Box<PathFollower>, f64),
     Following(Box<PathFollower>),
     Homing,
+    /// Driving straight back from this place, to come again.
+    Backing(Point),
     Ended,
 }
 
+/// Turning radii that a car drives back before it comes again.
+const WAY_BACK: f64 = 2.0;
 /// Metres from the goal at which the car stops.
 const ARRIVED: f64 = 0.001;
 /// Radians from point to point of a path that no car follows.
@@ -134,6 +153,8 @@ impl CarToB {
         parameters.follower.validate()?;
         require_positive("full speed", driver.full_speed)?;
         require_positive("spline scale", parameters.spline_scale)?;
+        require_positive("tolerance", parameters.tolerance)?;
+        require_positive("heading tolerance", parameters.heading_tolerance)?;
         require_positive("steering time", parameters.steering_time)?;
         require_positive("control period", parameters.period)?;
         if !(parameters.margin >= 1.0 && parameters.margin.is_finite()) {
@@ -143,7 +164,7 @@ impl CarToB {
                 "at least 1",
             ));
         }
-        Ok(Self { method, goal, driver, parameters, phase: Phase::Begin, next: Vec::new() })
+        Ok(Self { method, goal, driver, parameters, phase: Phase::Begin, corrections: 0, next: Vec::new() })
     }
 
     fn radius(&self) -> f64 {
@@ -194,6 +215,36 @@ impl CarToB {
         if !pose.is_finite() {
             return Err(Error::invalid_input("observed pose", format!("{pose:?}"), "finite numbers"));
         }
+        if let Some(state) = self.back(pose) {
+            return Ok(Some(state));
+        }
+        let state = self.come(pose)?;
+        if state.is_some() || !self.is_off(pose) || self.corrections == self.parameters.corrections {
+            return Ok(state);
+        }
+        self.corrections += 1;
+        self.phase = Phase::Backing(pose.position());
+        Ok(self.back(pose))
+    }
+
+    /// Whether a pose is too far from the goal or its heading.
+    fn is_off(&self, pose: Pose) -> bool {
+        pose.distance_to(self.goal.position) > self.parameters.tolerance
+            || self.heading_error(pose).is_some_and(|error| error.abs() > self.parameters.heading_tolerance)
+    }
+
+    /// A step straight back; `None` when the car is far enough to come again.
+    fn back(&mut self, pose: Pose) -> Option<CarState> {
+        let Phase::Backing(from) = self.phase else { return None };
+        if pose.distance_to(from) < WAY_BACK * self.radius() {
+            return Some(CarState { speed: -self.parameters.follower.speed, steering: 0.0 });
+        }
+        self.phase = Phase::Begin;
+        None
+    }
+
+    /// Speed and steering on the way to the goal; `None` at its end.
+    fn come(&mut self, pose: Pose) -> Result<Option<CarState>> {
         if self.phase == Phase::Begin {
             self.phase = match self.plan(pose)? {
                 Some(path) => self.aim(&path)?,
@@ -302,7 +353,8 @@ impl CarToB {
             } else if robot.is_stalled()? {
                 Some(CarOutcome::Blocked)
             } else {
-                state.is_none().then_some(CarOutcome::Reached)
+                let ending = if self.is_off(pose) { CarOutcome::Missed } else { CarOutcome::Reached };
+                state.is_none().then_some(ending)
             };
             if let Some(outcome) = outcome {
                 robot.set_motor(1, 0.0)?;

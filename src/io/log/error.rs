@@ -17,6 +17,9 @@ pub enum LogError {
         /// What wrote it, as it says itself.
         library: String,
     },
+    /// Its header is lost, so that nobody knows which program it is of.
+    #[error("found a recording without its header; expected one that says which program it is of")]
+    NoHeader,
     /// It ends too early, as after a crash.
     #[error(
         "found the end of the file at byte {at}; expected more: the recording was cut off, and `recover` gives back its complete chunks"
@@ -44,7 +47,7 @@ pub enum LogError {
         supported: u32,
     },
     /// It holds several recordings.
-    #[error("found {runs} runs in one file; expected one")]
+    #[error("found {runs} runs in one file; expected a file for each")]
     SeveralRuns {
         /// How many.
         runs: usize,

@@ -7,6 +7,9 @@ pub const SCHEMA_VERSION: u32 = 1;
 /// The name of the MCAP metadata record that makes a file a recording of this project.
 pub(super) const METADATA: &str = "roverlab";
 
+/// The name of the field that guards the others: MCAP has checksums of chunks and attachments, but none of metadata.
+const CHECKSUM: &str = "checksum";
+
 /// What a recording says about the run: enough to run the program again.
 ///
 /// It holds nothing about where and when a run took place: no names of files, no dates.
@@ -79,6 +82,16 @@ pub struct Attachment {
     pub data: Vec<u8>,
 }
 
+/// What the metadata record of a file says.
+pub(super) struct Written {
+    /// The header without its attachments.
+    pub(super) header: Header,
+    /// The version of its schema.
+    pub(super) schema: u32,
+    /// The digest of the attachments.
+    pub(super) digest: u64,
+}
+
 impl Header {
     /// The header of a program's run with some options.
     pub fn new(program: impl Into<String>, options: impl IntoIterator<Item = impl Into<String>>) -> Self {
@@ -92,13 +105,7 @@ impl Header {
 
     /// A digest of all attachments, their names included: of the world and the robots.
     pub fn digest(&self) -> u64 {
-        let parts = self.attachments.iter().flat_map(|file| [file.name.as_bytes(), &file.data]);
-        // The 64-bit FNV-1a digest (Fowler, Noll and Vo), with the length ahead of each part.
-        let with_length =
-            parts.flat_map(|part| (part.len() as u64).to_le_bytes().into_iter().chain(part.iter().copied()));
-        with_length.fold(0xcbf2_9ce4_8422_2325, |digest: u64, byte| {
-            (digest ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-        })
+        digest(self.attachments.iter().flat_map(|file| [file.name.as_bytes(), &file.data]))
     }
 
     /// The text of the MCAP metadata record.
@@ -118,12 +125,17 @@ impl Header {
         for (index, option) in self.options.iter().enumerate() {
             fields.insert(format!("option {index:04}"), option.clone());
         }
+        fields.insert(CHECKSUM.to_owned(), checksum(&fields));
         fields
     }
 
-    /// The header of a metadata record, without its attachments; and the version of its schema.
-    pub(super) fn read(fields: &BTreeMap<String, String>) -> Option<(Self, u32)> {
+    /// What a metadata record says; `None` if it is not as it was written.
+    pub(super) fn read(fields: &BTreeMap<String, String>) -> Option<Written> {
         let schema = fields.get("schema")?.parse().ok()?;
+        // Newer schemas may say it in another way.
+        if schema <= SCHEMA_VERSION && *fields.get(CHECKSUM)? != checksum(fields) {
+            return None;
+        }
         let options =
             fields.range("option ".to_owned()..).take_while(|(name, _)| name.starts_with("option "));
         let header = Self {
@@ -137,11 +149,27 @@ impl Header {
                 .unwrap_or_default(),
             attachments: Vec::new(),
         };
-        Some((header, schema))
+        let digest = fields.get("attachments").and_then(|digits| u64::from_str_radix(digits, 16).ok());
+        Some(Written { header, schema, digest: digest.unwrap_or_default() })
     }
 
     /// An attachment by its name.
     pub fn attachment(&self, name: &str) -> Option<&Attachment> {
         self.attachments.iter().find(|attachment| attachment.name == name)
     }
+}
+
+/// The 64-bit FNV-1a digest (Fowler, Noll and Vo) of some parts, with the length ahead of each.
+fn digest<'a>(parts: impl Iterator<Item = &'a [u8]>) -> u64 {
+    let with_length =
+        parts.flat_map(|part| (part.len() as u64).to_le_bytes().into_iter().chain(part.iter().copied()));
+    with_length.fold(0xcbf2_9ce4_8422_2325, |digest: u64, byte| {
+        (digest ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
+
+/// What the field [`CHECKSUM`] says of all others.
+fn checksum(fields: &BTreeMap<String, String>) -> String {
+    let others = fields.iter().filter(|(name, _)| *name != CHECKSUM);
+    format!("{:016x}", digest(others.flat_map(|(name, value)| [name.as_bytes(), value.as_bytes()])))
 }

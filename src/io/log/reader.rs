@@ -9,6 +9,9 @@ use super::LogError;
 const MAGIC: &[u8] = mcap::MAGIC;
 /// An opcode and a length.
 const FRAME: usize = 9;
+/// What a footer holds: two places and a checksum.
+const FOOTER: usize = 8 + 8 + CRC;
+const CRC: usize = 4;
 
 /// A record in a file: its kind, where it begins, and what it holds.
 #[derive(Debug, Clone, Copy)]
@@ -86,6 +89,27 @@ pub(super) fn message(body: &[u8]) -> Option<MessageAt<'_>> {
     Some(MessageAt { header, data })
 }
 
+/// How many files some bytes are, one behind the other.
+pub(super) fn runs(bytes: &[u8]) -> usize {
+    let seam = [MAGIC, MAGIC].concat();
+    1 + bytes.windows(seam.len()).filter(|window| *window == seam).count()
+}
+
+/// The schemas and channels that the summary of a file repeats; none if its end is cut off or damaged.
+pub(super) fn declarations(bytes: &[u8]) -> Vec<Framed<'_>> {
+    let in_summary = || {
+        let at = bytes.len().checked_sub(FRAME + FOOTER + MAGIC.len())?;
+        let footer = record_at(bytes, at).filter(|record| record.opcode == op::FOOTER)?;
+        let Ok(Record::Footer(parsed)) = footer.parse() else { return None };
+        let start =
+            usize::try_from(parsed.summary_start).ok().filter(|start| (MAGIC.len()..at).contains(start))?;
+        check_end(bytes, start, &footer).ok()?;
+        let found = records(&bytes[..at], start).flatten();
+        Some(found.filter(|record| matches!(record.opcode, op::SCHEMA | op::CHANNEL)).collect())
+    };
+    in_summary().unwrap_or_default()
+}
+
 /// The records of a whole file, up to the end of its data. Fails if a byte of the file is not as it was written.
 pub(super) fn whole(bytes: &[u8]) -> Result<Vec<Framed<'_>>, LogError> {
     if !bytes.starts_with(MAGIC) {
@@ -129,10 +153,9 @@ fn check(part: &str, saved: u32, bytes: &[u8]) -> Result<(), LogError> {
 
 /// Checks the summary, the footer and what follows it.
 fn check_end(bytes: &[u8], start: usize, footer: &Framed<'_>) -> Result<(), LogError> {
-    const CRC: usize = 4;
     let Record::Footer(parsed) = footer.parse()? else { return Ok(()) };
     let end = footer.end();
-    if footer.body.len() != 8 + 8 + CRC {
+    if footer.body.len() != FOOTER {
         return Err(LogError::damaged("the footer has another length"));
     }
     if parsed.summary_start != 0 && parsed.summary_start != start as u64 {
@@ -141,6 +164,9 @@ fn check_end(bytes: &[u8], start: usize, footer: &Framed<'_>) -> Result<(), LogE
     check("summary", parsed.summary_crc, &bytes[start..end - CRC])?;
     match &bytes[end..] {
         rest if rest == MAGIC => Ok(()),
+        rest if rest.starts_with(&[MAGIC, MAGIC].concat()) => {
+            Err(LogError::SeveralRuns { runs: runs(bytes) })
+        }
         rest if rest.len() < MAGIC.len() && MAGIC.starts_with(rest) => Err(truncated(bytes)),
         _ => Err(LogError::damaged("other bytes than the end mark of an MCAP file at its end")),
     }

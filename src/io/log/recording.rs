@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use mcap::records::{Record, op};
 
-use super::header::METADATA;
+use super::header::{METADATA, Written};
 use super::player::seconds;
 use super::reader::{self, Framed};
 use super::scene::WORLD;
 use super::wire::{self, Field};
-use super::writer::Nanoseconds;
+use super::writer::{LIBRARY, Nanoseconds};
 use super::{Attachment, Header, LogError, SCHEMA_VERSION};
 use crate::geometry::{Pose, math};
 
@@ -43,6 +43,8 @@ struct Facts {
     span: Option<(Nanoseconds, Nanoseconds)>,
     /// Where each robot starts in the world.
     starts: BTreeMap<usize, Pose>,
+    /// Whether attachments are other than when the recording was made.
+    attachments_lost: bool,
 }
 
 /// What a message of a robot is to a replay.
@@ -111,6 +113,12 @@ impl Log {
     /// Where a robot starts in the world, if the recording says so.
     pub fn start(&self, robot: usize) -> Option<Pose> {
         self.contents.facts.starts.get(&robot).copied()
+    }
+
+    /// Whether attachments are missing that the recording was made with, as may be after
+    /// [`recover`](super::recover).
+    pub fn lacks_attachments(&self) -> bool {
+        self.contents.facts.attachments_lost
     }
 
     /// The bytes of the file.
@@ -182,7 +190,7 @@ struct Reading {
     /// The address of the bytes that messages are in.
     start: usize,
     library: String,
-    headers: Vec<(Header, u32)>,
+    headers: Vec<Written>,
     attachments: Vec<Attachment>,
     /// What is known about the channels that a replay needs: their robots, and what their messages are.
     channels: BTreeMap<u16, (usize, Kind)>,
@@ -202,7 +210,8 @@ impl Reading {
             Record::Header(header) => self.library = header.library,
             Record::Metadata(metadata) if metadata.name == METADATA => {
                 let header = Header::read(&metadata.metadata);
-                self.headers.push(header.ok_or_else(|| LogError::damaged("the header lacks its schema"))?);
+                self.headers
+                    .push(header.ok_or_else(|| LogError::damaged("the header is not as it was written"))?);
             }
             Record::Attachment { header, data, .. } => self.attachments.push(Attachment {
                 name: header.name,
@@ -253,13 +262,16 @@ impl Reading {
         if self.headers.len() > 1 {
             return Err(LogError::SeveralRuns { runs: self.headers.len() });
         }
-        let Some((mut header, schema)) = self.headers.pop() else {
-            return Err(LogError::Foreign { library: std::mem::take(&mut self.library) });
+        let Some(Written { mut header, schema, digest }) = self.headers.pop() else {
+            let library = std::mem::take(&mut self.library);
+            let ours = library.starts_with(LIBRARY);
+            return Err(if ours { LogError::NoHeader } else { LogError::Foreign { library } });
         };
         if schema > SCHEMA_VERSION {
             return Err(LogError::Newer { found: schema, supported: SCHEMA_VERSION });
         }
         header.attachments = std::mem::take(&mut self.attachments);
+        self.facts.attachments_lost = header.digest() != digest;
         Ok(header)
     }
 }

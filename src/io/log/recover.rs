@@ -1,12 +1,10 @@
-use std::borrow::Cow;
-
 use mcap::records::{Record, op};
 use mcap::write::NoSeek;
 use mcap::{McapError, Writer};
 
 use super::header::METADATA;
 use super::reader::{self, Framed};
-use super::writer::write_options;
+use super::writer::{LIBRARY, write_options};
 use super::{Compression, Header, LogError};
 
 /// What could be saved of a damaged recording.
@@ -47,34 +45,40 @@ pub struct Recovery {
 /// # }
 /// ```
 pub fn recover(bytes: &[u8]) -> Result<Recovery, LogError> {
-    if !bytes.starts_with(mcap::MAGIC) {
-        return Err(LogError::NoMcap);
+    let runs = reader::runs(bytes);
+    if runs > 1 {
+        return Err(LogError::SeveralRuns { runs });
     }
-    let mut saving: Option<Saving> = None;
-    let mut lost = 0;
+    let mut saving = begin(bytes)?;
     let mut at = mcap::MAGIC.len();
     while at < bytes.len() {
         let Some(record) = reader::record_at(bytes, at).filter(is_sound) else {
-            let next = next_chunk(bytes, at + 1);
-            lost += next - at;
+            let next = next_guarded(bytes, at + 1);
+            saving.lost += next - at;
             at = next;
             continue;
         };
         at = record.end();
-        match (record.opcode, &mut saving) {
-            (op::DATA_END, _) => break,
-            (op::HEADER, None) => {
-                if let Record::Header(header) = record.parse()? {
-                    saving = Some(Saving::new(&header.profile, &header.library, compression(bytes, at))?);
-                }
-            }
-            (_, Some(saving)) => saving.add(&record)?,
-            // Without the header at its place, this is not a file of ours.
-            (_, None) => return Err(LogError::damaged("the file does not begin with a header")),
+        if record.opcode == op::DATA_END {
+            break;
         }
+        saving.add(&record)?;
     }
-    let saving = saving.ok_or(LogError::Truncated { at: bytes.len() as u64 })?;
-    saving.finish(lost)
+    saving.finish()
+}
+
+/// An empty recording like a damaged one. Fails if that begins neither as an MCAP file nor with the record of one.
+fn begin(bytes: &[u8]) -> Result<Saving<'_>, LogError> {
+    let first = mcap::MAGIC.len();
+    let named = reader::record_at(bytes, first).filter(|record| record.opcode == op::HEADER);
+    let named = named.and_then(|record| record.parse().ok());
+    let (profile, library) = match named {
+        Some(Record::Header(header)) => (header.profile, header.library),
+        _ if !bytes.starts_with(mcap::MAGIC) => return Err(LogError::NoMcap),
+        _ if bytes.len() == first => return Err(LogError::Truncated { at: bytes.len() as u64 }),
+        _ => (String::new(), LIBRARY.to_owned()),
+    };
+    Saving::new(&profile, &library, compression(bytes, first), reader::declarations(bytes))
 }
 
 /// How the first chunk from a place on is compressed.
@@ -88,49 +92,86 @@ fn compression(bytes: &[u8], start: usize) -> Compression {
     named.flatten().next().unwrap_or_default()
 }
 
-/// Whether a record can be read, a chunk with all that it holds.
+/// Whether a record can be read, a chunk with all that it holds, and is as long as what it says: one whose length is wrong
+/// would swallow those behind it.
 fn is_sound(record: &Framed<'_>) -> bool {
-    match record.opcode {
-        op::CHUNK => {
-            let contents = reader::contents(record);
-            let inner = contents.as_deref().map(reader::inner);
-            inner
-                .is_ok_and(|inner| inner.is_ok_and(|inner| inner.iter().all(|record| record.parse().is_ok())))
+    // Kinds that future formats or other programs add.
+    if record.opcode >= 0x80 {
+        return true;
+    }
+    let Ok(parsed) = record.parse() else { return false };
+    let length = match &parsed {
+        Record::Chunk { .. } => return is_sound_chunk(record),
+        Record::Header(header) => 4 + header.profile.len() + 4 + header.library.len(),
+        Record::Metadata(metadata) => {
+            if metadata.name == METADATA && Header::read(&metadata.metadata).is_none() {
+                return false;
+            }
+            let fields = metadata.metadata.iter().map(|(name, value)| 4 + name.len() + 4 + value.len());
+            4 + metadata.name.len() + 4 + fields.sum::<usize>()
         }
-        op::HEADER..=op::DATA_END => record.parse().is_ok(),
-        // Kinds that future formats or other programs add.
-        _ => record.opcode >= 0x80,
+        Record::Attachment { header, data, .. } => {
+            16 + 4 + header.name.len() + 4 + header.media_type.len() + 8 + data.len() + 4
+        }
+        Record::MessageIndex(index) => 2 + 4 + 16 * index.records.len(),
+        Record::DataEnd(_) => 4,
+        _ => return matches!(record.opcode, op::HEADER..=op::DATA_END),
+    };
+    length == record.body.len()
+}
+
+fn is_sound_chunk(record: &Framed<'_>) -> bool {
+    let Ok(contents) = reader::contents(record) else { return false };
+    reader::inner(&contents).is_ok_and(|inner| inner.iter().all(|record| record.parse().is_ok()))
+}
+
+/// Where the next record begins that has a checksum and agrees with it; the end of the file if there is none.
+fn next_guarded(bytes: &[u8], start: usize) -> usize {
+    let guarded = |at: &usize| {
+        reader::record_at(bytes, *at).is_some_and(|record| is_guarded(&record) && is_sound(&record))
+    };
+    (start..bytes.len()).find(guarded).unwrap_or(bytes.len())
+}
+
+/// Whether a record, if it is sound, cannot be so by chance.
+fn is_guarded(record: &Framed<'_>) -> bool {
+    match record.opcode {
+        op::CHUNK => reader::has_checksum(record),
+        op::ATTACHMENT => !record.body.ends_with(&[0; 4]),
+        op::METADATA => {
+            matches!(record.parse(), Ok(Record::Metadata(metadata)) if metadata.name == METADATA)
+        }
+        _ => false,
     }
 }
 
-/// Where the next intact chunk begins; the end of the file if there is none.
-fn next_chunk(bytes: &[u8], start: usize) -> usize {
-    let candidates = (start..bytes.len()).filter(|&at| bytes[at] == op::CHUNK);
-    let mut intact = candidates.filter(|&at| {
-        reader::record_at(bytes, at).is_some_and(|record| reader::has_checksum(&record) && is_sound(&record))
-    });
-    intact.next().unwrap_or(bytes.len())
-}
-
 /// A recording that is put together from what is intact.
-struct Saving {
+struct Saving<'a> {
     file: Writer<NoSeek<Vec<u8>>>,
+    /// Schemas and channels as the file's summary repeats them, for messages whose own declaration is lost.
+    declarations: Vec<Framed<'a>>,
     chunks: usize,
     messages: u64,
     header: bool,
+    lost: usize,
 }
 
-impl Saving {
-    fn new(profile: &str, library: &str, compression: Compression) -> Result<Self, LogError> {
+impl<'a> Saving<'a> {
+    fn new(
+        profile: &str,
+        library: &str,
+        compression: Compression,
+        declarations: Vec<Framed<'a>>,
+    ) -> Result<Self, LogError> {
         let options = write_options(compression)?.profile(profile).library(library);
         let file = options.create(NoSeek::new(Vec::new())).map_err(|error| damaged(&error))?;
-        Ok(Self { file, chunks: 0, messages: 0, header: false })
+        Ok(Self { file, declarations, chunks: 0, messages: 0, header: false, lost: 0 })
     }
 
     fn add(&mut self, record: &Framed<'_>) -> Result<(), LogError> {
         let written = match record.parse()? {
             Record::Metadata(metadata) => {
-                self.header |= metadata.name == METADATA && Header::read(&metadata.metadata).is_some();
+                self.header |= metadata.name == METADATA;
                 self.file.write_metadata(&metadata)
             }
             Record::Attachment { header, data, .. } => self.file.attach(&mcap::Attachment {
@@ -141,9 +182,10 @@ impl Saving {
                 data,
             }),
             Record::Chunk { .. } => {
-                self.chunks += 1;
                 let contents = reader::contents(record)?;
+                let lost_before = self.lost;
                 reader::inner(&contents)?.iter().try_for_each(|inner| self.add_inner(inner))?;
+                self.chunks += usize::from(self.lost == lost_before);
                 self.file.flush()
             }
             _ => Ok(()),
@@ -152,9 +194,41 @@ impl Saving {
     }
 
     fn add_inner(&mut self, record: &Framed<'_>) -> Result<(), LogError> {
-        let written = match record.parse()? {
+        match record.parse()? {
+            Record::Message { header, data } => {
+                let mut written = self.file.write_to_known_channel(&header, &data);
+                // The chunk that declared it is lost.
+                if matches!(written, Err(McapError::UnknownChannel(..))) && self.declare(header.channel_id)? {
+                    written = self.file.write_to_known_channel(&header, &data);
+                }
+                if matches!(written, Err(McapError::UnknownChannel(..))) {
+                    self.lost += record.body.len();
+                    return Ok(());
+                }
+                self.messages += 1;
+                written.map_err(|error| damaged(&error))
+            }
+            declaration => self.add_declaration(&declaration),
+        }
+    }
+
+    /// Writes a channel and its schema as the summary has them. Says whether it knows the channel.
+    fn declare(&mut self, id: u16) -> Result<bool, LogError> {
+        let declared: Vec<_> = self.declarations.iter().filter_map(|record| record.parse().ok()).collect();
+        let channel =
+            declared.iter().find(|record| matches!(record, Record::Channel(channel) if channel.id == id));
+        let Some(Record::Channel(channel)) = channel else { return Ok(false) };
+        let schema = declared
+            .iter()
+            .find(|record| matches!(record, Record::Schema { header, .. } if header.id == channel.schema_id));
+        schema.into_iter().try_for_each(|schema| self.add_declaration(schema))?;
+        self.add_declaration(&Record::Channel(channel.clone())).map(|()| true)
+    }
+
+    fn add_declaration(&mut self, record: &Record<'_>) -> Result<(), LogError> {
+        let written = match record {
             Record::Schema { header, data } => {
-                self.file.add_schema_with_id(header.id, &header.name, &header.encoding, &data).map(drop)
+                self.file.add_schema_with_id(header.id, &header.name, &header.encoding, data).map(drop)
             }
             Record::Channel(channel) => {
                 let (topic, encoding) = (&channel.topic, &channel.message_encoding);
@@ -162,24 +236,18 @@ impl Saving {
                     .add_channel_with_id(channel.id, channel.schema_id, topic, encoding, &channel.metadata)
                     .map(drop)
             }
-            Record::Message { header, data } => {
-                let data: Cow<'_, [u8]> = data;
-                let written = self.file.write_to_known_channel(&header, &data);
-                self.messages += u64::from(written.is_ok());
-                written
-            }
             _ => Ok(()),
         };
         match written {
-            // The chunk that declared it is lost.
-            Err(McapError::UnknownChannel(..) | McapError::UnknownSchema(..)) => Ok(()),
+            // The chunk with the channel's schema is lost; so are its messages then.
+            Err(McapError::UnknownSchema(..)) => Ok(()),
             other => other.map_err(|error| damaged(&error)),
         }
     }
 
-    fn finish(mut self, lost: usize) -> Result<Recovery, LogError> {
+    fn finish(mut self) -> Result<Recovery, LogError> {
         self.file.finish().map_err(|error| damaged(&error))?;
-        let Self { file, chunks, messages, header } = self;
+        let Self { file, chunks, messages, header, lost, .. } = self;
         Ok(Recovery { bytes: file.into_inner().into_inner(), chunks, messages, header, lost })
     }
 }

@@ -203,9 +203,16 @@ fn with_metadata(records: &[&[(&str, &str)]]) -> Vec<u8> {
 fn several_runs_and_newer_schemas_are_named() {
     let named = |records: &[&[(&str, &str)]]| Log::read(with_metadata(records)).unwrap_err();
     assert!(matches!(named(&[&[("schema", "2")]]), LogError::Newer { found: 2, supported: 1 }));
-    assert!(matches!(named(&[&[("schema", "1")], &[("schema", "1")]]), LogError::SeveralRuns { runs: 2 }));
+    let metadata = header().metadata();
+    let ours: Vec<(&str, &str)> =
+        metadata.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
+    assert!(Log::read(with_metadata(&[&ours])).is_ok());
+    assert!(matches!(named(&[&ours, &ours]), LogError::SeveralRuns { runs: 2 }));
     assert!(matches!(named(&[&[("version", "1")]]), LogError::Damaged { .. }));
-    assert!(Log::read(with_metadata(&[&[("schema", "1")]])).is_ok());
+    assert!(matches!(named(&[&[("schema", "1")]]), LogError::Damaged { .. }));
+    let twice = recorded(0.1).repeat(2);
+    assert!(matches!(Log::read(twice.clone()), Err(LogError::SeveralRuns { runs: 2 })));
+    assert!(matches!(recover(&twice), Err(LogError::SeveralRuns { runs: 2 })));
 }
 
 /// Whether to try every bit and every length, which takes many minutes.
@@ -240,6 +247,47 @@ fn every_cut_gives_back_all_complete_chunks() {
     }
     let whole = recover(&bytes).unwrap();
     assert!(whole.bytes == bytes && whole.lost == 0);
+}
+
+#[test]
+fn a_flipped_bit_costs_one_part_at_most() {
+    let attachments = ["a", "b"].map(|name| Attachment {
+        name: name.into(),
+        media_type: "text/plain".into(),
+        data: name.repeat(50).into(),
+    });
+    let header = Header { attachments: attachments.to_vec(), ..header() };
+    let writer = LogWriter::new(Vec::new(), &header).unwrap();
+    let simulation = Simulation::new(&scene(), SimOptions::with_noise(1.0, 7)).unwrap();
+    tour(&mut writer.recorder(simulation.robot(0).unwrap(), 0), 1.3).unwrap();
+    let bytes = writer.finish().unwrap();
+
+    let parts = |recovery: &Recovery| {
+        let records = super::reader::records(&recovery.bytes, mcap::MAGIC.len()).map_while(|record| record);
+        let attached = records.filter(|record| record.opcode == mcap::records::op::ATTACHMENT).count();
+        recovery.chunks + attached + usize::from(recovery.header)
+    };
+    let whole = recover(&bytes).unwrap();
+    assert!(whole.chunks >= 2 && parts(&whole) == whole.chunks + 3);
+    let start = bytes.len().min(1500);
+    for place in (0..start).chain((start..bytes.len()).step_by(211)) {
+        let mut broken = bytes.clone();
+        broken[place] ^= 1 << (place % 8);
+        let saved = recover(&broken).unwrap();
+        let lost = parts(&whole) - parts(&saved);
+        assert!(lost <= 1, "byte {place}: {lost} of {} parts", parts(&whole));
+        match Log::read(saved.bytes) {
+            Ok(log) => {
+                assert!(saved.header, "byte {place}");
+                assert_eq!(log.lacks_attachments(), log.header().attachments != attachments, "byte {place}");
+                let ours = Header { attachments: Vec::new(), ..log.header().clone() };
+                assert_eq!(ours, Header { attachments: Vec::new(), ..header.clone() }, "byte {place}");
+            }
+            Err(error) => {
+                assert!(matches!(error, LogError::NoHeader) && !saved.header, "byte {place}: {error}");
+            }
+        }
+    }
 }
 
 #[test]

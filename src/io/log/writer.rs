@@ -105,6 +105,9 @@ struct Message {
     data: Vec<u8>,
 }
 
+/// How files of ours name what wrote them.
+pub(super) const LIBRARY: &str = "roverlab";
+
 /// A chunk that holds more bytes than this ends.
 const CHUNK_BYTES: usize = 1 << 20;
 const SECOND: u64 = 1_000_000_000;
@@ -122,7 +125,7 @@ impl<W: Write> LogWriter<W> {
     /// Begins a recording with its header.
     pub fn new(sink: W, header: &Header) -> io::Result<Self> {
         // The version is in the header, which a replay copies.
-        let options = write_options(header.compression)?.library("roverlab");
+        let options = write_options(header.compression)?.library(LIBRARY);
         let mut file = options.create(NoSeek::new(sink)).map_err(as_io)?;
         let metadata = Metadata { name: METADATA.into(), metadata: header.metadata() };
         file.write_metadata(&metadata).map_err(as_io)?;
@@ -275,9 +278,10 @@ impl<W: Write> Shared<W> {
         data: &[u8],
     ) -> Result<(), McapError> {
         let Some(file) = &mut self.file else { return Ok(()) };
-        if time / SECOND > self.second || self.bytes > CHUNK_BYTES {
+        // Robots that drive one after the other begin their time anew.
+        if time / SECOND != self.second || self.bytes > CHUNK_BYTES {
             file.flush()?;
-            (self.second, self.bytes) = (self.second.max(time / SECOND), 0);
+            (self.second, self.bytes) = (time / SECOND, 0);
         }
         let (id, sequence) = match self.channels.entry((track, topic)) {
             Entry::Occupied(known) => known.into_mut(),

@@ -1,3 +1,4 @@
+use super::TICKS_PER_SECOND;
 use super::wheels::Wheels;
 use crate::kinematics::Displacement;
 
@@ -23,12 +24,19 @@ struct Manoeuvre<const N: usize> {
     speed: f64,
     /// What a metre of the farther wheel's roll is worth in `remaining`: metres, or radians for a turn.
     unit: f64,
+    /// Ticks for which all wheels have been nearly at their targets.
+    settling: u32,
 }
 
 /// The part of what the motors can do that a manoeuvre plans to brake with.
 const BRAKING: f64 = 0.5;
 /// How fast the last millimetres are closed, per second.
 const APPROACH_RATE: f64 = 20.0;
+/// A wheel this many resolutions from its target is nearly there.
+const NEARLY: f64 = 4.0;
+/// Ticks after which wheels stay that are nearly at their targets. Two wheels whose targets are both half an encoder tick
+/// away could otherwise hunt for ever, each moved off its target by the other's correction.
+const LONGEST_SETTLING: u32 = TICKS_PER_SECOND as u32;
 /// The rim speed, in m/s, below which a wheel at its target stands.
 const STANDING: f64 = 1e-5;
 
@@ -76,12 +84,13 @@ impl<const N: usize> Autopilot<N> {
             target: std::array::from_fn(|w| measured[w] + rolls[w]),
             speed: (speed.abs() * farther / whole).min(wheels.speed_limit()),
             unit: whole / farther,
+            settling: 0,
         });
     }
 
     /// The rim speeds to command for the next tick.
     pub(super) fn command(&mut self, wheels: &Wheels<N>) -> [f64; N] {
-        match &self.mode {
+        match &mut self.mode {
             Mode::Speeds(speeds) => *speeds,
             Mode::Manoeuvre(manoeuvre) => manoeuvre.command(wheels).unwrap_or_else(|| {
                 self.mode = Mode::Speeds([0.0; N]);
@@ -125,11 +134,14 @@ impl<const N: usize> Manoeuvre<N> {
     ///
     /// The wheel with more to go sets the pace and the others are paced so that all arrive together, which also
     /// brings a robot that was already moving back onto its arc.
-    fn command(&self, wheels: &Wheels<N>) -> Option<[f64; N]> {
+    fn command(&mut self, wheels: &Wheels<N>) -> Option<[f64; N]> {
         let rest = self.rest(wheels);
         let farther = farthest(rest);
         let speeds = wheels.speeds();
-        if farther <= wheels.resolution() {
+        if farther <= NEARLY * wheels.resolution() {
+            self.settling += 1;
+        }
+        if farther <= wheels.resolution() || self.settling > LONGEST_SETTLING {
             let standing = farthest(speeds) < STANDING;
             return if standing { None } else { Some(speeds.map(|v| follow(0.0, v, wheels.decay()))) };
         }

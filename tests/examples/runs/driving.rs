@@ -27,6 +27,12 @@ fn every_method_arrives_without_noise() {
             }
         }
     }
+    // A goal within the lookahead; and one whose last turn has both wheels end between two encoder ticks.
+    for (method, goal) in [("spline", "-9.4,-48.5,102.1"), ("arc", "-490.7,-89.2,-151.2")] {
+        let place = ["--start", "0,0,0", "--goal", goal, "--noise", "0"];
+        let ended = a_to_b(&[&place[..], &["--method", method, "--follower", "pure-pursuit"]].concat());
+        assert_reached(&ended, 6.0);
+    }
     let pursuit = a_to_b(&["--follower", "pure-pursuit", "--noise", "0", "--ideal-encoders"]);
     assert_reached(&pursuit, 1.0);
     assert!(number(&pursuit.1, "heading_error_deg") <= 0.1);
@@ -106,6 +112,15 @@ fn cars_keep_to_their_turning_circle() {
                 assert!(number(&ended.1, "heading_error_deg") <= 1.5, "{options:?}: {}", ended.1);
             }
         }
+    }
+}
+
+#[test]
+fn cars_that_arrive_askew_come_again() {
+    for goal in ["354,-1968,6", "93.6,409.5,178", "-472.7,468.2,-173.7"] {
+        let ended = run("ackermann", ackermann::work, &["--start", "0,0,0", "--goal", goal, "--noise", "0"]);
+        assert_reached(&ended, 15.0);
+        assert!(number(&ended.1, "heading_error_deg") <= 2.0, "{goal}: {}", ended.1);
     }
 }
 

@@ -270,6 +270,33 @@ fn files_that_cannot_be_replayed_are_named() {
     assert!(report["difference"]["found"].as_str().unwrap().contains("the recording has ended"), "{report}");
 }
 
+#[test]
+fn a_replay_meets_what_was_recorded() {
+    let log = file("met.mcap");
+    let name = log.to_str().unwrap();
+    run("a_to_b", a_to_b::work, &["--seed", "3", "--record", name]);
+    let again = |options: &[&str]| run("a_to_b", a_to_b::work, &[&["--replay", name], options].concat());
+    assert_eq!(again(&["--seed=3"]).0, 0);
+    for (options, part) in [(["--seed", "4"], "--seed=4"), (["--noise", "0"], "--noise=0")] {
+        let (status, _, err) = again(&options);
+        assert!(status == 2 && err.contains(part) && err.lines().count() == 1, "{err}");
+    }
+}
+
+#[test]
+fn a_recording_has_no_files_written() {
+    let (log, picture) = (file("foreign-options.mcap"), file("foreign-options.svg"));
+    let option = format!("--picture={}", picture.display());
+    let header = roverlab::io::log::Header::new("a_to_b", [option]);
+    let writer = roverlab::io::log::LogWriter::new(Vec::new(), &header).unwrap();
+    fs::write(&log, writer.finish().unwrap()).unwrap();
+    let name = log.to_str().unwrap();
+    let (status, _, err) = run("a_to_b", a_to_b::work, &["--replay", name]);
+    assert!(status == 2 && err.contains("expected options that affect the run"), "{err}");
+    assert_eq!(manage(&["check", name]).0, 2);
+    assert!(!picture.exists());
+}
+
 /// A small recording that was made once, perhaps on another machine. After a change that is meant to change runs, it is
 /// made anew by `REGENERATE=1 cargo test --test examples recordings`.
 #[test]

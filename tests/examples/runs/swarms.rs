@@ -87,11 +87,35 @@ fn letters_in_a_maze_stand_for_robots() {
 }
 
 #[test]
+fn worlds_without_robots_get_them() {
+    let world = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bare.wld");
+    fs::write(&world, "floor 5000 5000\nposition 2500 1000 0\n0 3000 3000 3000\n").unwrap();
+    let world = world.to_str().unwrap();
+    let options = ["--world", world, "--followers", "3", "--time-limit", "30"];
+    let ended = run("follow_me", follow_me::work, &options);
+    assert_ended(&ended, "followed");
+    assert_eq!(number(&ended.1, "followers"), 3.0);
+    let options = ["--world", world, "--robots", "4", "--time-limit", "30"];
+    let ended = run("random_drive", random_drive::work, &options);
+    assert_ended(&ended, "driven");
+    assert_eq!(number(&ended.1, "robots"), 4.0);
+}
+
+#[test]
 fn what_cannot_be_is_refused() {
-    let world = Path::new(env!("CARGO_TARGET_TMPDIR")).join("alone.wld");
-    fs::write(&world, "floor 3000 3000\nposition 500 500 0\n").unwrap();
-    for options in [&["--fault", "link@1"][..], &["--followers", "0"], &["--world", world.to_str().unwrap()]]
-    {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let (alone, narrow, pair) =
+        (folder.join("alone.wld"), folder.join("narrow.wld"), folder.join("pair.sim"));
+    fs::write(&alone, "floor 3000 3000\n").unwrap();
+    fs::write(&narrow, "floor 600 600\nposition 300 300 0\n").unwrap();
+    fs::write(&pair, "world alone.wld\nLabBot 1000 1000 0\nS4 500 1000 0\n").unwrap();
+    for options in [
+        &["--fault", "link@1"][..],
+        &["--followers", "0"],
+        &["--world", alone.to_str().unwrap()],
+        &["--world", narrow.to_str().unwrap(), "--followers", "20"],
+        &["--world", pair.to_str().unwrap(), "--followers", "2"],
+    ] {
         let (status, _, err) = run("follow_me", follow_me::work, options);
         assert!(status == 2 && err.lines().count() == 1, "{options:?}: {err}");
     }
