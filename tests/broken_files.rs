@@ -51,7 +51,7 @@ fn every_broken_file_gives_its_message() {
         ("maz", 16),
         ("movingai_map", 17),
         ("movingai_scen", 13),
-        ("robi", 25),
+        ("robi", 26),
         ("ros_map", 24),
         ("sim", 22),
         ("wld", 19),

@@ -290,11 +290,11 @@ impl<'f> Reader<'f> {
         self.spec.drive = self.drive_spec(drive)?;
         self.place_sensors();
         self.place_footprint(drive);
-        let radius = self.spec.footprint.bounding_radius();
-        if radius > MAX_METRES {
-            // It may come of wheels or of a solid, each within its limits.
-            let found = format!("a robot with a radius of {} mm", number::print(radius, MILLI));
-            let expected = "at most 1000000000";
+        // Wheels, outline and axle may each be within their limits, and what comes of them not.
+        let reach = self.spec.footprint.bounding_radius() + self.spec.body.axle[0].abs();
+        if reach > 0.5 * MAX_METRES {
+            let found = format!("a robot that reaches {} mm from its middle", number::print(reach, MILLI));
+            let expected = "at most 500000000";
             return Err(FormatError::new(self.notes.file, Location::START, found, expected));
         }
         Ok(self.notes.finish(self.spec))
