@@ -20,7 +20,7 @@ that the robot's middle follows, plus 2 %. The outcome is `passed` if every verd
 is right, nothing was touched and no bound was broken.
 
 --picture shows the paths of all on the world of --world, or else on the first course of the first family. With --record,
-all drive through this one world alone, one after the other.
+all drive through this one world alone, side by side in the recording.
 
 JSON fields:
   rows               list of {bug, family, runs, correct, contacts, and over correct runs: mean_path_mm, path_ci_mm,

@@ -1,4 +1,7 @@
-use roverlab::nav::Reachability;
+use std::panic::resume_unwind;
+use std::thread;
+
+use roverlab::nav::{BugKind, Reachability};
 use roverlab::random::Stream;
 use roverlab::world::generate::{Course, CourseFamily};
 use roverlab::world::{RobotSpec, Scene};
@@ -78,15 +81,22 @@ pub(crate) fn shown(args: &Args) -> Result<Setting, Failure> {
     of_family(args.families()[0], args.common.seed)
 }
 
-/// Lets all algorithms drive in the setting that is shown, one after the other in one recording.
+/// Lets all algorithms drive in the setting that is shown, side by side in one recording.
 pub(crate) fn recorded(args: &Args) -> Result<Entry, Failure> {
     let setting = shown(args)?;
     let (trip, conditions, bugs) = (&setting.trip, setting.conditions(args), args.bugs());
     let stage = args.common.stage_apart(&trip.scene, &conditions.sim_options(), bugs.len())?;
-    // Each robot is taken when its turn comes: a recording would keep what one did until all others have driven as far.
-    let drive =
-        |(index, &kind)| ride_with(trip, kind, conditions, stage.robot(index)?, &mut stage.truth(index)?);
-    let rides = bugs.iter().enumerate().map(drive).collect::<Result<_, Failure>>()?;
+    let robots = (0..bugs.len()).map(|index| Ok((stage.robot(index)?, stage.truth(index)?)));
+    let robots: Vec<(Driven, StageTruth)> = robots.collect::<Result<_, Failure>>()?;
+    let rides = thread::scope(|scope| {
+        let drive = |(&kind, (robot, mut truth)): (&BugKind, (Driven, StageTruth))| {
+            scope.spawn(move || ride_with(trip, kind, conditions, robot, &mut truth))
+        };
+        let threads: Vec<_> = bugs.iter().zip(robots).map(drive).collect();
+        let rides =
+            threads.into_iter().map(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic)));
+        rides.collect::<Result<_, Failure>>()
+    })?;
     Ok(Entry { setting, rides })
 }
 

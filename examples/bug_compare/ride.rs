@@ -124,9 +124,9 @@ pub(crate) fn ride_with(
     for follow in &mut follows {
         follow.1 = follow.1.min(path.len());
     }
-    // The robot lets go of the world, so that what is true stays as it is.
-    drop(robot);
+    // Asked before the robot lets go of the world: then its recording ends.
     let (sim_time, truth) = (truth.time().map_err(Failure::run)?, truth.robot(0).map_err(Failure::run)?);
+    drop(robot);
     Ok(Ride {
         kind,
         guarantee: bug.guarantee(),

@@ -2,6 +2,7 @@ use std::fmt::Display;
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use roverlab::geometry::Pose;
 use roverlab::io::wrappers::Fault;
@@ -88,6 +89,13 @@ impl CommonArgs {
     pub(crate) fn check(&self) -> Result<(), Failure> {
         if let Some(file) = &self.record {
             check_writable("--record", file)?;
+            let same = |other: &PathBuf| matches!((fs::canonicalize(file), fs::canonicalize(other)), (Ok(a), Ok(b)) if a == b);
+            if self.replay.as_ref().is_some_and(same) {
+                let file = file.display();
+                return Err(Failure::input(format!(
+                    "--record {file}: found the recording that is replayed; expected another file"
+                )));
+            }
         }
         match &self.robios {
             Some(library) if self.replay.is_some() => Err(Failure::input(format!(
@@ -119,10 +127,10 @@ impl CommonArgs {
         }
     }
 
-    /// Tells of something odd on standard error, with `--json` as well: that reserves standard output alone.
-    pub(crate) fn warn(warning: impl Display) {
-        // Without standard error there is nobody left to tell.
-        let _ = writeln!(std::io::stderr(), "{warning}");
+    /// Notes something odd about the input. It is told on standard error when the input has turned out to be of use, with
+    /// `--json` as well: that reserves standard output alone. Of input that is refused, the refusal is all that is told.
+    pub(crate) fn warn(&self, warning: impl Display) {
+        self.origin.warn(warning.to_string());
     }
 
     /// Fails if pictures cannot be written where the options ask for one, before a long run is in vain.
@@ -147,6 +155,7 @@ fn check_library(library: &Path) -> Result<(), Failure> {
 
 /// Fails if a file cannot be written where an option asks for one.
 fn check_writable(option: &str, file: &Path) -> Result<(), Failure> {
+    static TRIALS: AtomicUsize = AtomicUsize::new(0);
     let refused = |found: String, expected: &str| {
         Err(Failure::input(format!("{option} {}: found {found}; expected {expected}", file.display())))
     };
@@ -158,7 +167,8 @@ fn check_writable(option: &str, file: &Path) -> Result<(), Failure> {
         return refused("a folder of this name".into(), "the name of a file");
     }
     // Pictures are written beside an older file and then take its place, so it is the folder that counts.
-    let trial = folder.join(format!(".roverlab-{}.tmp", std::process::id()));
+    let number = TRIALS.fetch_add(1, Ordering::Relaxed);
+    let trial = folder.join(format!(".roverlab-{}-{number}.tmp", std::process::id()));
     match File::create(&trial).and_then(|_| fs::remove_file(&trial)) {
         Ok(()) => Ok(()),
         Err(error) => refused(format!("folder {} ({error})", folder.display()), "one that can be written to"),

@@ -50,20 +50,20 @@ where
     A: clap::Parser + AsRef<CommonArgs>,
 {
     let mut words: Vec<OsString> = command_line.into_iter().collect();
-    let log =
-        replayed(&words).map(|file| recording(example, &file)).transpose().map_err(Refusal::Recording)?;
+    let mut command = A::command();
+    let log = replayed(&words).map(|file| recording(example, &command, &file));
+    let log = log.transpose().map_err(Refusal::Recording)?;
     if let Some(log) = &log {
         let given = words.split_off(1.min(words.len()));
         let recorded = log.header().options.iter().filter(|option| !repeats(option, &given));
         words.extend(recorded.map(OsString::from).collect::<Vec<_>>());
         words.extend(given);
     }
-    let mut command = A::command();
     let mut matches = command.try_get_matches_from_mut(words).map_err(Refusal::Parser)?;
     check_recorded(&matches).map_err(Refusal::Recording)?;
     let options = options(&command, &matches);
     if let Some(log) = &log {
-        check_met(&options, &log.header().options).map_err(Refusal::Recording)?;
+        check_met(&command, &options, &log.header().options).map_err(Refusal::Recording)?;
     }
     let args =
         A::from_arg_matches_mut(&mut matches).map_err(|error| Refusal::Parser(error.format(&mut command)))?;
@@ -87,13 +87,31 @@ fn check_recorded(matches: &ArgMatches) -> Result<(), Failure> {
 }
 
 /// Fails if a replay is to meet something other than what was recorded.
-fn check_met(options: &[String], recorded: &[String]) -> Result<(), Failure> {
-    let changed = |option: &&String| MET.contains(&name_of(option)) && !recorded.contains(option);
+fn check_met(command: &Command, options: &[String], recorded: &[String]) -> Result<(), Failure> {
+    let default = |name: &str| {
+        let arg = command.get_arguments().find(|arg| arg.get_long() == Some(name))?;
+        arg.get_default_values().first()?.to_str()
+    };
+    let was_recorded = |option: &str| {
+        let (name, value) = (name_of(option), value_of(option));
+        let mut known = recorded.iter().filter(|other| name_of(other) == name).peekable();
+        match known.peek() {
+            Some(_) => known.any(|other| is_same(value_of(other), value)),
+            None => is_same(default(name), value),
+        }
+    };
+    let changed = |option: &&String| MET.contains(&name_of(option)) && !was_recorded(option);
     options.iter().find(changed).map_or(Ok(()), |option| {
         Err(Failure::input(format!(
             "found {option} and --replay; expected none, what the robot meets is in the recording"
         )))
     })
+}
+
+/// Whether two values of an option say the same: as text, or as numbers.
+fn is_same(one: Option<&str>, other: Option<&str>) -> bool {
+    let number = |text: Option<&str>| text?.parse::<f64>().ok();
+    one == other || number(one).is_some_and(|one| Some(one) == number(other))
 }
 
 /// The file behind `--replay`.
@@ -103,7 +121,7 @@ fn replayed(words: &[OsString]) -> Option<OsString> {
     joined.or_else(|| words().skip_while(|word| *word != "--replay").nth(1).cloned())
 }
 
-fn recording(example: &str, file: &OsString) -> Result<Log, Failure> {
+fn recording(example: &str, command: &Command, file: &OsString) -> Result<Log, Failure> {
     let name = Path::new(file).display();
     let refused = |error: &dyn std::fmt::Display| Failure::input(format!("--replay {name}: {error}"));
     let bytes = fs::read(file).map_err(|error| refused(&error))?;
@@ -114,13 +132,21 @@ fn recording(example: &str, file: &OsString) -> Result<Log, Failure> {
             "found a recording of the program `{program}`; expected one of `{example}`"
         )));
     }
-    // A recording comes from anywhere: it may not have files written.
-    match log.header().options.iter().find(|option| NOT_RECORDED.contains(&name_of(option))) {
+    // A recording comes from anywhere: it may not have files written, nor other files read than its own.
+    match log.header().options.iter().find(|option| !affects_run(command, option)) {
         Some(option) => Err(refused(&format!(
             "found the option {option} in the recording; expected options that affect the run"
         ))),
         None => Ok(log),
     }
+}
+
+/// Whether an option is one that recordings hold.
+fn affects_run(command: &Command, option: &str) -> bool {
+    let name = name_of(option);
+    let known = command.get_arguments().any(|arg| arg.get_long() == Some(name));
+    let is_own = |value: &str| value == recorded_name(name, Path::new(value));
+    known && !NOT_RECORDED.contains(&name) && (!FILES.contains(&name) || value_of(option).is_some_and(is_own))
 }
 
 /// Whether a recorded option is given anew.
@@ -131,6 +157,11 @@ fn repeats(option: &str, given: &[OsString]) -> bool {
 /// The name in `--name=value` or `--name`.
 fn name_of(option: &str) -> &str {
     option.split('=').next().unwrap_or(option).trim_start_matches("--")
+}
+
+/// The value in `--name=value`.
+fn value_of(option: &str) -> Option<&str> {
+    option.split_once('=').map(|(_, value)| value)
 }
 
 /// The options that affect a run, as they were given, in the order of the command.

@@ -2,7 +2,7 @@ use std::io;
 use std::path::Path;
 
 use roverlab::io::log::{Attachment, Log};
-use roverlab::world::formats::{self, DiskFiles, FileSource, FormatError, Parsed, SourceFile};
+use roverlab::world::formats::{self, DiskFiles, FileSource, FormatError, Location, Parsed, SourceFile};
 use roverlab::world::{RobotSpec, Scene};
 
 use super::CommonArgs;
@@ -21,8 +21,12 @@ impl CommonArgs {
         let name = recorded_name(option, path);
         let replayed = path.to_str() == Some(&name);
         let log = self.origin.facts().log.filter(|_| replayed);
-        if let Some(file) = log.as_ref().and_then(|log| log.header().attachment(&name)) {
-            return Ok(file.data.clone());
+        if let Some(log) = log {
+            // What a recording lacks is not looked for elsewhere.
+            let lost = || {
+                FormatError::new(&name, Location::START, "no such file in the recording", "its attachment")
+            };
+            return log.header().attachment(&name).map(|file| file.data.clone()).ok_or_else(lost);
         }
         let bytes = formats::read_file(path)?;
         self.origin.attach(attachment(&name, &bytes));

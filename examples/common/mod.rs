@@ -57,6 +57,7 @@ mod args;
 mod command_line;
 mod failure;
 mod files;
+mod free_floor;
 mod origin;
 mod report;
 mod run;
@@ -69,11 +70,12 @@ mod workers;
 
 pub(crate) use args::CommonArgs;
 pub(crate) use failure::Failure;
+pub(crate) use free_floor::FreeFloor;
 pub(crate) use origin::Origin;
 pub(crate) use report::{Outcome, Report, millimetres, point_in_mm, rounded};
 pub(crate) use run::{Printed, main, run, run_printing};
 pub(crate) use stage::{Driven, Stage, StageTruth, StagedTroop};
-pub(crate) use trip::{StandIn, Trip, free_place};
+pub(crate) use trip::{StandIn, Trip};
 pub(crate) use values::{
     GoalOption, parse_goal, parse_noise, parse_picture, parse_point, parse_pose, parse_seconds,
 };

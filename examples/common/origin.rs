@@ -1,3 +1,4 @@
+use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -12,6 +13,7 @@ use super::supervision::Stops;
 pub(crate) struct Origin {
     facts: Arc<OnceLock<Facts>>,
     trouble: Arc<Mutex<Vec<String>>>,
+    warnings: Arc<Mutex<Vec<String>>>,
     files: Arc<Mutex<Vec<Attachment>>>,
     staged: Arc<AtomicBool>,
     stops: Stops,
@@ -38,12 +40,20 @@ impl Origin {
         self.facts.get().cloned().unwrap_or_default()
     }
 
-    /// Takes in a file that belongs to the run.
+    /// Takes in a file that belongs to the run. All must be read before the robots are taken: a recording begins with
+    /// them.
     pub(crate) fn attach(&self, file: Attachment) {
         let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
-        if !files.contains(&file) {
-            files.push(file);
+        if files.contains(&file) {
+            return;
         }
+        if self.is_staged() {
+            self.note(format!(
+                "{}: was read when the robots drove; expected it before, for recordings",
+                file.name
+            ));
+        }
+        files.push(file);
     }
 
     /// The files that belong to the run.
@@ -51,8 +61,22 @@ impl Origin {
         self.files.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
+    /// Notes something odd about the input.
+    pub(crate) fn warn(&self, warning: String) {
+        self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(warning);
+    }
+
+    /// Tells what is odd about the input, once.
+    pub(crate) fn tell_warnings(&self) {
+        for warning in self.warnings.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
+            // Without standard error there is nobody left to tell.
+            let _ = writeln!(std::io::stderr(), "{warning}");
+        }
+    }
+
     /// Notes that there was a stage, so that there is a recording.
     pub(crate) fn set_staged(&self) {
+        self.tell_warnings();
         self.staged.store(true, Ordering::Relaxed);
     }
 

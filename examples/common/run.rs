@@ -41,6 +41,7 @@ where
         let stopwatch = Stopwatch::start();
         common.check()?;
         let mut report = work(args)?;
+        common.origin.tell_warnings();
         report.add_trouble(common.origin.take_trouble());
         if let Some(safety) = common.origin.stops().take() {
             report = report.field("safety", safety);

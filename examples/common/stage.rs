@@ -19,6 +19,9 @@ use roverlab::world::{MotorSpec, Scene, formats};
 use super::supervision::{DEADMAN, Stops, guarded};
 use super::{CommonArgs, Failure, Origin};
 
+/// How many bytes of a recording a robot that is apart may be ahead of the others.
+const MOST_AHEAD: usize = 1 << 20;
+
 /// A robot for an example: simulated or replayed, and recorded if the options ask for it.
 pub(crate) type Driven = Box<dyn RobotIo + Send>;
 
@@ -168,7 +171,8 @@ impl CommonArgs {
         self.robios.as_ref().map_or(Ok(()), |library| Err(alone(library)))
     }
 
-    /// As [`stage`](Self::stage), with copies of the scene's first robot that drive each alone in a copy of its world.
+    /// As [`stage`](Self::stage), with copies of the scene's first robot that drive each alone in a copy of its world, and
+    /// each in a thread of its own: what is recorded is merged by time while they drive.
     pub(crate) fn stage_apart(
         &self,
         scene: &Scene,
@@ -185,6 +189,9 @@ impl CommonArgs {
         let mut stage = self.recorded(scene, Stage::new(play, Vec::new()), motors(scene))?;
         if let Some(guard) = &mut stage.guard {
             guard.apart = true;
+        }
+        if let Some(writer) = &stage.recording.writer {
+            writer.hold_at_most(MOST_AHEAD);
         }
         Ok(stage)
     }

@@ -1,11 +1,12 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use roverlab::geometry::{Aabb, Point, Pose, direction, units};
+use roverlab::geometry::{Aabb, Point, Pose, units};
 use roverlab::world::formats::{FormatError, Parsed};
-use roverlab::world::space::{Solid, Space, Span};
+use roverlab::world::space::{Solid, Span};
 use roverlab::world::{DriveSpec, Object, RobotPlacement, RobotSpec, Scene, Shape};
 
+use super::free_floor::space_with;
 use super::{CommonArgs, Failure};
 
 /// A robot in a scene with a place to go: the first robot is the one that drives, the others stand.
@@ -16,6 +17,8 @@ pub(crate) struct Trip {
     pub(crate) goal: Point,
 }
 
+/// A marker within so many metres of the robot is that of its start.
+const AT_START: f64 = 0.05;
 /// A robot nearer to something than this many metres touches it.
 const TOUCHING: f64 = 1e-3;
 
@@ -67,7 +70,7 @@ impl CommonArgs {
     /// The trip that the options describe: `--world`, or `own` without it, with the robot, the start and the goal
     /// that the options give, or else the world.
     ///
-    /// A `.sim` gives its first robot and its first marker; a `.maz` the letters S and G; a `.wld` its `position`.
+    /// A `.sim` gives its first robot and its first marker that is not where this starts; a `.maz` the letters S and G; a `.wld` its `position`.
     pub(crate) fn trip(&self, own: impl FnOnce() -> Scene) -> Result<Trip, Failure> {
         if self.goal.is_some_and(|goal| goal.heading.is_some()) {
             return Err(Failure::input(
@@ -106,7 +109,7 @@ impl CommonArgs {
         own: impl FnOnce() -> Scene,
     ) -> Result<Scene, Failure> {
         let scene = match &self.world {
-            Some(file) => Self::parsed(self.load_scene("world", file))?,
+            Some(file) => self.parsed(self.load_scene("world", file))?,
             None => own(),
         };
         self.placed_in(scene, stand_in)
@@ -116,10 +119,10 @@ impl CommonArgs {
     pub(crate) fn placed_in(&self, mut scene: Scene, stand_in: &StandIn) -> Result<Scene, Failure> {
         let mut robot = self.driver(&scene, stand_in)?;
         if let Some(file) = &self.robot {
-            robot.spec = Arc::new(Self::parsed(self.load_robot("robot", file))?);
+            robot.spec = Arc::new(self.parsed(self.load_robot("robot", file))?);
         } else if !(stand_in.suits)(&robot.spec) {
             let (world, found, other) = (self.world_name(), &robot.spec.name, &stand_in.spec.name);
-            Self::warn(format_args!(
+            self.warn(format_args!(
                 "{world}: found robot {found}; expected another drive: {other} takes its place"
             ));
             robot.spec = Arc::clone(&stand_in.spec);
@@ -167,11 +170,11 @@ impl CommonArgs {
         self.world.as_deref().map_or("the example's own world".into(), |file| file.display().to_string())
     }
 
-    /// What a file says. Tells its warnings.
-    fn parsed<T>(parsed: Result<Parsed<T>, FormatError>) -> Result<T, Failure> {
+    /// What a file says. Notes its warnings.
+    fn parsed<T>(&self, parsed: Result<Parsed<T>, FormatError>) -> Result<T, Failure> {
         let parsed = parsed.map_err(Failure::input)?;
         for warning in &parsed.warnings {
-            Self::warn(warning);
+            self.warn(warning);
         }
         Ok(parsed.value)
     }
@@ -196,7 +199,10 @@ impl CommonArgs {
     }
 
     fn destination(&self, scene: &Scene) -> Result<Point, Failure> {
-        let marker = scene.world.markers.first().map(|marker| marker.position);
+        // Scripts mark the start as well, before the goal or behind it.
+        let start = scene.robots[0].pose;
+        let places = || scene.world.markers.iter().map(|marker| marker.position);
+        let marker = places().find(|&place| start.distance_to(place) > AT_START).or_else(|| places().next());
         let letter = scene.world.places.iter().find(|place| place.letter.eq_ignore_ascii_case(&'g'));
         self.goal.map(|goal| goal.position).or(marker).or(letter.map(|place| place.position)).ok_or_else(
             || {
@@ -229,31 +235,6 @@ impl CommonArgs {
     }
 }
 
-/// A free place for one more robot in a scene: the wished one, or one as near to it as may be. `None` if all is taken two
-/// metres around.
-pub(crate) fn free_place(scene: &Scene, spec: &Arc<RobotSpec>, wished: Pose) -> Option<Pose> {
-    /// Metres from circle to circle of places that are tried, how many circles, and the places on each.
-    const STEP: f64 = 0.1;
-    const CIRCLES: u32 = 20;
-    const PLACES: u32 = 16;
-    /// Metres around the robot.
-    const ROOM: f64 = 0.05;
-    let space = space_with(scene, &scene.robots);
-    let bounds = scene.world.bounds();
-    let is_free = |pose: &Pose| {
-        let solid = Solid::from(&RobotPlacement::new(Arc::clone(spec), *pose));
-        let span = Span { bottom: solid.bottom, top: solid.top };
-        bounds.contains(pose.position())
-            && space.clearance(&solid.outline, &solid.pose, span, 2.0 * ROOM, None) > ROOM
-    };
-    let around = (0..CIRCLES).flat_map(|circle| (0..PLACES).map(move |place| (circle, place)));
-    let mut places = around.map(|(circle, place)| {
-        let away = direction(TAU * f64::from(place) / f64::from(PLACES)) * (STEP * f64::from(circle));
-        Pose { x: wished.x + away.x, y: wished.y + away.y, ..wished }
-    });
-    places.find(is_free)
-}
-
 fn in_mm(point: Point) -> String {
     let [x, y] = [point.x, point.y].map(|metres| units::to_mm(metres).round() + 0.0);
     format!("{x}, {y}")
@@ -270,13 +251,4 @@ fn clearance(scene: &Scene) -> f64 {
     let solid = Solid::from(&scene.robots[0]);
     let span = Span { bottom: solid.bottom, top: solid.top };
     space.clearance(&solid.outline, &solid.pose, span, NEAR, None)
-}
-
-/// What stands in a world, and some robots.
-fn space_with(scene: &Scene, robots: &[RobotPlacement]) -> Space {
-    let mut space = Space::new(&scene.world.walls);
-    for solid in scene.world.objects.iter().map(Solid::from).chain(robots.iter().map(Solid::from)) {
-        space.add(solid);
-    }
-    space
 }

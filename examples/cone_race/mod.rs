@@ -4,7 +4,7 @@ mod campaign;
 mod drawing;
 mod race;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use roverlab::drive::cones::{ClosedSpline, RacePhase, TrackFile, parse_track};
 use roverlab::geometry::{Point, Segment};
@@ -129,6 +129,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if let Some(tracks) = args.campaign {
         return campaign::run(args, tracks, spoils);
     }
+    let published = args.line.as_ref().map(|file| published(common, file)).transpose()?;
     let mut course = match &args.track {
         Some(path) => Course::from_file(common, path)?,
         None => Course::generated(common.seed)?,
@@ -138,9 +139,9 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let stage = common.stage_race(&course.scene(), || settings.world(&course))?;
     let outcome = race::race(&course, &settings, &stage)?;
     let (picture, animation, trouble) = draw(args, &course, &outcome);
-    let rms = args.line.as_ref().map(|file| distance(common, file, &outcome.line)).transpose()?;
+    let rms = published.and_then(|other| distance(&other, &outcome.line));
     let report = report(&course, &outcome)
-        .field("racing_line_rms_m", rms.flatten().map(rounded))
+        .field("racing_line_rms_m", rms.map(rounded))
         .field("picture", picture)
         .field("animation", animation);
     Ok(Report { trouble, ..report })
@@ -178,15 +179,20 @@ fn report(course: &Course, outcome: &race::Outcome) -> Report {
     }
 }
 
-/// The root of the mean squared distance of a racing line from that of a file. `None` without one.
-fn distance(common: &CommonArgs, file: &std::path::Path, line: &[Point]) -> Result<Option<f64>, Failure> {
+/// The racing line in a file.
+fn published(common: &CommonArgs, file: &Path) -> Result<Vec<Point>, Failure> {
     let bytes = common.read("line", file).map_err(Failure::input)?;
     let name = file.display().to_string();
     let text = String::from_utf8_lossy(&bytes);
-    let TrackFile::Line(other) = parse_track(&text, &name).map_err(Failure::input)? else {
-        return Err(Failure::input(format!("--line {name}: found a track; expected a line without widths")));
-    };
-    let Ok(spline) = ClosedSpline::through(line) else { return Ok(None) };
+    match parse_track(&text, &name).map_err(Failure::input)? {
+        TrackFile::Line(line) => Ok(line),
+        _ => Err(Failure::input(format!("--line {name}: found a track; expected a line without widths"))),
+    }
+}
+
+/// The root of the mean squared distance of a racing line from another one. `None` without one.
+fn distance(other: &[Point], line: &[Point]) -> Option<f64> {
+    let spline = ClosedSpline::through(line).ok()?;
     let n = other.len();
     let squared = |p: Point| {
         let away = (0..n).map(|i| Segment::new(other[i], other[(i + 1) % n]).distance_to(p));
@@ -195,7 +201,7 @@ fn distance(common: &CommonArgs, file: &std::path::Path, line: &[Point]) -> Resu
     };
     let places = spline.resample(2.0);
     let sum: f64 = places.iter().map(|place| squared(place.position)).sum();
-    Ok(Some((sum / places.len() as f64).sqrt()))
+    Some((sum / places.len() as f64).sqrt())
 }
 
 /// Fails when an option has no meaning here.

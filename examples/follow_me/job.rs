@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use roverlab::geometry::{Point, units};
 use roverlab::io::sim::SimOptions;
 use roverlab::picture::{Mark, Picture, Style};
@@ -7,7 +9,7 @@ use roverlab::world::{RobotPlacement, RobotSpec, Scene};
 use super::campaign;
 use super::scene::{Mode, behind, hall};
 use super::swarm::{SwarmRun, run};
-use crate::common::{CommonArgs, Failure, Outcome, Report, StandIn, free_place, millimetres, rounded};
+use crate::common::{CommonArgs, Failure, FreeFloor, Outcome, Report, StandIn, millimetres, rounded};
 use crate::driving::{counted, drawn, paced};
 
 /// The command line of the example `follow_me`.
@@ -135,7 +137,7 @@ fn scene(args: &Args) -> Result<(Scene, Vec<Point>), Failure> {
     };
     let parsed = common.load_scene("world", file).map_err(Failure::input)?;
     for warning in &parsed.warnings {
-        CommonArgs::warn(warning);
+        common.warn(warning);
     }
     let mut scene = parsed.value;
     if scene.robots.len() < 2 {
@@ -162,15 +164,16 @@ fn scene(args: &Args) -> Result<(Scene, Vec<Point>), Failure> {
 fn add_followers(scene: &mut Scene, mode: Mode, followers: usize, seed: u64) -> Result<(), Failure> {
     let start = scene.robots[0].pose;
     let mut stream = Stream::new(seed).child("followers", 0);
+    let spec = mode.spec();
+    let free = FreeFloor::new(scene, &spec);
     for wished in behind(start, mode, followers, &mut stream) {
-        let spec = mode.spec();
-        let place = free_place(scene, &spec, wished).ok_or_else(|| {
+        let place = free.place(scene, &spec, wished).ok_or_else(|| {
             let number = scene.robots.len();
             Failure::input(format!(
                 "--followers: found no room for follower {number}; expected fewer of them"
             ))
         })?;
-        scene.robots.push(RobotPlacement::new(spec, place));
+        scene.robots.push(RobotPlacement::new(Arc::clone(&spec), place));
     }
     Ok(())
 }

@@ -75,12 +75,16 @@ pub(crate) fn lidarbot() -> RobotSpec {
 /// A hall with a LabBot that leads, and followers behind it; obstacles in the leader's path if asked for. With the leader's
 /// waypoints.
 pub(crate) fn hall(mode: Mode, followers: usize, obstacles: usize, seed: u64) -> (Scene, Vec<Point>) {
-    let length = 6.0 + 0.36 * if mode == Mode::Chain { followers as f64 } else { 2.0 };
+    let length = match mode {
+        Mode::Chain => 6.0 + 0.36 * followers as f64,
+        _ => 7.0 + rows_behind(followers),
+    };
     let (width, depth) = (length.max(7.0), 5.5);
     let mut stream = Stream::new(seed).child("hall", 0);
     let mut world = World::walled(width, depth);
     let waypoints = waypoints(&mut stream, width, depth);
-    let start = Pose::new(if mode == Mode::Chain { width - 3.0 } else { 2.4 }, 1.2, 0.0);
+    let start =
+        Pose::new(if mode == Mode::Chain { width - 3.0 } else { 2.4 + rows_behind(followers) }, 1.2, 0.0);
     add_obstacles(&mut world, &mut stream, obstacles, &waypoints, start.position());
     let mut scene = Scene::new(world);
     scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::labbot()), start));
@@ -104,11 +108,19 @@ fn place(mode: Mode, follower: usize) -> Point {
         Mode::Lidar => Point::new(-0.5 * follower as f64, 0.0),
         Mode::Chain => Point::new(-0.36 * follower as f64 - 0.05, 0.0),
         Mode::Raised | Mode::Radio => {
-            let (row, seat) = ((follower - 1) / 5, (follower - 1) % 5);
+            let seat = (follower - 1) % ROW;
             let (back, aside) = [(0.6, 0.0), (0.6, 0.35), (0.6, -0.35), (1.05, 0.2), (1.05, -0.2)][seat];
-            Point::new(-back - 0.9 * row as f64, aside)
+            Point::new(-back - rows_behind(follower), aside)
         }
     }
+}
+
+/// Followers in a row of three and two.
+const ROW: usize = 5;
+
+/// Metres by which the row of a follower is behind the first one.
+fn rows_behind(follower: usize) -> f64 {
+    0.9 * (follower.saturating_sub(1) / ROW) as f64
 }
 
 /// A way round the hall that is another one for each seed.

@@ -14,7 +14,7 @@ use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
 use roverlab::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, free_place, rounded};
+use crate::common::{CommonArgs, Failure, FreeFloor, Outcome, Report, rounded};
 use crate::driving::{Conditions, counted, drawn, paced};
 
 /// The command line of the example `random_drive`.
@@ -125,6 +125,7 @@ fn add_robots(scene: &mut Scene, robots: usize, seed: u64) -> Result<(), Failure
         )));
     }
     let (spec, floor) = (Arc::clone(&scene.robots[0].spec), scene.world.bounds());
+    let free = FreeFloor::new(scene, &spec);
     let mut stream = Stream::new(seed).child("places", 0);
     for _ in found..robots {
         let mut anywhere = || {
@@ -133,7 +134,7 @@ fn add_robots(scene: &mut Scene, robots: usize, seed: u64) -> Result<(), Failure
             Pose::new(x, y, stream.between(-PI, PI))
         };
         let place =
-            (0..PLACES_TRIED).find_map(|_| free_place(scene, &spec, anywhere())).ok_or_else(|| {
+            (0..PLACES_TRIED).find_map(|_| free.place(scene, &spec, anywhere())).ok_or_else(|| {
                 let more = robots - scene.robots.len();
                 Failure::input(format!(
                     "--robots {robots}: found no room for {more} more; expected fewer robots"

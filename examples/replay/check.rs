@@ -61,8 +61,12 @@ fn replayed(file: &Path, log: &Log) -> Result<Log, Failure> {
         Failure::input(format!("{file}: found a recording of the program `{name}`; expected one of {known}"))
     })?;
     let copy = Temporary::new();
-    let mut words: Vec<OsString> = vec![name.into(), "--json".into(), "--replay".into(), file.into()];
-    words.extend(["--record".into(), copy.0.clone().into()]);
+    let option = |name: &str, file: &Path| {
+        let mut word = OsString::from(name);
+        word.push(file);
+        word
+    };
+    let words = vec![name.into(), "--json".into(), option("--replay=", file), option("--record=", &copy.0)];
     let (mut out, mut err) = (Vec::new(), Vec::new());
     let status = (program.run)(words, &mut out, &mut err);
     if status == Failure::INPUT {

@@ -91,7 +91,11 @@ impl Chase {
         let follower = &self.parameters.follower;
         Ok(Some(match self.method {
             Method::Turn => self.turn_or_drive(bearing, distance),
-            Method::Dog => dog_twist(follower, bearing, distance),
+            // A goal that moves is not braked for.
+            Method::Dog => {
+                let follower = FollowerParameters { deceleration: f64::INFINITY, ..*follower };
+                dog_twist(&follower, bearing, distance)
+            }
             // Forward arcs to goals behind are long; the robot turns towards them first.
             Method::Arc | Method::Spline if bearing.abs() > FRAC_PI_2 => {
                 Twist::new(0.0, follower.turn_rate.copysign(bearing))
@@ -139,10 +143,11 @@ impl Chase {
         let follower = &self.parameters.follower;
         // Once it drives, it does so until the goal is well off its line.
         let limit =
-            if self.turning { 0.2 * self.parameters.turn_threshold } else { self.parameters.turn_threshold };
+            if self.turning { 0.5 * self.parameters.turn_threshold } else { self.parameters.turn_threshold };
         self.turning = bearing.abs() > limit;
         if self.turning {
-            let rate = (2.0 * bearing.abs()).min(follower.turn_rate);
+            // So fast that a goal that crosses ahead does not stay beyond the limit.
+            let rate = (5.0 * bearing.abs()).min(follower.turn_rate);
             Twist::new(0.0, rate.copysign(bearing))
         } else {
             self.along(2.0 * bearing / distance)

@@ -108,7 +108,7 @@ const AHEAD: f64 = 0.3;
 const LOOKING_PLACE: f64 = 0.3;
 const LOOKING_RATE: f64 = 1.0;
 /// The part of its speed with which it drives to that place.
-const SEARCHING: f64 = 0.5;
+const SEARCHING: f64 = 0.9;
 /// Seconds in which the free way ahead is driven.
 const BRAKING: f64 = 0.7;
 

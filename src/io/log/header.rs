@@ -123,7 +123,7 @@ impl Header {
             fields.insert("seed".to_owned(), seed.to_string());
         }
         for (index, option) in self.options.iter().enumerate() {
-            fields.insert(format!("option {index:04}"), option.clone());
+            fields.insert(format!("option {index:06}"), option.clone());
         }
         fields.insert(CHECKSUM.to_owned(), checksum(&fields));
         fields
@@ -132,9 +132,11 @@ impl Header {
     /// What a metadata record says; `None` if it is not as it was written.
     pub(super) fn read(fields: &BTreeMap<String, String>) -> Option<Written> {
         let schema = fields.get("schema")?.parse().ok()?;
-        // Newer schemas may say it in another way.
-        if schema <= SCHEMA_VERSION && *fields.get(CHECKSUM)? != checksum(fields) {
-            return None;
+        match fields.get(CHECKSUM) {
+            Some(written) if *written != checksum(fields) => return None,
+            // Newer schemas may do without.
+            None if schema <= SCHEMA_VERSION => return None,
+            _ => {}
         }
         let options =
             fields.range("option ".to_owned()..).take_while(|(name, _)| name.starts_with("option "));

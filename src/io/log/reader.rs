@@ -89,10 +89,14 @@ pub(super) fn message(body: &[u8]) -> Option<MessageAt<'_>> {
     Some(MessageAt { header, data })
 }
 
-/// How many files some bytes are, one behind the other.
+/// How many files some bytes are, one behind the other, whole or cut off.
 pub(super) fn runs(bytes: &[u8]) -> usize {
-    let seam = [MAGIC, MAGIC].concat();
-    1 + bytes.windows(seam.len()).filter(|window| *window == seam).count()
+    let begins = |at: usize| {
+        bytes[at..].starts_with(MAGIC)
+            && record_at(bytes, at + MAGIC.len())
+                .is_some_and(|record| record.opcode == op::HEADER && record.parse().is_ok())
+    };
+    bytes.iter().enumerate().filter(|&(at, &byte)| byte == MAGIC[0] && begins(at)).count()
 }
 
 /// The schemas and channels that the summary of a file repeats; none if its end is cut off or damaged.

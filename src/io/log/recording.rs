@@ -142,7 +142,10 @@ type Parts = (Header, Vec<Vec<Event>>, Facts, Option<Vec<u8>>);
 
 impl Contents {
     fn read(bytes: &[u8]) -> Result<Parts, LogError> {
-        let records = reader::whole(bytes)?;
+        let records = reader::whole(bytes).map_err(|error| match reader::runs(bytes) {
+            0 | 1 => error,
+            runs => LogError::SeveralRuns { runs },
+        })?;
         let mut reading = Reading {
             start: bytes.as_ptr().addr(),
             library: String::new(),

@@ -51,9 +51,10 @@ pub fn recover(bytes: &[u8]) -> Result<Recovery, LogError> {
     }
     let mut saving = begin(bytes)?;
     let mut at = mcap::MAGIC.len();
+    let mut patience = PATIENCE * bytes.len();
     while at < bytes.len() {
         let Some(record) = reader::record_at(bytes, at).filter(is_sound) else {
-            let next = next_guarded(bytes, at + 1);
+            let next = next_guarded(bytes, at + 1, &mut patience);
             saving.lost += next - at;
             at = next;
             continue;
@@ -125,12 +126,22 @@ fn is_sound_chunk(record: &Framed<'_>) -> bool {
     reader::inner(&contents).is_ok_and(|inner| inner.iter().all(|record| record.parse().is_ok()))
 }
 
-/// Where the next record begins that has a checksum and agrees with it; the end of the file if there is none.
-fn next_guarded(bytes: &[u8], start: usize) -> usize {
-    let guarded = |at: &usize| {
-        reader::record_at(bytes, *at).is_some_and(|record| is_guarded(&record) && is_sound(&record))
-    };
-    (start..bytes.len()).find(guarded).unwrap_or(bytes.len())
+/// How many times over the bytes of a file are looked at: in one that is made for it, every place seems to be the beginning of
+/// a record that reaches to the end.
+const PATIENCE: usize = 100;
+
+/// Where the next record begins that has a checksum and agrees with it; the end of the file if there is none, or if more bytes
+/// were looked at than there is patience for.
+fn next_guarded(bytes: &[u8], start: usize, patience: &mut usize) -> usize {
+    for at in start..bytes.len() {
+        let Some(record) = reader::record_at(bytes, at).filter(is_guarded) else { continue };
+        let Some(rest) = patience.checked_sub(record.body.len()) else { break };
+        *patience = rest;
+        if is_sound(&record) {
+            return at;
+        }
+    }
+    bytes.len()
 }
 
 /// Whether a record, if it is sound, cannot be so by chance.
@@ -187,6 +198,11 @@ impl<'a> Saving<'a> {
                 reader::inner(&contents)?.iter().try_for_each(|inner| self.add_inner(inner))?;
                 self.chunks += usize::from(self.lost == lost_before);
                 self.file.flush()
+            }
+            Record::Message { data, .. } => {
+                // Ours are in chunks.
+                self.lost += data.len();
+                Ok(())
             }
             _ => Ok(()),
         };

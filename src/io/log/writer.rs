@@ -2,7 +2,7 @@ use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
 use std::io::{self, Write};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
@@ -61,11 +61,13 @@ pub(super) fn nanoseconds(seconds: f64) -> Nanoseconds {
 /// ```
 pub struct LogWriter<W: Write> {
     shared: Arc<Mutex<Shared<W>>>,
+    /// Tells robots that are far ahead of others when something has been written.
+    written: Arc<Condvar>,
 }
 
 impl<W: Write> Clone for LogWriter<W> {
     fn clone(&self) -> Self {
-        Self { shared: Arc::clone(&self.shared) }
+        Self { shared: Arc::clone(&self.shared), written: Arc::clone(&self.written) }
     }
 }
 
@@ -81,6 +83,8 @@ struct Shared<W: Write> {
     file: Option<Writer<NoSeek<W>>>,
     failure: Option<io::Error>,
     tracks: Vec<Track>,
+    /// How many bytes a robot may be ahead of the others.
+    most_ahead: Option<usize>,
     /// The number of each channel in the file and of its next message, by robot and topic.
     channels: BTreeMap<(usize, &'static str), (u16, u32)>,
     /// The second of the open chunk, and the bytes in it.
@@ -96,6 +100,8 @@ struct Track {
     /// The time of its last message.
     last: Nanoseconds,
     queue: VecDeque<Message>,
+    /// The bytes in the queue.
+    waiting: usize,
 }
 
 #[derive(Debug)]
@@ -144,11 +150,18 @@ impl<W: Write> LogWriter<W> {
             file: Some(file),
             failure: None,
             tracks: Vec::new(),
+            most_ahead: None,
             channels: BTreeMap::new(),
             second: 0,
             bytes: 0,
         };
-        Ok(Self { shared: Arc::new(Mutex::new(shared)) })
+        Ok(Self { shared: Arc::new(Mutex::new(shared)), written: Arc::default() })
+    }
+
+    /// Lets a robot that is more than so many bytes ahead of the others wait for them, so that no more are held than that
+    /// for each robot. For robots that drive in threads of their own and do not wait for each other in any other way.
+    pub fn hold_at_most(&self, bytes: usize) {
+        self.lock().most_ahead = Some(bytes);
     }
 
     /// Records a robot under an index of its own, from 0. When several robots drive at once, call this for all of
@@ -214,7 +227,8 @@ impl<W: Write> LogWriter<W> {
     /// the order in which they come.
     pub(super) fn push(&self, track: usize, time: Option<Nanoseconds>, channel: Channel, data: &[u8]) {
         let mut shared = self.lock();
-        if shared.file.is_none() || shared.failure.is_some() {
+        if !shared.is_recording() {
+            self.written.notify_all();
             return;
         }
         let last = &mut shared.track(track).last;
@@ -229,8 +243,14 @@ impl<W: Write> LogWriter<W> {
             shared.write(track, time, channel, data);
             return;
         }
-        shared.track(track).queue.push_back(Message { time, channel, data: data.to_vec() });
+        let state = shared.track(track);
+        state.queue.push_back(Message { time, channel, data: data.to_vec() });
+        state.waiting += data.len();
         shared.drain();
+        self.written.notify_all();
+        while shared.is_recording() && shared.is_far_ahead(track) {
+            shared = self.written.wait(shared).unwrap_or_else(PoisonError::into_inner);
+        }
     }
 
     /// Notes that a robot drives no more: the others need not wait for it.
@@ -238,6 +258,7 @@ impl<W: Write> LogWriter<W> {
         let mut shared = self.lock();
         shared.tracks[track].open = false;
         shared.drain();
+        self.written.notify_all();
     }
 }
 
@@ -245,9 +266,17 @@ impl<W: Write> Shared<W> {
     /// The track of a robot; one that nobody drives is closed.
     fn track(&mut self, index: usize) -> &mut Track {
         while self.tracks.len() <= index {
-            self.tracks.push(Track { open: false, last: 0, queue: VecDeque::new() });
+            self.tracks.push(Track { open: false, last: 0, queue: VecDeque::new(), waiting: 0 });
         }
         &mut self.tracks[index]
+    }
+
+    fn is_recording(&self) -> bool {
+        self.file.is_some() && self.failure.is_none()
+    }
+
+    fn is_far_ahead(&self, track: usize) -> bool {
+        self.most_ahead.is_some_and(|most| self.tracks[track].waiting > most)
     }
 
     /// Writes what is certain to come next: the earliest message, once every robot that drives has one waiting.
@@ -259,6 +288,7 @@ impl<W: Write> Shared<W> {
                 .min();
             let Some((_, index)) = next else { return };
             if let Some(message) = self.tracks[index].queue.pop_front() {
+                self.tracks[index].waiting -= message.data.len();
                 self.write(index, message.time, message.channel, &message.data);
             }
         }
@@ -278,10 +308,9 @@ impl<W: Write> Shared<W> {
         data: &[u8],
     ) -> Result<(), McapError> {
         let Some(file) = &mut self.file else { return Ok(()) };
-        // Robots that drive one after the other begin their time anew.
-        if time / SECOND != self.second || self.bytes > CHUNK_BYTES {
+        if time / SECOND > self.second || self.bytes > CHUNK_BYTES {
             file.flush()?;
-            (self.second, self.bytes) = (time / SECOND, 0);
+            (self.second, self.bytes) = (self.second.max(time / SECOND), 0);
         }
         let (id, sequence) = match self.channels.entry((track, topic)) {
             Entry::Occupied(known) => known.into_mut(),

@@ -16,6 +16,9 @@ pub(super) struct LoopProgress {
     boxed_in: u32,
     /// How near the robot was to the loop's begin at the last step, if it was as good as there.
     closing: Option<f64>,
+    /// Whether the robot has left the place where the loop began, and how often it came back the same way.
+    away: bool,
+    returns: u32,
     rule: LapRule,
 }
 
@@ -40,6 +43,9 @@ pub(super) enum Lap {
     BoxedIn,
 }
 
+/// Returns the same way after which a loop is closed, however the robot has turned on it: in a dead end it may turn the wrong
+/// way round, and then a lap has no net turn, each time.
+const CERTAIN_RETURNS: u32 = 2;
 /// Steps without a free heading after which the robot is boxed in.
 const BOXED_IN_STEPS: u32 = 40;
 
@@ -54,6 +60,8 @@ impl LoopProgress {
             turned: 0.0,
             boxed_in: 0,
             closing: None,
+            away: false,
+            returns: 0,
             rule,
         }
     }
@@ -82,8 +90,13 @@ impl LoopProgress {
         let near = pose.distance_to(begin.position()) < 1.5 * radius;
         let same_way = normalize_angle(pose.heading - begin.heading).abs() < 1.2;
         let been_away = self.travelled > 6.0 * radius || self.turned.abs() > 1.1 * TAU;
+        self.away |= pose.distance_to(begin.position()) > 4.0 * radius;
+        if self.away && near && same_way {
+            self.away = false;
+            self.returns += 1;
+        }
         // Once round a closed curve, the heading turns by one full turn, whatever the curve; back and forth, by none.
-        let all_round = self.turned.abs() > 0.6 * TAU;
+        let all_round = self.turned.abs() > 0.6 * TAU || self.returns >= CERTAIN_RETURNS;
         if self.turned.abs() > self.rule.lost_turns * TAU {
             // It has been round without finding the place, so its pose there was wrong. The loop begins anew here.
             *self = Self { begin: Some(pose), ..Self::new(pose, self.rule) };
@@ -105,5 +118,38 @@ impl LoopProgress {
         let before = self.closing;
         self.closing = there.then_some(distance);
         before.is_some_and(|before| !there || distance >= before)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::math;
+
+    /// Follows a closed line round and round. How many rounds it takes until the loop is closed.
+    fn rounds(place: impl Fn(f64) -> (f64, f64)) -> f64 {
+        let at = |t: f64| {
+            let ((x, y), (ahead_x, ahead_y)) = (place(t), place(t + 1e-3));
+            Pose::new(x, y, math::atan2(ahead_y - y, ahead_x - x))
+        };
+        let rule = LapRule { lost_turns: 1.6, to_the_end: false };
+        let mut progress = LoopProgress::new(at(0.0), rule);
+        let steps = (0..5000).map(|step| f64::from(step) * 0.01);
+        let mut laps = steps.map(|t| (t, progress.update(at(t), Some(0.0), 0.06)));
+        let closed = laps.find(|(_, lap)| matches!(lap, Lap::Closed(_)));
+        closed.expect("the loop is closed in the end").0 / TAU
+    }
+
+    #[test]
+    fn a_closed_line_is_gone_round_once() {
+        let round = rounds(|t| (math::cos(t), math::sin(t)));
+        assert!((0.9..1.1).contains(&round), "{round}");
+    }
+
+    #[test]
+    fn a_line_without_a_net_turn_is_gone_round_twice() {
+        // A figure of eight.
+        let round = rounds(|t| (math::sin(t), 0.5 * math::sin(2.0 * t)));
+        assert!((1.9..2.1).contains(&round), "{round}");
     }
 }

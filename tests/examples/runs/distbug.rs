@@ -103,6 +103,20 @@ fn a_script_gives_robots_and_goal() {
 }
 
 #[test]
+fn a_marker_where_the_robot_starts_is_not_the_goal() {
+    let folder = folder("markers");
+    fs::write(folder.join("floor.wld"), "floor 2000 2000\n").unwrap();
+    let markers = ["marker 500 500 0 255 0", "marker 1500 1500 255 0 0"];
+    for order in [[0, 1], [1, 0]] {
+        let markers = order.map(|index| markers[index]).join("\n");
+        let script = folder.join("course.sim");
+        fs::write(&script, format!("world floor.wld\n{markers}\nS4 500 500 0\n")).unwrap();
+        let report = assert_arrived(&run(&["--world", script.to_str().unwrap(), "--noise", "0"]), 50.0);
+        assert_eq!(report["goal"], json!([1500.0, 1500.0]));
+    }
+}
+
+#[test]
 fn a_maze_gives_start_and_goal_by_letters() {
     let report = assert_arrived(&run(&["--world", &data("maze.maz"), "--noise", "0"]), 50.0);
     assert_eq!(report["goal"], json!([1620.0, 900.0]));

@@ -116,6 +116,16 @@ fn cars_keep_to_their_turning_circle() {
 }
 
 #[test]
+fn moving_goals_are_caught_by_every_method() {
+    for (method, velocity) in
+        [("turn", "100,10"), ("arc", "100,10"), ("dog", "100,10"), ("spline", "100,10"), ("dog", "200")]
+    {
+        let ended = a_to_b(&["--method", method, "--moving", velocity, "--noise", "0"]);
+        assert_eq!(ended.1["outcome"].as_str(), Some("caught"), "{method} {velocity}: {}", ended.1);
+    }
+}
+
+#[test]
 fn cars_that_arrive_askew_come_again() {
     for goal in ["354,-1968,6", "93.6,409.5,178", "-472.7,468.2,-173.7"] {
         let ended = run("ackermann", ackermann::work, &["--start", "0,0,0", "--goal", goal, "--noise", "0"]);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::common::{CommonArgs, Failure, Report};
 use crate::{a_to_b, ackermann, common, distbug, omni, programs, replay};
-use roverlab::io::log::recover;
+use roverlab::io::log::{Header, LogWriter, recover};
 use roverlab::world::{LidarSpec, RobotSpec, formats};
 use serde_json::Value;
 
@@ -144,6 +144,8 @@ fn every_program_checks() {
     }
 }
 
+const TRACK: &str = "tests/data/cones/oval.csv";
+
 #[test]
 fn other_jobs_check() {
     for (name, options) in [
@@ -154,6 +156,7 @@ fn other_jobs_check() {
         ("maze_left", &["--drive", "open"]),
         ("micromouse", &["--doubled"]),
         ("omni", &["--seed", "9"]),
+        ("cone_race", &["--track", TRACK, "--line", "tests/data/cones/oval_line.csv", "--laps", "1"]),
         ("wall_following", &["--seed", "9"]),
     ] {
         assert_checks(programs::named(name).unwrap(), options);
@@ -277,7 +280,13 @@ fn a_replay_meets_what_was_recorded() {
     run("a_to_b", a_to_b::work, &["--seed", "3", "--record", name]);
     let again = |options: &[&str]| run("a_to_b", a_to_b::work, &[&["--replay", name], options].concat());
     assert_eq!(again(&["--seed=3"]).0, 0);
-    for (options, part) in [(["--seed", "4"], "--seed=4"), (["--noise", "0"], "--noise=0")] {
+    assert_eq!(again(&["--seed", "03", "--noise", "1.0"]).0, 0);
+    let refused = [
+        (["--seed", "4"], "--seed=4"),
+        (["--noise", "0"], "--noise=0"),
+        (["--record", name], "another file"),
+    ];
+    for (options, part) in refused {
         let (status, _, err) = again(&options);
         assert!(status == 2 && err.contains(part) && err.lines().count() == 1, "{err}");
     }
@@ -286,15 +295,21 @@ fn a_replay_meets_what_was_recorded() {
 #[test]
 fn a_recording_has_no_files_written() {
     let (log, picture) = (file("foreign-options.mcap"), file("foreign-options.svg"));
-    let option = format!("--picture={}", picture.display());
-    let header = roverlab::io::log::Header::new("a_to_b", [option]);
-    let writer = roverlab::io::log::LogWriter::new(Vec::new(), &header).unwrap();
-    fs::write(&log, writer.finish().unwrap()).unwrap();
     let name = log.to_str().unwrap();
-    let (status, _, err) = run("a_to_b", a_to_b::work, &["--replay", name]);
-    assert!(status == 2 && err.contains("expected options that affect the run"), "{err}");
-    assert_eq!(manage(&["check", name]).0, 2);
+    let written = format!("--picture={}", picture.display());
+    for option in [&written, "--help", "--", "--world=/etc/hostname", "--no-such-option"] {
+        let header = Header::new("a_to_b", [option]);
+        fs::write(&log, LogWriter::new(Vec::new(), &header).unwrap().finish().unwrap()).unwrap();
+        let (status, _, err) = run("a_to_b", a_to_b::work, &["--replay", name]);
+        assert!(status == 2 && err.contains("expected options that affect the run"), "{option}: {err}");
+        assert_eq!(manage(&["check", name]).0, 2);
+    }
     assert!(!picture.exists());
+    // Nor are files read that it does not hold.
+    let header = Header::new("a_to_b", ["--world=world.wld"]);
+    fs::write(&log, LogWriter::new(Vec::new(), &header).unwrap().finish().unwrap()).unwrap();
+    let (status, _, err) = run("a_to_b", a_to_b::work, &["--replay", name]);
+    assert!(status == 2 && err.contains("no such file in the recording"), "{err}");
 }
 
 /// A small recording that was made once, perhaps on another machine. After a change that is meant to change runs, it is
