@@ -20,6 +20,8 @@ family! {
     ///
     /// The robot is a disc; an obstacle grown by its radius and the least clearance is what the boundary is of. So the
     /// proof holds for a robot of that size: a passage narrower than `2 (radius + least clearance)` counts as closed.
+    /// One between that and one and a half robot widths may be open from one side and closed from the other, as beams see its
+    /// edges: where there are such, a verdict may be wrong.
     /// `F` is the distance that the whole disc can move towards the goal, and `d_min` starts at the place where the
     /// disc would have touched the obstacle, so that the margins kept from obstacles do not enter the comparison.
     ///
