@@ -42,8 +42,8 @@ const PERIOD: f64 = 0.1;
 struct Eyes {
     scan: LidarScan,
     points: Vec<Point>,
-    /// What single rays have seen lately, in the frame of odometry.
-    memory: VecDeque<Point>,
+    /// What single rays have seen lately, in the frame of odometry, and when.
+    memory: VecDeque<(f64, Point)>,
 }
 
 impl Eyes {
@@ -61,21 +61,26 @@ impl Eyes {
 
     /// What eight distance sensors see, and have seen in the last moments; the lidar looks over the other followers.
     fn look_by_rays(&mut self, robot: &mut dyn RobotIo, rays: &[(u8, Pose)], pose: Pose) -> io::Result<()> {
-        /// Points that are remembered, and metres beyond which they do not matter.
+        /// Points that are remembered, for how many seconds, and metres beyond which they do not matter.
         const REMEMBERED: usize = 48;
+        const LATELY: f64 = 2.0;
         const NEAR: f64 = 1.0;
         robot.scan_into(&mut self.scan)?;
+        let now = robot.now()?;
         for &(id, mount) in rays {
             let range = robot.distance(Psd(id))?;
             if range < NEAR {
-                self.memory.push_back(pose.to_world(mount.position() + direction(mount.heading) * range));
+                let seen = pose.to_world(mount.position() + direction(mount.heading) * range);
+                self.memory.push_back((now, seen));
             }
         }
-        while self.memory.len() > REMEMBERED {
+        // Other robots are elsewhere by now.
+        let is_old = |&(seen, _): &(f64, Point)| seen < now - LATELY;
+        while self.memory.len() > REMEMBERED || self.memory.front().is_some_and(is_old) {
             self.memory.pop_front();
         }
         self.points.clear();
-        self.points.extend(self.memory.iter().map(|&point| pose.to_local(point)));
+        self.points.extend(self.memory.iter().map(|&(_, point)| pose.to_local(point)));
         Ok(())
     }
 }

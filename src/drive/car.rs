@@ -50,11 +50,11 @@ pub struct CarParameters {
     pub margin: f64,
     /// The book's k of splines; more is taken where the spline would bend too tightly.
     pub spline_scale: f64,
-    /// How far from the goal, in metres, the car may stop.
+    /// How far from the goal, in metres, the car stops correcting.
     pub tolerance: f64,
-    /// How far from the goal's heading, in radians, it may stop.
+    /// How far from the goal's heading, in radians, it stops correcting.
     pub heading_tolerance: f64,
-    /// How many times it may drive back and come again, if it stopped farther off.
+    /// How many times it may drive back and come again.
     pub corrections: u32,
     /// Seconds that the servo takes to turn the wheels from the middle to one side.
     pub steering_time: f64,
@@ -77,7 +77,7 @@ impl Default for CarParameters {
             spline_scale: 1.0,
             tolerance: 0.005,
             heading_tolerance: 0.005,
-            corrections: 4,
+            corrections: 6,
             steering_time: 1.1,
             period: 0.02,
         }
@@ -90,7 +90,7 @@ impl Default for CarParameters {
 pub enum CarOutcome {
     /// The car takes itself to be there.
     Reached,
-    /// It stopped too far from the goal or its heading each time that it came.
+    /// It stopped four tolerances or more from the goal or its heading, each time that it came.
     Missed,
     /// Something holds the car.
     Blocked,
@@ -130,6 +130,8 @@ enum Phase {
     Ended,
 }
 
+/// Tolerances beyond which a goal is missed.
+const MISSED: f64 = 4.0;
 /// Turning radii that a car drives back before it comes again.
 const WAY_BACK: f64 = 2.0;
 /// Metres from the goal at which the car stops.
@@ -219,7 +221,7 @@ impl CarToB {
             return Ok(Some(state));
         }
         let state = self.come(pose)?;
-        if state.is_some() || !self.is_off(pose) || self.corrections == self.parameters.corrections {
+        if state.is_some() || !self.is_off(pose, 1.0) || self.corrections == self.parameters.corrections {
             return Ok(state);
         }
         self.corrections += 1;
@@ -227,10 +229,11 @@ impl CarToB {
         Ok(self.back(pose))
     }
 
-    /// Whether a pose is too far from the goal or its heading.
-    fn is_off(&self, pose: Pose) -> bool {
-        pose.distance_to(self.goal.position) > self.parameters.tolerance
-            || self.heading_error(pose).is_some_and(|error| error.abs() > self.parameters.heading_tolerance)
+    /// Whether a pose is farther from the goal or its heading than so many tolerances.
+    fn is_off(&self, pose: Pose, tolerances: f64) -> bool {
+        let heading_tolerance = tolerances * self.parameters.heading_tolerance;
+        pose.distance_to(self.goal.position) > tolerances * self.parameters.tolerance
+            || self.heading_error(pose).is_some_and(|error| error.abs() > heading_tolerance)
     }
 
     /// A step straight back; `None` when the car is far enough to come again.
@@ -353,7 +356,7 @@ impl CarToB {
             } else if robot.is_stalled()? {
                 Some(CarOutcome::Blocked)
             } else {
-                let ending = if self.is_off(pose) { CarOutcome::Missed } else { CarOutcome::Reached };
+                let ending = if self.is_off(pose, MISSED) { CarOutcome::Missed } else { CarOutcome::Reached };
                 state.is_none().then_some(ending)
             };
             if let Some(outcome) = outcome {
