@@ -77,7 +77,7 @@ impl Default for CarParameters {
             spline_scale: 1.0,
             tolerance: 0.005,
             heading_tolerance: 0.005,
-            corrections: 6,
+            corrections: 4,
             steering_time: 1.1,
             period: 0.02,
         }
