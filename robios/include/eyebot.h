@@ -215,7 +215,9 @@ int SEMAUnlock(SEMA *sem);
 #ifdef __cplusplus
 }
 
-/* The forms in which functions were called in other years */
+/* The forms in which functions were called in other years; of C++, even where a program includes this as C */
+extern "C++" {
+
 static inline int SERSend(int interface_, EYESIM_TEXT buf, uint32_t size)
 {
     return eyesim_SERSendN(interface_, buf, size);
@@ -244,6 +246,8 @@ static inline void SIMGetObject(int id, int *x, int *y, int *phi)
 static inline void SIMSetObject(int id, int x, int y, int phi)
 {
     eyesim_SIMSetObject4(id, x, y, phi);
+}
+
 }
 
 #else

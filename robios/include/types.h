@@ -185,13 +185,15 @@ typedef BYTE CAM5MPgray[CAM5MP_PIXELS];
 #define LCD_FGCOL_NOINVERSE 0x400000
 
 /* What headers of some years lack, so that programs may have names of their own like these: left out on demand. */
-#ifndef EYESIM_FEW_NAMES
-
+#ifndef EYESIM_NO_PSD_NAMES
 /* Distance sensors, by the simulator's numbers */
 #define PSD_FRONT 1
 #define PSD_LEFT 2
 #define PSD_RIGHT 3
 #define PSD_BACK 4
+#endif
+
+#ifndef EYESIM_FEW_NAMES
 
 /* Serial ports */
 #define NONE 0

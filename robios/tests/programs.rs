@@ -370,6 +370,17 @@ fn programs_are_compiled_as_their_authors_meant() {
             "#include \"eyebot.h\"\nenum { NONE, WALKER };\nconst int PSD_FRONT = 1;\nint LCDInit(char *text)\n\
              { return LCDPrintf(\"%s\", text); }\nint main() { return LCDInit(\"good\") + NONE; }\n",
         ),
+        // The same beside names of sensors that are the header's.
+        (
+            "directions.c",
+            "#include \"eyebot.h\"\nenum way { NONE, LEFT, RIGHT };\nint main() { enum way way = NONE;\n\
+             LCDPrintf(PSD_FRONT == 1 ? \"good\" : \"bad\"); return way; }\n",
+        ),
+        // The header of a C library in C++.
+        (
+            "as_c.cpp",
+            "extern \"C\" {\n#include \"eyebot.h\"\n}\nint main() { LCDPrintf(\"good\"); return RADIOCheck(); }\n",
+        ),
         // A source text of its own behind a header.
         (
             "parts.c",

@@ -5,8 +5,8 @@ use roverlab::io::{RadioMessage, Result};
 use super::{Robios, invalid};
 use crate::ask::{Reply, Request};
 
-/// Bytes of the longest message. EyeSim's own limit was 100 bytes.
-const LONGEST: usize = 1024;
+/// Bytes of the longest message, as in EyeSim.
+const LONGEST: usize = 100;
 
 /// The messages that were looked at but not received.
 pub(crate) type Inbox = VecDeque<RadioMessage>;
@@ -15,7 +15,7 @@ impl Robios {
     /// `RADIOSend`: to a robot by its number from 1, or to all others with 0.
     pub fn radio_send(&mut self, to: i32, data: &[u8]) -> Result<()> {
         if data.is_empty() || data.len() > LONGEST {
-            return Err(invalid("radio message", format!("{} bytes long", data.len()), "1 to 1024 bytes"));
+            return Err(invalid("radio message", format!("{} bytes long", data.len()), "1 to 100 bytes"));
         }
         let to = u32::try_from(to).map_err(|_| invalid("radio receiver", to, "0 or more"))?;
         if to > 0 {

@@ -14,6 +14,8 @@ assert SIMGetRobotCount() == 2 and SIMGetObjectCount() == 1
 # Objects are counted behind the robots; a robot's number means an object by its own count.
 assert SIMGetObject(3) == SIMGetObject(1)
 if me == 1:
+    # What one robot changes, the other sees at once.
+    OSWait(500)
     SIMSetRobot(0, 700, 800, 0, -45)
     x, y, z, phi = SIMGetRobot(0)
     assert (x.value, y.value, phi.value) == (700, 800, -45) and SIMGetPose() == [700, 800, -45]
