@@ -63,7 +63,7 @@ impl Eyes {
     fn look_by_rays(&mut self, robot: &mut dyn RobotIo, rays: &[(u8, Pose)], pose: Pose) -> io::Result<()> {
         /// Points that are remembered, for how many seconds, and metres beyond which they do not matter.
         const REMEMBERED: usize = 48;
-        const LATELY: f64 = 2.0;
+        const LATELY: f64 = 4.0;
         const NEAR: f64 = 1.0;
         robot.scan_into(&mut self.scan)?;
         let now = robot.now()?;
