@@ -168,9 +168,6 @@ fn check_end(bytes: &[u8], start: usize, footer: &Framed<'_>) -> Result<(), LogE
     check("summary", parsed.summary_crc, &bytes[start..end - CRC])?;
     match &bytes[end..] {
         rest if rest == MAGIC => Ok(()),
-        rest if rest.starts_with(&[MAGIC, MAGIC].concat()) => {
-            Err(LogError::SeveralRuns { runs: runs(bytes) })
-        }
         rest if rest.len() < MAGIC.len() && MAGIC.starts_with(rest) => Err(truncated(bytes)),
         _ => Err(LogError::damaged("other bytes than the end mark of an MCAP file at its end")),
     }

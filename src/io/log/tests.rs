@@ -1,14 +1,13 @@
 //! Recordings as wholes: what is written is read, and what is damaged is found out.
 
+mod damage;
 mod packed;
 mod troops;
 
-use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::ops::ControlFlow;
 
 use image::{Rgb, RgbImage};
-use proptest::prelude::*;
 
 use super::*;
 use crate::geometry::{Pose, Twist};
@@ -187,155 +186,6 @@ fn files_that_are_no_recordings_are_named() {
     );
 }
 
-/// A file with some metadata records of ours.
-fn with_metadata(records: &[&[(&str, &str)]]) -> Vec<u8> {
-    let mut file = mcap::Writer::new(io::Cursor::new(Vec::new())).unwrap();
-    for fields in records {
-        let metadata = fields.iter().map(|&(name, value)| (name.to_owned(), value.to_owned()));
-        let metadata: BTreeMap<_, _> = metadata.collect();
-        file.write_metadata(&mcap::records::Metadata { name: "roverlab".into(), metadata }).unwrap();
-    }
-    file.finish().unwrap();
-    file.into_inner().into_inner()
-}
-
-#[test]
-fn several_runs_and_newer_schemas_are_named() {
-    let named = |records: &[&[(&str, &str)]]| Log::read(with_metadata(records)).unwrap_err();
-    assert!(matches!(named(&[&[("schema", "2")]]), LogError::Newer { found: 2, supported: 1 }));
-    let metadata = header().metadata();
-    let ours: Vec<(&str, &str)> =
-        metadata.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
-    assert!(Log::read(with_metadata(&[&ours])).is_ok());
-    assert!(matches!(named(&[&ours, &ours]), LogError::SeveralRuns { runs: 2 }));
-    assert!(matches!(named(&[&[("version", "1")]]), LogError::Damaged { .. }));
-    assert!(matches!(named(&[&[("schema", "1")]]), LogError::Damaged { .. }));
-    let run = recorded(0.1);
-    for first in [&run[..], &run[..run.len() / 2]] {
-        let two = [first, &run].concat();
-        assert!(matches!(Log::read(two.clone()), Err(LogError::SeveralRuns { runs: 2 })));
-        assert!(matches!(recover(&two), Err(LogError::SeveralRuns { runs: 2 })));
-    }
-}
-
-/// Whether to try every bit and every length, which takes many minutes.
-fn thorough() -> bool {
-    std::env::var_os("ROVERLAB_THOROUGH").is_some()
-}
-
-#[test]
-fn every_cut_gives_back_all_complete_chunks() {
-    let bytes = recorded(1.3);
-    // Where each chunk's record ends.
-    let records = super::reader::records(&bytes, mcap::MAGIC.len()).map_while(|record| record);
-    let ends: Vec<usize> = records
-        .filter(|record| record.opcode == mcap::records::op::CHUNK)
-        .map(|record| record.end())
-        .collect();
-    assert!(ends.len() >= 2, "{ends:?}");
-    // All cuts near the ends of chunks and of the file, and some of the others; or all, if somebody has the time.
-    let near = |cut: usize| ends.iter().chain([&0, &bytes.len()]).any(|end| end.abs_diff(cut) < 60);
-    for cut in (0..bytes.len()).filter(|&cut| cut % 61 == 0 || near(cut) || thorough()) {
-        let part = &bytes[..cut];
-        assert!(Log::read(part.to_vec()).is_err(), "cut at {cut}");
-        let complete = ends.iter().filter(|&&end| end <= cut).count();
-        match recover(part) {
-            Ok(saved) => {
-                assert_eq!(saved.chunks, complete, "cut at {cut}");
-                let log = Log::read(saved.bytes);
-                assert!(complete == 0 || log.is_ok(), "cut at {cut}: {log:?}");
-            }
-            Err(_) => assert_eq!(complete, 0, "cut at {cut}"),
-        }
-    }
-    let whole = recover(&bytes).unwrap();
-    assert!(whole.bytes == bytes && whole.lost == 0);
-}
-
-#[test]
-fn a_flipped_bit_costs_one_part_at_most() {
-    let attachments = ["a", "b"].map(|name| Attachment {
-        name: name.into(),
-        media_type: "text/plain".into(),
-        data: name.repeat(50).into(),
-    });
-    let header = Header { attachments: attachments.to_vec(), ..header() };
-    let writer = LogWriter::new(Vec::new(), &header).unwrap();
-    let simulation = Simulation::new(&scene(), SimOptions::with_noise(1.0, 7)).unwrap();
-    tour(&mut writer.recorder(simulation.robot(0).unwrap(), 0), 1.3).unwrap();
-    let bytes = writer.finish().unwrap();
-
-    let parts = |recovery: &Recovery| {
-        let records = super::reader::records(&recovery.bytes, mcap::MAGIC.len()).map_while(|record| record);
-        let attached = records.filter(|record| record.opcode == mcap::records::op::ATTACHMENT).count();
-        recovery.chunks + attached + usize::from(recovery.header)
-    };
-    let whole = recover(&bytes).unwrap();
-    assert!(whole.chunks >= 2 && parts(&whole) == whole.chunks + 3);
-    let start = bytes.len().min(700);
-    for place in (0..start).chain((start..bytes.len()).step_by(307)) {
-        let mut broken = bytes.clone();
-        broken[place] ^= 1 << (place % 8);
-        let saved = recover(&broken).unwrap();
-        let lost = parts(&whole) - parts(&saved);
-        assert!(lost <= 1, "byte {place}: {lost} of {} parts", parts(&whole));
-        match Log::read(saved.bytes) {
-            Ok(log) => {
-                assert!(saved.header, "byte {place}");
-                assert_eq!(log.lacks_attachments(), log.header().attachments != attachments, "byte {place}");
-                let ours = Header { attachments: Vec::new(), ..log.header().clone() };
-                assert_eq!(ours, Header { attachments: Vec::new(), ..header.clone() }, "byte {place}");
-            }
-            Err(error) => {
-                assert!(matches!(error, LogError::NoHeader) && !saved.header, "byte {place}: {error}");
-            }
-        }
-    }
-}
-
-#[test]
-fn every_flipped_bit_is_found_out_or_harmless() {
-    let bytes = recorded(0.2);
-    let log = Log::read(bytes.clone()).unwrap();
-    let mut found_out = 0;
-    // Bits of some bytes, each time another one of the byte; or all, if somebody has the time.
-    let bits = (0..8 * bytes.len()).filter(|bit| bit % 401 == 0 || thorough());
-    let mut flips = 0;
-    for bit in bits {
-        let place = bit / 8;
-        flips += 1;
-        let mut broken = bytes.clone();
-        broken[place] ^= 1 << (bit % 8);
-        match Log::read(broken.clone()) {
-            Err(_) => found_out += 1,
-            Ok(other) => {
-                let events = |log: &Log| log.entries(0).collect::<Vec<_>>();
-                assert_eq!((other.header(), events(&other)), (log.header(), events(&log)), "byte {place}");
-            }
-        }
-        let _ = recover(&broken);
-    }
-    println!("{found_out} of {flips} flipped bits are found out, the others are harmless");
-    assert!(found_out > flips * 99 / 100, "{found_out} of {flips}");
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
-
-    #[test]
-    fn no_bytes_break_the_reader(mut tail: Vec<u8>, at in 0..4000_usize, length in 0..4000_usize) {
-        let bytes = recorded(0.1);
-        let (start, end) = (at.min(bytes.len()), (at + length).min(bytes.len()));
-        let mut broken = bytes[..start].to_vec();
-        broken.append(&mut tail);
-        broken.extend_from_slice(&bytes[end..]);
-        let _ = Log::read(broken.clone());
-        if let Ok(saved) = recover(&broken) {
-            prop_assert!(saved.lost <= broken.len());
-        }
-    }
-}
-
 /// Takes so many bytes and then no more.
 struct FullDisk(usize);
 
@@ -449,26 +299,6 @@ fn robots_in_threads_are_merged_by_their_time() {
     let log = Log::read(first).unwrap();
     let counts = [0, 1].map(|robot| log.entries(robot).count());
     assert!(log.robots() == 2 && counts.iter().all(|&count| count > 50), "{counts:?}");
-}
-
-#[test]
-fn robots_that_do_not_wait_for_each_other_hold_little() {
-    let record = |most: Option<usize>| {
-        let writer = LogWriter::new(Vec::new(), &header()).unwrap();
-        if let Some(most) = most {
-            writer.hold_at_most(most);
-        }
-        let simulation = |seed| Simulation::new(&scene(), SimOptions::with_noise(1.0, seed)).unwrap();
-        let simulations = [simulation(3), simulation(4)];
-        let robots = [0, 1].map(|index| writer.recorder(simulations[index].robot(0).unwrap(), index));
-        std::thread::scope(|scope| {
-            for mut robot in robots {
-                scope.spawn(move || tour(&mut robot, 1.5).unwrap());
-            }
-        });
-        writer.finish().unwrap()
-    };
-    assert!(record(Some(500)) == record(None));
 }
 
 #[test]

@@ -349,3 +349,36 @@ fn as_io(error: McapError) -> io::Error {
         other => io::Error::other(other),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::thread;
+
+    use super::super::port::CALLS;
+    use super::*;
+
+    const MOST: usize = 100;
+    const MESSAGE: [u8; 50] = [7; 50];
+
+    #[test]
+    fn a_robot_far_ahead_waits_for_the_others() {
+        let writer = LogWriter::new(Vec::new(), &Header::new("ahead", [""; 0])).unwrap();
+        writer.hold_at_most(MOST);
+        let robots = [writer.port(0), writer.port(1)];
+        let waiting = || writer.lock().tracks[0].waiting;
+        thread::scope(|scope| {
+            let fast = scope.spawn(|| (0..200).for_each(|time| writer.push(0, Some(time), CALLS, &MESSAGE)));
+            while waiting() <= MOST {
+                thread::yield_now();
+            }
+            for time in 0..200 {
+                assert!(time > 150 || !fast.is_finished(), "at {time}");
+                assert!(waiting() <= MOST + MESSAGE.len());
+                writer.push(1, Some(time), CALLS, &MESSAGE);
+            }
+            writer.close(1);
+        });
+        drop(robots);
+        assert!(writer.finish().unwrap().len() > 400 * MESSAGE.len());
+    }
+}
