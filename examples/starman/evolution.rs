@@ -2,8 +2,7 @@ use std::ffi::OsString;
 use std::process::Command;
 
 use roverlab::evolve::{
-    Evaluator, Evolution, Gait, Genetic, Parallel, Population, Processes, Recipe, StopRules, Trial,
-    checkpoint,
+    Evaluator, Evolution, Gait, Genetic, Parallel, Population, Processes, StopRules, Trial, checkpoint,
 };
 use roverlab::io::sim::starman::{LIMBS, Starman, StarmanSpec};
 use roverlab::io::{Drive, Result};
@@ -126,7 +125,7 @@ pub(crate) fn run(
         None => first(args, seed, init)?,
     };
     let before = population.history.last().map_or(0, |row| row.evaluations);
-    let mut evolution = Genetic::resume(population, Recipe::book(args.mutation_count()))?;
+    let mut evolution = Genetic::resume(population, args.recipe())?;
     let (stopwatch, mut progress) = (Stopwatch::start(), Progress::start());
     evolution.run(evaluator, &StopRules::generations(args.generations.into()), |now| {
         let row = now.history()[now.history().len() - 1];

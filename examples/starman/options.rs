@@ -1,5 +1,7 @@
 use std::path::PathBuf;
 
+use roverlab::evolve::{OnePoint, Recipe, Selection, Uniform};
+
 use crate::common::{CommonArgs, Failure, parse_seconds};
 
 use super::evolution::Trials;
@@ -51,7 +53,15 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value = "neutral")]
     pub(crate) init: Init,
 
-    /// Bits flipped in a generation [default: as many as individuals].
+    /// How parents are chosen; the book spins the wheel.
+    #[arg(long, value_enum, default_value = "tournament")]
+    pub(crate) selection: Choice,
+
+    /// How two parents become two children; the book cuts at one point.
+    #[arg(long, value_enum, default_value = "uniform")]
+    pub(crate) crossover: Cross,
+
+    /// Bits flipped in a generation [default: three times as many as individuals].
     #[arg(long, value_name = "N")]
     pub(crate) mutations: Option<usize>,
 
@@ -88,6 +98,26 @@ pub(crate) enum Init {
     Uniform,
 }
 
+/// How parents are chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Choice {
+    /// The fittest of three drawn at random.
+    Tournament,
+    /// In proportion to fitness.
+    Wheel,
+    /// By rank alone.
+    Rank,
+}
+
+/// How two parents become two children.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Cross {
+    /// Each byte of either parent.
+    Uniform,
+    /// What is behind a cut is swapped.
+    OnePoint,
+}
+
 impl AsRef<CommonArgs> for Args {
     fn as_ref(&self) -> &CommonArgs {
         &self.common
@@ -101,15 +131,32 @@ impl Args {
 
     /// What affects the run, for checkpoints.
     pub(crate) fn settings(&self) -> String {
-        let Self { population, seconds, leading, init, .. } = self;
+        let Self { population, seconds, leading, init, selection, crossover, .. } = self;
         let (mutations, seed) = (self.mutation_count(), self.common.seed);
         format!(
-            "population {population}, {seconds} s, {leading} leading points, {init:?} start, {mutations} mutations, seed {seed}"
+            "population {population}, {seconds} s, {leading} leading points, {init:?} start, {selection:?} selection, \
+             {crossover:?} crossover, {mutations} mutations, seed {seed}"
         )
     }
 
-    pub(crate) fn mutation_count(&self) -> usize {
-        self.mutations.unwrap_or(self.population as usize)
+    /// How a generation comes from the one before.
+    pub(crate) fn recipe(&self) -> Recipe<Vec<u8>> {
+        Recipe {
+            selection: match self.selection {
+                Choice::Tournament => Selection::Tournament { size: 3 },
+                Choice::Wheel => Selection::Wheel,
+                Choice::Rank => Selection::Rank { pressure: 1.8 },
+            },
+            crossover: match self.crossover {
+                Cross::Uniform => Box::new(Uniform { probability: 0.5 }),
+                Cross::OnePoint => Box::new(OnePoint),
+            },
+            ..Recipe::book(self.mutation_count())
+        }
+    }
+
+    fn mutation_count(&self) -> usize {
+        self.mutations.unwrap_or(3 * self.population as usize)
     }
 
     /// Fails when an option has no meaning here.
