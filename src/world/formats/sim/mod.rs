@@ -31,5 +31,5 @@ mod write;
 
 pub use document::{Position, SimFile, Statement};
 pub use read::parse_document;
-pub use resolve::{HEADING_SEED, parse};
+pub use resolve::{HEADING_SEED, parse, parse_tolerantly};
 pub use write::print;
