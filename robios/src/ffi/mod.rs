@@ -8,6 +8,8 @@
 #![allow(clippy::redundant_closure_for_method_calls, reason = "all calls of the robot look alike")]
 
 mod actuators;
+#[cfg(target_os = "linux")]
+mod alarm;
 mod camera;
 #[cfg(target_os = "linux")]
 mod clock;

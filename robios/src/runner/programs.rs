@@ -163,7 +163,9 @@ fn compile(source: &Path, folder: &WorkFolder, robot: usize) -> Result<PathBuf, 
     {
         return Ok(program);
     }
-    let first = message.lines().find(|line| line.contains("error")).or(message.lines().next());
+    let telling =
+        |words: &str| message.lines().find(|line| line.contains(words) && !line.starts_with("collect2"));
+    let first = telling("error").or_else(|| telling("undefined reference")).or(message.lines().next());
     Err(format!("{}: does not compile: {}", source.display(), first.unwrap_or("the compiler says nothing")))
 }
 
