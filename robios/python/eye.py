@@ -1,8 +1,9 @@
 """RoBIOS-7 for Python: `from eye import *`.
 
 Every function of the C library under its own name, in millimetres and degrees. Functions that return several values in
-C through pointers return a list here; functions that fill an image return an array of unsigned bytes of ctypes. Functions
-that take an image take whatever holds its values: such an array, bytes, a list, an array of numpy. Any thread may call.
+C through pointers return a list here; functions that fill an image return an array of unsigned bytes of ctypes.
+Functions that take an image take whatever holds its values: such an array, bytes, a list, an array of numpy. Any thread
+may call.
 
 Importing it makes time virtual; see the module eyesim_clock.
 """
@@ -298,12 +299,12 @@ def CAMInit(resolution):
     return code
 
 
-def CAMGet():
-    return _filled(None, _variable("CAMSIZE"), lib.CAMGet)
+def CAMGet(buf=None):
+    return _filled(buf, _variable("CAMSIZE"), lib.CAMGet)
 
 
-def CAMGetGray():
-    return _filled(None, _variable("CAMPIXELS"), lib.CAMGetGray)
+def CAMGetGray(buf=None):
+    return _filled(buf, _variable("CAMPIXELS"), lib.CAMGetGray)
 
 
 def _ip():
@@ -503,11 +504,15 @@ def ANALOGTransfer(_buffer=None):
 LIDAR_POINTS = LIDAR_RANGE = 360
 
 
-def LIDARGet():
+def LIDARGet(distance=None):
     # A scan has as many points as the library says; a robot's own number is known after the first scan.
     scan = (_ctypes.c_int * 100_000)()
     lib.LIDARGet(scan)
     points = _variable("LIDAR_RESOLUTION")
+    if distance is not None:
+        count = min(points, len(distance))
+        distance[:count] = scan[:count]
+        return distance
     return (_ctypes.c_int * points)(*scan[:points])
 
 

@@ -1,8 +1,9 @@
-"""Makes time in Python follow the robot's clock: the modules time, datetime, threading, queue, select, selectors, on which
-asyncio waits, and signal. A wait with a time limit lets the world go on and looks again and again whether it is over.
+"""Makes time in Python follow the robot's clock: the modules time, datetime, threading, queue, select, selectors, on
+which asyncio waits, and signal. A wait with a time limit lets the world go on and looks again and again whether it is
+over.
 
-What follows the real clock still: Lock.acquire with a time limit, what other processes do (multiprocessing, subprocess),
-and waits without a time limit for files and sockets.
+What follows the real clock still: Lock.acquire with a time limit, what other processes do (multiprocessing,
+subprocess), and waits without a time limit for files and sockets.
 """
 
 import ctypes as _ctypes
@@ -86,7 +87,9 @@ def _clock_gettime(clock):
 
 _CLOCKS = {
     getattr(_time, "CLOCK_" + clock): name
-    for clock, name in {"REALTIME": "time", "MONOTONIC": "monotonic", "MONOTONIC_RAW": "monotonic", "BOOTTIME": "monotonic"}.items()
+    for clock, name in (
+        ("REALTIME", "time"), ("MONOTONIC", "monotonic"), ("MONOTONIC_RAW", "monotonic"), ("BOOTTIME", "monotonic")
+    )
     if hasattr(_time, "CLOCK_" + clock)
 }
 
@@ -125,7 +128,8 @@ def _replace_time():
 
 
 def _replace_datetime():
-    """Classes that know what time it is, in the place of those that ask the system; objects of one pass for the other's."""
+    """Classes that ask the robot's clock in the place of those that ask the system; objects of one pass for the
+    other's."""
 
     def passes_for(real):
         class Passing(type):
@@ -271,8 +275,8 @@ def _replace_signal():
 
 
 def install(lib):
-    """Replaces everything, once: the module may be loaded twice, by the runner for programs that bring an eye.py of their
-    own, and by the program."""
+    """Replaces everything, once: eye.py may be loaded twice, by the runner for programs that bring one of their own,
+    and by the program."""
     global _lib
     if _lib is not None:
         return

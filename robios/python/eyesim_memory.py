@@ -1,4 +1,4 @@
-"""Texts and images as C takes them, whatever a program in Python has: arrays of ctypes, bytes, lists, arrays of numpy."""
+"""Texts and images as C takes them, whatever a program in Python has: arrays of ctypes or numpy, bytes, lists."""
 
 import ctypes
 

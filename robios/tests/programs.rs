@@ -108,6 +108,7 @@ fn every_group_of_functions_does_what_it_should() {
     check("motors.c", &[]);
     check("driving.c", &[]);
     check("threads.c", &[]);
+    check("crowd.c", &[]);
     check("keys.c", &["--keys", SCRIPT]);
     check("older.c", &[]);
     check("timers.c", &[]);

@@ -25,5 +25,7 @@ mod radio;
 mod runtime;
 mod sensing;
 mod system;
+#[cfg(target_os = "linux")]
+mod turns;
 mod variadic;
 mod watch;

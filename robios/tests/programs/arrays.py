@@ -8,18 +8,22 @@ CAMInit(QQVGA)
 image = CAMGet()
 gray = CAMGetGray()
 assert min(image) >= 0 and bytes(list(image)) == bytes(image)
-same = [image, bytes(image), bytearray(image), list(image), tuple(image), memoryview(image), array.array("h", list(image)),
-        [[list(image[3 * (160 * y + x):][:3]) for x in range(160)] for y in range(120)]]
+flat = list(image)
+same = [image, bytes(image), bytearray(image), flat, tuple(image), memoryview(image), array.array("h", flat),
+        [[flat[3 * (160 * y + x):3 * (160 * y + x + 1)] for x in range(160)] for y in range(120)]]
 expected = bytes(IPCol2Gray(image))
 for form in same:
     assert bytes(IPCol2Gray(form)) == expected, type(form)
-    assert LCDImage(form) == 0 and LCDGetPixel(5, 5) == IPPRGB2Col(*image[3 * (5 * 160 + 5):][:3])
+    assert LCDImage(form) == 0 and LCDGetPixel(5, 5) == IPPRGB2Col(*image[2415:2418])
 assert IPWriteFile("form.ppm", same[-1]) == 0 and bytes(IPReadFile("form.ppm")[1]) == bytes(image)
 os.remove("form.ppm")
 targets = [bytearray(QQVGA_PIXELS), [0] * QQVGA_PIXELS, (c_byte * QQVGA_PIXELS)(), array.array("B", bytes(QQVGA_PIXELS))]
 for target in targets:
     IPCol2Gray(image, target)
     assert bytes(value & 0xFF for value in target) == expected, type(target)
+mine, distances = (c_byte * QQVGA_SIZE)(), [0] * 360
+assert CAMGet(mine) is mine and bytes(value & 0xFF for value in mine) == bytes(image)
+assert LIDARGet(distances) is distances and min(distances) > 0
 short = bytearray(7)
 assert IPCol2Gray(image, short) == expected[:7], "what is too short is not exceeded"
 assert bytes(IPCol2Gray(image[:9]))[3:] == bytes(QQVGA_PIXELS - 3), "what is missing is black"

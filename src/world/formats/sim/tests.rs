@@ -162,7 +162,7 @@ fn a_tolerant_reader_goes_on_behind_errors() {
                 can 500 600 0\nS4 z a.py\nLabBot z 90 b.py\nS4 400 2500 0 c.py";
     let parsed = parse_tolerantly(text, "test.sim", &mut files()).unwrap();
     let warnings: Vec<String> = parsed.warnings.iter().map(ToString::to_string).collect();
-    assert_eq!(warnings.len(), 9, "{warnings:#?}");
+    assert_eq!(warnings.len(), 10, "{warnings:#?}");
     assert_eq!(
         warnings[0],
         "test.sim:3:7: found the end of the line; expected the heading in degrees; the line is skipped"
