@@ -226,13 +226,27 @@ def _any(lists):
 def _replace_select():
     _keep(_select, "select")
     _select.select = _select_files
-    for name in ("SelectSelector", "PollSelector", "EpollSelector", "DevpollSelector", "KqueueSelector"):
-        selector = getattr(_selectors, name, None)
-        if selector is not None:
-            selector.select = _selecting(selector.select)
+    waiting = _selectors.DefaultSelector
+    waiting.select = _selecting(waiting.select)
+    for other in {_selectors.SelectSelector, getattr(_selectors, "PollSelector", waiting)} - {waiting}:
+        other.select = _selecting_really(other.select)
+
+
+def _selecting_really(real):
+    """For who waits for another process, as subprocess does: it gets the real time, and then the robot's passes."""
+
+    def select(self, timeout=None):
+        found = real(self, timeout)
+        if not found and timeout is not None and timeout > 0 and _now() is not None:
+            _sleep(timeout)
+        return found
+
+    return select
 
 
 def _selecting(real):
+    """For who waits for others in this process, as asyncio does."""
+
     def select(self, timeout=None):
         if timeout is None or timeout <= 0 or _now() is None:
             return real(self, timeout)

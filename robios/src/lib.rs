@@ -34,13 +34,14 @@
 //! of range, sensors that the robot lacks, and calls after a `fork` or from within a signal handler that has
 //! interrupted another call. `SIMGetRobot` and `SIMSetRobot` take headings as world files do: 0 along the x axis,
 //! counter-clockwise; what was read can be set. Robots and objects are numbered from 1 in one row, as they were
-//! placed; a robot has its number for the radio too. A number that is no robot's counts robots alone in `SIMGetRobot` and
-//! `RADIOSend`, and one that is no object's counts objects alone in `SIMGetObject`. What `SIMSetRobot` and `SIMSetObject`
-//! move is where it shall be 10 ms later, when they return, and for all programs at the same time; of several that move
-//! one thing at once, the robot that was placed last prevails.
+//! placed; a robot has its number for the radio too. A number that is no robot's counts robots alone in
+//! `SIMGetRobot` and `RADIOSend`, and one that is no object's counts objects alone in `SIMGetObject`. What
+//! `SIMSetRobot` and `SIMSetObject` move is there 10 ms later, when they return, and for all programs at the same
+//! time; of several that move one thing at once, the robot that was placed last prevails.
 //!
-//! A program's outcome, its time and its `collisions` are those at its end. Its robot drives on until it stands or its
-//! time is over: pose and path are those at that end, and what it touched meanwhile is counted in `collisions_after_end`.
+//! A program's outcome, its time and its `collisions` are those at its end. Its robot drives on until it stands or
+//! its time is over: pose and path are those at that end, and what it touched meanwhile is counted in
+//! `collisions_after_end`.
 
 pub mod ask;
 mod ffi;

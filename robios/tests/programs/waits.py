@@ -5,6 +5,7 @@ import datetime
 import queue
 import select
 import signal
+import subprocess
 import threading
 import time
 from datetime import date, datetime as moment, timedelta
@@ -49,6 +50,8 @@ async def both():
 
 
 takes(20, asyncio.run, both())
+
+assert subprocess.run(["sh", "-c", "sleep 0.3; echo out"], capture_output=True, timeout=5).stdout == b"out\n"
 
 now = moment.now()
 assert now.year == 2020 and date.today() == now.date() and isinstance(now, datetime.datetime)
