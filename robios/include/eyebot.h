@@ -111,7 +111,11 @@ int AUMicrophone(void);
 int PSDGet(int psd);
 int PSDGetRaw(int psd);
 int LIDARGet(int distance[]); /* LIDAR_RESOLUTION distances, clockwise from behind */
+#ifdef EYESIM_OWN_PROTOTYPES
+void LIDARSet(int range, int tilt, int points); /* as in the headers of some years, and in prototypes of programs */
+#else
 int LIDARSet(int range, int tilt, int points);
+#endif
 
 /* Servos and motors */
 int SERVOSet(int servo, int angle); /* 0 to 255 */
@@ -169,7 +173,11 @@ int RADIOInit(void);
 int RADIOGetID(void);
 int RADIOSend(int id, EYESIM_TEXT buf); /* 0 for all others */
 int RADIOReceive(int *id_no, char *buf, int size); /* waits; returns the length */
-int RADIOCheck(void); /* 1 if a message waits */
+#ifdef EYESIM_OWN_PROTOTYPES
+int RADIOCheck(int *id_no) __asm__("eyesim_RADIOCheckFrom");
+#else
+int RADIOCheck(void); /* 1 if a message waits; also with an int *id_no */
+#endif
 int eyesim_RADIOCheckFrom(int *id_no);
 int RADIOStatus(int IDlist[]);
 int RADIORelease(void);
@@ -262,7 +270,9 @@ static inline void SIMSetObject(int id, int x, int y, int phi)
 #define SERReceive(...) EYESIM_FOURTH(__VA_ARGS__, eyesim_SERReceiveN, SERReceive, 0, 0)(__VA_ARGS__)
 #define SIMGetObject(...) EYESIM_SIXTH(__VA_ARGS__, SIMGetObject, eyesim_SIMGetObject4, 0, 0, 0)(__VA_ARGS__)
 #define SIMSetObject(...) EYESIM_SIXTH(__VA_ARGS__, SIMSetObject, eyesim_SIMSetObject4, 0, 0, 0)(__VA_ARGS__)
+#ifndef EYESIM_OWN_PROTOTYPES
 #define RADIOCheck(...) eyesim_RADIOCheckFrom(EYESIM_LAST(__VA_ARGS__))
+#endif
 
 #endif
 

@@ -1,9 +1,11 @@
 """RoBIOS-7 for Python: `from eye import *`.
 
 Every function of the C library under its own name, in millimetres and degrees. Functions that return several values in
-C through pointers return a list here; functions that fill an image return an array of ctypes. Any thread may call.
+C through pointers return a list here; functions that fill an image return an array of unsigned bytes of ctypes.
+Functions that take an image take whatever holds its values: such an array, bytes, a list, an array of numpy. Any thread
+may call.
 
-Importing it makes time virtual: `time.sleep`, `time.time` and the other clocks of the module `time` follow the robot's.
+Importing it makes time virtual; see the module eyesim_clock.
 """
 
 import ctypes
@@ -11,13 +13,13 @@ import ctypes as _ctypes
 import os as _os
 import sys
 import sys as _sys
-import threading as _threading
-import time as _time
 
-# `ctypes` and `sys` come with `from eye import *`, as programs expect. What follows holds on to the real clock before
-# it is replaced.
-import queue as _queue
+# `ctypes` and `sys` come with `from eye import *`, as programs expect.
 from ctypes import *  # noqa: F401,F403  programs use its types
+from eyesim_clock import install as _install
+from eyesim_memory import as_bytes as _bytes, filled as _filled, pixels as _pixels, store as _store
+from eyesim_names import *  # noqa: F401,F403
+from eyesim_names import _X, _Y  # noqa: F401
 
 _here = _os.path.dirname(_os.path.abspath(__file__))
 
@@ -40,54 +42,6 @@ def _load():
 
 
 lib = _load()
-
-# --- constants ---
-
-QQVGA, QVGA, VGA, CAM1MP, CAMHD, CAM5MP, CUSTOM = 0, 1, 2, 3, 4, 5, 10
-QQVGA_X, QQVGA_Y = 160, 120
-QVGA_X, QVGA_Y = 320, 240
-VGA_X, VGA_Y = 640, 480
-CAM1MP_X, CAM1MP_Y = 1296, 730
-CAMHD_X, CAMHD_Y = 1920, 1080
-CAM5MP_X, CAM5MP_Y = 2592, 1944
-QQVGA_PIXELS, QVGA_PIXELS, VGA_PIXELS = QQVGA_X * QQVGA_Y, QVGA_X * QVGA_Y, VGA_X * VGA_Y
-CAM1MP_PIXELS, CAMHD_PIXELS, CAM5MP_PIXELS = CAM1MP_X * CAM1MP_Y, CAMHD_X * CAMHD_Y, CAM5MP_X * CAM5MP_Y
-QQVGA_SIZE, QVGA_SIZE, VGA_SIZE = 3 * QQVGA_PIXELS, 3 * QVGA_PIXELS, 3 * VGA_PIXELS
-CAM1MP_SIZE, CAMHD_SIZE, CAM5MP_SIZE = 3 * CAM1MP_PIXELS, 3 * CAMHD_PIXELS, 3 * CAM5MP_PIXELS
-
-_X = [QQVGA_X, QVGA_X, VGA_X, CAM1MP_X, CAMHD_X, CAM5MP_X]
-_Y = [QQVGA_Y, QVGA_Y, VGA_Y, CAM1MP_Y, CAMHD_Y, CAM5MP_Y]
-CAMWIDTHARR, CAMHEIGHTARR = {**dict(enumerate(_X)), CUSTOM: 0}, {**dict(enumerate(_Y)), CUSTOM: 0}
-CAMPIXELSARR = {key: CAMWIDTHARR[key] * CAMHEIGHTARR[key] for key in CAMWIDTHARR}
-CAMSIZEARR = {key: 3 * pixels for key, pixels in CAMPIXELSARR.items()}
-
-RED, GREEN, BLUE, WHITE, GRAY, BLACK = 0xFF0000, 0x00FF00, 0x0000FF, 0xFFFFFF, 0x808080, 0x000000
-SILVER, LIGHTGRAY, DARKGRAY, NAVY, CYAN, TEAL = 0xC0C0C0, 0xD3D3D3, 0xA9A9A9, 0x000080, 0x00EEEE, 0x008080
-MAGENTA, PURPLE, MAROON, YELLOW, OLIVE, ORANGE = 0xFF00FF, 0x800080, 0x800000, 0xFFFF00, 0x9ACD32, 0xFFA500
-
-NOKEY, KEY1, KEY2, KEY3, KEY4, ANYKEY = 0, 1, 2, 4, 8, 0xFFFFFFFF
-
-HELVETICA, TIMES, COURIER = 0, 1, 2
-NORMAL, BOLD, ITALICS = 0, 1, 2
-
-LCD_AUTOREFRESH, LCD_NOAUTOREFRESH = 0x000001, 0x000100
-LCD_SCROLLING, LCD_NOSCROLLING = 0x000002, 0x000200
-LCD_LINEFEED, LCD_NOLINEFEED = 0x000004, 0x000400
-LCD_SHOWMENU, LCD_HIDEMENU = 0x000008, 0x000800
-LCD_LISTMENU, LCD_CLASSICMENU = 0x000010, 0x001000
-LCD_FB_ROTATE, LCD_FB_NOROTATION = 0x000080, 0x008000
-LCD_BGCOL_TRANSPARENT, LCD_BGCOL_NOTRANSPARENT = 0x010000, 0x100000
-LCD_BGCOL_INVERSE, LCD_BGCOL_NOINVERSE = 0x020000, 0x200000
-LCD_FGCOL_INVERSE, LCD_FGCOL_NOINVERSE = 0x040000, 0x400000
-
-PSD_FRONT, PSD_LEFT, PSD_RIGHT, PSD_BACK = 1, 2, 3, 4
-
-IRTV_0, IRTV_1, IRTV_2, IRTV_3, IRTV_4 = (ord(digit) for digit in "01234")
-IRTV_5, IRTV_6, IRTV_7, IRTV_8, IRTV_9 = (ord(digit) for digit in "56789")
-IRTV_RED, IRTV_GREEN, IRTV_YELLOW, IRTV_BLUE = (ord(letter) for letter in "RGYB")
-IRTV_LEFT, IRTV_RIGHT, IRTV_UP, IRTV_DOWN, IRTV_OK, IRTV_POWER = (ord(letter) for letter in "L>UDOP")
-
-NONE, RTSCTS = 0, 1
 
 # Set by CAMInit.
 CAMWIDTH = CAMHEIGHT = CAMPIXELS = CAMSIZE = 0
@@ -205,46 +159,8 @@ class _Number(int):
         return int(self)
 
 
-def _bytes(text):
-    """A text as C takes it."""
-    if text is None:
-        return b""
-    if isinstance(text, (bytes, bytearray)):
-        return bytes(text)
-    if isinstance(text, str):
-        return text.encode("utf-8", "replace")
-    if hasattr(text, "raw"):
-        return text.value
-    return str(text).encode("utf-8", "replace")
-
-
 def _variable(name):
     return _ctypes.c_int.in_dll(lib, name).value
-
-
-def _pixels(image, count):
-    """An image of at least `count` bytes as C takes it, whatever it is: an array of ctypes, bytes, a list, numpy's."""
-    if image is None:
-        return None
-    if isinstance(image, _ctypes.Array) and _ctypes.sizeof(image) >= count:
-        return image
-    if isinstance(image, _ctypes._Pointer):
-        return _ctypes.cast(image, _ctypes.c_void_p)
-    try:
-        data = bytes(memoryview(image).cast("B")) if not isinstance(image, list) else None
-    except (TypeError, ValueError):
-        data = None
-    if data is None:
-        data = bytes(int(value) & 0xFF for value in _flat(image))
-    return (_ctypes.c_ubyte * max(count, len(data))).from_buffer_copy(data.ljust(count, b"\0"))
-
-
-def _flat(values):
-    for value in values:
-        if isinstance(value, (list, tuple)):
-            yield from _flat(value)
-        else:
-            yield value
 
 
 def _several(function, count, *arguments):
@@ -252,10 +168,6 @@ def _several(function, count, *arguments):
     places = [_ctypes.c_int(0) for _ in range(count)]
     function(*arguments, *[_ctypes.byref(place) for place in places])
     return [place.value for place in places]
-
-
-def _gray(count):
-    return (_ctypes.c_byte * count)()
 
 
 # --- display ---
@@ -387,16 +299,12 @@ def CAMInit(resolution):
     return code
 
 
-def CAMGet():
-    image = _gray(_variable("CAMSIZE"))
-    lib.CAMGet(image)
-    return image
+def CAMGet(buf=None):
+    return _filled(buf, _variable("CAMSIZE"), lib.CAMGet)
 
 
-def CAMGetGray():
-    image = _gray(_variable("CAMPIXELS"))
-    lib.CAMGetGray(image)
-    return image
+def CAMGetGray(buf=None):
+    return _filled(buf, _variable("CAMPIXELS"), lib.CAMGetGray)
 
 
 def _ip():
@@ -405,10 +313,9 @@ def _ip():
 
 
 def IPReadFile(filename, img=None):
-    if img is not None:
-        return lib.IPReadFile(_bytes(filename), img)
-    image = _gray(3 * _ip())
-    return [lib.IPReadFile(_bytes(filename), image), image]
+    codes = []
+    image = _filled(img, 3 * _ip(), lambda target: codes.append(lib.IPReadFile(_bytes(filename), target)))
+    return [codes[0], image] if img is None else codes[0]
 
 
 def IPWriteFile(filename, img):
@@ -420,9 +327,7 @@ def IPWriteFileGray(filename, gray):
 
 
 def _map(function, image, channels, result, into=None):
-    target = _gray(result * _ip()) if into is None else into
-    function(_pixels(image, channels * _ip()), target)
-    return target
+    return _filled(into, result * _ip(), lambda target: function(_pixels(image, channels * _ip()), target))
 
 
 def IPLaplace(grayIn, grayOut=None):
@@ -442,27 +347,26 @@ def IPGray2Col(gray, imgOut=None):
 
 
 def IPRGB2Col(r, g, b, imgOut=None):
-    target = _gray(3 * _ip()) if imgOut is None else imgOut
-    lib.IPRGB2Col(*[_pixels(plane, _ip()) for plane in (r, g, b)], target)
-    return target
+    planes = [_pixels(plane, _ip()) for plane in (r, g, b)]
+    return _filled(imgOut, 3 * _ip(), lambda target: lib.IPRGB2Col(*planes, target))
 
 
-def IPCol2HSI(img):
-    planes = [_gray(_ip()) for _ in range(3)]
+def IPCol2HSI(img, *hsi):
+    planes = [(_ctypes.c_ubyte * _ip())() for _ in range(3)]
     lib.IPCol2HSI(_pixels(img, 3 * _ip()), *planes)
+    for target, plane in zip(hsi, planes):
+        _filled(target, _ip(), lambda room: _ctypes.memmove(room, plane, _ip()))
     return planes
 
 
-def IPOverlay(c1, c2):
-    target = _gray(3 * _ip())
-    lib.IPOverlay(_pixels(c1, 3 * _ip()), _pixels(c2, 3 * _ip()), target)
-    return target
+def IPOverlay(c1, c2, cOut=None):
+    images = _pixels(c1, 3 * _ip()), _pixels(c2, 3 * _ip())
+    return _filled(cOut, 3 * _ip(), lambda target: lib.IPOverlay(*images, target))
 
 
-def IPOverlayGray(g1, g2, col):
-    target = _gray(3 * _ip())
-    lib.IPOverlayGray(_pixels(g1, _ip()), _pixels(g2, _ip()), int(col), target)
-    return target
+def IPOverlayGray(g1, g2, col, cOut=None):
+    images = _pixels(g1, _ip()), _pixels(g2, _ip())
+    return _filled(cOut, 3 * _ip(), lambda target: lib.IPOverlayGray(*images, int(col), target))
 
 
 def _channels(*values):
@@ -474,17 +378,6 @@ def _planes(function, arguments, targets=()):
     function(*arguments, *[_ctypes.addressof(value) for value in values])
     _store(targets, [value.value for value in values])
     return [value.value for value in values]
-
-
-def _store(targets, values):
-    """Values to where a program wants them: numbers of ctypes, or pointers to them."""
-    for target, value in zip(targets, values):
-        if hasattr(target, "contents"):
-            target.contents.value = value
-        elif hasattr(target, "_obj"):
-            target._obj.value = value
-        elif hasattr(target, "value"):
-            target.value = value
 
 
 def IPPRGB2Col(r, g, b):
@@ -611,11 +504,15 @@ def ANALOGTransfer(_buffer=None):
 LIDAR_POINTS = LIDAR_RANGE = 360
 
 
-def LIDARGet():
+def LIDARGet(distance=None):
     # A scan has as many points as the library says; a robot's own number is known after the first scan.
     scan = (_ctypes.c_int * 100_000)()
     lib.LIDARGet(scan)
     points = _variable("LIDAR_RESOLUTION")
+    if distance is not None:
+        count = min(points, len(distance))
+        distance[:count] = scan[:count]
+        return distance
     return (_ctypes.c_int * points)(*scan[:points])
 
 
@@ -672,80 +569,4 @@ def SIMGetPose():
     return [_Number(value) for value in _several(lib.SIMGetPose, 3)]
 
 
-# --- time ---
-
-
-def _sleep(seconds):
-    """In the place of `time.sleep`."""
-    seconds = float(seconds)
-    if seconds < 0:
-        raise ValueError("sleep length must be non-negative")
-    if lib.eyesim_sleep(seconds) != 0:
-        _real["sleep"](seconds)
-
-
-def _clock(name, from_start):
-    real = _real[name]
-
-    def clock():
-        now = lib.eyesim_time()
-        if now < 0:
-            return real()
-        return now - _EPOCH if from_start else now
-
-    clock.__name__ = clock.__qualname__ = name
-    return clock
-
-
-def _nanoseconds(clock):
-    return lambda: int(1e9 * clock())
-
-
-_LOOK = 0.01
-
-
-def _wait(self, timeout=None):
-    """In the place of `threading.Condition.wait`, on which events and queues are built: with a time limit it waits by
-    the program's clock, and looks again and again whether somebody has notified."""
-    if timeout is None or timeout <= 0 or lib.eyesim_time() < 0:
-        return _wait_really(self, timeout)
-    if not self._is_owned():
-        raise RuntimeError("cannot wait on un-acquired lock")
-    waiter = _threading.Lock()
-    waiter.acquire()
-    self._waiters.append(waiter)
-    state = self._release_save()
-    end, notified = _time.monotonic() + timeout, False
-    try:
-        while not notified and _time.monotonic() < end:
-            _time.sleep(min(_LOOK, timeout))
-            notified = waiter.acquire(False)
-    finally:
-        self._acquire_restore(state)
-        if not notified and waiter in self._waiters:
-            self._waiters.remove(waiter)
-    return notified
-
-
-def _note_thread(self, *arguments, **options):
-    lib.eyesim_note_thread()
-    return _start(self, *arguments, **options)
-
-
-_EPOCH = 1577880000.0
-
-# The module may be loaded twice: by the runner for programs that bring an eye.py of their own, and by the program.
-if not hasattr(_time, "_eyesim"):
-    _time._eyesim = True
-    _real = {name: getattr(_time, name) for name in ("sleep", "time", "monotonic", "perf_counter", "process_time")}
-    for _name, _from_start in (("time", False), ("monotonic", True), ("perf_counter", True), ("process_time", True)):
-        _replacement = _clock(_name, _from_start)
-        setattr(_time, _name, _replacement)
-        setattr(_time, _name + "_ns", _nanoseconds(_replacement))
-    _time.sleep = _sleep
-    _start = _threading.Thread.start
-    _threading.Thread.start = _note_thread
-    _wait_really = _threading.Condition.wait
-    _threading.Condition.wait = _wait
-    # What these have taken from the module `time` when they were loaded.
-    _threading._time = _queue.time = _time.monotonic
+_install(lib)

@@ -47,6 +47,8 @@ pub enum Request {
     Image,
     /// Sends a message to a robot.
     Send(u32, Vec<u8>),
+    /// The numbers of all robots.
+    Numbers,
     /// The oldest message that has not been received; waits for so many seconds at most.
     Receive(f64),
     /// Drives a motor with a fraction of its full speed.
@@ -57,11 +59,11 @@ pub enum Request {
     Encoder(u8),
     /// Sets an encoder's count to zero.
     ResetEncoder(u8),
-    /// Where a robot truly is; 0 is the robot that asks.
+    /// Where a robot truly is, by its number; 0 is the robot that asks.
     RobotAt(u32),
     /// Puts a robot somewhere else.
     PlaceRobot(u32, Pose),
-    /// Where an object truly is, numbered from 1.
+    /// Where an object truly is, by its number.
     ObjectAt(u32),
     /// Puts an object somewhere else.
     PlaceObject(u32, Pose),
@@ -88,6 +90,8 @@ pub enum Reply {
     Image(RgbImage),
     /// A message, if there is one.
     Message(Option<RadioMessage>),
+    /// Numbers of robots.
+    Numbers(Vec<u32>),
     /// Who the robot is.
     Identity(Identity),
 }
@@ -95,7 +99,7 @@ pub enum Reply {
 /// What a library has to know about its robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Identity {
-    /// Its number, from 1.
+    /// Its number, from 1, in the row of all robots and objects.
     pub id: u32,
     /// How many robots there are.
     pub robots: u32,
@@ -128,6 +132,8 @@ pub struct Seat {
     truth: Truth,
     identity: Identity,
     index: usize,
+    /// The numbers of the robots and of the objects.
+    numbers: (Vec<u32>, Vec<u32>),
     elevations: (Vec<f64>, Vec<f64>),
     scan: LidarScan,
 }
@@ -166,8 +172,9 @@ impl Seat {
     ) -> Self {
         let spec = &scene.robots[index].spec;
         let (top_speed, full_speed, tick_length) = speeds(spec);
+        let numbers = (scene.robot_numbers(), scene.object_numbers());
         let identity = Identity {
-            id: index as u32 + 1,
+            id: numbers.0[index],
             robots: scene.robots.len() as u32,
             objects: scene.world.objects.len() as u32,
             top_speed,
@@ -181,7 +188,7 @@ impl Seat {
         let robots = scene.robots.iter().map(|robot| robot.elevation).collect();
         let objects = scene.world.objects.iter().map(|object| object.elevation).collect();
         let (truth, scan) = (simulation.truth(), LidarScan::default());
-        Self { robot, truth, identity, index, elevations: (robots, objects), scan }
+        Self { robot, truth, identity, index, numbers, elevations: (robots, objects), scan }
     }
 
     /// Who the robot is.
@@ -230,7 +237,11 @@ impl Seat {
             Request::ConfigureLidar(settings) => done(robot.configure_lidar(settings)?),
             Request::SetResolution(number) => done(robot.set_resolution(resolution(number)?)?),
             Request::Image => Reply::Image(robot.image()?),
-            Request::Send(to, ref data) => done(robot.send(to, data)?),
+            Request::Send(to, ref data) => {
+                let to = if to == 0 { 0 } else { self.robot_index(to)? as u32 + 1 };
+                done(self.robot.send(to, data)?)
+            }
+            Request::Numbers => Reply::Numbers(self.numbers.0.clone()),
             Request::Receive(seconds) => Reply::Message(self.receive(seconds)?),
             Request::Motor(motor, fraction) => done(robot.set_motor(motor, fraction)?),
             Request::Servo(servo, position) => done(robot.set_servo(servo, position)?),
@@ -238,40 +249,50 @@ impl Seat {
             Request::ResetEncoder(motor) => done(robot.reset_encoder(motor)?),
             Request::RobotAt(id) => {
                 let index = self.robot_index(id)?;
+                self.robot.wait(0.0)?;
                 Reply::Pose(self.truth.pose(index)?, elevation(&self.elevations.0, index))
             }
             Request::PlaceRobot(id, pose) => {
                 let index = self.robot_index(id)?;
-                done(self.truth.set_pose(index, pose)?)
+                self.moves(|truth, by| truth.move_robot(by, index, pose))?
             }
             Request::ObjectAt(id) => {
                 let index = self.object_index(id)?;
+                self.robot.wait(0.0)?;
                 Reply::Pose(self.truth.object(index)?, elevation(&self.elevations.1, index))
             }
-            Request::PlaceObject(id, pose) => done(self.truth.set_object(self.object_index(id)?, pose)?),
+            Request::PlaceObject(id, pose) => {
+                let index = self.object_index(id)?;
+                self.moves(|truth, by| truth.move_object(by, index, pose))?
+            }
         })
     }
 
-    /// Robots are numbered from 1, or, where objects were placed first, behind them.
-    fn robot_index(&self, id: u32) -> Result<usize> {
-        let Identity { robots, objects, .. } = self.identity;
-        match id {
-            0 => Ok(self.index),
-            _ if id <= robots => index_of("robot", id),
-            _ => index_of("robot", id.saturating_sub(objects)),
-        }
+    /// Has something put somewhere else, at the next tick as all others see it too, and waits for it.
+    fn moves(&mut self, place: impl FnOnce(&Truth, usize) -> Result<()>) -> Result<Reply> {
+        self.robot.wait(0.0)?;
+        place(&self.truth, self.index)?;
+        Ok(done(self.robot.wait(TICK)?))
     }
 
-    /// Objects are numbered behind the robots; numbers that are robots' mean objects by their own count, from 1.
+    fn robot_index(&self, id: u32) -> Result<usize> {
+        if id == 0 { Ok(self.index) } else { index_of("robot", id, &self.numbers.0) }
+    }
+
     fn object_index(&self, id: u32) -> Result<usize> {
-        let robots = self.identity.robots;
-        index_of("object", if id > robots { id - robots } else { id })
+        index_of("object", id, &self.numbers.1)
+    }
+
+    /// A message with its sender's number.
+    fn numbered(&self, message: RadioMessage) -> RadioMessage {
+        let index = (message.from as usize).wrapping_sub(1);
+        RadioMessage { from: self.numbers.0.get(index).copied().unwrap_or(message.from), ..message }
     }
 
     fn receive(&mut self, seconds: f64) -> Result<Option<RadioMessage>> {
         let end = self.now() + seconds;
         loop {
-            let message = self.robot.receive()?;
+            let message = self.robot.receive()?.map(|message| self.numbered(message));
             if message.is_some() || seconds <= 0.0 {
                 return Ok(message);
             }
@@ -291,9 +312,13 @@ fn elevation(all: &[f64], index: usize) -> f64 {
     all.get(index).copied().unwrap_or_default()
 }
 
-fn index_of(what: &str, id: u32) -> Result<usize> {
-    let index = id.checked_sub(1).ok_or_else(|| Error::invalid_input(what, id, "a number from 1"))?;
-    Ok(index as usize)
+/// The index of the thing that has a number. Numbers that none of its kind has count its kind alone, from 1.
+fn index_of(what: &str, id: u32, numbers: &[u32]) -> Result<usize> {
+    let placed = numbers.iter().position(|&number| number == id);
+    let counted = || (id as usize).checked_sub(1).filter(|&index| index < numbers.len());
+    placed.or_else(counted).ok_or_else(|| {
+        Error::invalid_input(what, id, &format!("one of {numbers:?}, or at most {}", numbers.len()))
+    })
 }
 
 fn resolution(number: u8) -> Result<Resolution> {

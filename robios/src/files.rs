@@ -4,59 +4,38 @@
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-use roverlab::world::formats::{DiskFiles, FileSource, SourceFile, robi, wld};
-use roverlab::world::{RobotSpec, World};
+use roverlab::world::RobotSpec;
+use roverlab::world::formats::{DiskFiles, FileSource, SourceFile, robi};
 
-/// Files on disk, and stand-ins for those that are not there: a square world as large as the script needs, a robot of
-/// the kind that the folder's name says, a small object.
-#[derive(Debug)]
+/// Files on disk, and stand-ins for those that are not there: a robot of the kind that the folder's name says, a small
+/// object. A world has none, since the reader of scripts gets over that itself.
+#[derive(Debug, Default)]
 pub struct LenientFiles {
     disk: DiskFiles,
-    /// Metres from wall to wall of a world that is not there.
-    side: f64,
     /// What was not there.
     pub warnings: Vec<String>,
 }
 
-/// Metres from wall to wall at least, and from the farthest thing to the wall.
-const LEAST_SIDE: f64 = 4.0;
-const MARGIN: f64 = 1.0;
-
 impl LenientFiles {
-    /// Files that a script names.
-    pub fn of(script: &[u8]) -> Self {
-        Self { disk: DiskFiles::new(), side: side(&String::from_utf8_lossy(script)), warnings: Vec::new() }
+    /// Files on disk.
+    pub fn new() -> Self {
+        Self::default()
     }
 
     fn stand_in(&mut self, reference: &str) -> Option<Vec<u8>> {
         let name = reference.rsplit(['/', '\\']).next().unwrap_or(reference);
         let (stem, ending) = name.rsplit_once('.')?;
         let (what, text) = match ending.to_ascii_lowercase().as_str() {
-            "wld" => {
-                let what = format!("a square of {} m", self.side);
-                (what, wld::print(&World::walled(self.side, self.side)))
-            }
             "robi" => {
                 let spec = RobotSpec { name: stem.to_owned(), ..like(reference) };
-                ("a robot like the built-in ones".into(), robi::print(&spec))
+                ("a robot like the built-in ones", robi::print(&spec))
             }
-            "esobj" => ("a small object".into(), String::new()),
+            "esobj" => ("a small object", String::new()),
             _ => return None,
         };
         self.warnings.push(format!("{reference} does not exist; {what} is used"));
         Some(text.into_bytes())
     }
-}
-
-/// Metres from wall to wall around all places that a script names.
-fn side(script: &str) -> f64 {
-    let farthest = script.lines().filter_map(|line| {
-        let mut words = line.split_whitespace().skip(1);
-        let (x, y) = (words.next()?.parse::<f64>().ok()?, words.next()?.parse::<f64>().ok()?);
-        Some(x.max(y) / 1000.0).filter(|far| far.is_finite())
-    });
-    let farthest = farthest.fold(0.0, f64::max);
-    (farthest + MARGIN).clamp(LEAST_SIDE, 100.0).ceil()
 }
 
 /// A robot that drives as one of such a name, or from such a folder, does.
@@ -92,7 +71,7 @@ impl FileSource for LenientFiles {
 }
 
 /// The file of a path below a folder whose names differ at most in the case of their letters.
-fn in_any_case(folder: &Path, path: &Path) -> Option<PathBuf> {
+pub fn in_any_case(folder: &Path, path: &Path) -> Option<PathBuf> {
     let mut place = folder.to_owned();
     for part in path.components() {
         match part {
@@ -112,7 +91,7 @@ fn in_any_case(folder: &Path, path: &Path) -> Option<PathBuf> {
 
 #[cfg(test)]
 mod tests {
-    use roverlab::world::formats::parse_scene;
+    use roverlab::world::formats::sim;
 
     use super::*;
 
@@ -120,13 +99,16 @@ mod tests {
     fn scripts_run_without_their_files() {
         let script = "world ../worlds/Pool.wld\nrobot \"../robots/Ackermann/SAE.robi\"\nobject cone.esObj\n\
                       SAE 12500 5000 0 drive.x\ncone 100 100 0\n";
-        let mut files = LenientFiles::of(script.as_bytes());
-        let scene = parse_scene(script.into(), "nowhere/script.sim", &mut files).unwrap().value;
+        let mut files = LenientFiles::new();
+        let parsed = sim::parse_tolerantly(script, "nowhere/script.sim", &mut files).unwrap();
+        let scene = parsed.value;
         assert_eq!((scene.robots.len(), scene.world.objects.len()), (1, 1));
         assert_eq!(scene.robots[0].spec.name, "SAE");
         assert!(scene.world.floor.max.x >= 13.5);
-        assert_eq!(files.warnings.len(), 3);
-        assert!(files.warnings[0].contains("Pool.wld does not exist"), "{:?}", files.warnings);
+        assert_eq!(files.warnings.len(), 2);
+        assert!(files.warnings[0].contains("SAE.robi does not exist"), "{:?}", files.warnings);
+        let message = parsed.warnings[0].to_string();
+        assert!(message.contains("`../worlds/Pool.wld`, which does not exist"), "{message}");
     }
 
     #[test]
@@ -135,7 +117,7 @@ mod tests {
         std::fs::create_dir_all(folder.join("Worlds")).unwrap();
         std::fs::write(folder.join("Worlds/Field.wld"), "floor 3000 2000\n").unwrap();
         let referrer = folder.join("a.sim").display().to_string();
-        let mut files = LenientFiles::of(b"");
+        let mut files = LenientFiles::new();
         for name in ["worlds/field.wld", "WORLDS\\FIELD.WLD"] {
             assert_eq!(files.read(name, &referrer, 1000).unwrap().bytes, b"floor 3000 2000\n");
         }

@@ -33,9 +33,15 @@
 //! Functions return 0 when they succeed and 1 when they fail, unless RoBIOS says otherwise: null pointers, numbers out
 //! of range, sensors that the robot lacks, and calls after a `fork` or from within a signal handler that has
 //! interrupted another call. `SIMGetRobot` and `SIMSetRobot` take headings as world files do: 0 along the x axis,
-//! counter-clockwise; what was read can be set. Robots are numbered from 1 as they were placed, for the radio too, and
-//! objects behind them, as EyeSim does where robots are placed first. A number that this gives to a robot means an object
-//! by its own count in `SIMGetObject`, and one that it gives to an object a robot behind all objects in `SIMGetRobot`.
+//! counter-clockwise; what was read can be set. Robots and objects are numbered from 1 in one row, as they were
+//! placed; a robot has its number for the radio too. A number that is no robot's counts robots alone in
+//! `SIMGetRobot` and `RADIOSend`, and one that is no object's counts objects alone in `SIMGetObject`. What
+//! `SIMSetRobot` and `SIMSetObject` move is there 10 ms later, when they return, and for all programs at the same
+//! time; of several that move one thing at once, the robot that was placed last prevails.
+//!
+//! A program's outcome, its time and its `collisions` are those at its end. Its robot drives on until it stands or
+//! its time is over: pose and path are those at that end, and what it touched meanwhile is counted in
+//! `collisions_after_end`.
 
 pub mod ask;
 mod ffi;

@@ -134,8 +134,8 @@ impl Plan {
         let mut scene = match found {
             Some(file) => {
                 let bytes = formats::read_file(&file).map_err(|error| error.to_string())?;
-                let mut files = LenientFiles::of(&bytes);
-                let parsed = formats::parse_scene(bytes, &file.display().to_string(), &mut files);
+                let mut files = LenientFiles::new();
+                let parsed = formats::parse_scene_tolerantly(bytes, &file.display().to_string(), &mut files);
                 let parsed = parsed.map_err(|error| error.to_string())?;
                 warnings.append(&mut files.warnings);
                 warnings.extend(parsed.warnings.iter().map(ToString::to_string));
@@ -146,7 +146,9 @@ impl Plan {
         let spec = self.robot.as_deref().map(|name| robot(name, &mut warnings)).transpose()?;
         if scene.robots.is_empty() {
             let pose = start_in(&scene.world);
-            scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::s4()), pose));
+            let objects_before = scene.world.objects.len();
+            let robot = RobotPlacement::new(Arc::new(RobotSpec::s4()), pose);
+            scene.robots.push(RobotPlacement { objects_before, ..robot });
         }
         let robots = scene.robots.len();
         let placed = scene.robots.get_mut(self.index).ok_or_else(|| {

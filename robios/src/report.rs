@@ -47,15 +47,17 @@ pub struct Report {
     pub odometry: Pose,
     /// Metres.
     pub path_length: f64,
-    /// Contacts.
+    /// Contacts until the program ended.
     pub contacts: u64,
+    /// Contacts since, of a robot that drives on.
+    pub later_contacts: u64,
     /// Beeps and sounds.
     pub sounds: u64,
     /// The text that the display has shown, and shows.
     pub text: String,
 }
 
-const NUMBERS: usize = 13;
+const NUMBERS: usize = 14;
 const HEADER: usize = 8 * (NUMBERS + 2);
 const STANDING: usize = 24 * 1024;
 
@@ -89,6 +91,7 @@ impl ReportFile {
             odometry.heading,
             report.path_length,
             report.contacts as f64,
+            report.later_contacts as f64,
             report.sounds as f64,
         ];
         let mut bytes = [0; 8 * NUMBERS];
@@ -142,7 +145,8 @@ impl Report {
             odometry: Pose::new(number(7), number(8), number(9)),
             path_length: number(10),
             contacts: number(11) as u64,
-            sounds: number(12) as u64,
+            later_contacts: number(12) as u64,
+            sounds: number(13) as u64,
             text: history + &standing,
         }
     }

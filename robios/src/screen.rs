@@ -7,13 +7,15 @@ use roverlab::world::Colour;
 /// A display that remembers what was written on it.
 ///
 /// Its text is that of a terminal with a history: the rows that scrolled away or were cleared, and the rows that stand
-/// there now. What is overwritten in its place is forgotten.
+/// there now. What is overwritten in its place is forgotten, and what is cleared again and again is remembered once.
 #[derive(Debug, Default)]
 pub struct Screen {
     /// The pixels.
     pub lcd: Lcd,
     rows: Vec<Vec<char>>,
     history: String,
+    /// What was cleared last.
+    cleared: Vec<Vec<char>>,
     scrolling: Option<bool>,
     line_feed: Option<bool>,
     /// The font, whose parts are set one by one.
@@ -95,10 +97,13 @@ impl Screen {
 
     /// Clears the display.
     pub fn clear(&mut self) -> Result<()> {
-        for line in std::mem::take(&mut self.rows) {
-            if line.iter().any(|c| !c.is_whitespace()) {
-                self.remember(&line);
+        let rows = std::mem::take(&mut self.rows);
+        // Programs clear and draw the same again and again.
+        if rows != self.cleared {
+            for line in rows.iter().filter(|line| line.iter().any(|c| !c.is_whitespace())) {
+                self.remember(line);
             }
+            self.cleared = rows;
         }
         self.lcd.clear_display()
     }
@@ -154,6 +159,10 @@ mod tests {
         screen.clear().unwrap();
         screen.print("new").unwrap();
         assert_eq!((screen.history(), screen.standing().as_str()), ("Hullo\nworld\n  row 3\n", "new"));
+        screen.clear().unwrap();
+        screen.print("new").unwrap();
+        screen.clear().unwrap();
+        assert_eq!(screen.history(), "Hullo\nworld\n  row 3\nnew\n");
     }
 
     #[test]

@@ -160,6 +160,7 @@ impl Question {
             Request::PlaceRobot(id, pose) => w.byte(23).word(id).pose(pose),
             Request::ObjectAt(id) => w.byte(24).word(id),
             Request::PlaceObject(id, pose) => w.byte(25).word(id).pose(pose),
+            Request::Numbers => w.byte(26),
         }
         .0
     }
@@ -198,6 +199,7 @@ impl Question {
             23 => Request::PlaceRobot(r.word()?, r.pose()?),
             24 => Request::ObjectAt(r.word()?),
             25 => Request::PlaceObject(r.word()?, r.pose()?),
+            26 => Request::Numbers,
             _ => return None,
         };
         let debt_is_sound = debt.is_finite() && debt >= 0.0;
@@ -234,6 +236,7 @@ impl Answer {
             Ok(Reply::Image(image)) => w.byte(7).word(image.width()).word(image.height()).bytes(image),
             Ok(Reply::Message(None)) => w.byte(8),
             Ok(Reply::Message(Some(message))) => w.byte(9).word(message.from).bytes(&message.data),
+            Ok(Reply::Numbers(numbers)) => numbers.iter().fold(w.byte(11), |w, &number| w.word(number)),
             Ok(Reply::Identity(identity)) => w
                 .byte(10)
                 .word(identity.id)
@@ -287,6 +290,11 @@ impl Answer {
                     time_limit: r.number()?,
                 }))
             }
+            11 => {
+                let (numbers, odd) = r.rest().as_chunks();
+                odd.is_empty().then_some(())?;
+                Ok(Reply::Numbers(numbers.iter().map(|&number| u32::from_le_bytes(number)).collect()))
+            }
             255 => {
                 let kind = *KINDS.get(usize::from(r.byte()?))?;
                 Err(Error::new(kind, String::from_utf8_lossy(r.rest())))
@@ -313,6 +321,7 @@ mod tests {
             Request::Send(3, vec![1, 2, 3]),
             Request::Send(3, vec![]),
             Request::Receive(0.5),
+            Request::Numbers,
             Request::PlaceObject(9, pose),
             Request::Servo(2, -0.5),
         ] {
@@ -327,6 +336,7 @@ mod tests {
             Reply::Done,
             Reply::Flag(true),
             Reply::Count(-5),
+            Reply::Numbers(vec![1, 3]),
             Reply::Ranges(vec![1.0, f64::INFINITY]),
             Reply::Image(RgbImage::from_pixel(2, 1, image::Rgb([1, 2, 3]))),
             Reply::Message(Some(RadioMessage { from: 2, data: b"hello".to_vec() })),

@@ -9,6 +9,9 @@ use std::sync::OnceLock;
 
 use serde_json::Value;
 
+#[path = "programs/scripts.rs"]
+mod scripts;
+
 fn programs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs")
 }
@@ -105,6 +108,7 @@ fn every_group_of_functions_does_what_it_should() {
     check("motors.c", &[]);
     check("driving.c", &[]);
     check("threads.c", &[]);
+    check("crowd.c", &[]);
     check("keys.c", &["--keys", SCRIPT]);
     check("older.c", &[]);
     check("timers.c", &[]);
@@ -313,6 +317,10 @@ fn every_group_of_functions_does_what_it_should_in_python() {
     check("keys.py", &["--keys", SCRIPT]);
     check("images.py", &[]);
     check("system.py", &[]);
+    check("arrays.py", &[]);
+    if cfg!(target_os = "linux") {
+        check("waits.py", &["--time-limit", "600"]);
+    }
     check("lines.py", &[]);
     check("driving.py", &["--start", "1000,2000,0"]);
     let folder = Folder::new("simulation-py");
@@ -369,6 +377,16 @@ fn programs_are_compiled_as_their_authors_meant() {
             "names.c",
             "#include \"eyebot.h\"\nenum { NONE, WALKER };\nconst int PSD_FRONT = 1;\nint LCDInit(char *text)\n\
              { return LCDPrintf(\"%s\", text); }\nint main() { return LCDInit(\"good\") + NONE; }\n",
+        ),
+        // Prototypes of its own, and names of the X window system.
+        (
+            "prototypes.c",
+            "#include \"eyebot.h\"\nvoid LIDARSet(int range, int tilt, int points);\nint RADIOCheck(int *id);\n\
+             int main() { int id; LIDARSet(90, 0, 9); if (!RADIOCheck(&id)) LCDPrintf(\"good\"); return 0; }\n",
+        ),
+        (
+            "window.c",
+            "#include \"eyebot.h\"\nBool found = True;\nint main() { if (found) LCDPrintf(\"good\"); return 0; }\n",
         ),
         // The same beside names of sensors that are the header's.
         (

@@ -116,12 +116,14 @@ pub struct RobotPlacement {
     pub elevation: f64,
     /// The program that a simulation script names for it, as written.
     pub program: Option<String>,
+    /// How many of the world's objects were placed before it: robots and objects are numbered in one row.
+    pub objects_before: usize,
 }
 
 impl RobotPlacement {
     /// A robot on the floor, without a program.
     pub fn new(spec: Arc<RobotSpec>, pose: Pose) -> Self {
-        Self { spec, pose, elevation: 0.0, program: None }
+        Self { spec, pose, elevation: 0.0, program: None, objects_before: 0 }
     }
 }
 
@@ -154,5 +156,29 @@ impl Scene {
     /// A world with one robot.
     pub fn with_robot(world: World, spec: RobotSpec, pose: Pose) -> Self {
         Self { robots: vec![RobotPlacement::new(Arc::new(spec), pose)], ..Self::new(world) }
+    }
+
+    /// The robots' numbers from 1 in the one row in which `EyeSim` numbers robots and objects as they were placed.
+    ///
+    /// ```
+    /// use roverlab::world::formats::{MemoryFiles, sim};
+    ///
+    /// let script = "can 500 500 0\nS4 1000 500 0\ncan 1500 500 0\nS4 1000 1500 0\n";
+    /// let scene = sim::parse(script, "cans.sim", &mut MemoryFiles::default())?.value;
+    /// assert_eq!(scene.robot_numbers(), [2, 4]);
+    /// assert_eq!(scene.object_numbers(), [1, 3]);
+    /// # Ok::<(), roverlab::world::formats::FormatError>(())
+    /// ```
+    pub fn robot_numbers(&self) -> Vec<u32> {
+        let objects = self.world.objects.len();
+        let before = self.robots.iter().map(|robot| robot.objects_before.min(objects));
+        before.enumerate().map(|(index, before)| (index + before + 1) as u32).collect()
+    }
+
+    /// The objects' numbers in the row of [`robot_numbers`](Scene::robot_numbers).
+    pub fn object_numbers(&self) -> Vec<u32> {
+        let behind =
+            |object: usize| self.robots.iter().filter(|robot| robot.objects_before <= object).count();
+        (0..self.world.objects.len()).map(|object| (object + behind(object) + 1) as u32).collect()
     }
 }

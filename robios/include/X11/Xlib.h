@@ -9,6 +9,13 @@
 #define False 0
 #endif
 
+#ifndef Bool
+#define Bool int
+#endif
+#ifndef Status
+#define Status int
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif

@@ -3,10 +3,10 @@
 //!
 //! They take effect in programs that are linked against this library before the C library, as `gccsim` does, from the
 //! first call of a function of RoBIOS on, or from the start if the runner has started the program. Everybody else gets
-//! the system's own. What is not replaced runs by the real clock: `setitimer`, waiting for files and sockets, and for
-//! semaphores and mutexes with a time limit.
+//! the system's own. What is not replaced runs by the real clock: `timer_create`, `timerfd_create`, waiting for files and
+//! sockets, and for semaphores and mutexes with a time limit.
 
-use std::ffi::{c_int, c_long, c_uint, c_void};
+use std::ffi::{c_int, c_long, c_uint, c_ulong, c_void};
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::Duration;
 
@@ -31,7 +31,7 @@ fn started_by_runner() -> bool {
     }
 }
 
-fn is_virtual() -> bool {
+pub(super) fn is_virtual() -> bool {
     (is_alive() || started_by_runner()) && is_ours()
 }
 
@@ -192,30 +192,8 @@ extern "C" fn clock() -> libc::clock_t {
     time.tv_sec * 1_000_000 + time.tv_nsec / 1000
 }
 
-extern "C" fn ring() {
-    // SAFETY: sends this process the signal of its alarm clock.
-    unsafe { libc::kill(libc::getpid(), libc::SIGALRM) };
-}
-
-/// The alarm clock goes by the program's clock.
-#[unsafe(no_mangle)]
-extern "C" fn alarm(time: c_uint) -> c_uint {
-    let after = (time > 0).then_some(f64::from(time));
-    let earlier = if is_virtual() { enter(|robios| Ok(robios.call_after(after, ring))) } else { None };
-    let Some(earlier) = earlier else {
-        let found = original(c"alarm");
-        if found.is_null() {
-            return 0;
-        }
-        // SAFETY: the C library's function of this name has this type.
-        return unsafe { std::mem::transmute::<*mut c_void, extern "C" fn(c_uint) -> c_uint>(found)(time) };
-    };
-    super::watch::start();
-    earlier.map_or(0, |rest| rest.max(1.0).round() as c_uint)
-}
-
 /// The C library's function of a name.
-fn original(name: &std::ffi::CStr) -> *mut c_void {
+pub(super) fn original(name: &std::ffi::CStr) -> *mut c_void {
     // SAFETY: looks up a name that ends with a zero byte.
     unsafe { libc::dlsym(libc::RTLD_NEXT, name.as_ptr()) }
 }
@@ -314,6 +292,40 @@ extern "C" fn pthread_cond_timedwait(
     // SAFETY: the C library's function of this name has this type, and gets what the program has passed.
     unsafe { std::mem::transmute::<*mut c_void, TimedWait>(found)(condition, mutex, time) }
 }
+
+type Poll = unsafe extern "C" fn(*mut c_void, c_ulong, c_int) -> c_int;
+
+/// Programs sleep by waiting for no files in this way too.
+#[unsafe(no_mangle)]
+extern "C" fn poll(files: *mut c_void, count: c_ulong, milliseconds: c_int) -> c_int {
+    if count == 0
+        && let Ok(time) = u32::try_from(milliseconds)
+        && sleep_virtually(f64::from(time) / 1000.0).is_some()
+    {
+        return 0;
+    }
+    let found = original(c"poll");
+    if found.is_null() {
+        return -1;
+    }
+    // SAFETY: the C library's function of this name has this type, and gets what the program has passed.
+    unsafe { std::mem::transmute::<*mut c_void, Poll>(found)(files, count, milliseconds) }
+}
+
+/// The sleep of C11.
+#[unsafe(no_mangle)]
+extern "C" fn thrd_sleep(request: *const timespec, rest: *mut timespec) -> c_int {
+    nanosleep(request, rest)
+}
+
+/// The time of C11. Returns the base, as it should, for the only one that there is.
+#[unsafe(no_mangle)]
+extern "C" fn timespec_get(time: *mut timespec, base: c_int) -> c_int {
+    let known = base == TIME_UTC && output(time, &[wall_time()]);
+    if known { base } else { 0 }
+}
+
+const TIME_UTC: c_int = 1;
 
 type Select = unsafe extern "C" fn(c_int, *mut c_void, *mut c_void, *mut c_void, *mut timeval) -> c_int;
 

@@ -8,6 +8,8 @@
 #![allow(clippy::redundant_closure_for_method_calls, reason = "all calls of the robot look alike")]
 
 mod actuators;
+#[cfg(target_os = "linux")]
+mod alarm;
 mod camera;
 #[cfg(target_os = "linux")]
 mod clock;
@@ -23,5 +25,7 @@ mod radio;
 mod runtime;
 mod sensing;
 mod system;
+#[cfg(target_os = "linux")]
+mod turns;
 mod variadic;
 mod watch;

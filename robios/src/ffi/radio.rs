@@ -68,7 +68,7 @@ extern "C" fn eyesim_RADIOCheckFrom(from: *mut c_int) -> c_int {
 
 #[unsafe(no_mangle)]
 extern "C" fn RADIOStatus(ids: *mut c_int) -> c_int {
-    let robots = enter(|robios| robios.charge().map(|()| robios.identity().robots as c_int)).unwrap_or(0);
-    let all: Vec<c_int> = (1..=robots).collect();
-    if output(ids, &all) { robots } else { 0 }
+    let numbers = enter(|robios| robios.charge().and_then(|()| robios.robot_numbers())).unwrap_or_default();
+    let numbers: Vec<c_int> = numbers.into_iter().map(|number| number as c_int).collect();
+    if output(ids, &numbers) { numbers.len() as c_int } else { 0 }
 }

@@ -16,6 +16,8 @@ const DOUBLING: u32 = 20;
 const MOST: f64 = 0.2;
 /// Looks without a call after which time passes for a program without timers: most that compute are done by then.
 const LONG: u32 = 1000;
+/// Looks in which the time that then passes doubles: whoever computes for some seconds more loses little.
+const SLOW_DOUBLING: u32 = 400;
 
 static WATCHING: AtomicBool = AtomicBool::new(false);
 
@@ -31,8 +33,13 @@ pub(super) fn start() {
     drop(started);
 }
 
+/// Seconds that pass at a look, after so many doublings.
+fn step(doublings: u32) -> f64 {
+    (LOOK.as_secs_f64() * f64::from(1_u32 << doublings.min(30))).min(MOST)
+}
+
 /// With timers, time passes as the real one at first, and then faster and faster: a program that computes for a while
-/// loses little, and one that waits need not wait for long. Without timers it passes as the real one.
+/// loses little, and one that waits need not wait for long. Without timers it begins later, and grows faster more slowly.
 fn watch() {
     set_ours(true);
     let (mut before, mut idle) = (calls(), 0_u32);
@@ -42,9 +49,8 @@ fn watch() {
         idle = if now == before { idle.saturating_add(1) } else { 0 };
         before = now;
         let Some(waited) = idle.checked_sub(PATIENCE) else { continue };
-        let doublings = (waited / DOUBLING).min(30);
-        let fast = (LOOK.as_secs_f64() * f64::from(1_u32 << doublings)).min(MOST);
-        let slow = if idle > LONG { LOOK.as_secs_f64() } else { 0.0 };
+        let fast = step(waited / DOUBLING);
+        let slow = idle.checked_sub(LONG).map_or(0.0, |waited| step(waited / SLOW_DOUBLING));
         match pass_unasked(fast, slow) {
             Unasked::Passed => {}
             Unasked::Busy => idle = 0,

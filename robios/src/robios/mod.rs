@@ -229,13 +229,16 @@ impl Robios {
         self.report.stage = stage;
         // What is known now counts, whatever becomes of the rest.
         self.publish();
-        let ended = self.report.time;
+        let (time, contacts) = (self.report.time, self.report.contacts);
         if stage == Stage::Ended {
             self.drive_on();
         }
         self.publish();
         if let Some(file) = &mut self.file {
-            self.report.time = ended;
+            // What the robot touches without its program is none of the program's doing.
+            self.report.time = time;
+            self.report.later_contacts = self.report.contacts.saturating_sub(contacts);
+            self.report.contacts = contacts;
             let _ = file.write(&self.report);
         }
         if let Some(path) = &self.lcd_file {

@@ -12,7 +12,7 @@ const LONGEST: usize = 100;
 pub(crate) type Inbox = VecDeque<RadioMessage>;
 
 impl Robios {
-    /// `RADIOSend`: to a robot by its number from 1, or to all others with 0.
+    /// `RADIOSend`: to a robot by its number, or to all others with 0.
     pub fn radio_send(&mut self, to: i32, data: &[u8]) -> Result<()> {
         if data.is_empty() || data.len() > LONGEST {
             return Err(invalid("radio message", format!("{} bytes long", data.len()), "1 to 100 bytes"));
@@ -21,11 +21,19 @@ impl Robios {
         if to > 0 {
             return self.order(&Request::Send(to, data.to_vec()));
         }
-        let others = (1..=self.identity.robots).filter(|&id| id != self.identity.id);
-        for id in others.collect::<Vec<_>>() {
+        let own = self.identity.id;
+        for id in self.robot_numbers()?.into_iter().filter(|&id| id != own) {
             self.order(&Request::Send(id, data.to_vec()))?;
         }
         Ok(())
+    }
+
+    /// The numbers of all robots, in the order in which they were placed.
+    pub fn robot_numbers(&mut self) -> Result<Vec<u32>> {
+        match self.ask(&Request::Numbers)? {
+            Reply::Numbers(numbers) => Ok(numbers),
+            _ => Err(super::foreign()),
+        }
     }
 
     /// The oldest message that has not been received; waits for so many seconds at most.

@@ -21,7 +21,7 @@ struct Timer {
 }
 
 /// The handle of the one that the system's alarm clock is.
-const ONCE: i32 = 0;
+const ALARM: i32 = 0;
 /// RoBIOS has so many timers.
 const MOST: usize = 17;
 
@@ -64,23 +64,30 @@ impl Robios {
         Ok(self.timers.last)
     }
 
-    /// Calls a function once, after so many seconds; earlier calls of the same function are forgotten, and none at all
-    /// is made after `None`. Returns how long the earlier one would still have taken.
-    pub(crate) fn call_after(&mut self, seconds: Option<f64>, function: Callback) -> Option<f64> {
-        let now = self.now();
-        let earlier = self.timers.all.iter().position(|timer| timer.id == ONCE);
-        let earlier = earlier.map(|index| self.timers.all.swap_remove(index).due - now);
-        if let Some(seconds) = seconds {
-            let timer = Timer { id: ONCE, period: f64::INFINITY, due: now + seconds, function };
-            self.timers.all.push(timer);
+    /// Sets the alarm clock of the system: it calls a function after so many seconds, and again in periods. No seconds
+    /// are never, no period is once. Returns what [`alarm`](Robios::alarm) would have before.
+    pub(crate) fn set_alarm(&mut self, (seconds, period): (f64, f64), function: Callback) -> (f64, f64) {
+        let (now, earlier) = (self.now(), self.alarm());
+        self.timers.all.retain(|timer| timer.id != ALARM);
+        if seconds > 0.0 {
+            let period = if period > 0.0 { period } else { f64::INFINITY };
+            self.timers.all.push(Timer { id: ALARM, period, due: now + seconds, function });
         }
         earlier
+    }
+
+    /// In how many seconds the alarm clock calls, and its period.
+    pub(crate) fn alarm(&mut self) -> (f64, f64) {
+        let now = self.now();
+        let alarm = self.timers.all.iter().find(|timer| timer.id == ALARM);
+        let period = |period: f64| if period.is_finite() { period } else { 0.0 };
+        alarm.map_or((0.0, 0.0), |alarm| ((alarm.due - now).max(1e-6), period(alarm.period)))
     }
 
     /// `OSDetachTimer`.
     pub fn os_detach_timer(&mut self, id: i32) -> Result<()> {
         let before = self.timers.all.len();
-        self.timers.all.retain(|timer| timer.id != id || id == ONCE);
+        self.timers.all.retain(|timer| timer.id != id || id == ALARM);
         if self.timers.all.len() == before {
             return Err(invalid("timer", id, "one that is attached"));
         }

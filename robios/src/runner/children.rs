@@ -14,8 +14,8 @@ use eyesim::process;
 use eyesim::report::{Report, Stage};
 use roverlab::world::Scene;
 
-use super::options::{Options, ends_in, whole};
-use super::programs::{Program, home, library};
+use super::options::{Options, whole};
+use super::programs::{Program, home, is_python, library};
 use super::verdict::{Ending, Stopwatch, Truth, Verdict};
 use super::work_folder::WorkFolder;
 
@@ -64,6 +64,7 @@ pub(crate) fn run_alone(
             odometry: report.odometry,
             path_length: report.path_length,
             contacts: report.contacts,
+            later_contacts: report.later_contacts,
         };
     }
     Ok(vec![Verdict::new(program, ending, &report, truth)])
@@ -83,7 +84,7 @@ pub(crate) fn start(
     };
     let report = folder.empty(&format!("report{}", program.robot))?;
     let (library, home) = (library()?, home()?);
-    let mut command = if ends_in(file, "py") { python(file) } else { Command::new(file) };
+    let mut command = if is_python(file) { python(file) } else { Command::new(file) };
     command.args(&program.arguments).current_dir(&program.folder).stdin(Stdio::null());
     for name in [names::SOCKET, names::WORLD, names::ROBOT, names::START] {
         command.env_remove(name);

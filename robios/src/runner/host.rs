@@ -30,6 +30,8 @@ use super::work_folder::WorkFolder;
 struct Served {
     /// The program's own time.
     time: f64,
+    /// Its robot's contacts until then.
+    contacts: u64,
     /// What the host has ended it for.
     ended: Option<Ending>,
 }
@@ -95,7 +97,8 @@ pub(crate) fn run_together(
             _ => ending,
         };
         let time = program_time(served.time, report.time);
-        Verdict::new(program, ending, &report, truth(&world, program.robot, time))
+        let contacts = served.contacts;
+        Verdict::new(program, ending, &report, truth(&world, program.robot, time, contacts))
     });
     Ok(verdicts.collect())
 }
@@ -120,7 +123,7 @@ fn recording(file: &Path, plan: &Plan, scene: &Scene) -> Result<LogWriter<BufWri
     Ok(log)
 }
 
-fn truth(world: &World, robot: usize, time: f64) -> Truth {
+fn truth(world: &World, robot: usize, time: f64, contacts: u64) -> Truth {
     world.robot(robot).map_or_else(
         |_| Truth::default(),
         |robot| Truth {
@@ -128,7 +131,8 @@ fn truth(world: &World, robot: usize, time: f64) -> Truth {
             pose: robot.pose,
             odometry: robot.odometry,
             path_length: robot.path_length,
-            contacts: robot.contacts.into(),
+            contacts,
+            later_contacts: u64::from(robot.contacts).saturating_sub(contacts),
         },
     )
 }
@@ -142,7 +146,7 @@ fn attend(
 ) -> (Served, (Ending, Report)) {
     match running {
         Err(message) => {
-            let served = Served { time: seat.now(), ended: None };
+            let served = Served { time: seat.now(), contacts: 0, ended: None };
             (served, (Ending::NotStarted(message), Report::default()))
         }
         Ok(running) => {
@@ -189,7 +193,8 @@ fn serve(mut seat: Seat, mut stream: UnixStream, process: u32, hang_limit: f64) 
     if ended.is_some() {
         process::kill_all(process);
     }
-    Served { time: seat.now(), ended }
+    let contacts = seat.truth().robot(seat.index()).map_or(0, |robot| robot.contacts.into());
+    Served { time: seat.now(), contacts, ended }
 }
 
 /// Lets time pass for a program that has not called for long, so that the world goes on without it: it may have nothing

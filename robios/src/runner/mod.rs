@@ -31,19 +31,25 @@ pub(crate) fn main() -> ExitCode {
         }
         Err(error) => return refuse(&in_one_line(&error)),
     };
+    let mut warnings = Vec::new();
     match options.command() {
         Command::Install(folder) => match install::install(&folder) {
             Ok(()) => ExitCode::SUCCESS,
             Err(message) => refuse(&message),
         },
-        Command::Run => match run(&options) {
+        Command::Run => match run(&options, &mut warnings) {
             Ok(summary) => {
                 let text = if options.json { summary.json() } else { summary.words() };
                 // A reader that had enough is no failure.
                 let _ = writeln!(std::io::stdout(), "{text}");
                 ExitCode::from(summary.status())
             }
-            Err(message) => refuse(&message),
+            Err(message) => {
+                if options.json {
+                    let _ = writeln!(std::io::stdout(), "{}", verdict::refusal(&message, &warnings));
+                }
+                refuse(&message)
+            }
         },
     }
 }
@@ -61,11 +67,13 @@ fn in_one_line(error: &clap::Error) -> String {
     lines.collect::<Vec<_>>().join(" ").trim_start_matches("error: ").to_owned()
 }
 
-fn run(options: &Options) -> Result<Summary, String> {
+/// Runs the programs, and collects what is odd about the files.
+fn run(options: &Options, warnings: &mut Vec<String>) -> Result<Summary, String> {
     let stopwatch = verdict::Stopwatch::start();
     let plan = options.plan()?;
-    let (scene, warnings) = plan.scene()?;
-    for warning in warnings {
+    let (scene, odd) = plan.scene()?;
+    *warnings = odd;
+    for warning in warnings.iter() {
         let _ = writeln!(std::io::stderr(), "{warning}");
     }
     let folder = work_folder::WorkFolder::new()?;
@@ -77,5 +85,6 @@ fn run(options: &Options) -> Result<Summary, String> {
     } else {
         host::run_together(&programs, &plan, &scene, options, &folder)
     }?;
-    Ok(Summary { verdicts, seed: plan.seed, noise: plan.noise, wall_time: stopwatch.seconds() })
+    let (warnings, wall_time) = (std::mem::take(warnings), stopwatch.seconds());
+    Ok(Summary { verdicts, warnings, seed: plan.seed, noise: plan.noise, wall_time })
 }

@@ -1,6 +1,9 @@
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use eyesim::files::in_any_case;
 use roverlab::world::Scene;
 
 use super::options::{Options, ends_in, whole};
@@ -25,23 +28,22 @@ pub(crate) struct Program {
 /// The programs of a run.
 pub(crate) fn of(options: &Options, scene: &Scene, folder: &WorkFolder) -> Result<Vec<Program>, String> {
     if !options.is_script() {
-        if !options.program.is_file() {
-            let program = options.program.display();
+        let program = &options.program;
+        let Some(file) = source(&whole(program)) else {
+            let program = program.display();
             return Err(format!(
                 "{program}: no such file; expected a program, .py, .c, .cpp, or a script, .sim"
             ));
-        }
-        let name = options.program.display().to_string();
-        let alone = program(&name, &whole(&options.program), 0, options, folder);
+        };
+        let alone = prepared(&program.display().to_string(), Ok(file), 0, options, folder);
         return Ok(vec![Program { is_first: true, ..alone }]);
     }
     let base = whole(&options.program);
     let base = base.parent().unwrap_or(Path::new("/"));
     let named =
         scene.robots.iter().enumerate().filter_map(|(robot, placed)| Some((robot, placed.program.as_ref()?)));
-    let mut programs: Vec<Program> = named
-        .map(|(robot, name)| program(name, &base.join(name.replace('\\', "/")), robot, options, folder))
-        .collect();
+    let mut programs: Vec<Program> =
+        named.map(|(robot, name)| prepared(name, find(base, name), robot, options, folder)).collect();
     let Some(first) = programs.first_mut() else {
         let script = options.program.display();
         return Err(format!(
@@ -52,20 +54,32 @@ pub(crate) fn of(options: &Options, scene: &Scene, folder: &WorkFolder) -> Resul
     Ok(programs)
 }
 
-fn program(name: &str, path: &Path, robot: usize, options: &Options, folder: &WorkFolder) -> Program {
-    let found = source(path).unwrap_or_else(|| path.to_owned());
-    let file = if !found.is_file() {
-        Err(format!("{}: no such file; expected a program, or its source text beside it", path.display()))
-    } else if is_source(&found) {
-        compile(&found, folder, robot)
-    } else {
-        Ok(found.clone())
-    };
+/// The file of a program that a script in some folder names: what stands there, or in the script's own folder, or else
+/// the only source text of that folder.
+fn find(base: &Path, name: &str) -> Result<PathBuf, String> {
+    let path = base.join(name.replace('\\', "/"));
+    let beside = path.file_name().map(|file| base.join(file));
+    let folder = path.parent().filter(|folder| folder.is_dir()).unwrap_or(base);
+    let found = source(&path).or_else(|| source(&beside?)).or_else(|| only_source(folder));
+    found.ok_or_else(|| {
+        format!("{}: no such file; expected a program, or its source text beside it", path.display())
+    })
+}
+
+fn prepared(
+    name: &str,
+    found: Result<PathBuf, String>,
+    robot: usize,
+    options: &Options,
+    folder: &WorkFolder,
+) -> Program {
+    let own_folder = found.as_ref().ok().and_then(|file| file.parent()).map(Path::to_owned);
+    let file = found.and_then(|file| if is_source(&file) { compile(&file, folder, robot) } else { Ok(file) });
     Program {
         name: name.to_owned(),
         robot,
         file,
-        folder: found.parent().map_or_else(|| PathBuf::from("/"), Path::to_owned),
+        folder: own_folder.unwrap_or_else(|| PathBuf::from("/")),
         arguments: options.arguments.clone(),
         is_first: false,
     }
@@ -78,29 +92,62 @@ fn is_source(file: &Path) -> bool {
     C.iter().chain(&CPP).any(|ending| ends_in(file, ending))
 }
 
-/// The program's file, or the source text of one that is not compiled, or only for other systems.
+/// Whether Python runs a file.
+pub(crate) fn is_python(file: &Path) -> bool {
+    ends_in(file, "py")
+        || first_line(file).is_ok_and(|line| line.starts_with("#!") && line.contains("python"))
+}
+
+fn first_line(file: &Path) -> std::io::Result<String> {
+    let mut start = [0; 100];
+    let count = File::open(file)?.read(&mut start)?;
+    Ok(String::from_utf8_lossy(&start[..count]).lines().next().unwrap_or_default().to_owned())
+}
+
+/// The file of a program: what its name says, if this system can run it, or what stands beside it under the name with
+/// another ending, built first and then as source text, C before C++ and Python: a program may be named with the ending of
+/// another system, or with none, or may not be compiled. Letters may differ in their case.
 fn source(path: &Path) -> Option<PathBuf> {
-    let usable = path.is_file() && (is_source(path) || ends_in(path, "py") || starts_here(path));
-    if usable {
-        return Some(path.to_owned());
+    let endings = || ["x"].iter().chain(&C).chain(&CPP).chain(&["py"]);
+    let instead = endings().map(|ending| path.with_extension(ending));
+    let name = path.file_name()?.to_string_lossy();
+    let behind = endings().map(|ending| path.with_file_name(format!("{name}.{ending}")));
+    let bare = [path.with_extension("")];
+    let mut all = [path.to_owned()].into_iter().chain(instead).chain(behind).chain(bare);
+    all.find_map(|file| usable(&file).filter(|file| runs(file)))
+}
+
+fn runs(file: &Path) -> bool {
+    is_source(file) || ends_in(file, "py") || starts_here(file)
+}
+
+/// A file of a name, whatever the case of its letters.
+fn usable(path: &Path) -> Option<PathBuf> {
+    if path.is_file() {
+        Some(path.to_owned())
+    } else {
+        in_any_case(path.parent()?, Path::new(path.file_name()?))
     }
-    let endings = C.iter().chain(&CPP).chain(&["py"]);
-    let beside = endings.map(|ending| path.with_extension(ending)).find(|file| file.is_file());
-    beside.or_else(|| only_source(path.parent()?))
 }
 
 /// The source text of a folder that has only one: programs are often named otherwise than what they are made of.
 fn only_source(folder: &Path) -> Option<PathBuf> {
     let files = std::fs::read_dir(folder).ok()?.filter_map(Result::ok).map(|entry| entry.path());
-    let mut sources = files.filter(|file| is_source(file));
-    let first = sources.next()?;
-    sources.next().is_none().then_some(first)
+    let is_module =
+        |file: &Path| file.file_name().is_some_and(|name| name == "eye.py" || name == "eyebot.py");
+    let (python, compiled): (Vec<_>, Vec<_>) = files
+        .filter(|file| is_source(file) || ends_in(file, "py") && !is_module(file))
+        .partition(|file| ends_in(file, "py"));
+    match (compiled.as_slice(), python.as_slice()) {
+        ([only], _) | ([], [only]) => Some(only.clone()),
+        _ => None,
+    }
 }
 
 /// Whether this system can start a file: it is a program of its own format, or a script that says by what.
 fn starts_here(path: &Path) -> bool {
     let mut magic = [0; 4];
-    let read = std::fs::File::open(path).and_then(|mut file| std::io::Read::read(&mut file, &mut magic));
+    let read = File::open(path).and_then(|mut file| file.read(&mut magic));
     read.is_ok() && (magic == *b"\x7fELF" || magic[..2] == *b"#!" || !cfg!(target_os = "linux"))
 }
 
@@ -116,7 +163,9 @@ fn compile(source: &Path, folder: &WorkFolder, robot: usize) -> Result<PathBuf, 
     {
         return Ok(program);
     }
-    let first = message.lines().find(|line| line.contains("error")).or(message.lines().next());
+    let telling =
+        |words: &str| message.lines().find(|line| line.contains(words) && !line.starts_with("collect2"));
+    let first = telling("error").or_else(|| telling("undefined reference")).or(message.lines().next());
     Err(format!("{}: does not compile: {}", source.display(), first.unwrap_or("the compiler says nothing")))
 }
 

@@ -43,7 +43,9 @@ pub(crate) struct Truth {
     pub(crate) pose: Pose,
     pub(crate) odometry: Pose,
     pub(crate) path_length: f64,
+    /// Until its program ended, and since.
     pub(crate) contacts: u64,
+    pub(crate) later_contacts: u64,
 }
 
 /// What became of a program and its robot.
@@ -108,6 +110,9 @@ impl Verdict {
             "lcd_text": self.lcd_text,
             "sounds": self.sounds,
         });
+        if self.truth.later_contacts > 0 {
+            value["collisions_after_end"] = self.truth.later_contacts.into();
+        }
         if let Some(error) = self.error() {
             value["error"] = error.into();
         }
@@ -119,6 +124,8 @@ impl Verdict {
 #[derive(Debug)]
 pub(crate) struct Summary {
     pub(crate) verdicts: Vec<Verdict>,
+    /// What was odd about the files.
+    pub(crate) warnings: Vec<String>,
     pub(crate) seed: u64,
     pub(crate) noise: f64,
     pub(crate) wall_time: f64,
@@ -142,6 +149,9 @@ impl Summary {
         value["noise"] = self.noise.into();
         value["wall_time_s"] = rounded(self.wall_time).into();
         value["robots"] = robots.into();
+        if !self.warnings.is_empty() {
+            value["warnings"] = self.warnings.clone().into();
+        }
         value.to_string()
     }
 
@@ -165,6 +175,18 @@ impl Summary {
         lines.push(format!("{:.2} s on the wall clock", self.wall_time));
         lines.join("\n")
     }
+}
+
+/// The report of a run that could not begin.
+pub(crate) fn refusal(message: &str, warnings: &[String]) -> String {
+    let value = json!({
+        "example": "robios",
+        "outcome": "failed",
+        "error": message,
+        "warnings": warnings,
+        "robots": [],
+    });
+    value.to_string()
 }
 
 fn pose(pose: Pose) -> Value {

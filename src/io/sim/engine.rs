@@ -25,8 +25,24 @@ pub(super) struct Engine {
     pub(super) contacts: Vec<Contact>,
     pub(super) movables: Vec<Movable>,
     outbox: Vec<Letter>,
+    moves: Vec<Move>,
     studio: Box<Studio>,
     trail_ticks: Option<u64>,
+}
+
+/// What a robot's program puts somewhere else at the next tick.
+#[derive(Debug)]
+struct Move {
+    by: usize,
+    thing: Thing,
+    pose: Pose,
+}
+
+/// A robot or an object, by its index in the scene.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Thing {
+    Robot(usize),
+    Object(usize),
 }
 
 /// A radio message under way.
@@ -71,6 +87,7 @@ impl Engine {
             contacts: Vec::new(),
             movables: movables(&scene.world, &objects),
             outbox: Vec::new(),
+            moves: Vec::new(),
             studio,
             trail_ticks,
         })
@@ -98,8 +115,26 @@ impl Engine {
         Ok(())
     }
 
+    /// Puts something somewhere else at the next tick.
+    pub(super) fn place_later(&mut self, by: usize, thing: Thing, pose: Pose) {
+        self.moves.push(Move { by, thing, pose });
+    }
+
+    /// Makes the moves of this tick, in an order that no scheduling changes.
+    fn make_moves(&mut self) {
+        let mut moves = std::mem::take(&mut self.moves);
+        moves.sort_by_key(|wish| wish.by);
+        for Move { thing, pose, .. } in moves {
+            match thing {
+                Thing::Robot(robot) => self.place(robot, pose),
+                Thing::Object(object) => self.place_object(object, pose),
+            }
+        }
+    }
+
     /// Advances the world by one tick.
     pub(super) fn step(&mut self) {
+        self.make_moves();
         let mut motions = std::mem::take(&mut self.motions);
         let mut moving = false;
         for (body, motion) in self.bodies.iter_mut().zip(&mut motions) {

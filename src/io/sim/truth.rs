@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use super::TrailPoint;
-use super::engine::Engine;
+use super::engine::{Engine, Thing};
 use super::shared::Shared;
 use crate::geometry::{Point, Pose};
 use crate::io::{Error, Result};
@@ -61,13 +61,31 @@ impl Truth {
         })
     }
 
+    /// Puts a robot somewhere else at the beginning of the next tick, on behalf of the program of the robot `by`.
+    ///
+    /// What programs in lockstep move in this way depends on ticks alone, never on which of them was faster: in one tick,
+    /// the robots' wishes are fulfilled in the order of their indices.
+    pub fn move_robot(&self, by: usize, robot: usize, pose: Pose) -> Result<()> {
+        let mut state = self.shared.lock();
+        state.engine.body(robot)?;
+        require_finite_pose(pose)?;
+        state.engine.place_later(by, Thing::Robot(robot), pose);
+        Ok(())
+    }
+
+    /// As [`move_robot`](Truth::move_robot), for an object.
+    pub fn move_object(&self, by: usize, object: usize, pose: Pose) -> Result<()> {
+        self.object(object)?;
+        require_finite_pose(pose)?;
+        self.shared.lock().engine.place_later(by, Thing::Object(object), pose);
+        Ok(())
+    }
+
     /// Puts a robot somewhere else, as a hand would. Its odometry does not notice.
     pub fn set_pose(&self, robot: usize, pose: Pose) -> Result<()> {
         let mut state = self.shared.lock();
         state.engine.body(robot)?;
-        if !pose.is_finite() {
-            return Err(Error::invalid_input("pose", format!("{pose:?}"), "finite numbers"));
-        }
+        require_finite_pose(pose)?;
         state.engine.place(robot, pose);
         Ok(())
     }
@@ -75,12 +93,17 @@ impl Truth {
     /// Puts an object somewhere else, as a hand would, by its index in the scene.
     pub fn set_object(&self, object: usize, pose: Pose) -> Result<()> {
         self.object(object)?;
-        if !pose.is_finite() {
-            return Err(Error::invalid_input("pose", format!("{pose:?}"), "finite numbers"));
-        }
+        require_finite_pose(pose)?;
         self.shared.lock().engine.place_object(object, pose);
         Ok(())
     }
+}
+
+fn require_finite_pose(pose: Pose) -> Result<()> {
+    if pose.is_finite() {
+        return Ok(());
+    }
+    Err(Error::invalid_input("pose", format!("{pose:?}"), "finite numbers"))
 }
 
 pub(super) fn robot_truth(engine: &Engine, robot: usize) -> Result<RobotTruth> {

@@ -105,6 +105,13 @@ impl<'f> Notes<'f> {
         self.extend([Warning { file, line: at.line, column: at.column, message }]);
     }
 
+    /// Makes an error a warning that ends with what is done instead.
+    pub(super) fn get_over(&mut self, error: FormatError, instead: &str) {
+        let FormatError { file, line, column, found, expected } = error;
+        let message = format!("found {found}; expected {expected}; {instead}");
+        self.extend([Warning { file, line, column, message }]);
+    }
+
     pub(super) fn extend(&mut self, others: impl IntoIterator<Item = Warning>) {
         let room = Parsed::<()>::MAX_WARNINGS - self.list.len();
         self.list.extend(others.into_iter().take(room));

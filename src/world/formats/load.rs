@@ -29,8 +29,28 @@ pub fn parse_scene(
     file: &str,
     files: &mut dyn FileSource,
 ) -> Result<Parsed<Scene>, FormatError> {
+    scene_of(bytes, file, files, sim::parse)
+}
+
+/// As [`parse_scene`], but that scripts are read as by [`sim::parse_tolerantly`].
+pub fn parse_scene_tolerantly(
+    bytes: Vec<u8>,
+    file: &str,
+    files: &mut dyn FileSource,
+) -> Result<Parsed<Scene>, FormatError> {
+    scene_of(bytes, file, files, sim::parse_tolerantly)
+}
+
+type ReadScript = fn(&str, &str, &mut dyn FileSource) -> Result<Parsed<Scene>, FormatError>;
+
+fn scene_of(
+    bytes: Vec<u8>,
+    file: &str,
+    files: &mut dyn FileSource,
+    script: ReadScript,
+) -> Result<Parsed<Scene>, FormatError> {
     decoded(bytes, file, |text, file| match kind(file) {
-        Kind::Script => sim::parse(text, file, files),
+        Kind::Script => script(text, file, files),
         Kind::Other => {
             let expected = "a file that ends in .sim, .wld, .maz, .yaml, .yml or .map";
             Err(FormatError::new(file, Location::START, shown(file), expected))

@@ -22,7 +22,9 @@ mod yaml;
 mod yaml_events;
 
 pub use error::{FormatError, Location, Parsed, Warning};
-pub use load::{load_object, load_robot, load_scene, parse_robot, parse_scene, read_file};
+pub use load::{
+    load_object, load_robot, load_scene, parse_robot, parse_scene, parse_scene_tolerantly, read_file,
+};
 pub use source::{DiskFiles, FileSource, MemoryFiles, SourceFile};
 
 pub(crate) use lexer::shown;

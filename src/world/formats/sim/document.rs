@@ -1,6 +1,6 @@
 use super::super::error::{FormatError, Location};
 use crate::geometry::Pose;
-use crate::world::{Marker, Scene, Settings};
+use crate::world::{Marker, Object, Scene, Settings};
 
 /// A simulation script as written, before the files that it names are read.
 #[derive(Debug, Clone, Default)]
@@ -78,16 +78,23 @@ impl SimFile {
         if scene.settings != Settings::default() {
             statements.push(Statement::Settings(scene.settings));
         }
-        statements.extend(scene.robots.iter().map(|robot| Statement::Place {
-            name: robot.spec.name.clone(),
-            at: pose(robot.pose, robot.elevation),
-            program: robot.program.clone(),
-        }));
-        statements.extend(scene.world.objects.iter().map(|object| Statement::Place {
+        let object = |object: &Object| Statement::Place {
             name: object.kind.name.clone(),
             at: pose(object.pose, object.elevation),
             program: None,
-        }));
+        };
+        let mut objects = scene.world.objects.iter().enumerate().peekable();
+        for robot in &scene.robots {
+            while let Some((_, before)) = objects.next_if(|(index, _)| *index < robot.objects_before) {
+                statements.push(object(before));
+            }
+            statements.push(Statement::Place {
+                name: robot.spec.name.clone(),
+                at: pose(robot.pose, robot.elevation),
+                program: robot.program.clone(),
+            });
+        }
+        statements.extend(objects.map(|(_, behind)| object(behind)));
         statements.extend(scene.world.markers.iter().copied().map(Statement::Marker));
         Self { statements, ..Self::default() }
     }

@@ -19,6 +19,8 @@
 //! mean a random heading: it is drawn from a stream of random numbers with a fixed seed, so that it is the same each
 //! time; [`SimFile::resolve`] takes another seed.
 //!
+//! [`parse`] fails at the first line that makes no sense; [`parse_tolerantly`] warns of it and goes on, as EyeSim does.
+//!
 //! [`SimFile`] is the script as written; [`Scene`](crate::world::Scene) is what it describes, with the files that it
 //! names.
 
@@ -31,5 +33,5 @@ mod write;
 
 pub use document::{Position, SimFile, Statement};
 pub use read::parse_document;
-pub use resolve::{HEADING_SEED, parse};
+pub use resolve::{HEADING_SEED, parse, parse_tolerantly};
 pub use write::print;

@@ -8,16 +8,25 @@ use super::document::{Position, SimFile, Statement};
 use crate::geometry::{Point, Pose};
 use crate::world::{Colour, Marker, ObjectKind, RobotSpec, Settings};
 
+/// What becomes of a line that makes no sense.
+pub(super) const SKIPPED: &str = "the line is skipped";
 /// The colour of marks that state none.
 const MARKER_COLOUR: Colour = Colour::RED;
 
 /// Reads a script without the files that it names.
 pub fn parse_document(text: &str, file: &str) -> Result<Parsed<SimFile>, FormatError> {
+    read(text, file, false)
+}
+
+/// Reads a script, and skips the lines that make no sense if that is wished.
+pub(super) fn read(text: &str, file: &str, tolerant: bool) -> Result<Parsed<SimFile>, FormatError> {
     check_length(text, file)?;
     let mut reader = Reader { script: SimFile::default(), notes: Notes::new(file) };
     for (number, text) in lexer::numbered(text) {
-        if let Some(line) = lexer::line(file, number, text)? {
-            reader.line(&line)?;
+        let line = lexer::line(file, number, text);
+        match line.and_then(|line| line.map_or(Ok(()), |line| reader.line(&line))) {
+            Err(error) if tolerant => reader.notes.get_over(error, SKIPPED),
+            result => result?,
         }
     }
     Ok(reader.notes.finish(reader.script))

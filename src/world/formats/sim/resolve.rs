@@ -9,8 +9,8 @@ use super::super::load::{read_world, stem};
 use super::super::source::{FileSource, SourceFile, decode, unreadable};
 use super::super::{esobj, robi};
 use super::document::{Position, SimFile, Statement};
-use super::read::parse_document;
-use crate::geometry::{Pose, units};
+use super::read::{SKIPPED, read};
+use crate::geometry::{Point, Pose, units};
 use crate::random::Stream;
 use crate::world::{Object, ObjectKind, Place, RobotPlacement, RobotSpec, Scene, World};
 
@@ -22,8 +22,29 @@ const DEFAULT_WORLD: f64 = 2.0;
 
 /// Reads a script and all files that it names.
 pub fn parse(text: &str, file: &str, files: &mut dyn FileSource) -> Result<Parsed<Scene>, FormatError> {
-    let document = parse_document(text, file)?;
-    let scene = document.value.resolve(file, files, HEADING_SEED)?;
+    parse_as(text, file, files, false)
+}
+
+/// Reads a script as a simulator does that has nobody to ask, and warns of what it gets over: lines that make no sense,
+/// and whose files cannot be read, are skipped; in the place of a world that cannot be read stands a box of 2000 by
+/// 2000 mm, or of what all that is placed needs; a robot at a letter that the world lacks stands at some place of its
+/// own. Fails for a text that is too long alone.
+pub fn parse_tolerantly(
+    text: &str,
+    file: &str,
+    files: &mut dyn FileSource,
+) -> Result<Parsed<Scene>, FormatError> {
+    parse_as(text, file, files, true)
+}
+
+fn parse_as(
+    text: &str,
+    file: &str,
+    files: &mut dyn FileSource,
+    tolerant: bool,
+) -> Result<Parsed<Scene>, FormatError> {
+    let document = read(text, file, tolerant)?;
+    let scene = document.value.resolve_as(file, files, HEADING_SEED, tolerant)?;
     let mut notes = Notes::new(file);
     notes.extend(document.warnings);
     notes.extend(scene.warnings);
@@ -39,6 +60,16 @@ impl SimFile {
         files: &mut dyn FileSource,
         seed: u64,
     ) -> Result<Parsed<Scene>, FormatError> {
+        self.resolve_as(file, files, seed, false)
+    }
+
+    fn resolve_as(
+        &self,
+        file: &str,
+        files: &mut dyn FileSource,
+        seed: u64,
+        tolerant: bool,
+    ) -> Result<Parsed<Scene>, FormatError> {
         let mut resolver = Resolver {
             script: self,
             notes: Notes::new(file),
@@ -53,13 +84,34 @@ impl SimFile {
             letters: BTreeMap::new(),
             scene: Scene::new(World::walled(DEFAULT_WORLD, DEFAULT_WORLD)),
             headings: Stream::new(seed).child("heading", 0),
+            strays: tolerant.then_some(0),
         };
-        resolver.read_world(files)?;
+        let world = resolver.read_world(files);
+        let is_missing = world.is_err();
+        resolver.get_over(world, "a box takes its place")?;
         for (index, statement) in self.statements.iter().enumerate() {
-            resolver.statement(index, statement, files)?;
+            let result = resolver.statement(index, statement, files);
+            resolver.get_over(result, SKIPPED)?;
+        }
+        if is_missing {
+            resolver.scene.world = box_around(&resolver.scene);
         }
         Ok(resolver.notes.finish(resolver.scene))
     }
+}
+
+/// Metres from the farthest thing to the wall of a box that stands for a world, and the longest wall of one.
+const MARGIN: f64 = 1.0;
+const LARGEST_BOX: f64 = 100.0;
+
+/// Metres between robots at letters that the world lacks, and how many of them stand in a row.
+const STRAY_DISTANCE: f64 = 0.5;
+const STRAYS_IN_A_ROW: u32 = 3;
+
+/// Where a robot stands whose letter the world lacks.
+fn stray_place(number: u32) -> Point {
+    let (row, column) = (number / STRAYS_IN_A_ROW, number % STRAYS_IN_A_ROW);
+    Point::new(STRAY_DISTANCE * f64::from(column + 1), STRAY_DISTANCE * f64::from(row + 1))
 }
 
 /// Something that a file makes known: the file's name without folder and ending, and what it describes.
@@ -76,9 +128,33 @@ struct Resolver<'a> {
     letters: BTreeMap<char, Vec<Place>>,
     scene: Scene,
     headings: Stream,
+    /// Robots so far that stand at letters which the world lacks; none if that is an error, as all others are.
+    strays: Option<u32>,
+}
+
+/// What is placed, in a box that holds it.
+fn box_around(scene: &Scene) -> World {
+    let robots = scene.robots.iter().map(|robot| robot.pose.position());
+    let objects = scene.world.objects.iter().map(|object| object.pose.position());
+    let size = |far: f64| (far + MARGIN).ceil().clamp(DEFAULT_WORLD, LARGEST_BOX);
+    let far =
+        robots.chain(objects).fold(Point::origin(), |far, p| Point::new(far.x.max(p.x), far.y.max(p.y)));
+    let World { floor, walls, .. } = World::walled(size(far.x), size(far.y));
+    World { floor, walls, ..scene.world.clone() }
 }
 
 impl Resolver<'_> {
+    /// Hands an error on, or makes a warning of it.
+    fn get_over(&mut self, result: Result<(), FormatError>, instead: &str) -> Result<(), FormatError> {
+        match result {
+            Err(error) if self.strays.is_some() => {
+                self.notes.get_over(error, instead);
+                Ok(())
+            }
+            result => result,
+        }
+    }
+
     /// Letters may be used before the line that names the maze.
     fn read_world(&mut self, files: &mut dyn FileSource) -> Result<(), FormatError> {
         let worlds =
@@ -248,14 +324,22 @@ impl Resolver<'_> {
             Position::Pose { pose, elevation } => {
                 self.check_placed(at)?;
                 let (spec, elevation) = (Arc::clone(spec), elevation.unwrap_or(0.0));
-                self.scene.robots.push(RobotPlacement { spec, pose, elevation, program });
+                self.add_robot(RobotPlacement { elevation, program, ..RobotPlacement::new(spec, pose) });
                 return Ok(());
             }
             Position::Letter { letter, heading } => (letter, heading),
         };
         let places = self.letters.get(&letter.to_ascii_lowercase()).cloned().unwrap_or_default();
         if places.is_empty() {
-            return Err(self.error(at, format!("the letter `{letter}`"), "a letter that stands in the maze"));
+            let error = self.error(at, format!("the letter `{letter}`"), "a letter that stands in the maze");
+            let Some(stray) = self.strays.as_mut() else { return Err(error) };
+            let position = stray_place(*stray);
+            *stray += 1;
+            self.notes.get_over(error, "the robot stands at a place of its own");
+            self.check_placed(at)?;
+            let pose = Pose::new(position.x, position.y, heading.unwrap_or(0.0));
+            self.add_robot(RobotPlacement { program, ..RobotPlacement::new(Arc::clone(spec), pose) });
+            return Ok(());
         }
         let mut drawn = false;
         for place in places {
@@ -266,12 +350,17 @@ impl Resolver<'_> {
             });
             let pose = Pose::new(place.position.x, place.position.y, heading);
             let program = program.clone();
-            self.scene.robots.push(RobotPlacement { program, ..RobotPlacement::new(Arc::clone(spec), pose) });
+            self.add_robot(RobotPlacement { program, ..RobotPlacement::new(Arc::clone(spec), pose) });
         }
         if drawn {
             self.notes.warn(at, "no heading; random ones are taken, the same each time");
         }
         Ok(())
+    }
+
+    fn add_robot(&mut self, robot: RobotPlacement) {
+        let objects_before = self.scene.world.objects.len();
+        self.scene.robots.push(RobotPlacement { objects_before, ..robot });
     }
 
     fn check_placed(&self, at: Location) -> Result<(), FormatError> {

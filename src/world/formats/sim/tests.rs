@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::super::{FormatError, MemoryFiles, Parsed};
-use super::{Position, SimFile, Statement, parse, parse_document, print};
+use super::{Position, SimFile, Statement, parse, parse_document, parse_tolerantly, print};
 use crate::geometry::{Point, Pose, units};
 use crate::world::{Colour, Marker, RobotSpec, Scene, Settings, World};
 
@@ -154,6 +154,32 @@ fn errors_stand_where_the_reference_stands() {
         failure("world m.MAZ\nS4 z"),
         "test.sim:2:1: found the letter `z`; expected a letter that stands in the maze"
     );
+}
+
+#[test]
+fn a_tolerant_reader_goes_on_behind_errors() {
+    let text = "world nowhere.maz\nrobot broken.robi\nS4 1 2\ncan 5\nmarker 1\n\"\nobject missing.esObj\nbroken 1 2 3\n\
+                can 500 600 0\nS4 z a.py\nLabBot z 90 b.py\nS4 400 2500 0 c.py";
+    let parsed = parse_tolerantly(text, "test.sim", &mut files()).unwrap();
+    let warnings: Vec<String> = parsed.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(warnings.len(), 10, "{warnings:#?}");
+    assert_eq!(
+        warnings[0],
+        "test.sim:3:7: found the end of the line; expected the heading in degrees; the line is skipped"
+    );
+    let scene = parsed.value;
+    assert_eq!((scene.world.floor.max, scene.world.walls.len()), (Point::new(2.0, 4.0), 4));
+    let robots: Vec<_> = scene.robots.iter().map(|r| (r.program.as_deref(), r.pose.x, r.pose.y)).collect();
+    assert_eq!(robots, [(Some("a.py"), 0.5, 0.5), (Some("b.py"), 1.0, 0.5), (Some("c.py"), 0.4, 2.5)]);
+    assert_eq!((scene.robot_numbers(), scene.object_numbers()), (vec![2, 3, 4], vec![1]));
+}
+
+#[test]
+fn what_is_tolerated_changes_nothing_that_is_right() {
+    let text = "world w.wld\ncan 1 2 3\nS4 100 200 90 a.py\ngolf 1 2 3\nLabBot 1 2 30 -45";
+    assert_eq!(parse_tolerantly(text, "test.sim", &mut files()).unwrap().value, scene(text));
+    let script = SimFile::for_scene(&scene(text), "w.wld");
+    assert_eq!(script, parse_document(text, "t").unwrap().value, "robots and objects keep their order");
 }
 
 #[test]

@@ -1,0 +1,57 @@
+//! Whether a program's other threads have had the opportunity to do something, before one that sleeps lets time pass.
+//!
+//! A real time would not do: on a busy machine a thread may have to wait long for a processor.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+/// What the other threads have done since one of them looked for the first time.
+#[derive(Debug, Default)]
+pub(super) struct Turn {
+    /// Nanoseconds on a processor of every thread that could run, when it was first seen.
+    spent: BTreeMap<u32, u64>,
+    looks: u32,
+}
+
+/// Nanoseconds on a processor that a thread gets to make a call: one that makes none is busy with something else.
+const SHARE: u64 = 200_000;
+/// Looks after which time passes whatever the threads do.
+const MOST_LOOKS: u32 = 2000;
+
+impl Turn {
+    /// Whether every other thread waits for something, or has had its share of a processor.
+    pub(super) fn is_over(&mut self) -> bool {
+        self.looks += 1;
+        self.looks > MOST_LOOKS || others().into_iter().all(|thread| self.has_had_its_share(thread))
+    }
+
+    fn has_had_its_share(&mut self, thread: u32) -> bool {
+        // A system that does not tell what threads have spent does not tell truly whether they could run.
+        let Some(now) = spent(thread).filter(|_| can_run(thread)) else { return true };
+        now.saturating_sub(*self.spent.entry(thread).or_insert(now)) >= SHARE
+    }
+}
+
+/// The threads of this process but for the one that asks.
+fn others() -> Vec<u32> {
+    // SAFETY: asks for a number.
+    let own = unsafe { libc::gettid() } as u32;
+    let Ok(entries) = fs::read_dir("/proc/self/task") else { return Vec::new() };
+    let numbers = entries.filter_map(|entry| entry.ok()?.file_name().to_str()?.parse().ok());
+    numbers.filter(|&thread| thread != own).collect()
+}
+
+fn file(thread: u32, name: &str) -> Option<String> {
+    fs::read_to_string(format!("/proc/self/task/{thread}/{name}")).ok()
+}
+
+/// Whether a thread is on a processor, or waits for one.
+fn can_run(thread: u32) -> bool {
+    let state = file(thread, "stat").and_then(|text| text.rsplit(')').next()?.trim_start().chars().next());
+    state == Some('R')
+}
+
+/// Nanoseconds that a thread has been on a processor.
+fn spent(thread: u32) -> Option<u64> {
+    file(thread, "schedstat")?.split_whitespace().next()?.parse().ok()
+}

@@ -1,0 +1,129 @@
+//! Scripts as people have written them: with things that are missing, wrong, or named otherwise.
+
+use serde_json::Value;
+
+use super::{Folder, compiler, python, report};
+
+/// A program that tells who and where it is.
+const WHO: &str =
+    "from eye import *\nx, y, z, phi = SIMGetRobot(0)\nLCDPrintf('%d at %d %d', OSMachineID(), x, y)\n";
+
+fn texts(report: &Value) -> Vec<&str> {
+    let robots = report["robots"].as_array().unwrap();
+    robots.iter().map(|robot| robot["lcd_text"].as_str().unwrap()).collect()
+}
+
+fn run(script: &std::path::Path) -> Value {
+    report(&[script.to_str().unwrap()])
+}
+
+#[test]
+fn robots_and_objects_are_numbered_as_they_were_placed() {
+    if !python() {
+        return;
+    }
+    let folder = Folder::new("numbers");
+    folder.write(
+        "ask.py",
+        "from eye import *\nme, (count, ids) = RADIOGetID(), RADIOStatus()\nassert list(ids[:count]) == [2, 4]\n\
+         assert SIMGetRobot(me) == SIMGetRobot(0) and SIMGetRobotCount() == SIMGetObjectCount() == 2\n\
+         assert [SIMGetObject(i)[0].value for i in (1, 3)] == [300, 900]\n\
+         assert [SIMGetRobot(i)[0].value for i in (2, 4)] == [600, 1200]\n\
+         assert SIMGetObject(2)[0] == 900 and SIMGetRobot(1)[0] == 600, 'by their own count'\n\
+         RADIOSend(6 - me, 'hello')\nassert RADIOReceive() == [6 - me, 'hello']\nRADIOSend(0, 'all')\n\
+         assert RADIOReceive() == [6 - me, 'all']\nLCDPrintf('%d', me)\n",
+    );
+    let script = folder
+        .write("mixed.sim", "can 300 500 0\nS4 600 500 0 ask.py\ncan 900 500 0\nLabBot 1200 500 0 ask.py\n");
+    assert_eq!(texts(&run(&script)), ["2", "4"]);
+}
+
+#[test]
+fn what_programs_move_does_not_hang_on_who_is_faster() {
+    if !python() {
+        return;
+    }
+    let folder = Folder::new("moves");
+    // Both move the can in the same tick, and both see the wish of the robot that was placed last.
+    let text = "from eye import *\nimport os\nif DELAY == OSMachineID():\n    os.system('sleep 0.2')\n\
+                SIMSetObject(3, 500 + OSMachineID(), 1500, 0, 0)\nLCDPrintf('%d', SIMGetObject(3)[0].value)\n";
+    for delayed in ["1", "2"] {
+        folder.write("move.py", &text.replace("DELAY", delayed));
+        let script =
+            folder.write("two.sim", "S4 500 500 0 move.py\nS4 1500 500 0 move.py\ncan 1000 1500 0\n");
+        assert_eq!(texts(&run(&script)), ["502", "502"]);
+    }
+}
+
+#[test]
+fn scripts_with_errors_run_as_far_as_they_make_sense() {
+    if !python() {
+        return;
+    }
+    let folder = Folder::new("errors");
+    folder.write("who.py", WHO);
+    folder.write("bad.wld", "floor 3000\n0 0 x\n");
+    for world in ["world missing.wld\n", "world bad.wld\n", "world maze.maz\n", "world a.txt\n"] {
+        let script = folder.write(
+            "odd.sim",
+            &format!("{world}can 1\nmarker 5\nS4 500\nfrobnicate\nS4 S who.py\nLabBot 400 500 90 who.py\n"),
+        );
+        let all = run(&script);
+        assert_eq!(texts(&all), ["1 at 500 500", "2 at 400 500"], "{all}");
+        assert!(all["warnings"].as_array().unwrap().len() >= 4, "{all}");
+    }
+}
+
+#[test]
+fn a_run_that_cannot_begin_is_reported_too() {
+    let folder = Folder::new("refused");
+    let script = folder.write("empty.sim", "can 1\nS4 500 500 0\n");
+    let all = report(&[script.to_str().unwrap()]);
+    assert_eq!((&all["outcome"], all["robots"].as_array().unwrap().len()), (&"failed".into(), 0));
+    assert!(all["error"].as_str().unwrap().contains("no robot has a program"), "{all}");
+    assert!(all["warnings"][0].as_str().unwrap().contains("empty.sim:1:6"), "{all}");
+    let all = report(&["--world", "missing.wld", "missing.py"]);
+    assert!(all["error"].as_str().unwrap().contains("missing.wld"), "{all}");
+}
+
+#[test]
+fn programs_are_found_by_names_of_other_systems() {
+    if !compiler() || !python() {
+        return;
+    }
+    let folder = Folder::new("named");
+    folder.write("drive.c", "#include \"eyebot.h\"\nint main() { LCDPrintf(\"C\"); return 0; }\n");
+    folder.write("drive.py", "from eye import *\nLCDPrintf('Python')\n");
+    folder.write("Only.py", "from eye import *\nLCDPrintf('only')\n");
+    folder.write("broken.x", "an executable of another system");
+    folder.write("broken.py", "from eye import *\nLCDPrintf('instead')\n");
+    let script = folder.write(
+        "all.sim",
+        "S4 300 500 0 drive.x\nS4 600 500 0 drive.exe\nS4 900 500 0 drive\nS4 1200 500 0 drive.py\n\
+         S4 1500 500 0 only.exe\nS4 300 1000 0 elsewhere\\only.x\nS4 600 1000 0 broken.x\n",
+    );
+    let all = run(&script);
+    assert_eq!(texts(&all), ["C", "C", "C", "Python", "only", "only", "instead"], "{all}");
+    let alone = report(&[folder.0.join("drive.x").to_str().unwrap()]);
+    assert_eq!(alone["lcd_text"], "C", "{alone}");
+}
+
+#[test]
+fn what_a_robot_touches_after_its_program_is_not_the_programs_doing() {
+    if !python() {
+        return;
+    }
+    let folder = Folder::new("after");
+    folder.write("go.py", "from eye import *\nVWSetSpeed(300, 0)\nOSWait(1000)\n");
+    let alone = folder.write("alone.sim", "S4 500 500 0 go.py\n");
+    let together = folder.write("together.sim", "S4 500 500 0 go.py\nLabBot 500 1500 0 go.py\n");
+    for script in [alone, together] {
+        let all = run(&script);
+        for robot in all["robots"].as_array().unwrap() {
+            assert_eq!((&robot["outcome"], &robot["collisions"]), (&"finished".into(), &0.into()), "{all}");
+            assert_eq!(robot["collisions_after_end"], 1, "{all}");
+            assert!(robot["sim_time_s"].as_f64().unwrap() < 1.1, "{all}");
+            assert!(robot["pose"]["x_mm"].as_f64().unwrap() > 1500.0, "it has driven on: {all}");
+        }
+    }
+}
