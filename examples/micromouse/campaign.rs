@@ -18,6 +18,8 @@ pub(crate) struct Trial {
     pub(crate) maze: String,
     pub(crate) side: usize,
     pub(crate) seed: u64,
+    /// Whether the run had no noise. With noise, a short run may be late by more than the part that is asked.
+    pub(crate) ideal: bool,
     pub(crate) proved: bool,
     pub(crate) contacts: u32,
     /// Walls that the robot knows wrongly.
@@ -56,7 +58,7 @@ impl Trial {
         add(!self.proved && self.error.is_none(), "nothing proved".into());
         add(self.wrong_walls > 0, format!("{} walls known wrongly", self.wrong_walls));
         add(self.proved && !self.best_plan, "not the fastest plan".into());
-        add(!self.keeps_to_plan(), format!("{:+.1} % of the planned time", 100.0 * self.late.unwrap_or(0.0)));
+        add(self.ideal && !self.keeps_to_plan(), format!("{:+.1} % of the planned time", 100.0 * self.late.unwrap_or(0.0)));
         (!list.is_empty()).then(|| list.join(", "))
     }
 }
@@ -146,6 +148,7 @@ fn judged(args: &Args, name: &str, file: &MazeFile, seed: u64, run: &Run<Told>) 
         maze: name.to_owned(),
         side: truth.width().max(truth.height()),
         seed,
+        ideal: args.common.noise == 0.0,
         proved: told.is_some_and(|told| told.exploration.verdict != Verdict::Explored),
         contacts: run.truth.contacts,
         wrong_walls: told.map_or(0, |told| {
