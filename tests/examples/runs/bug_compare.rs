@@ -143,6 +143,20 @@ fn hard_worlds_are_done_right() {
 }
 
 #[test]
+fn the_first_course_of_the_campaign_is_drawn() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bug_campaign");
+    fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("paths.svg");
+    let name = file.to_str().unwrap();
+    let options = ["--campaign", "--noise", "0", "--seed", "3", "--runs", "1", "--bugs", "onebug"];
+    assert_eq!(report(&[&options[..], &["--picture", name]].concat())["picture"], name);
+    let svg = fs::read_to_string(&file).unwrap();
+    for part in ["The bug family: course", "seed 3", "OneBug: unreachable"] {
+        assert!(svg.contains(part), "{part} is missing");
+    }
+}
+
+#[test]
 fn too_little_time_is_a_wrong_verdict() {
     let (status, out, _) =
         run(&["--json", "--campaign", "--noise", "0", "--runs", "1", "--bugs", "bug1", "--time-limit", "1"]);
