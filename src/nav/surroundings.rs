@@ -25,6 +25,11 @@ impl Surroundings {
         self.clearance = nearest.sqrt();
     }
 
+    /// All that is around the robot.
+    pub(super) fn points(&self) -> &[Point] {
+        &self.points
+    }
+
     /// How near the robot's middle comes to anything on a straight step of `length` metres in a direction.
     ///
     /// What the step leaves behind, or moves away from fast enough, does not count: a robot that is too close to a
