@@ -19,15 +19,15 @@ At noise 0, paths are compared with the algorithms' bounds as well: the perimete
 that the robot's middle follows, plus 2 %. The outcome is `passed` if every verdict of an algorithm that is proved complete
 is right, nothing was touched and no bound was broken.
 
---picture shows the paths of all on the world of --world, or else on the first course of the first family. With --record,
-all drive through this one world alone, side by side in the recording.
+--picture shows the paths of all on the world of --world, or else on the first course of the campaign or of the first
+family. With --record, all drive through this one world alone, side by side in the recording.
 
 JSON fields:
   rows               list of {bug, family, runs, correct, contacts, and over correct runs: mean_path_mm, path_ci_mm,
                      mean_ratio and ratio_ci (to the shortest way, null where there is none), mean_hits}
   runs               list of {bug, family, seed, outcome, reachable, correct, contacts, path_mm, shortest_mm, hits}
   picture            the file's name, or null
-and with --campaign, instead of them:
+and with --campaign, instead of rows and runs:
   bugs               list of {bug, complete, runs, correct, contacts, wrong_seeds, contact_seeds, bounds_checked,
                      bounds_broken, closest} where `closest` is the largest ratio of a path to its bound
 Intervals are [low, high]: 95 %, by the bootstrap over courses.

@@ -3,15 +3,12 @@ use std::fmt::Write as _;
 
 use roverlab::geometry::{Segment, direction};
 use roverlab::nav::{BugKind, PathBound};
-use roverlab::random::Stream;
-use roverlab::world::RobotSpec;
-use roverlab::world::generate::{CourseOptions, obstacle_course};
 use serde_json::{Value, json};
 
-use super::Args;
 use super::boundaries::Boundaries;
-use super::contest::Setting;
+use super::contest::{Setting, campaign_options, of_campaign};
 use super::ride::{Ride, parameters, ride};
+use super::{Args, job};
 use crate::common::{Failure, Outcome, Report, rounded, share_out, threads};
 
 /// What is left of one run in the campaign.
@@ -48,18 +45,17 @@ pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
     Ok(Report {
         sim_time: Some(checked.iter().map(|run| run.sim_time).sum()),
         collisions: Some(checked.iter().map(|run| u64::from(run.contacts)).sum()),
+        trouble: job::drawn(args, None).err().map(|failure| failure.to_string()),
         ..Report::new(outcome)
     }
     .field("courses", courses)
-    .field("bugs", json(args.bugs(), &checked)))
+    .field("bugs", json(args.bugs(), &checked))
+    .field("picture", args.common.picture.as_deref()))
 }
 
 /// Lets all algorithms drive through the course of one seed.
 pub(crate) fn check(args: &Args, seed: u64) -> Result<Vec<Checked>, Failure> {
-    let robot_radius = RobotSpec::s4().footprint.bounding_radius();
-    let options = CourseOptions { robot_radius, ..CourseOptions::default() };
-    let course = obstacle_course(&mut Stream::new(seed), &options).map_err(Failure::run)?;
-    let setting = Setting::of_course("course", seed, &course)?;
+    let setting = of_campaign(seed)?;
     let conditions = setting.conditions(args);
     let mut boundaries = None;
     let drive = |&kind| {
@@ -70,8 +66,8 @@ pub(crate) fn check(args: &Args, seed: u64) -> Result<Vec<Checked>, Failure> {
             let followed = parameters.robot_radius + parameters.clearance;
             // Robots go through passages that are too narrow for the clearance that they keep elsewhere: so the lines are
             // those of half the narrowest corridor, which parts nothing, and count as parallels of them.
-            let traced = followed.min(0.5 * options.min_corridor - RESERVE);
-            let lines = Boundaries::new(&course.world, traced).map_err(Failure::run)?;
+            let traced = followed.min(0.5 * campaign_options().min_corridor - RESERVE);
+            let lines = Boundaries::new(&setting.trip.scene.world, traced).map_err(Failure::run)?;
             boundaries = Some((lines, followed - traced));
         }
         let traced = boundaries.as_ref().filter(|_| bounded);

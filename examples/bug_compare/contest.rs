@@ -3,7 +3,7 @@ use std::thread;
 
 use roverlab::nav::{BugKind, Reachability};
 use roverlab::random::Stream;
-use roverlab::world::generate::{Course, CourseFamily};
+use roverlab::world::generate::{Course, CourseFamily, CourseOptions, obstacle_course};
 use roverlab::world::{RobotSpec, Scene};
 
 use super::ride::{Conditions, Ride, ride, ride_with};
@@ -73,8 +73,12 @@ pub(crate) fn entries(args: &Args) -> Result<Vec<Entry>, Failure> {
     })
 }
 
-/// The setting that is shown and recorded: the world of `--world`, or else the first course of the first family.
+/// The setting that is shown and recorded: the world of `--world`, or else the first course of the campaign or of the
+/// first family.
 pub(crate) fn shown(args: &Args) -> Result<Setting, Failure> {
+    if args.campaign {
+        return of_campaign(args.common.seed);
+    }
     if args.common.world.is_some() {
         return Setting::new("world", args.common.seed, job::own_trip(args)?);
     }
@@ -104,6 +108,18 @@ pub(crate) fn recorded(args: &Args) -> Result<Entry, Failure> {
 pub(crate) fn of_family(family: CourseFamily, seed: u64) -> Result<Setting, Failure> {
     let course = family.course(&mut Stream::new(seed)).map_err(Failure::run)?;
     Setting::of_course(family.name(), seed, &course)
+}
+
+/// The course of the campaign that has a seed.
+pub(crate) fn of_campaign(seed: u64) -> Result<Setting, Failure> {
+    let course = obstacle_course(&mut Stream::new(seed), &campaign_options()).map_err(Failure::run)?;
+    Setting::of_course("course", seed, &course)
+}
+
+/// What courses of the campaign are like: made for the robot that drives.
+pub(crate) fn campaign_options() -> CourseOptions {
+    let robot_radius = RobotSpec::s4().footprint.bounding_radius();
+    CourseOptions { robot_radius, ..CourseOptions::default() }
 }
 
 fn enter(args: &Args, setting: Setting) -> Result<Entry, Failure> {

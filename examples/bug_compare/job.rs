@@ -58,10 +58,9 @@ fn check(args: &Args) -> Result<(), Failure> {
              `distbug`"
         )));
     }
-    if args.campaign && (common.world.is_some() || common.picture.is_some() || !args.families.is_empty()) {
+    if args.campaign && (common.world.is_some() || !args.families.is_empty()) {
         return Err(Failure::input(
-            "--campaign: found --world, --picture or --families beside it; expected none, since it draws its own \
-             courses",
+            "--campaign: found --world or --families beside it; expected neither, since it draws its own courses",
         ));
     }
     Ok(())
@@ -77,7 +76,7 @@ pub(super) fn own_trip(args: &Args) -> Result<Trip, Failure> {
 }
 
 /// Draws the paths of all algorithms on one world, if asked for: those that were recorded, or new ones.
-fn drawn(args: &Args, recorded: Option<&Entry>) -> Result<(), Failure> {
+pub(super) fn drawn(args: &Args, recorded: Option<&Entry>) -> Result<(), Failure> {
     let Some(file) = &args.common.picture else { return Ok(()) };
     let new;
     let Entry { setting, rides } = if let Some(recorded) = recorded {

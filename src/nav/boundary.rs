@@ -84,9 +84,9 @@ impl BoundaryFollower {
         let anchor = self.local_anchor(pose, surroundings);
         let start = math::atan2(anchor.y, anchor.x);
         let at = |k: i32| start + sense * SPACING * f64::from(k);
-        let clearance = |k: i32| surroundings.step_clearance(direction(at(k)), self.distances.step).0;
-        let first = self.opening(&clearance)?;
-        let chosen = self.roomy(first, &clearance);
+        let FollowDistances { least, step, .. } = self.distances;
+        let first = opening(|k| surroundings.is_step_free(direction(at(k)), step, least))?;
+        let chosen = self.roomy(first, |k| surroundings.step_clearance(direction(at(k)), step).0);
         let bounding = surroundings.step_clearance(direction(at(first - 1)), self.distances.step).1;
         if let Some(point) = bounding {
             self.anchor = pose.to_world(point);
@@ -113,20 +113,9 @@ impl BoundaryFollower {
         }
     }
 
-    /// The first free heading outwards from the anchor, as a count of headings.
-    fn opening(&self, clearance: &impl Fn(i32) -> f64) -> Option<i32> {
-        let free = |k: i32| clearance(k) >= self.distances.least;
-        if !free(0) {
-            return (1..HEADINGS as i32).find(|&k| free(k));
-        }
-        // The obstacle has receded: turn back towards it, and beyond, until it bounds the way again.
-        let back = (1..=HEADINGS as i32 / 2).find(|&k| !free(-k));
-        Some(back.map_or(0, |k| 1 - k))
-    }
-
     /// Within the opening that begins at `first`, the first heading with the wished room, or the one with the most.
-    fn roomy(&self, first: i32, clearance: &impl Fn(i32) -> f64) -> i32 {
-        let mut best = (first, clearance(first));
+    fn roomy(&self, first: i32, clearance: impl Fn(i32) -> f64) -> i32 {
+        let mut best = (first, 0.0);
         let quarter = (FRAC_PI_2 / SPACING) as i32;
         for k in first..first + quarter {
             let room = clearance(k);
@@ -142,6 +131,16 @@ impl BoundaryFollower {
         }
         best.0
     }
+}
+
+/// The first free heading outwards from the anchor, as a count of headings.
+fn opening(is_free: impl Fn(i32) -> bool) -> Option<i32> {
+    if !is_free(0) {
+        return (1..HEADINGS as i32).find(|&k| is_free(k));
+    }
+    // The obstacle has receded: turn back towards it, and beyond, until it bounds the way again.
+    let back = (1..=HEADINGS as i32 / 2).find(|&k| !is_free(-k));
+    Some(back.map_or(0, |k| 1 - k))
 }
 
 /// The side on which to follow an obstacle that blocks the way in a direction, so that the robot turns least.

@@ -130,22 +130,35 @@ impl ScanFilter {
             let y = motion.y + range * (sin * along + cos * across);
             let seen = math::hypot(x, y);
             let bearing = (math::atan2(y, x) - self.angle_min) / self.angle_increment;
-            let bearing = bearing.rem_euclid(self.beams.len() as f64);
-            let nearest = bearing.round();
-            let target = nearest as usize % self.beams.len();
+            let bearing = within_turn(bearing, self.beams.len() as f64);
+            // Rounded half up; `round` is a call where the processor is not known to have it.
+            let whole = bearing as usize;
+            let nearest = whole + usize::from(bearing - whole as f64 >= 0.5);
+            let target = if nearest < self.beams.len() { nearest } else { 0 };
             // The estimate is for the beam's own direction, which the moved point misses by up to half a beam.
-            let range = seen + self.slope(i) * (nearest - bearing);
+            let range = seen + self.slope(i) * (nearest as f64 - bearing);
             self.predicted[target] = merge(self.predicted[target], Beam { range, weight });
         }
         std::mem::swap(&mut self.beams, &mut self.predicted);
         self.fill_gaps();
     }
 
+    /// The beam that comes so many, at most a full turn, before another one.
+    fn before(&self, index: usize, steps: usize) -> Beam {
+        self.beams[if index >= steps { index - steps } else { index + self.beams.len() - steps }]
+    }
+
+    /// The beam that comes so many, at most a full turn, after another one.
+    fn after(&self, index: usize, steps: usize) -> Beam {
+        let (to, n) = (index + steps, self.beams.len());
+        self.beams[if to < n { to } else { to - n }]
+    }
+
     /// A surface that comes nearer spreads over more beams: one between two that see it sees it too.
     fn fill_gaps(&mut self) {
         let n = self.beams.len();
         for i in 0..n {
-            let (before, after) = (self.beams[(i + n - 1) % n], self.beams[(i + 1) % n]);
+            let (before, after) = (self.before(i, 1), self.after(i, 1));
             let apart = (after.range - before.range).abs();
             if self.beams[i].weight == 0.0 && before.weight > 0.0 && apart < SURFACE_STEP * before.range {
                 let weight = before.weight.min(after.weight);
@@ -166,9 +179,7 @@ impl ScanFilter {
 
     /// How much the range changes from one beam to the next on the surface that a beam sees.
     fn slope(&self, index: usize) -> f64 {
-        let n = self.beams.len();
-        let before = self.beams[(index + n - 1) % n].range;
-        let after = self.beams[(index + 1) % n].range;
+        let (before, after) = (self.before(index, 1).range, self.after(index, 1).range);
         let slope = 0.5 * (after - before);
         let here = self.beams[index].range;
         // Across an edge between surfaces there is no slope.
@@ -220,14 +231,12 @@ impl ScanFilter {
         }
         let reach = ((SMOOTHING_ARC / arc) as usize).min(MAX_SMOOTHING);
         let gate = (2.0 * self.noise).max(0.005) + 2.0 * SMOOTHING_ARC;
-        let n = self.beams.len();
         let mut means = [Mean::default(); MAX_SMOOTHING + 1];
         means[0] = Mean { sum: here.range * here.weight, weight: here.weight };
         let mut pairs = 0;
         while pairs < reach {
             // Neighbours come in pairs, so that the slope of the surface cancels.
-            let before = self.beams[(index + n - pairs - 1) % n];
-            let after = self.beams[(index + pairs + 1) % n];
+            let (before, after) = (self.before(index, pairs + 1), self.after(index, pairs + 1));
             let farther = (before.range - here.range).abs().max((after.range - here.range).abs());
             if farther.is_nan() || farther >= gate {
                 break;
@@ -272,6 +281,17 @@ impl Mean {
 
     fn value(self) -> f64 {
         self.sum / self.weight
+    }
+}
+
+/// A bearing in beams, brought into one turn of them. The remainder of a division is slow, and seldom needed.
+fn within_turn(bearing: f64, beams: f64) -> f64 {
+    if (0.0..beams).contains(&bearing) {
+        bearing
+    } else if (-beams..0.0).contains(&bearing) {
+        bearing + beams
+    } else {
+        bearing.rem_euclid(beams)
     }
 }
 

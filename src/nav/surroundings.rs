@@ -1,4 +1,4 @@
-use crate::geometry::{Point, Vector, cross};
+use crate::geometry::{Point, Vector, cross, math};
 
 /// What a disc-shaped robot sees around it, as points in its own frame, and where it can go.
 ///
@@ -25,6 +25,11 @@ impl Surroundings {
         self.clearance = nearest.sqrt();
     }
 
+    /// All that is around the robot.
+    pub(super) fn points(&self) -> &[Point] {
+        &self.points
+    }
+
     /// How near the robot's middle comes to anything on a straight step of `length` metres in a direction.
     ///
     /// What the step leaves behind, or moves away from fast enough, does not count: a robot that is too close to a
@@ -32,19 +37,29 @@ impl Surroundings {
     pub(super) fn step_clearance(&self, unit: Vector, length: f64) -> (f64, Option<Point>) {
         let mut least = (f64::INFINITY, None);
         for point in &self.near {
-            let along = point.coords.dot(&unit);
-            if along <= 0.0 {
-                continue;
-            }
-            let across = cross(unit, point.coords).abs();
-            let distance =
-                if along <= length { across } else { crate::geometry::math::hypot(across, along - length) };
-            let receding = distance >= self.clearance + RECEDING_SLOPE * along.min(length);
-            if !receding && distance < least.0 {
+            if let Some(distance) = self.passing_distance(point, unit, length).filter(|&d| d < least.0) {
                 least = (distance, Some(*point));
             }
         }
         least
+    }
+
+    /// Whether a step keeps a clearance: the same without looking further than the first point that it does not pass.
+    pub(super) fn is_step_free(&self, unit: Vector, length: f64, clearance: f64) -> bool {
+        let keeps = |point| self.passing_distance(point, unit, length).is_none_or(|d| d >= clearance);
+        self.near.iter().all(keeps)
+    }
+
+    /// How near the robot's middle comes to a point on a step, if that counts.
+    fn passing_distance(&self, point: &Point, unit: Vector, length: f64) -> Option<f64> {
+        let along = point.coords.dot(&unit);
+        if along <= 0.0 {
+            return None;
+        }
+        let across = cross(unit, point.coords).abs();
+        let distance = if along <= length { across } else { math::hypot(across, along - length) };
+        let receding = distance >= self.clearance + RECEDING_SLOPE * along.min(length);
+        (!receding).then_some(distance)
     }
 
     /// How far a disc of radius `radius` can move in a direction before it touches something, and what it touches.
@@ -120,6 +135,7 @@ mod tests {
             let (radius, length, unit) = (0.1, 0.2, direction(angle));
             let (clearance, _) = surroundings.step_clearance(unit, length);
             let (free, _) = surroundings.free_distance(unit, radius);
+            prop_assert_eq!(surroundings.is_step_free(unit, length, radius), clearance >= radius);
             if clearance >= radius {
                 prop_assert!(free >= length - 1e-9, "{clearance} {free}");
             }

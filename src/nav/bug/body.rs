@@ -1,5 +1,6 @@
 use super::parameters::BugParameters;
 use super::report::{BugEvent, BugObservation, BugOutcome, BugPhase};
+use super::wall_ends::{WallEnds, overhangs};
 use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math};
 use crate::io::{Error, Result};
 use crate::nav::boundary::{WallSide, nearer_side};
@@ -20,7 +21,10 @@ pub(super) struct Body {
     /// The noise-filtered hits of the scan in the robot's frame.
     pub(super) points: Vec<Point>,
     pub(super) events: Vec<BugEvent>,
+    /// The hits of the scan as measured, in the robot's frame.
+    measured: Vec<Point>,
     slow_to_pass: bool,
+    ends: WallEnds,
     look: LookRound,
     filter: ScanFilter,
     matcher: ScanMatcher,
@@ -48,12 +52,22 @@ pub(super) struct GoalView {
 const EXPECTED_NOISE: f64 = 0.010;
 /// How far round the robot points count for its next step, in steps.
 const REACH: f64 = 2.4;
+/// How much farther round the robot the ends of walls are kept in mind.
+const ENDS_REACH: f64 = 1.7;
+/// How far apart, in metres, one thing may be seen from two places without noise.
+const EXACT: f64 = 0.003;
 /// The position may be wrong by so many times the noise of a range.
 const NOISE_SLACK: f64 = 5.0;
 /// The part of the robot's radius that must be free round a goal that counts in spite of not being met exactly.
 const GOAL_ROOM: f64 = 0.7;
 /// Radians per second at which the robot turns to look round.
 const LOOKING_TURN: f64 = 2.0;
+/// The least speed along a free heading, in metres per second, and how far from it, in radians, the robot may point.
+const CREEP: f64 = 0.02;
+const POINTING: f64 = 0.3;
+/// A turn of more radians than this turns the robot round, and a speed of more metres per second is too much for that.
+const TURNING_ROUND: f64 = 2.0;
+const ROLLING: f64 = 0.05;
 /// Steps, at the start, that only look.
 const SETTLING_STEPS: u32 = 12;
 
@@ -71,7 +85,9 @@ impl Body {
             surroundings: Surroundings::default(),
             points: Vec::new(),
             events: Vec::new(),
+            measured: Vec::new(),
             slow_to_pass,
+            ends: WallEnds::default(),
             look: LookRound::default(),
             filter: ScanFilter::new(EXPECTED_NOISE),
             matcher: ScanMatcher::new(),
@@ -93,12 +109,18 @@ impl Body {
     /// Takes in what the robot measures.
     pub(super) fn perceive(&mut self, observation: &BugObservation<'_>) -> Result<()> {
         check_measured(&observation.odometry, observation.scan)?;
+        self.measured.clear();
+        self.measured.extend(observation.scan.points());
         self.pose = self.locate(observation);
         self.filter.update(self.pose, observation.scan)?;
+        let reach = REACH * self.parameters.follow_distances().step;
+        let error = EXACT + NOISE_SLACK * self.filter.noise();
+        self.ends.update(&self.pose, &self.measured, ENDS_REACH * reach, error);
         self.points.clear();
         self.points.extend(self.filter.points());
-        let reach = REACH * self.parameters.follow_distances().step;
-        self.surroundings.update(self.points.iter().copied(), reach);
+        let hidden = self.ends.hidden(&self.pose, &self.points, error);
+        let unseen = hidden.chain(overhangs(&self.measured, reach, error));
+        self.surroundings.update(self.points.iter().copied().chain(unseen), reach);
         Ok(())
     }
 
@@ -107,9 +129,7 @@ impl Body {
         if !self.parameters.match_scans {
             return observation.odometry;
         }
-        self.points.clear();
-        self.points.extend(observation.scan.points());
-        self.matcher.update(observation.odometry, &self.points)
+        self.matcher.update(observation.odometry, &self.measured)
     }
 
     /// Keeps what is seen for the correction of later poses.
@@ -182,26 +202,35 @@ impl Body {
     /// The twist that turns the robot to a heading and drives it on.
     pub(super) fn steer(&self, heading: f64, speed: Twist) -> Twist {
         // Proportional to the error, damped by the turn rate: the motors' lag would make it swing otherwise.
-        let angular = (8.0 * heading - 1.5 * speed.angular).clamp(-3.0, 3.0);
+        // A robot that turns round while it rolls on comes round in an arc, into what it was passing: it stops before.
+        let stops = heading.abs() > TURNING_ROUND && speed.linear > ROLLING;
+        let turn = if stops { 0.0 } else { 8.0 * heading };
+        let angular = (turn - 1.5 * speed.angular).clamp(-3.0, 3.0);
         let ahead = math::cos(heading).max(0.0);
         let aligned = ahead * ahead * ahead;
         let cruise = match self.phase {
             BugPhase::ToGoal => self.parameters.cruise_speed,
             _ => self.parameters.follow_speed,
         };
-        let linear = (cruise * aligned).min(self.safe_speed());
+        // The heading has been found free; where the robot points on its way there need not be.
+        let least = if heading.abs() < POINTING { CREEP } else { 0.0 };
+        let linear = (cruise * aligned).min(self.safe_speed().max(least));
         Twist::new(linear, angular)
     }
 
     /// The speed from which the robot can still stop before what is ahead, or at the goal.
     fn safe_speed(&self) -> f64 {
+        const HAIR: f64 = 0.001;
         // The motors' lag lets the robot roll on for about 0.2 s; a little more is reserve.
         const STOPPING_TIME: f64 = 0.45;
         let passing = if self.slow_to_pass && self.phase == BugPhase::ToGoal { 1.0 } else { 0.5 };
         let outline = self.parameters.robot_radius + passing * self.parameters.least_clearance;
+        // Nearer to something than that, it may drive off it, but not a hair's breadth nearer.
+        if !self.surroundings.is_step_free(direction(0.0), HAIR, outline) {
+            return 0.0;
+        }
         let (ahead, _) = self.surroundings.free_distance(direction(0.0), outline);
         let goal = self.goal_distance();
-        let creep = 0.02;
-        (ahead / STOPPING_TIME).min(goal / STOPPING_TIME).max(creep)
+        ahead.min(goal) / STOPPING_TIME
     }
 }

@@ -15,6 +15,7 @@ mod report;
 mod strategy;
 mod tangent;
 mod tour;
+mod wall_ends;
 
 pub use distbug::DistBug;
 pub use family::{Bug, Guarantee, PathBound, run_bug};

@@ -144,7 +144,7 @@ impl Strategy for Tangent {
             self.passing = None;
             return None;
         }
-        self.panorama.look(&body.points, distances.wished);
+        self.panorama.look(body.surroundings.points(), distances.wished);
         let nearing = |edge: &Edge| {
             let node = direction(edge.bearing) * edge.distance;
             let nearer = (direction(view.bearing) * view.distance - node).norm() < view.distance;
@@ -164,7 +164,7 @@ impl Strategy for Tangent {
         if body.parameters.side.is_some() {
             return None;
         }
-        self.panorama.look(&body.points, body.parameters.follow_distances().wished);
+        self.panorama.look(body.surroundings.points(), body.parameters.follow_distances().wished);
         let node = self.best_node(body, view, |_| true)?;
         // With the obstacle clockwise of the way past its end, the robot has it to its right.
         Some(if node.obstacle < 0.0 { WallSide::Right } else { WallSide::Left })
@@ -186,7 +186,7 @@ impl Strategy for Tangent {
         if sight.is_goal_at_hand() {
             return Decision::Leave;
         }
-        self.panorama.look(&body.points, body.parameters.follow_distances().least);
+        self.panorama.look(body.surroundings.points(), body.parameters.follow_distances().least);
         let (pose, radius) = (body.pose, body.parameters.robot_radius);
         let goal = pose.to_local(body.goal);
         let wall = normalize_angle(sight.place.wall - pose.heading);

@@ -51,6 +51,8 @@ pub(super) struct Tour<const BY_RANGE: bool> {
     /// The merits of the latest places, if they could be left.
     latest: [Option<f64>; LASTING],
     returning: Option<Returning>,
+    /// The part of a free range that is not relied upon.
+    doubt: f64,
 }
 
 /// A place to leave.
@@ -70,8 +72,9 @@ struct Returning {
     length: f64,
 }
 
-/// The part of a free range that is not relied upon: gaps between beams grow with the distance.
+/// The part of a free range that is not relied upon at first, and at the most: gaps between beams grow with the distance.
 const DOUBT: f64 = 0.02;
+const MAX_DOUBT: f64 = 0.3;
 /// How much worse, in STEPs, the place may seem when it is met again, and for each metre that it has been missed by.
 const SLACK: f64 = 0.5;
 const SLACK_PER_METRE: f64 = 0.1;
@@ -83,20 +86,27 @@ const LASTING: usize = 3;
 impl<const BY_RANGE: bool> Default for Tour<BY_RANGE> {
     fn default() -> Self {
         let latest = [None; LASTING];
-        Self { least_distance: f64::INFINITY, best: None, lasting: None, latest, returning: None }
+        Self {
+            least_distance: f64::INFINITY,
+            best: None,
+            lasting: None,
+            latest,
+            returning: None,
+            doubt: DOUBT,
+        }
     }
 }
 
 impl<const BY_RANGE: bool> Tour<BY_RANGE> {
     /// How near to the goal leaving here leads; `None` where the way is blocked.
-    fn merit(sight: &Sight) -> Option<f64> {
-        let free = if BY_RANGE { sight.free.min(sight.distance) * (1.0 - DOUBT) } else { 0.0 };
+    fn merit(&self, sight: &Sight) -> Option<f64> {
+        let free = if BY_RANGE { sight.free.min(sight.distance) * (1.0 - self.doubt) } else { 0.0 };
         sight.is_open().then_some(sight.distance - free)
     }
 
     fn survey(&mut self, sight: &Sight) {
         self.least_distance = self.least_distance.min(sight.corner_distance());
-        let merit = Self::merit(sight);
+        let merit = self.merit(sight);
         self.latest.rotate_right(1);
         self.latest[0] = merit;
         let lasting = self.latest.into_iter().try_fold(0.0, |most: f64, merit| Some(most.max(merit?)));
@@ -118,15 +128,20 @@ impl<const BY_RANGE: bool> Tour<BY_RANGE> {
         let missed_by = (sight.travelled - way.from - way.length).max(0.0);
         let slack = SLACK * sight.step + SLACK_PER_METRE * missed_by;
         let missed = missed_by > MISSED * sight.radius;
-        self.place().zip(Self::merit(sight)).is_some_and(|(best, merit)| {
+        self.place().zip(self.merit(sight)).is_some_and(|(best, merit)| {
             merit <= best.merit + slack || missed && merit <= self.least_distance
         })
     }
 }
 
 impl<const BY_RANGE: bool> Strategy for Tour<BY_RANGE> {
+    /// Begins a tour. If the last leave has not brought the robot nearer than all of the boundary before, as it promised,
+    /// free ranges are relied upon less from now on; so the robot cannot go round the same obstacle for ever.
     fn meet(&mut self, meeting: &Sight) {
-        *self = Self { least_distance: meeting.distance - meeting.free, ..Self::default() };
+        let least_distance = meeting.distance - meeting.free;
+        let kept = least_distance <= self.least_distance - 0.5 * meeting.step;
+        let doubt = if kept { self.doubt } else { (2.0 * self.doubt).min(MAX_DOUBT) };
+        *self = Self { least_distance, doubt, ..Self::default() };
     }
 
     fn consider(&mut self, _body: &Body, sight: &Sight) -> Decision {

@@ -125,7 +125,8 @@ fn the_campaign_checks_verdicts_and_bounds() {
 }
 
 /// Lines to the goal that graze an obstacle or go on behind the goal, ends of thin walls before narrow gaps, obstacles met
-/// where others are as near, and places to leave that are seen for a moment only.
+/// where others are as near, places to leave that are seen for a moment only, walls of no thickness that are seen along
+/// themselves, ends that a robot turns back at, and ways that seem to lead out of a closed room.
 #[test]
 fn hard_worlds_are_done_right() {
     for (seed, bugs) in [
@@ -136,9 +137,29 @@ fn hard_worlds_are_done_right() {
         ("1318", "bug2,alg1"),
         ("1361", "bug1"),
         ("1381", "bug1,leavebug"),
+        ("10015", "class1"),
+        ("10070", "tangentbug"),
+        ("10209", "rev2"),
+        ("10258", "tangentbug"),
+        ("20654", "leavebug"),
+        ("20660", "distbug"),
     ] {
         let report = report(&["--campaign", "--noise", "0", "--seed", seed, "--runs", "1", "--bugs", bugs]);
         assert_eq!((&report["outcome"], &report["collisions"]), (&"passed".into(), &0.into()), "{report}");
+    }
+}
+
+#[test]
+fn the_first_course_of_the_campaign_is_drawn() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bug_campaign");
+    fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("paths.svg");
+    let name = file.to_str().unwrap();
+    let options = ["--campaign", "--noise", "0", "--seed", "3", "--runs", "1", "--bugs", "onebug"];
+    assert_eq!(report(&[&options[..], &["--picture", name]].concat())["picture"], name);
+    let svg = fs::read_to_string(&file).unwrap();
+    for part in ["The bug family: course", "seed 3", "OneBug: unreachable"] {
+        assert!(svg.contains(part), "{part} is missing");
     }
 }
 
