@@ -249,7 +249,10 @@ impl Seat {
             Request::ResetEncoder(motor) => done(robot.reset_encoder(motor)?),
             Request::RobotAt(id) => {
                 let index = self.robot_index(id)?;
-                self.robot.wait(0.0)?;
+                // Where others are depends on their programs, which may be behind; where it is itself does not.
+                if index != self.index {
+                    self.robot.wait(0.0)?;
+                }
                 Reply::Pose(self.truth.pose(index)?, elevation(&self.elevations.0, index))
             }
             Request::PlaceRobot(id, pose) => {
