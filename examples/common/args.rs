@@ -154,7 +154,7 @@ fn check_library(library: &Path) -> Result<(), Failure> {
 }
 
 /// Fails if a file cannot be written where an option asks for one.
-fn check_writable(option: &str, file: &Path) -> Result<(), Failure> {
+pub(crate) fn check_writable(option: &str, file: &Path) -> Result<(), Failure> {
     static TRIALS: AtomicUsize = AtomicUsize::new(0);
     let refused = |found: String, expected: &str| {
         Err(Failure::input(format!("{option} {}: found {found}; expected {expected}", file.display())))

@@ -68,7 +68,7 @@ mod values;
 mod wall_clock;
 mod workers;
 
-pub(crate) use args::CommonArgs;
+pub(crate) use args::{CommonArgs, check_writable};
 pub(crate) use failure::Failure;
 pub(crate) use free_floor::FreeFloor;
 pub(crate) use origin::Origin;

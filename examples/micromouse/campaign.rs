@@ -58,7 +58,10 @@ impl Trial {
         add(!self.proved && self.error.is_none(), "nothing proved".into());
         add(self.wrong_walls > 0, format!("{} walls known wrongly", self.wrong_walls));
         add(self.proved && !self.best_plan, "not the fastest plan".into());
-        add(self.ideal && !self.keeps_to_plan(), format!("{:+.1} % of the planned time", 100.0 * self.late.unwrap_or(0.0)));
+        add(
+            self.ideal && !self.keeps_to_plan(),
+            format!("{:+.1} % of the planned time", 100.0 * self.late.unwrap_or(0.0)),
+        );
         (!list.is_empty()).then(|| list.join(", "))
     }
 }

@@ -13,6 +13,7 @@ struct Row {
     seed: u64,
     best_first: f64,
     best_last: f64,
+    ratio: f64,
     random: f64,
 }
 
@@ -24,10 +25,7 @@ pub(crate) fn work(args: &Args, seeds: u32) -> Result<Report, Failure> {
             let row = compare(args, seed, init, name)?;
             args.common.tell(format_args!(
                 "{name} seed {seed}: first {:.0}, last {:.0}, ratio {:.2}, random search {:.0}",
-                row.best_first,
-                row.best_last,
-                row.best_last / row.best_first,
-                row.random
+                row.best_first, row.best_last, row.ratio, row.random
             ));
             rows.push(row);
         }
@@ -43,7 +41,8 @@ pub(crate) fn work(args: &Args, seeds: u32) -> Result<Report, Failure> {
 
 fn compare(args: &Args, seed: u64, init: Init, name: &'static str) -> Result<Row, Failure> {
     let trials = args.trials();
-    let mut threads = Parallel::new(args.threads, move |bytes: &Vec<u8>, _: Trial| trials.fitness(bytes))?;
+    let mut threads =
+        Parallel::new(args.threads.into(), move |bytes: &Vec<u8>, _: Trial| trials.fitness(bytes))?;
     let evolved = evolution::run(args, seed, init, &mut threads, 0)?;
     let mut random = Stream::new(seed).child("random search", 0);
     let gaits: Vec<Vec<u8>> = (0..evolved.evaluations).map(|_| trials.beginning(init, &mut random)).collect();
@@ -53,6 +52,7 @@ fn compare(args: &Args, seed: u64, init: Init, name: &'static str) -> Result<Row
         seed,
         best_first: rounded(evolved.best_first),
         best_last: rounded(evolved.best_last),
+        ratio: rounded(evolved.best_last / evolved.best_first),
         random: rounded(found.into_iter().fold(0.0, f64::max)),
     })
 }

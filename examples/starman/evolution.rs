@@ -2,15 +2,16 @@ use std::ffi::OsString;
 use std::process::Command;
 
 use roverlab::evolve::{
-    Evaluator, Evolution, Gait, Genetic, Parallel, Population, Processes, StopRules, Trial, checkpoint,
+    Evaluator, Evolution, Gait, GenerationStatistics, Genetic, Parallel, Population, Processes, StopRules,
+    Trial, checkpoint,
 };
 use roverlab::io::sim::starman::{LIMBS, Starman, StarmanSpec};
-use roverlab::io::{Drive, Result};
+use roverlab::io::{Clock, Drive, Result, Servos};
 use roverlab::random::Stream;
 use roverlab::world::{Scene, World};
 
 use super::WORKER;
-use super::options::{Args, Init};
+use super::options::{Args, Figure, Init};
 use crate::common::{Failure, Progress, Stopwatch};
 
 /// Control points of the cycle.
@@ -24,14 +25,15 @@ const FLOOR: (f64, f64) = (4.0, 0.5);
 /// How a gait is tried.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Trials {
-    pub(crate) spec: StarmanSpec,
+    pub(crate) figure: Figure,
+    pub(crate) time_step: f64,
     pub(crate) seconds: f64,
     pub(crate) leading: usize,
 }
 
 impl Default for Trials {
     fn default() -> Self {
-        Self { spec: StarmanSpec::book(), seconds: 10.0, leading: 0 }
+        Self { figure: Figure::Book, time_step: StarmanSpec::book().time_step, seconds: 10.0, leading: 0 }
     }
 }
 
@@ -43,9 +45,30 @@ impl Trials {
 
     /// Metres along the floor, from where the robot has come to rest on its feet.
     pub(crate) fn way(&self, bytes: &[u8]) -> Result<f64> {
-        let mut starman = Starman::new(&self.spec)?;
-        Gait::from_bytes(bytes, LIMBS, self.leading)?.run(&mut starman, self.seconds)?;
-        Ok(starman.truth().posture.body.0)
+        self.walk(bytes, &mut Starman::new(&self.spec())?, |starman| Ok(starman.pose()?.x))
+    }
+
+    /// Walks a gait. Returns metres along the floor, which `place` tells, from where the robot has come to rest.
+    pub(crate) fn walk<R: Clock + Servos + ?Sized>(
+        &self,
+        bytes: &[u8],
+        robot: &mut R,
+        place: impl Fn(&mut R) -> Result<f64>,
+    ) -> Result<f64> {
+        let gait = Gait::from_bytes(bytes, LIMBS, self.leading)?;
+        gait.settle(robot)?;
+        let start = place(robot)?;
+        gait.walk(robot, self.seconds - Gait::SETTLING)?;
+        Ok(place(robot)? - start)
+    }
+
+    /// The robot that is tried.
+    pub(crate) fn spec(&self) -> StarmanSpec {
+        let spec = match self.figure {
+            Figure::Book => StarmanSpec::book(),
+            Figure::Planar => StarmanSpec::planar(),
+        };
+        StarmanSpec { time_step: self.time_step, ..spec }
     }
 
     /// A random gait to begin with.
@@ -69,6 +92,7 @@ pub(crate) struct Evolved {
     pub(crate) best_last: f64,
     pub(crate) best: Vec<u8>,
     pub(crate) hash: u64,
+    pub(crate) history: Vec<GenerationStatistics>,
     pub(crate) threads: usize,
 }
 
@@ -82,9 +106,8 @@ pub(crate) fn evolve(args: &Args) -> std::result::Result<Evolved, Failure> {
 pub(crate) fn walk(args: &Args, bytes: &[u8]) -> std::result::Result<f64, Failure> {
     let trials = args.trials();
     let room = Scene::new(World::empty(FLOOR.0, FLOOR.1));
-    let mut robot = args.common.staged_robot(&room, Starman::new(&trials.spec)?)?;
-    Gait::from_bytes(bytes, LIMBS, trials.leading)?.run(&mut *robot, trials.seconds)?;
-    Ok(robot.pose()?.x)
+    let mut robot = args.common.staged_robot(&room, Starman::new(&trials.spec())?)?;
+    Ok(trials.walk(bytes, &mut *robot, |robot| Ok(robot.pose()?.x))?)
 }
 
 /// Threads or processes that try gaits, and how many.
@@ -93,19 +116,23 @@ type Workers = (Box<dyn Evaluator<Vec<u8>>>, usize);
 fn evaluator(args: &Args) -> std::result::Result<Workers, Failure> {
     let trials = args.trials();
     let Some(processes) = args.processes else {
-        let threads = Parallel::new(args.threads, move |bytes: &Vec<u8>, _: Trial| trials.fitness(bytes))?;
+        let threads =
+            Parallel::new(args.threads.into(), move |bytes: &Vec<u8>, _: Trial| trials.fitness(bytes))?;
         let count = threads.threads();
         return Ok((Box::new(threads), count));
     };
     let program =
         std::env::current_exe().map_err(|error| Failure::run(format!("this program's file: {error}")))?;
-    let words =
-        [WORKER.to_owned(), trials.seconds.to_string(), trials.leading.to_string()].map(OsString::from);
+    let numbers = [trials.seconds.to_string(), trials.leading.to_string()];
+    let figure = format!("{:?}", trials.figure);
+    let words = [WORKER.to_owned()].into_iter().chain(numbers).chain([figure]).map(OsString::from);
+    let words: Vec<OsString> = words.collect();
     let start = || {
         let mut command = Command::new(&program);
         command.args(&words);
         command
     };
+    let processes = usize::from(processes);
     Ok((Box::new(Processes::start(processes, start).map_err(Failure::input)?), processes))
 }
 
@@ -118,12 +145,8 @@ pub(crate) fn run(
     threads: usize,
 ) -> std::result::Result<Evolved, Failure> {
     let settings = args.settings();
-    let kept = args.checkpoint.as_ref().map(|file| checkpoint::load(file, &settings)).transpose();
-    let kept: Option<Population<Vec<u8>>> = kept.map_err(Failure::input)?.flatten();
-    let population = match kept {
-        Some(population) => population,
-        None => first(args, seed, init)?,
-    };
+    let beginning = first(args, seed, init)?;
+    let population = kept(args, &settings, &beginning)?.unwrap_or(beginning);
     let before = population.history.last().map_or(0, |row| row.evaluations);
     let mut evolution = Genetic::resume(population, args.recipe())?;
     let (stopwatch, mut progress) = (Stopwatch::start(), Progress::start());
@@ -146,8 +169,29 @@ pub(crate) fn run(
         best_last: best.fitness,
         best: best.genome.clone(),
         hash: evolution.population().hash(),
+        history: history.to_vec(),
         threads,
     })
+}
+
+/// The population that a checkpoint holds, if there is one: of this run, as its beginning shows.
+fn kept(
+    args: &Args,
+    settings: &str,
+    beginning: &Population<Vec<u8>>,
+) -> std::result::Result<Option<Population<Vec<u8>>>, Failure> {
+    let Some(file) = &args.checkpoint else { return Ok(None) };
+    let kept: Option<Population<Vec<u8>>> = checkpoint::load(file, settings).map_err(Failure::input)?;
+    let Some(kept) = kept else { return Ok(None) };
+    let refused = |found: String, expected: String| {
+        Failure::input(format!("{}: {found}; expected {expected}", file.display()))
+    };
+    kept.validate().map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
+    let form = |population: &Population<Vec<u8>>| {
+        let (individuals, genes) = (population.genomes.len(), population.genomes[0].len());
+        format!("{individuals} individuals of {genes} genes from seed {}", population.seed)
+    };
+    if form(&kept) == form(beginning) { Ok(Some(kept)) } else { Err(refused(form(&kept), form(beginning))) }
 }
 
 fn first(args: &Args, seed: u64, init: Init) -> Result<Population<Vec<u8>>> {

@@ -12,11 +12,13 @@ mod strip;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use roverlab::evolve::serve;
+use clap::ValueEnum;
+use roverlab::evolve::{GenerationStatistics, chart, serve, table};
 use roverlab::geometry::units;
 
 use crate::common::{Failure, Outcome, Report, rounded};
 pub(crate) use options::Args;
+use options::Figure;
 
 /// The word that makes this program evaluate what another one sends it.
 const WORKER: &str = "--evaluate-for-another";
@@ -24,12 +26,13 @@ const WORKER: &str = "--evaluate-for-another";
 /// Evaluates gaits that come on standard input, if the command line says so.
 pub(crate) fn work_for_another() -> Option<ExitCode> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let [word, seconds, leading] = words.as_slice() else { return None };
+    let [word, seconds, leading, figure] = words.as_slice() else { return None };
     if word != WORKER {
         return None;
     }
     let (seconds, leading) = seconds.parse().ok().zip(leading.parse().ok())?;
-    let trials = evolution::Trials { seconds, leading, ..evolution::Trials::default() };
+    let figure = Figure::from_str(figure, true).ok()?;
+    let trials = evolution::Trials { figure, seconds, leading, ..evolution::Trials::default() };
     let ended =
         serve(std::io::stdin().lock(), std::io::stdout().lock(), |bytes: &Vec<u8>, _| trials.fitness(bytes));
     Some(ExitCode::from(u8::from(ended.is_err())))
@@ -54,6 +57,7 @@ fn walk(args: &Args) -> Result<Report, Failure> {
     let walk = strip::Walk::of(&args.trials(), &evolved.best)?;
     args.common.tell(format_args!("the best gait goes {:.0} mm", units::to_mm(way)));
     let (picture, trouble) = draw(args, &walk);
+    let trouble = trouble.or(keep_statistics(args, &evolved.history).err());
     let report = Report::new(Outcome::verdict("evolved"))
         .field("generations", evolved.generations)
         .field("evaluations", evolved.evaluations)
@@ -70,6 +74,17 @@ fn walk(args: &Args) -> Result<Report, Failure> {
     Ok(Report { sim_time: Some(args.seconds * evolved.evaluations as f64), trouble, ..report })
 }
 
+/// Writes the statistics of all generations where the option says.
+fn keep_statistics(args: &Args, history: &[GenerationStatistics]) -> Result<(), String> {
+    let Some(file) = &args.statistics else { return Ok(()) };
+    let told = |error: &dyn std::fmt::Display| format!("--statistics {}: {error}", file.display());
+    if file.extension().is_some_and(|ending| ending == "csv") {
+        std::fs::write(file, table(history)).map_err(|error| told(&error))
+    } else {
+        chart(history).save(file).map_err(|error| told(&error))
+    }
+}
+
 /// Draws a walk where the options say. Returns the file of the strip, and what went wrong.
 fn draw(args: &Args, walk: &strip::Walk) -> (Option<PathBuf>, Option<String>) {
     let usual = || (!args.common.json).then(|| PathBuf::from("starman.svg"));
@@ -79,6 +94,7 @@ fn draw(args: &Args, walk: &strip::Walk) -> (Option<PathBuf>, Option<String>) {
     if let Some(file) = &strip {
         args.common.tell(format_args!("its picture: {}", file.display()));
     }
-    let trouble = drawn.err().map(|error| error.to_string()).or(moved.err().map(|error| error.to_string()));
+    let unmoved = |error| format!("--animation: {error}");
+    let trouble = drawn.err().map(|error| error.to_string()).or(moved.err().map(unmoved));
     (strip, trouble)
 }

@@ -1,10 +1,12 @@
 use std::path::PathBuf;
 
-use roverlab::evolve::{OnePoint, Recipe, Selection, Uniform};
-
-use crate::common::{CommonArgs, Failure, parse_seconds};
+use roverlab::evolve::{Gait, OnePoint, Recipe, Selection, Uniform};
 
 use super::evolution::Trials;
+use crate::common::{CommonArgs, Failure, check_writable, parse_seconds};
+
+/// The longest trial, in seconds.
+const LONGEST: f64 = 3600.0;
 
 /// The command line of the example `starman`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -15,6 +17,9 @@ use super::evolution::Trials;
 Fitness is 1 plus the millimetres that a gait brings the robot along the floor. The best gait's walk is drawn into
 starman.svg, except with --json.
 
+Fitness counts from where the robot has come to rest at its gait's first control point. --statistics keeps a row of numbers
+or a chart of each generation.
+
 JSON fields:
   generations, evaluations       made by this run, a checkpoint's included
   evaluations_per_s              by this process
@@ -24,8 +29,9 @@ JSON fields:
   best_gait                      its bytes, five for each control point
   way_mm                         where the best gait's walk ends along the floor, which --record records
   threads, picture               the file of the strip, if there is one
-With --compare, `rows`: seed, best_first, best_last, random (the best of as many random gaits), and how often
-evolution was better. With --steps, `rows`: time step, median change of the way when it is halved.
+With --compare, `rows`: seed, best_first, best_last, ratio, random (the best of as many random gaits), and how often
+evolution was better. With --steps, `rows`: time step, and of the gaits that go more than 5 mm their number and the median
+change of the way when the step is halved.
 Outcomes: evolved, compared, failed."
 )]
 pub(crate) struct Args {
@@ -42,12 +48,16 @@ pub(crate) struct Args {
     pub(crate) seconds: f64,
 
     /// Threads to evaluate in; 0: one for each processor.
-    #[arg(long, value_name = "T", default_value_t = 0)]
-    pub(crate) threads: usize,
+    #[arg(long, value_name = "T", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=512))]
+    pub(crate) threads: u16,
 
     /// Evaluate in so many processes instead.
-    #[arg(long, value_name = "N", conflicts_with = "threads")]
-    pub(crate) processes: Option<usize>,
+    #[arg(long, value_name = "N", conflicts_with = "threads", value_parser = clap::value_parser!(u16).range(1..=512))]
+    pub(crate) processes: Option<u16>,
+
+    /// The robot: the book's, or the figure in the plane that it came from.
+    #[arg(long, value_enum, default_value = "book")]
+    pub(crate) figure: Figure,
 
     /// The first generation: near the servos' middle as in the book, or all bytes alike.
     #[arg(long, value_enum, default_value = "neutral")]
@@ -62,8 +72,8 @@ pub(crate) struct Args {
     pub(crate) crossover: Cross,
 
     /// Bits flipped in a generation [default: three times as many as individuals].
-    #[arg(long, value_name = "N")]
-    pub(crate) mutations: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=10_000_000))]
+    pub(crate) mutations: Option<u32>,
 
     /// Control points of the sequence that leads into the cycle of ten.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=100))]
@@ -77,12 +87,24 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) animation: Option<PathBuf>,
 
+    /// Write the statistics of all generations, as a table (.csv) or drawn (.svg or .png).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) statistics: Option<PathBuf>,
+
     /// Compare with random search, for so many seeds and both ways to begin.
-    #[arg(long, value_name = "SEEDS", conflicts_with_all = ["steps", "checkpoint"])]
+    #[arg(
+        long,
+        value_name = "SEEDS",
+        conflicts_with_all = ["steps", "init", "checkpoint", "animation", "statistics", "picture", "processes", "record", "replay"],
+        value_parser = clap::value_parser!(u32).range(1..=10_000)
+    )]
     pub(crate) compare: Option<u32>,
 
-    /// Print how much the way of gaits changes when the time step is halved.
-    #[arg(long)]
+    /// Print how much the way of so many gaits as --population says changes when the time step is halved.
+    #[arg(
+        long,
+        conflicts_with_all = ["leading", "checkpoint", "animation", "statistics", "picture", "processes", "record", "replay"]
+    )]
     pub(crate) steps: bool,
 
     #[command(flatten)]
@@ -96,6 +118,15 @@ pub(crate) enum Init {
     Neutral,
     /// Any byte with the same chance.
     Uniform,
+}
+
+/// What learns to walk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Figure {
+    /// The book's robot with servos of 30 degrees a second.
+    Book,
+    /// Longer limbs that snap to their angles.
+    Planar,
 }
 
 /// How parents are chosen.
@@ -126,15 +157,16 @@ impl AsRef<CommonArgs> for Args {
 
 impl Args {
     pub(crate) fn trials(&self) -> Trials {
-        Trials { seconds: self.seconds, leading: self.leading.into(), ..Trials::default() }
+        let (figure, seconds, leading) = (self.figure, self.seconds, self.leading.into());
+        Trials { figure, seconds, leading, ..Trials::default() }
     }
 
     /// What affects the run, for checkpoints.
     pub(crate) fn settings(&self) -> String {
-        let Self { population, seconds, leading, init, selection, crossover, .. } = self;
+        let Self { population, seconds, leading, figure, init, selection, crossover, .. } = self;
         let (mutations, seed) = (self.mutation_count(), self.common.seed);
         format!(
-            "population {population}, {seconds} s, {leading} leading points, {init:?} start, {selection:?} selection, \
+            "population {population}, {seconds} s, {figure:?} figure, {leading} leading points, {init:?} start, {selection:?} selection, \
              {crossover:?} crossover, {mutations} mutations, seed {seed}"
         )
     }
@@ -156,12 +188,14 @@ impl Args {
     }
 
     fn mutation_count(&self) -> usize {
-        self.mutations.unwrap_or(3 * self.population as usize)
+        self.mutations.unwrap_or(3 * self.population) as usize
     }
 
     /// Fails when an option has no meaning here.
     pub(crate) fn check(&self) -> Result<(), Failure> {
         self.common.check_picture()?;
+        self.check_seconds()?;
+        self.check_files()?;
         let given = [
             ("--world", self.common.world.is_some()),
             ("--robot", self.common.robot.is_some()),
@@ -175,5 +209,35 @@ impl Args {
             ))),
             None => Ok(()),
         }
+    }
+
+    fn check_seconds(&self) -> Result<(), Failure> {
+        if self.seconds > Gait::SETTLING && self.seconds <= LONGEST {
+            return Ok(());
+        }
+        let found = self.seconds;
+        let least = Gait::SETTLING;
+        Err(Failure::input(format!(
+            "--seconds {found}: expected more than the {least} s to come to rest, at most {LONGEST}"
+        )))
+    }
+
+    /// Fails when what a run shall leave behind cannot be written, before it is in vain.
+    fn check_files(&self) -> Result<(), Failure> {
+        let forms = [
+            ("--checkpoint", &self.checkpoint, &[][..]),
+            ("--animation", &self.animation, &["svg"]),
+            ("--statistics", &self.statistics, &["csv", "svg", "png"]),
+        ];
+        for (option, file, endings) in forms {
+            let Some(file) = file else { continue };
+            check_writable(option, file)?;
+            let ending = file.extension().unwrap_or_default();
+            if !endings.is_empty() && endings.iter().all(|known| ending != *known) {
+                let (file, expected) = (file.display(), endings.join(", ."));
+                return Err(Failure::input(format!("{option} {file}: expected the ending .{expected}")));
+            }
+        }
+        Ok(())
     }
 }

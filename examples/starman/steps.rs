@@ -11,6 +11,8 @@ use crate::common::{Failure, Outcome, Report, rounded};
 struct Row {
     time_step_ms: f64,
     median_way_mm: f64,
+    /// Of the gaits that go far enough to count.
+    counted: Option<usize>,
     /// The change of a gait's way when this step is halved, relative to the way; the median over the gaits.
     median_change: Option<f64>,
 }
@@ -30,8 +32,9 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
             ways.get(i + 1).and_then(|finer| finer.as_ref().ok()).map(|finer| changes(ways_here, finer));
         let row = Row {
             time_step_ms: step,
+            counted: changes.as_ref().map(Vec::len),
             median_way_mm: rounded(1000.0 * median(ways_here.iter().map(|way| way.abs()).collect())),
-            median_change: changes.map(|changes| rounded(median(changes))),
+            median_change: changes.filter(|list| !list.is_empty()).map(|list| rounded(median(list))),
         };
         let change = row.median_change.map_or("-".into(), |change| format!("{:.1} %", 100.0 * change));
         args.common.tell(format_args!(
@@ -43,7 +46,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(Report::new(Outcome::verdict("compared")).field("gaits", gaits.len()).field("rows", &rows))
 }
 
-/// Waves of random phase through the limbs: gaits that walk, as evolution finds them.
+/// Waves of random phase through the limbs, which walk on purpose as evolved gaits do.
 fn gaits(args: &Args) -> Vec<Vec<u8>> {
     let mut random = Stream::new(args.common.seed).child("waves", 0);
     let mut wave = || {
@@ -62,8 +65,8 @@ fn gaits(args: &Args) -> Vec<Vec<u8>> {
 
 fn ways(args: &Args, gaits: &[Vec<u8>], step_ms: f64) -> roverlab::io::Result<Vec<f64>> {
     let mut trials = args.trials();
-    trials.spec.time_step = step_ms / 1000.0;
-    let mut threads = Parallel::new(args.threads, move |bytes: &Vec<u8>, _: Trial| trials.way(bytes))?;
+    trials.time_step = step_ms / 1000.0;
+    let mut threads = Parallel::new(args.threads.into(), move |bytes: &Vec<u8>, _: Trial| trials.way(bytes))?;
     threads.evaluate(gaits, Round { seed: args.common.seed, generation: 0 })
 }
 

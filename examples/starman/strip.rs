@@ -1,7 +1,6 @@
-use roverlab::evolve::Gait;
 use roverlab::geometry::Point;
-use roverlab::io::sim::starman::{LIMBS, Starman, StarmanPosture};
-use roverlab::io::{Clock, Result, Servos};
+use roverlab::io::sim::starman::{Starman, StarmanPosture};
+use roverlab::io::{Clock, Drive, Result, Servos};
 use roverlab::picture::{Picture, Style};
 use roverlab::world::{Colour, Wall, World};
 
@@ -13,6 +12,8 @@ use super::options::Args;
 pub(crate) struct Walk {
     /// Seconds between two postures.
     pub(crate) interval: f64,
+    /// Metres along the floor from where it had come to rest.
+    pub(crate) way: f64,
     pub(crate) postures: Vec<StarmanPosture>,
     pub(crate) body_radius: f64,
     pub(crate) limb_radius: f64,
@@ -21,11 +22,12 @@ pub(crate) struct Walk {
 impl Walk {
     /// Walks a gait and looks on.
     pub(crate) fn of(trials: &Trials, bytes: &[u8]) -> Result<Self> {
-        let mut watched = Watched { robot: Starman::new(&trials.spec)?, postures: Vec::new() };
-        Gait::from_bytes(bytes, LIMBS, trials.leading)?.run(&mut watched, trials.seconds)?;
+        let spec = trials.spec();
+        let mut watched = Watched { robot: Starman::new(&spec)?, postures: Vec::new() };
+        let way = trials.walk(bytes, &mut watched, |watched| Ok(watched.robot.pose()?.x))?;
         watched.look();
-        let (body_radius, limb_radius) = (trials.spec.body_radius, trials.spec.limb_radius);
-        Ok(Self { interval: Watched::INTERVAL, postures: watched.postures, body_radius, limb_radius })
+        let (body_radius, limb_radius) = (spec.body_radius, spec.limb_radius);
+        Ok(Self { interval: Watched::INTERVAL, way, postures: watched.postures, body_radius, limb_radius })
     }
 }
 
@@ -77,12 +79,11 @@ pub(crate) fn picture(args: &Args, walk: &Walk) -> Picture {
     let mut picture = Picture::new(&world);
     picture.title("Starman's evolved gait");
     let last = walk.postures.len().saturating_sub(1);
-    let way = walk.postures.last().map_or(0.0, |posture| posture.body.0);
     picture.caption(format!(
         "{} generations of {}: {:.0} mm in {} s; green where it started",
         args.generations,
         args.population,
-        1000.0 * way,
+        1000.0 * walk.way,
         args.seconds
     ));
     for figure in 0..FIGURES {

@@ -48,6 +48,8 @@ pub fn save<S: Serialize>(file: &Path, settings: &str, state: &S) -> Result<()> 
     };
     let checkpoint = Checkpoint { version: VERSION, settings: settings.into(), state };
     let text = serde_json::to_vec(&checkpoint).map_err(|error| failed("written", error.into()))?;
+    // What a link leads to is replaced, not the link.
+    let file = &fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
     let aside = aside(file);
     let write = || -> std::io::Result<()> {
         let mut new = File::create(&aside)?;
@@ -64,17 +66,18 @@ pub fn save<S: Serialize>(file: &Path, settings: &str, state: &S) -> Result<()> 
 /// Reads the state that [`save`] wrote; `None` if there is no such file. Fails when the file is of another form, of
 /// another version, or of a run with other settings.
 pub fn load<S: DeserializeOwned>(file: &Path, settings: &str) -> Result<Option<S>> {
-    let text = match fs::read(file) {
-        Err(error) if error.kind() == FileError::NotFound => return Ok(None),
-        Err(error) => {
-            let message = format!("{}: the checkpoint cannot be read", file.display());
-            return Err(Error::new(ErrorKind::Other, message).with_source(error));
-        }
-        Ok(text) => text,
-    };
     let refused = |found: &str, expected: &str| {
         let message = format!("{}: {found}; expected {expected}", file.display());
         Error::new(ErrorKind::InvalidInput, message)
+    };
+    // A device may have no end.
+    if fs::metadata(file).is_ok_and(|data| !data.is_file()) {
+        return Err(refused("a folder or a device", "the name of a file"));
+    }
+    let text = match fs::read(file) {
+        Err(error) if error.kind() == FileError::NotFound => return Ok(None),
+        Err(error) => return Err(refused(&error.to_string(), "a file that can be read")),
+        Ok(text) => text,
     };
     let parsed: std::result::Result<Checkpoint<serde_json::Value>, _> = serde_json::from_slice(&text);
     let checkpoint = parsed.map_err(|error| {
@@ -96,7 +99,7 @@ pub fn load<S: DeserializeOwned>(file: &Path, settings: &str) -> Result<Option<S
 /// The file that is written before it takes the other's name, in the same folder so that this is one step.
 fn aside(file: &Path) -> PathBuf {
     let mut name = file.file_name().unwrap_or_default().to_owned();
-    name.push(".new");
+    name.push(format!(".{}.new", std::process::id()));
     file.with_file_name(name)
 }
 

@@ -65,27 +65,36 @@ impl Gait {
         &self.positions[at * self.servos..][..self.servos]
     }
 
-    /// Moves a robot for so many seconds, of which it first stands at the first control point for
-    /// [`SETTLING`](Self::SETTLING).
-    pub fn run<R: Clock + Servos + ?Sized>(&self, robot: &mut R, seconds: f64) -> Result<()> {
+    /// Moves a robot to the first control point and lets it come to rest there, for [`SETTLING`](Self::SETTLING).
+    pub fn settle<R: Clock + Servos + ?Sized>(&self, robot: &mut R) -> Result<()> {
+        let end = robot.now()? + Self::SETTLING;
+        self.send(robot, 0)?;
+        wait_until(robot, end)
+    }
+
+    /// Moves a robot that has settled for so many seconds, from the second control point on.
+    pub fn walk<R: Clock + Servos + ?Sized>(&self, robot: &mut R, seconds: f64) -> Result<()> {
         require_positive("time to walk", seconds)?;
         let end = robot.now()? + seconds;
-        let mut hold = Self::SETTLING;
-        for index in 0.. {
-            let left = end - robot.now()?;
-            if left <= 1e-9 {
+        for index in 1.. {
+            let now = robot.now()?;
+            if end - now <= 1e-9 {
                 break;
             }
-            for (servo, position) in (1..).zip(self.point(index)) {
-                robot.set_servo(servo, *position)?;
-            }
-            let next = end - left + hold;
-            let pause = next.min(end) - robot.now()?;
-            robot.wait(pause)?;
-            hold = Self::PERIOD;
+            self.send(robot, index)?;
+            wait_until(robot, end.min(now + Self::PERIOD))?;
         }
         Ok(())
     }
+
+    fn send<R: Servos + ?Sized>(&self, robot: &mut R, index: usize) -> Result<()> {
+        (1..).zip(self.point(index)).try_for_each(|(servo, position)| robot.set_servo(servo, *position))
+    }
+}
+
+fn wait_until<R: Clock + ?Sized>(robot: &mut R, time: f64) -> Result<()> {
+    let now = robot.now()?;
+    robot.wait((time - now).max(0.0))
 }
 
 #[cfg(test)]
@@ -115,7 +124,9 @@ mod tests {
     #[test]
     fn a_robot_settles_and_then_walks_for_as_long_as_it_shall() {
         let mut robot = MockRobot::new();
-        Gait::from_bytes(&[128, 0, 255], 1, 0).unwrap().run(&mut robot, 3.0).unwrap();
+        let gait = Gait::from_bytes(&[128, 0, 255], 1, 0).unwrap();
+        gait.settle(&mut robot).unwrap();
+        gait.walk(&mut robot, 1.0).unwrap();
         assert!((robot.now().unwrap() - 3.0).abs() < 1e-6);
         let sent = robot.calls().iter().filter(|call| matches!(call, Call::SetServo(..))).count();
         assert_eq!(sent, 5, "one to settle, four of a quarter of a second");

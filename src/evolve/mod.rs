@@ -36,6 +36,8 @@
 //! # }
 //! ```
 
+#[cfg(feature = "picture")]
+mod chart;
 #[cfg(feature = "checkpoint")]
 pub mod checkpoint;
 mod cma_es;
@@ -57,6 +59,8 @@ mod statistics;
 mod steady_state;
 mod stop;
 
+#[cfg(feature = "picture")]
+pub use chart::chart;
 pub use cma_es::{CmaEs, Distribution};
 pub use crossover::{Arithmetic, Crossover, OnePoint, Uniform};
 pub use evaluator::{Evaluator, Round, Serial, Trial};
@@ -71,6 +75,6 @@ pub use population::{Individual, Population};
 pub use processes::{Processes, serve};
 pub use recipe::Recipe;
 pub use selection::{Selection, Selector};
-pub use statistics::GenerationStatistics;
+pub use statistics::{GenerationStatistics, table};
 pub use steady_state::SteadyState;
 pub use stop::{StopReason, StopRules};

@@ -41,7 +41,7 @@ impl<G: Genome> Population<G> {
     }
 
     /// Fails when this cannot be gone on from: nobody, genomes of different lengths, another number of fitness values
-    /// than of individuals.
+    /// than of individuals, a history or a best individual that are not of this run.
     pub fn validate(&self) -> Result<()> {
         let Some(first) = self.genomes.first() else {
             return Err(Error::invalid_input("population", "empty", "at least one individual"));
@@ -56,10 +56,31 @@ impl<G: Genome> Population<G> {
             ));
         }
         if self.is_evaluated() {
-            check_fitness(&self.fitness, self.genomes.len(), self.round())
-        } else {
-            Ok(())
+            check_fitness(&self.fitness, self.genomes.len(), self.round())?;
         }
+        self.validate_past(length)
+    }
+
+    /// Fails unless there is a row for each generation and a best individual among those evaluated.
+    fn validate_past(&self, length: usize) -> Result<()> {
+        let rows = self.generation.saturating_add(u64::from(self.is_evaluated()));
+        let numbered = self.history.iter().zip(0..).all(|(row, generation)| row.generation == generation);
+        if self.history.len() as u64 != rows || !numbered {
+            let found = format!("{} rows", self.history.len());
+            return Err(Error::invalid_input(
+                "history",
+                found,
+                &format!("one for each of {rows} generations"),
+            ));
+        }
+        let best = self.best.as_ref().map(|best| best.genome.genes().len());
+        let expected = (rows > 0).then_some(length);
+        if best != expected {
+            let words =
+                |length: Option<usize>| length.map_or("none".into(), |genes| format!("one of {genes} genes"));
+            return Err(Error::invalid_input("best individual", words(best), &words(expected)));
+        }
+        Ok(())
     }
 
     /// Whether the fitness of this generation is known.

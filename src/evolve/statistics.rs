@@ -32,6 +32,15 @@ impl GenerationStatistics {
     }
 }
 
+/// Generations as lines of comma-separated values, the first line with their names.
+pub fn table(history: &[GenerationStatistics]) -> String {
+    let head = "generation,evaluations,best,mean,worst,diversity\n".to_owned();
+    history.iter().fold(head, |text, row| {
+        let GenerationStatistics { generation, evaluations, best, mean, worst, diversity } = row;
+        text + &format!("{generation},{evaluations},{best},{mean},{worst},{diversity}\n")
+    })
+}
+
 fn diversity<G: Genome>(genomes: &[G]) -> f64 {
     let length = genomes.first().map_or(0, |genome| genome.genes().len());
     let deviation = |position: usize| {
@@ -52,5 +61,7 @@ mod tests {
         let genomes = [vec![1_u8, 10], vec![3, 10], vec![1, 10], vec![3, 10]];
         let row = GenerationStatistics::new(4, 20, &genomes, &[2.0, -1.0, 5.0, 0.0]);
         assert_eq!((row.best, row.mean, row.worst, row.diversity), (5.0, 1.5, -1.0, 0.5));
+        let expected = "generation,evaluations,best,mean,worst,diversity\n4,20,5,1.5,-1,0.5\n";
+        assert_eq!(table(&[row]), expected);
     }
 }

@@ -1,0 +1,87 @@
+use super::statistics::GenerationStatistics;
+use crate::geometry::Point;
+use crate::picture::{Picture, Style};
+use crate::world::{Colour, World};
+
+/// Metres on the sheet: panels one above the other, and what is left round them for the scales.
+const WIDTH: f64 = 1.6;
+const FITNESS: f64 = 0.7;
+const DIVERSITY: f64 = 0.3;
+const MARGIN: f64 = 0.12;
+
+/// Draws a run: the best, mean and worst fitness of each generation, and below it the diversity.
+pub fn chart(history: &[GenerationStatistics]) -> Picture {
+    let sheet = World::empty(WIDTH + 2.0 * MARGIN, FITNESS + DIVERSITY + 3.0 * MARGIN);
+    let mut picture = Picture::new(&sheet);
+    picture.title("Evolution, generation by generation");
+    let fitness: [Curve<'_>; 3] = [
+        ("best", Colour::from_hex(0x001f_6fb4), |row| row.best),
+        ("mean", Colour::from_hex(0x00c0_7a1b), |row| row.mean),
+        ("worst", Colour::from_hex(0x0099_9999), |row| row.worst),
+    ];
+    let lower = Panel { history, bottom: MARGIN, height: DIVERSITY };
+    let upper = Panel { history, bottom: 2.0 * MARGIN + DIVERSITY, height: FITNESS };
+    lower.draw(&mut picture, &[("diversity", Colour::from_hex(0x002b_8a3e), |row| row.diversity)]);
+    upper.draw(&mut picture, &fitness);
+    picture
+}
+
+/// A name, a colour, and what of a row is drawn.
+type Curve<'a> = (&'a str, Colour, fn(&GenerationStatistics) -> f64);
+
+/// Curves on one scale.
+struct Panel<'a> {
+    history: &'a [GenerationStatistics],
+    bottom: f64,
+    height: f64,
+}
+
+impl Panel<'_> {
+    fn draw(&self, picture: &mut Picture, curves: &[Curve<'_>]) {
+        let values = || curves.iter().flat_map(|(_, _, value)| self.history.iter().map(value));
+        let least = values().fold(f64::INFINITY, f64::min).min(0.0);
+        let most = values().fold(f64::NEG_INFINITY, f64::max).max(least + f64::MIN_POSITIVE);
+        let last = self.history.len().saturating_sub(1).max(1) as f64;
+        let at = |generation: f64, value: f64| {
+            let up = (value - least) / (most - least);
+            Point::new(MARGIN + WIDTH * generation / last, self.bottom + self.height * up)
+        };
+        picture.line([at(0.0, most), at(0.0, least), at(last, least)], Style::aid());
+        for (value, rise) in [(least, 0.0), (most, 0.5)] {
+            let place = at(0.0, value);
+            picture.text(Point::new(place.x - 0.9 * MARGIN, place.y - 0.02 * rise), format!("{value:.3}"));
+        }
+        picture.text(Point::new(MARGIN + WIDTH, self.bottom - 0.4 * MARGIN), format!("{last}"));
+        for &(name, colour, value) in curves {
+            let points = (0..).zip(self.history).map(|(i, row)| at(f64::from(i), value(row)));
+            picture.line(points, Style::new(colour).width(2.0).labelled(name));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(generation: u64) -> GenerationStatistics {
+        let best = generation as f64;
+        GenerationStatistics {
+            generation,
+            evaluations: 1,
+            best,
+            mean: 0.5 * best,
+            worst: -1.0,
+            diversity: 2.0,
+        }
+    }
+
+    #[test]
+    fn all_curves_are_named_whatever_the_length() {
+        for length in [0, 1, 2, 50] {
+            let history: Vec<_> = (0..length).map(row).collect();
+            let svg = chart(&history).to_svg();
+            assert!(["best", "mean", "worst", "diversity"].iter().all(|name| svg.contains(name)), "{length}");
+            assert!(!svg.contains("NaN") && !svg.contains("inf"), "{length}");
+        }
+    }
+}
