@@ -90,26 +90,109 @@ fn run_that_is_killed() {
 
 fn resumable(folder: &Path) -> Value {
     let checkpoint = folder.join("run.json");
-    evolved(folder, &["--leading", "2", "--threads", "1", "--checkpoint", checkpoint.to_str().unwrap()])
+    let options = ["--leading", "2", "--threads", "1"];
+    evolved(folder, &[&options[..], &["--checkpoint", checkpoint.to_str().unwrap()]].concat())
+}
+
+/// How many generations a checkpoint holds; 0 without one.
+fn generations_kept(folder: &Path) -> usize {
+    let text = fs::read_to_string(folder.join("run.json")).unwrap_or_default();
+    let checkpoint: Value = serde_json::from_str(&text).unwrap_or_default();
+    checkpoint["state"]["history"].as_array().map_or(0, Vec::len)
+}
+
+/// Starts the run in a process of its own and kills it once it has kept so many generations.
+fn kill_after(generations: usize, folder: &Path) {
+    let mut child = Command::new(env::current_exe().unwrap())
+        .args(["--exact", "runs::evolution::run_that_is_killed"])
+        .env("ROVERLAB_KILLED_RUN", folder)
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    while generations_kept(folder) < generations {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before generation {generations}");
+        thread::sleep(time::Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    assert!(!child.wait().unwrap().success(), "it was killed");
 }
 
 #[test]
 fn a_killed_run_goes_on_to_the_same_end() {
     let (killed, whole) = (folder("killed"), folder("whole"));
-    for wait in [100, 250, 175] {
-        let mut child = Command::new(env::current_exe().unwrap())
-            .args(["--exact", "runs::evolution::run_that_is_killed"])
-            .env("ROVERLAB_KILLED_RUN", &killed)
-            .stdout(Stdio::null())
-            .spawn()
-            .unwrap();
-        thread::sleep(time::Duration::from_millis(wait));
-        child.kill().unwrap();
-        child.wait().unwrap();
+    for generations in [1, 2, 3, 5] {
+        kill_after(generations, &killed);
     }
     assert_eq!(resumable(&killed)["population_hash"], resumable(&whole)["population_hash"]);
     fs::remove_dir_all(killed).unwrap();
     fs::remove_dir_all(whole).unwrap();
+}
+
+#[test]
+fn what_shapes_a_run_changes_the_population() {
+    let folder = folder("recipes");
+    let hash = |options: &[&str]| evolved(&folder, options)["population_hash"].clone();
+    let usual = hash(&["--threads", "1"]);
+    for other in
+        [["--selection", "wheel"], ["--crossover", "one-point"], ["--figure", "planar"], ["--mutations", "2"]]
+    {
+        assert_ne!(hash(&other), usual, "{other:?}");
+    }
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn statistics_are_kept_as_rows_and_as_a_picture() {
+    let folder = folder("statistics");
+    let file = |name: &str| folder.join(name).display().to_string();
+    evolved(&folder, &["--statistics", &file("rows.csv")]);
+    let rows = fs::read_to_string(file("rows.csv")).unwrap();
+    assert_eq!(rows.lines().count(), 7, "names and six generations: {rows}");
+    evolved(&folder, &["--statistics", &file("chart.svg")]);
+    assert!(fs::read_to_string(file("chart.svg")).unwrap().contains("diversity"));
+    fs::remove_dir_all(folder).unwrap();
+}
+
+fn refused(options: &[&str]) -> String {
+    let (status, _, err) = run("starman", starman::work, options);
+    assert_eq!(status, 2, "{err}");
+    err
+}
+
+#[test]
+fn what_cannot_be_done_is_refused_before_a_run() {
+    let expected = "--seconds 1.5: expected more than the 2 s to come to rest, at most 3600\n";
+    assert_eq!(refused(&["--seconds", "1.5"]), expected);
+    assert!(refused(&["--seconds", "1e300"]).contains("at most 3600"));
+    assert!(refused(&["--animation", "walk.gif"]).contains("expected the ending .svg"));
+    assert!(refused(&["--animation", "/no/such/walk.svg"]).contains("found no folder /no/such"));
+    assert!(refused(&["--statistics", "rows.txt"]).contains("expected the ending .csv, .svg, .png"));
+    assert!(refused(&["--checkpoint", "/no/such/run.json"]).contains("found no folder /no/such"));
+    assert!(refused(&["--checkpoint", "/dev/null"]).contains("/dev/null: a folder or a device; expected"));
+}
+
+#[test]
+fn a_checkpoint_that_was_changed_is_refused() {
+    let folder = folder("changed");
+    resumable(&folder);
+    let file = folder.join("run.json");
+    let whole: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
+    let changes: [(&str, Value); 5] = [
+        ("seed", 99.into()),
+        ("genomes", vec![vec![1_u8]; 8].into()),
+        ("fitness", vec![1.0].into()),
+        ("history", Value::Array(Vec::new())),
+        ("best", Value::Null),
+    ];
+    for (field, value) in changes {
+        let mut changed = whole.clone();
+        changed["state"][field] = value;
+        fs::write(&file, changed.to_string()).unwrap();
+        let options = ["--leading", "2", "--checkpoint", file.to_str().unwrap()];
+        let err = refused(&[&SMALL[..], &options].concat());
+        assert!(err.starts_with(file.to_str().unwrap()) && err.contains("; expected "), "{field}: {err}");
+    }
+    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
