@@ -38,10 +38,19 @@ def _answer_for_nobody():
     builtins.input = input
 
 
+def _seed_random(seed):
+    """The runner's seed is that of every random stream; a program's own seed comes later and prevails."""
+    import random
+
+    random.seed(seed)
+
+
 if os.environ.get("ROBIOS_LIBRARY"):
     _lead_to_library(os.environ["ROBIOS_LIBRARY"])
 if os.environ.get("ROBIOS_REPORT"):
     _answer_for_nobody()
+    if os.environ.get("ROBIOS_SEED"):
+        _seed_random(os.environ["ROBIOS_SEED"] + ":" + os.environ.get("ROBIOS_INDEX", "0"))
     try:
         import importlib.util
         import sys

@@ -1,13 +1,19 @@
-/* The functions of RoBIOS that take arguments like printf. They are formatted here, because stable Rust cannot define
- * such functions, and handed over as finished text. */
+/* What stable Rust cannot do: functions with arguments like printf, and a function that runs when the library is loaded.
+ * Texts are formatted here and handed over as they are then. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 
+void eyesim_end(void);
 int eyesim_print(const char *text);
 int eyesim_print_at(int row, int column, const char *text);
 int eyesim_shim_printf(const char *format, ...);
 int eyesim_shim_set_printf(int row, int column, const char *format, ...);
+
+__attribute__((constructor)) static void begin(void)
+{
+    atexit(eyesim_end);
+}
 
 /* No display shows more at once, and no program needs it. */
 #define LONGEST 65536

@@ -9,6 +9,8 @@ use std::sync::OnceLock;
 
 use serde_json::Value;
 
+#[path = "programs/endings.rs"]
+mod endings;
 #[path = "programs/scripts.rs"]
 mod scripts;
 

@@ -232,8 +232,6 @@ fn born() -> State {
     OWNER.store(process(), Ordering::Release);
     match catch_unwind(robot) {
         Ok(Ok(robios)) => {
-            // SAFETY: the function lives as long as the library, which is never unloaded before the handlers run.
-            unsafe { libc::atexit(at_exit) };
             super::sensing::publish_points(robios.lidar_points());
             if env::var_os(names::SOCKET).is_none() {
                 // A world that is shared goes on by itself.
@@ -308,7 +306,10 @@ fn end(mut state: MutexGuard<'static, State>, stage: Stage) -> ! {
     }
 }
 
-extern "C" fn at_exit() {
+/// Ends the robot's program. Runs after what the program itself does at its end, since it is registered when the library
+/// is loaded, before anything of the program.
+#[unsafe(no_mangle)]
+extern "C" fn eyesim_end() {
     let Some(_inside) = Inside::new().filter(|_| is_ours()) else { return };
     let mut state = lock();
     if let State::Alive(robios) = &mut *state {

@@ -6,6 +6,7 @@ use std::os::unix::net::UnixStream;
 use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
@@ -24,7 +25,7 @@ use super::work_folder::WorkFolder;
 pub(crate) struct Running {
     child: Child,
     report: PathBuf,
-    relays: Vec<JoinHandle<String>>,
+    relays: Vec<Relay>,
     stopwatch: Stopwatch,
 }
 
@@ -32,6 +33,8 @@ pub(crate) struct Running {
 const MOST_OUTPUT: usize = 1 << 16;
 /// Bytes of a last line that are kept.
 const MOST_OF_LINE: usize = 500;
+/// How long the runner goes on reading what a program has printed, when whoever it has left behind holds the pipe open.
+const LEFT_OPEN: Duration = Duration::from_secs(1);
 /// How often the runner looks whether a program has ended.
 const LOOK: Duration = Duration::from_millis(1);
 
@@ -59,7 +62,8 @@ pub(crate) fn run_alone(
     let mut truth = Truth { pose: placed.pose, ..Truth::default() };
     if report.known {
         truth = Truth {
-            time: report.time,
+            // A call that waits past the end of time is cut off there.
+            time: report.time.min(options.time_limit),
             pose: report.pose,
             odometry: report.odometry,
             path_length: report.path_length,
@@ -98,6 +102,8 @@ pub(crate) fn start(
     }
     let path = search_path("LD_LIBRARY_PATH", &[folder.path(), library.parent().unwrap_or(Path::new("."))]);
     command.env("LD_LIBRARY_PATH", path);
+    // Sets of texts come in the same order each time.
+    command.env("PYTHONHASHSEED", "0");
     command.env("PYTHONPATH", search_path("PYTHONPATH", &[&home.join("python")]));
     second_name(&library, folder);
     if options.json {
@@ -107,8 +113,8 @@ pub(crate) fn start(
     match process::start(&mut command, &sockets) {
         Err(error) => Ok(Err(format!("{}: cannot be started: {error}", file.display()))),
         Ok(mut child) => {
-            let stdout = child.stdout.take().map(relay);
-            let stderr = child.stderr.take().map(relay);
+            let stdout = child.stdout.take().map(Relay::start);
+            let stderr = child.stderr.take().map(Relay::start);
             let relays = stdout.into_iter().chain(stderr).collect();
             Ok(Ok(Running { child, report, relays, stopwatch: Stopwatch::start() }))
         }
@@ -155,22 +161,42 @@ fn second_name(library: &Path, folder: &WorkFolder) {
     }
 }
 
-/// Passes on what a program prints, to standard error, up to a limit; what comes after it is read and dropped. Returns
-/// the last line.
-fn relay(mut output: impl Read + Send + 'static) -> JoinHandle<String> {
-    thread::spawn(move || {
-        let (mut passed, mut buffer) = (0, vec![0; 1 << 14]);
-        let mut tail = Vec::new();
-        while let Ok(count @ 1..) = output.read(&mut buffer) {
-            let fitting = count.min(MOST_OUTPUT - passed);
-            passed += fitting;
-            let _ = std::io::stderr().write_all(&buffer[..fitting]);
-            tail.extend_from_slice(&buffer[..count]);
-            tail.drain(..tail.len().saturating_sub(MOST_OF_LINE));
+/// Passes on what a program prints, to standard error, up to a limit; what comes after it is read and dropped.
+#[derive(Debug)]
+struct Relay {
+    thread: JoinHandle<()>,
+    /// The end of what was printed.
+    tail: Arc<Mutex<Vec<u8>>>,
+}
+
+impl Relay {
+    fn start(mut output: impl Read + Send + 'static) -> Self {
+        let tail = Arc::new(Mutex::new(Vec::new()));
+        let kept = Arc::clone(&tail);
+        let thread = thread::spawn(move || {
+            let (mut passed, mut buffer) = (0, vec![0; 1 << 14]);
+            while let Ok(count @ 1..) = output.read(&mut buffer) {
+                let fitting = count.min(MOST_OUTPUT - passed);
+                passed += fitting;
+                let _ = std::io::stderr().write_all(&buffer[..fitting]);
+                let mut tail = kept.lock().unwrap_or_else(PoisonError::into_inner);
+                tail.extend_from_slice(&buffer[..count]);
+                let surplus = tail.len().saturating_sub(MOST_OF_LINE);
+                tail.drain(..surplus);
+            }
+        });
+        Self { thread, tail }
+    }
+
+    /// The last line, once all has been read or nobody wants to wait for more.
+    fn last_line(&self, patience: &Stopwatch) -> String {
+        while !self.thread.is_finished() && patience.seconds() < LEFT_OPEN.as_secs_f64() {
+            thread::sleep(LOOK);
         }
+        let tail = self.tail.lock().unwrap_or_else(PoisonError::into_inner);
         let text = String::from_utf8_lossy(&tail);
         text.lines().rfind(|line| !line.trim().is_empty()).unwrap_or_default().trim().to_owned()
-    })
+    }
 }
 
 impl Running {
@@ -192,10 +218,11 @@ impl Running {
         // What it has started goes with it, and holds no pipe open.
         process::kill_all(self.child.id());
         let _ = self.child.wait();
+        let patience = Stopwatch::start();
         let mut last_words = String::new();
-        for relay in self.relays {
+        for relay in &self.relays {
             // Standard error comes last.
-            last_words = relay.join().unwrap_or_default();
+            last_words = relay.last_line(&patience);
         }
         let report = Report::read(&self.report).unwrap_or_default();
         let ending = match report.stage {

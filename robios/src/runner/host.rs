@@ -68,7 +68,8 @@ pub(crate) fn run_together(
     for (program, seat) in programs.iter().zip(seats) {
         let (ours, theirs) = UnixStream::pair().map_err(|error| format!("no socket: {error}"))?;
         let number = OsString::from(process::socket_number(&theirs).to_string());
-        let variables = BTreeMap::from([(names::SOCKET, number)]);
+        let (seed, index) = (options.seed.to_string().into(), program.robot.to_string().into());
+        let variables = BTreeMap::from([(names::SOCKET, number), (names::SEED, seed), (names::INDEX, index)]);
         let running = start(program, variables, Some(&theirs), options, folder)?;
         drop(theirs);
         tables.push((program, seat, ours, running));
@@ -96,7 +97,7 @@ pub(crate) fn run_together(
             Some(ended) if !matches!(ending, Ending::Exit(..)) => ended,
             _ => ending,
         };
-        let time = program_time(served.time, report.time);
+        let time = program_time(served.time, report.time).min(options.time_limit);
         let contacts = served.contacts;
         Verdict::new(program, ending, &report, truth(&world, program.robot, time, contacts))
     });

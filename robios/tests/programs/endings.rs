@@ -1,0 +1,67 @@
+//! How programs end: with last calls, with time that is over, with somebody whom they leave behind.
+
+use std::process::Command;
+
+use serde_json::Value;
+
+use super::{Folder, compiler, python, report};
+
+/// Runs a program with this text, and returns what is told of it.
+fn told(name: &str, text: &str, options: &[&str]) -> Value {
+    let folder = Folder::new(&format!("endings-{name}"));
+    let file = folder.write(name, text);
+    let report = report(&[options, &[file.to_str().unwrap()]].concat());
+    report["robots"][0].clone()
+}
+
+#[test]
+fn last_calls_count_though_the_first_came_after_they_were_arranged() {
+    if !compiler() {
+        return;
+    }
+    let stops = "#include \"eyebot.h\"\nvoid stop() { VWSetSpeed(0, 0); LCDPrintf(\"stopped\"); }\n\
+                 int main() { atexit(stop); VWSetSpeed(200, 0); OSWait(1000); return 0; }\n";
+    let destructor = "#include \"eyebot.h\"\nstruct Robot { ~Robot() { VWSetSpeed(0, 0); LCDPrintf(\"stopped\"); } };\n\
+                      Robot robot;\nint main() { VWSetSpeed(200, 0); OSWait(1000); return 0; }\n";
+    for (name, text) in [("exit.c", stops), ("destructor.cpp", destructor)] {
+        let robot = told(name, text, &[]);
+        assert_eq!(robot["lcd_text"], "stopped", "{robot}");
+        assert!(robot["path_length_mm"].as_f64().unwrap() < 250.0, "{robot}");
+    }
+}
+
+#[test]
+fn a_call_that_waits_past_the_end_of_time_ends_there() {
+    if !python() {
+        return;
+    }
+    let text = "from eye import *\nVWStraight(200, 100)\nOSWait(7777777)\n";
+    let robot = told("late.py", text, &["--time-limit", "20"]);
+    assert_eq!((&robot["outcome"], &robot["sim_time_s"]), (&"timed_out".into(), &20.0.into()), "{robot}");
+}
+
+#[test]
+fn whoever_is_left_behind_with_an_open_pipe_is_not_waited_for() {
+    if !compiler() {
+        return;
+    }
+    let text = "#include \"eyebot.h\"\nint main() { int left = fork();\n\
+                if (left == 0) { setsid(); execlp(\"sleep\", \"sleep\", \"100\", (char *)0); }\n\
+                LCDPrintf(\"%d\", left); return 0; }\n";
+    let robot = told("leave.c", text, &["--real-limit", "50"]);
+    assert_eq!(robot["outcome"], "finished", "{robot}");
+    let left = robot["lcd_text"].as_str().unwrap();
+    let killed = Command::new("kill").args(["-9", left]).status().unwrap();
+    assert!(killed.success(), "process {left} should still have been there");
+}
+
+#[test]
+fn random_numbers_come_from_the_seed() {
+    if !python() {
+        return;
+    }
+    let text = "from random import *\nfrom eye import *\nLCDPrintf('%d', randint(0, 1000000))\n";
+    let number = |name: &str, seed: &str| told(name, text, &["--seed", seed])["lcd_text"].clone();
+    assert_eq!(number("first.py", "1"), number("second.py", "1"));
+    assert_ne!(number("first.py", "1"), number("second.py", "2"));
+}
