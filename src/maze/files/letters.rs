@@ -2,9 +2,10 @@
 
 use super::{MazeFile, MazeFormat, size_error};
 use crate::maze::{Cell, Defect, Direction, Maze, Wall};
-use crate::world::formats::{FormatError, maz};
+use crate::world::formats::{FormatError, Location, maz};
 
 pub(super) fn read(text: &str, file: &str) -> Result<MazeFile, FormatError> {
+    refuse_prose(text, file)?;
     let parsed = maz::parse_maze(text, file)?;
     let warnings = parsed.warnings.into_iter();
     let mut defects: Vec<Defect> =
@@ -12,9 +13,14 @@ pub(super) fn read(text: &str, file: &str) -> Result<MazeFile, FormatError> {
     let grid = parsed.value;
     let mut maze = Maze::open(grid.columns(), grid.rows()).map_err(|error| size_error(error, file, 1))?;
     enter_walls(&grid, &mut maze);
-    match start(&grid, &maze) {
-        Some((cell, heading)) => maze.set_start(cell, heading),
-        None => defects.push(Defect::of_maze("no start is marked; the lower left cell is taken")),
+    match starts(&grid, &maze).as_slice() {
+        [(cell, heading), rest @ ..] => {
+            maze.set_start(*cell, *heading);
+            let more =
+                |(cell, _): &(Cell, _)| Defect::of_maze(format!("a second start at cell {cell}; ignored"));
+            defects.extend(rest.iter().map(more));
+        }
+        [] => defects.push(Defect::of_maze("no start is marked; the lower left cell is taken")),
     }
     let letter = |cell: &Cell| grid.letter(cell.x.into(), cell.y.into());
     let goals: Vec<Cell> = maze.cells().filter(|cell| letter(cell) == Some('g')).collect();
@@ -37,22 +43,45 @@ fn enter_walls(grid: &maz::Maze, maze: &mut Maze) {
     }
 }
 
-/// The first `s` as the picture is read, or else the first other letter that stands for a heading.
-fn start(grid: &maz::Maze, maze: &Maze) -> Option<(Cell, Direction)> {
+/// Refuses a text that has walls and letters where no maze has them, or no walls at all.
+fn refuse_prose(text: &str, file: &str) -> Result<(), FormatError> {
+    let rows = || text.lines().zip(1..).filter(|(row, _)| row.starts_with(['|', '_', ' ', '\t']));
+    let marks =
+        || rows().flat_map(|(row, _)| row.chars().enumerate()).filter(|(_, mark)| !mark.is_whitespace());
+    let misplaced =
+        |&(column, mark): &(usize, char)| !"_.".contains(mark) && (mark == '|') != (column % 2 == 0);
+    let odd = marks().filter(misplaced).count();
+    let walls = marks().any(|(_, mark)| mark == '|' || mark == '_');
+    match rows().find(|(row, _)| !row.trim().is_empty()) {
+        Some((row, line)) if !walls || 4 * odd > marks().count() => {
+            let found: String = row.trim().chars().take(40).collect();
+            let (found, expected) = (format!("{found:?}"), "rows of a maze of `|`, `_`, letters and blanks");
+            Err(FormatError::new(file, Location { line, column: 1 }, found, expected))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The cells with a letter that stands for a start, that which counts first: the first `s` as the picture is read, or else
+/// the first other one.
+fn starts(grid: &maz::Maze, maze: &Maze) -> Vec<(Cell, Direction)> {
     let (width, height) = (maze.width() as u16, maze.height() as u16);
-    let cells = || (0..height).rev().flat_map(|y| (0..width).map(move |x| Cell::new(x, y)));
-    let found = |wanted: fn(char) -> Option<Direction>| {
-        cells().find_map(|cell| Some((cell, wanted(grid.letter(cell.x.into(), cell.y.into())?)?)))
-    };
-    found(|letter| (letter == 's').then_some(Direction::North)).or_else(|| {
-        found(|letter| match letter {
-            'u' => Some(Direction::North),
-            'r' => Some(Direction::East),
-            'd' => Some(Direction::South),
-            'l' => Some(Direction::West),
-            _ => None,
+    let cells = (0..height).rev().flat_map(|y| (0..width).map(move |x| Cell::new(x, y)));
+    let mut found: Vec<(bool, Cell, Direction)> = cells
+        .filter_map(|cell| {
+            let letter = grid.letter(cell.x.into(), cell.y.into())?;
+            let heading = match letter {
+                's' | 'u' => Direction::North,
+                'r' => Direction::East,
+                'd' => Direction::South,
+                'l' => Direction::West,
+                _ => return None,
+            };
+            Some((letter != 's', cell, heading))
         })
-    })
+        .collect();
+    found.sort_by_key(|&(other, ..)| other);
+    found.into_iter().map(|(_, cell, heading)| (cell, heading)).collect()
 }
 
 /// Writes a maze with cells of so many metres.

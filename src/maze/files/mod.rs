@@ -5,6 +5,7 @@
 //! leaves no doubt about the rest is a [`Defect`] of what is read; what leaves doubt is an error.
 
 mod binary;
+mod layout;
 mod letters;
 mod numbers;
 mod picture;
@@ -89,8 +90,8 @@ fn read_text(bytes: &[u8], file: &str) -> Result<MazeFile, FormatError> {
     let text = String::from_utf8_lossy(bytes);
     let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n").replace('\r', "\n");
     let lines: Vec<&str> = text.split('\n').collect();
-    if let Some(top) = picture::find(&lines) {
-        picture::read(&lines, top, file)
+    if let Some(layout) = layout::find(&lines) {
+        picture::read(layout, file)
     } else if numbers::is_list(&lines) {
         numbers::read(&lines, file)
     } else {

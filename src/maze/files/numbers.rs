@@ -7,10 +7,11 @@ use super::{MazeFile, MazeFormat, size_error};
 use crate::maze::{Cell, Defect, Direction, Maze, Wall};
 use crate::world::formats::{FormatError, Location};
 
-/// Whether the first line that says something is one of a cell.
+/// Whether most of the lines that say something are those of cells.
 pub(super) fn is_list(lines: &[&str]) -> bool {
-    let first = lines.iter().find(|line| !line.trim().is_empty());
-    first.is_some_and(|line| numbers(line).is_some())
+    let said = lines.iter().filter(|line| !line.trim().is_empty());
+    let cells = said.clone().filter(|line| numbers(line).is_some()).count();
+    2 * cells > said.count()
 }
 
 /// The six numbers of a line.

@@ -120,6 +120,107 @@ fn defects_of_pictures_are_named() {
     );
 }
 
+/// A maze with walls in every line, that damage is done to.
+const LINES: [&str; 9] = [
+    "o---o---o---o---o",
+    "|       |       |",
+    "o   o---o   o   o",
+    "|   |     G |   |",
+    "o   o   o---o   o",
+    "|       |       |",
+    "o   o---o   o   o",
+    "| S             |",
+    "o---o---o---o---o",
+];
+
+#[test]
+fn damaged_pictures_are_read_whole() {
+    let whole = read(&LINES.join("\n"));
+    assert_eq!((messages(&whole), whole.maze.width(), whole.maze.height()), (vec![], 4, 4));
+    let first = |with: &str, index: usize, count: usize| {
+        let mut lines = LINES.to_vec();
+        let put: Vec<&str> = if with == "-" { vec![] } else { vec![with] };
+        lines.splice(index..index + count, put);
+        let file = read(&lines.join("\n"));
+        assert_eq!((file.maze.width(), file.maze.height()), (4, 4), "{lines:#?}");
+        assert_eq!(file.maze.goals().collect::<Vec<_>>(), [Cell::new(2, 2)], "{lines:#?}");
+        let same = file.maze == whole.maze;
+        (same, messages(&file).swap_remove(0))
+    };
+    let unknown = "its walls are unknown";
+    for (with, index, count, same, message) in [
+        // Lines that are put in.
+        ("", 4, 0, true, "line 5: found a blank line; expected a line of posts; skipped".into()),
+        ("# hi", 4, 0, true, "line 5: found \"# hi\"; expected a line of posts; skipped".into()),
+        ("", 5, 0, true, "line 6: found a blank line; expected a line of cells; skipped".into()),
+        // Lines that are damaged.
+        (
+            "x   x---x   o   o",
+            2,
+            1,
+            true,
+            "line 3: found \"x   x---x   o   o\"; expected a line of posts; read as one".into(),
+        ),
+        (
+            "?????????????????",
+            4,
+            1,
+            false,
+            "line 5: found \"?????????????????\"; expected a line of posts; read as one".into(),
+        ),
+        ("", 4, 1, false, format!("line 5: found a blank line; expected a line of posts; {unknown}")),
+        ("", 5, 1, false, format!("line 6: found a blank line; expected a line of cells; {unknown}")),
+        // Lines that are lost.
+        (
+            "-",
+            4,
+            1,
+            false,
+            format!("line 5: found \"|       |       |\"; expected a line of posts; {unknown}"),
+        ),
+        (
+            "-",
+            5,
+            1,
+            false,
+            format!("line 6: found \"o   o---o   o   o\"; expected a line of cells; {unknown}"),
+        ),
+        ("-", 8, 1, false, format!("line 9: found the end of the file; expected a line of posts; {unknown}")),
+        (
+            "-",
+            0,
+            1,
+            false,
+            format!("line 1: found \"|       |       |\"; expected a line of posts; {unknown}"),
+        ),
+        // The first and the last line.
+        ("x---o---o---o---o", 0, 1, true, "line 1: \"x\" instead of a post in column 1".into()),
+        (" ---o---o---o---o", 0, 1, true, "line 1: \" \" instead of a post in column 1".into()),
+        ("o---o---o---o--- ", 0, 1, true, "line 1: \" \" instead of a post in column 17".into()),
+        ("o---o---o---o", 0, 1, false, "line 1: \" \" instead of a post in column 17".into()),
+        ("o---o", 0, 1, false, "line 1: found \"o---o\"; expected a line of posts; read as one".into()),
+        ("o---o", 8, 1, false, "line 9: found \"o---o\"; expected a line of posts; read as one".into()),
+    ] {
+        assert_eq!(first(with, index, count), (same, message), "{with:?} for {count} at {index}");
+    }
+}
+
+#[test]
+fn a_second_picture_is_named() {
+    let whole = read(&LINES.join("\n"));
+    for between in ["\n", "\n\n", "\nAnother:\n", "\n\nAnother\n\n"] {
+        let file = read(&[LINES.join("\n"), LINES.join("\n")].join(between));
+        assert_eq!(file.maze, whole.maze, "{between:?}");
+        assert_eq!(file.defects.len(), 1, "{between:?}");
+        assert!(file.defects[0].message.contains("outside of the picture; expected remarks; ignored"));
+    }
+    let shown = format!("{}{}", "So a maze is drawn.\n".repeat(40), LINES.join("\n"));
+    assert_eq!(
+        parse(shown.as_bytes(), "x").unwrap_err().to_string(),
+        "x:41:1: found a picture of 9 lines among 40 of text; expected a file that is a maze"
+    );
+}
+
 #[test]
 fn unknown_walls_and_maps() {
     let file = read("+---+---+\n|   . G |\n+ . +   +\n| S |   |\n+---+---+\n");
@@ -152,12 +253,26 @@ fn lists_of_numbers() {
 }
 
 #[test]
+fn most_lines_say_that_they_are_of_cells() {
+    let list = "0 0 0 1 1 1\n0 1 1 0 0 1\n1 0 0 0 1 1\n1 1 1 1 0 0\n";
+    for first in ["# a comment", "X Y N E S W", "0 0 1 1", "0 0 1.0 0 1 1", "0 0 0 1 1 1 # c"] {
+        let file = read(&format!("{first}\n{list}"));
+        assert_eq!((file.format, file.maze.cell_count()), (MazeFormat::Num, 4));
+        assert_eq!(messages(&file)[0], format!("line 1: {first:?} is no line of a cell; ignored"));
+    }
+}
+
+#[test]
 fn mazes_of_eyesim() {
     let file = read(" _ _ _\n|  g| |\n| |_  |\n|S|_ _|\n720\n");
     assert_eq!((file.format, file.cell), (MazeFormat::EyeSim, Some(0.72)));
     assert_eq!((file.maze.start(), file.maze.heading()), (Cell::new(0, 0), Direction::North));
     assert_eq!(file.maze.goals().collect::<Vec<_>>(), [Cell::new(1, 2)]);
     assert_eq!(messages(&file), [""; 0]);
+    let twice = read(" _ _ _\n|s g| |\n| |_ r|\n|S|_ _|\n720\n");
+    assert_eq!(twice.maze.start(), Cell::new(0, 2));
+    let starts = ["a second start at cell 0,0; ignored", "a second start at cell 2,1; ignored"];
+    assert_eq!(messages(&twice), starts);
     let facing = read(" _ _\n|_ r|\n|_ _|\n");
     assert_eq!((facing.maze.start(), facing.maze.heading()), (Cell::new(1, 1), Direction::East));
     assert_eq!(messages(&facing), ["no goal is marked; the centre is taken"]);
@@ -188,6 +303,14 @@ fn what_is_no_maze_is_an_error() {
     for (bytes, expected) in [
         (&b""[..], "x:1:1: found no row of a maze; expected rows of `|`, `_`, letters and blanks"),
         (b"o---o\n", "x:1:1: found one line of posts; expected lines of cells and posts below it"),
+        (
+            b"# A maze?\n this is prose without one,\n and more of it\n",
+            "x:2:1: found \"this is prose without one,\"; expected rows of a maze of `|`, `_`, letters and blanks",
+        ),
+        (
+            b" a | table | of\n| words | and |\n",
+            "x:1:1: found \"a | table | of\"; expected rows of a maze of `|`, `_`, letters and blanks",
+        ),
         (b"PNG\0", "x:1:1: found bytes that are no text; expected a maze"),
     ] {
         assert_eq!(parse(bytes, "x").unwrap_err().to_string(), expected);
