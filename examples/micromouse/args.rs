@@ -24,7 +24,8 @@ JSON fields:
   defects                     what is wrong with the file and the maze, in words
   reachable_cells             cells that a way leads to from the start, itself included
   shortest_steps              steps of the shortest route from start to goal; -1 when there is none
-  min_turns                   fewest turns of all routes that short, for a robot that faces the start heading; -1 when none
+  min_turns                   fewest turns of all routes that short; -1 when there is none. Turns are counted for a robot that faces
+                              north at the start, whatever start_heading is
   fewest_turns                fewest turns of any route; -1 when there is none
   fewest_turns_steps          steps of the shortest of those routes; -1 when there is none
   route                       the route of the fewest steps and then turns, a letter n, e, s or w for each step

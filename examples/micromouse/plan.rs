@@ -1,5 +1,7 @@
 use roverlab::maze::files::MazeFile;
-use roverlab::maze::{Cell, Maze, Preference, Route, Unknown, distances_from_start, shortest_route};
+use roverlab::maze::{
+    Cell, Direction, Maze, Preference, Route, Unknown, distances_from_start, shortest_route,
+};
 
 use super::{Args, picture, scene};
 use crate::common::{Failure, Outcome, Report};
@@ -8,7 +10,10 @@ use crate::driving::drawn;
 /// Plans the way through a maze.
 pub(crate) fn plan(args: &Args) -> Result<Report, Failure> {
     let file = scene::maze(args)?;
-    let best = |preference| shortest_route(&file.maze, Unknown::Closed, preference);
+    // Turns are counted for a robot that faces north, as the answers that are compared are.
+    let mut maze = file.maze.clone();
+    maze.set_start(maze.start(), Direction::North);
+    let best = |preference| shortest_route(&maze, Unknown::Closed, preference);
     let (short, straight) = (best(Preference::Steps), best(Preference::Turns));
     let outcome = Outcome::verdict(if short.is_some() { "planned" } else { "unreachable" });
     for defect in &file.defects {

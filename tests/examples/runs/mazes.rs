@@ -36,6 +36,16 @@ fn the_examples_own_maze_is_planned() {
 }
 
 #[test]
+fn turns_are_counted_from_north() {
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("heading_east.maz");
+    fs::write(&file, " _ _ _\n|r   G|\n|_ _ _|\n").unwrap();
+    let (status, report, err) = run(&["--plan", "--maze", file.to_str().unwrap()]);
+    assert_eq!((status, err.as_str()), (0, ""), "{report}");
+    assert_eq!((&report["start_heading"], &report["shortest_steps"]), (&"east".into(), &2.into()));
+    assert_eq!((&report["min_turns"], &report["fewest_turns"]), (&1.into(), &1.into()));
+}
+
+#[test]
 fn the_examples_own_maze_is_explored_and_raced() {
     for noise in ["0", "1"] {
         let (status, report, err) = run(&["--explore", "--noise", noise, "--seed", "3"]);
@@ -57,6 +67,11 @@ fn a_campaign_tells_of_every_maze() {
     let all = report["rows"].as_array().unwrap().last().unwrap();
     assert_eq!((&all["size"], &all["runs"], &all["proved"]), (&"all".into(), &6.into(), &6.into()));
     assert_eq!(report["failures"].as_array().map(Vec::len), Some(0));
+    // What merely shows a maze, and prose, is no maze.
+    if let Some(folder) = published() {
+        let text = folder.join("mms/FORMATS-from-README.md");
+        assert!(files::load(&text).is_err(), "{}", text.display());
+    }
     let empty = Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_mazes");
     fs::create_dir_all(&empty).unwrap();
     let (status, _, err) = run(&["--campaign", empty.to_str().unwrap()]);
