@@ -54,9 +54,9 @@ pub(super) fn shown(bytes: &[u8]) -> String {
 /// Looks for a picture.
 pub(super) fn find<'a>(lines: &[&'a str]) -> Option<Layout<'a>> {
     let votes: Vec<Frame> = lines.iter().filter_map(|line| vote(line)).collect();
-    let indent = most(votes.iter().map(|vote| vote.indent))?;
+    let indent = most(&votes.iter().map(|vote| vote.indent))?;
     let votes = votes.iter().filter(|vote| vote.indent == indent);
-    let width = most(votes.clone().map(|vote| vote.width))?;
+    let width = most(&votes.clone().map(|vote| vote.width))?;
     let frame = *votes.clone().find(|vote| vote.width == width)?;
     let lines = lines.iter().map(|line| frame.cut(line)).collect();
     let mut finder = Finder { lines, frame, next: 0, found: Vec::new(), defects: Vec::new() };
@@ -83,7 +83,7 @@ fn vote(line: &str) -> Option<Frame> {
 }
 
 /// The value that comes most often, the first of those.
-fn most(values: impl Iterator<Item = usize> + Clone) -> Option<usize> {
+fn most(values: &(impl Iterator<Item = usize> + Clone)) -> Option<usize> {
     let count = |value| values.clone().filter(|&other| other == value).count();
     let counted = values.clone().map(|value| (count(value), value));
     counted.reduce(|best, other| if other.0 > best.0 { other } else { best }).map(|(_, value)| value)
@@ -155,7 +155,7 @@ struct Finder<'a> {
     defects: Vec<Defect>,
 }
 
-impl<'a> Finder<'a> {
+impl Finder<'_> {
     fn kind(&self, index: usize) -> Option<Kind> {
         self.lines.get(index).map(|line| self.frame.kind(line))
     }
@@ -183,7 +183,7 @@ impl<'a> Finder<'a> {
     /// Takes lines of posts and of cells by turns until neither follows.
     fn follow(&mut self) {
         loop {
-            let wanted = if self.found.len() % 2 == 0 { Kind::Posts } else { Kind::Cells };
+            let wanted = if self.found.len().is_multiple_of(2) { Kind::Posts } else { Kind::Cells };
             let here = self.kind(self.next);
             let then = self.kind(self.next + 1);
             if here == Some(wanted) {
