@@ -258,25 +258,6 @@ fn what_one_program_does_wrong_harms_no_other() {
 }
 
 #[test]
-fn limits_end_any_program() {
-    if !compiler() {
-        return;
-    }
-    let file = |name: &str| programs().join(name).display().to_string();
-    let endless = report(&["--time-limit", "5", &file("endless.c")]);
-    assert_eq!((&endless["outcome"], &endless["lcd_text"]), (&"timed_out".into(), &"busy".into()));
-    assert_eq!(endless["sim_time_s"], 5.0);
-    let hang = report(&["--real-limit", "0.5", &file("hang.c")]);
-    assert_eq!((&hang["outcome"], &hang["lcd_text"]), (&"timed_out".into(), &"hanging".into()));
-    let crash = report(&[&file("crash.c")]);
-    assert_eq!(
-        (&crash["outcome"], &crash["exit"], &crash["lcd_text"]),
-        (&"crashed".into(), &Value::Null, &"before".into())
-    );
-    assert!((crash["path_length_mm"].as_f64().unwrap() - 100.0).abs() < 2.0, "{crash}");
-}
-
-#[test]
 fn runs_are_recorded_and_drawn() {
     if !compiler() {
         return;
@@ -432,18 +413,6 @@ fn scripts_run_without_files_that_they_name() {
     );
     let report = report(&[script.to_str().unwrap()]);
     assert_eq!((&report["outcome"], &report["lcd_text"]), (&"finished".into(), &"done".into()), "{report}");
-}
-
-#[test]
-fn a_program_that_fails_is_quoted() {
-    if !python() {
-        return;
-    }
-    let folder = Folder::new("quoted");
-    let file = folder.write("fails.py", "import no_such_module\n");
-    let report = report(&[file.to_str().unwrap()]);
-    let error = report["error"].as_str().unwrap();
-    assert!(report["outcome"] == "failed" && error.contains("no_such_module"), "{report}");
 }
 
 #[test]

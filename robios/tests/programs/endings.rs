@@ -1,10 +1,10 @@
-//! How programs end: with last calls, with time that is over, with somebody whom they leave behind.
+//! How programs end: with last calls, by limits, by faults, and with somebody whom they leave behind.
 
 use std::process::Command;
 
 use serde_json::Value;
 
-use super::{Folder, compiler, python, report};
+use super::{Folder, compiler, programs, python, report};
 
 /// Runs a program with this text, and returns what is told of it.
 fn told(name: &str, text: &str, options: &[&str]) -> Value {
@@ -64,4 +64,35 @@ fn random_numbers_come_from_the_seed() {
     let number = |name: &str, seed: &str| told(name, text, &["--seed", seed])["lcd_text"].clone();
     assert_eq!(number("first.py", "1"), number("second.py", "1"));
     assert_ne!(number("first.py", "1"), number("second.py", "2"));
+}
+
+#[test]
+fn limits_end_any_program() {
+    if !compiler() {
+        return;
+    }
+    let file = |name: &str| programs().join(name).display().to_string();
+    let endless = report(&["--time-limit", "5", &file("endless.c")]);
+    assert_eq!((&endless["outcome"], &endless["lcd_text"]), (&"timed_out".into(), &"busy".into()));
+    assert_eq!(endless["sim_time_s"], 5.0);
+    let hang = report(&["--real-limit", "0.5", &file("hang.c")]);
+    assert_eq!((&hang["outcome"], &hang["lcd_text"]), (&"timed_out".into(), &"hanging".into()));
+    let crash = report(&[&file("crash.c")]);
+    assert_eq!(
+        (&crash["outcome"], &crash["exit"], &crash["lcd_text"]),
+        (&"crashed".into(), &Value::Null, &"before".into())
+    );
+    assert!((crash["path_length_mm"].as_f64().unwrap() - 100.0).abs() < 2.0, "{crash}");
+}
+
+#[test]
+fn a_program_that_fails_is_quoted() {
+    if !python() {
+        return;
+    }
+    let folder = Folder::new("quoted");
+    let file = folder.write("fails.py", "import no_such_module\n");
+    let report = report(&[file.to_str().unwrap()]);
+    let error = report["error"].as_str().unwrap();
+    assert!(report["outcome"] == "failed" && error.contains("no_such_module"), "{report}");
 }
