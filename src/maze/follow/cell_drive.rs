@@ -1,5 +1,6 @@
+use super::place::PlaceInCell;
 use crate::drive::{Pid, PidParameters};
-use crate::geometry::{Pose, Twist, angle_difference, math};
+use crate::geometry::{Pose, Twist};
 use crate::io::error::require_positive;
 use crate::io::{DistanceSensors, Psd, Result};
 use crate::maze::{Rig, Scale};
@@ -9,10 +10,14 @@ use crate::maze::{Rig, Scale};
 pub struct CellDriveParameters {
     /// Metres from the middle of a cell to that of the next.
     pub cell: f64,
+    /// How thick the walls are, in metres.
+    pub wall: f64,
     /// Metres per second.
     pub speed: f64,
     /// What a side sensor reads in the middle between two walls, in metres.
     pub aside: f64,
+    /// Metres that the side sensors sit before the middle of the robot.
+    pub sensors_ahead: f64,
     /// What the front sensor reads in the middle of a cell with a wall ahead, in metres.
     pub ahead: f64,
     /// Metres that the robot goes on once it is told to stop.
@@ -34,8 +39,10 @@ impl CellDriveParameters {
         let gain = 1000.0_f64.to_radians() * Scale::DOUBLED.cell / scale.cell;
         Self {
             cell: scale.cell,
+            wall: scale.wall,
             speed,
             aside: free - left.mount.y.abs(),
+            sensors_ahead: left.mount.x,
             ahead: free - front.mount.x,
             coast: speed * rig.lag,
             reading_error: None,
@@ -72,12 +79,17 @@ impl CellDriveParameters {
 /// Which walls there are the readings tell: one that is far from what it would be in the middle comes from no wall of this
 /// cell. Both walls, the left one, the right one or none are followed. The way ends after the length of a cell by odometry,
 /// or by the wall ahead where there is one.
+///
+/// With a [`reading_error`](CellDriveParameters::reading_error), the place in the cell is kept from cell to cell, and what a
+/// slanted beam meets at a side opening is not taken for a wall beside the robot: readings count away from posts, and where
+/// they agree with what is known.
 #[derive(Debug, Clone)]
 pub struct CellDrive {
     parameters: CellDriveParameters,
     pid: Pid,
-    start: Option<Pose>,
-    aside: Aside,
+    place: Option<PlaceInCell>,
+    /// The readings of the last step on the way.
+    last: Option<Readings>,
 }
 
 /// Readings of the sensors at the front, on the left and on the right, in metres.
@@ -88,49 +100,63 @@ pub(super) fn read<R: DistanceSensors + ?Sized>(robot: &mut R) -> Result<Reading
 }
 
 impl CellDrive {
+    /// Of a cell, how far from the middle of a post a side sensor has to be to be believed: half of a post, and what
+    /// a beam may slant.
+    const NEAR_POST: f64 = 0.16;
+    /// Of a cell, how well the end of a wall tells where the robot is.
+    const EDGE: f64 = 0.03;
+
     /// A controller before its first cell. Fails with the name of the parameter that is out of range.
     pub fn new(parameters: CellDriveParameters) -> Result<Self> {
         parameters.validate()?;
-        Ok(Self { pid: Pid::new(parameters.steering)?, parameters, start: None, aside: Aside::default() })
+        Ok(Self { pid: Pid::new(parameters.steering)?, parameters, place: None, last: None })
     }
 
-    /// Begins with a new cell.
+    /// Begins with a new cell, after a turn on the spot or without one.
     pub fn begin(&mut self) {
-        self.start = None;
+        if let Some(place) = &mut self.place {
+            place.along -= self.parameters.cell;
+        }
+        self.last = None;
         self.pid.reset();
     }
 
     /// Metres that the robot is left of the middle; `None` where no wall is beside it.
-    pub fn off_middle(&self, [_, left, right]: [f64; 3]) -> Option<f64> {
+    pub fn off_middle(&self, readings: [f64; 3]) -> Option<f64> {
+        middle(self.by_walls(readings))
+    }
+
+    /// The same by the left and by the right wall.
+    fn by_walls(&self, [_, left, right]: [f64; 3]) -> [Option<f64>; 2] {
         let CellDriveParameters { aside, cell, .. } = self.parameters;
         // As in the book: 100 to 180 mm where 125 are to be read in cells of 360 mm.
-        let wall = |reading: &f64| (-0.07 * cell..0.16 * cell).contains(&(reading - aside));
-        match (Some(left).filter(wall), Some(right).filter(wall)) {
-            (Some(left), Some(right)) => Some(0.5 * (right - left)),
-            (Some(left), None) => Some(aside - left),
-            (None, Some(right)) => Some(right - aside),
-            (None, None) => None,
-        }
+        let wall = |reading: f64| (-0.07 * cell..0.16 * cell).contains(&(reading - aside));
+        [wall(left).then(|| aside - left), wall(right).then(|| right - aside)]
     }
 
     /// The speed for a pose by odometry and three readings (front, left, right), `seconds` after the last step; `None` once
     /// the robot is there.
     pub fn step(&mut self, pose: Pose, readings: [f64; 3], seconds: f64) -> Result<Option<Twist>> {
-        let CellDriveParameters { cell, speed, ahead, coast, .. } = self.parameters;
-        let start = *self.start.get_or_insert_with(|| {
-            self.aside = Aside::at(pose, cell);
-            pose
-        });
-        let driven = start.distance_to(pose.position());
+        let CellDriveParameters { cell, speed, ahead, coast, reading_error, .. } = self.parameters;
+        let mut place = self.place.unwrap_or_else(|| PlaceInCell::at(pose, cell));
+        place.predict(pose);
         let front = readings[0];
         // A wall ahead tells better than odometry, once it can be that of the next cell alone.
-        let by_wall = driven > 0.5 * cell && front < ahead + 0.5 * cell;
-        let there =
-            if by_wall { front <= ahead + coast || driven > 1.25 * cell } else { driven + coast >= cell };
+        let by_wall = place.along > 0.5 * cell && front < ahead + 0.5 * cell;
+        let far = place.along > 1.25 * cell;
+        if by_wall {
+            place.correct_along(cell + ahead - front, reading_error.unwrap_or(0.01 * cell));
+        }
+        let off = match reading_error {
+            Some(error) => Some(self.smooth(&mut place, readings, error)),
+            None => self.off_middle(readings),
+        };
+        self.place = Some(place);
+        let there = if by_wall { front <= ahead + coast || far } else { place.along + coast >= cell };
         if there {
             return Ok(None);
         }
-        let turn = if let Some(off) = self.smooth(pose, self.off_middle(readings)) {
+        let turn = if let Some(off) = off {
             self.pid.step(0.0, off, seconds)?
         } else {
             self.pid.reset();
@@ -140,58 +166,51 @@ impl CellDrive {
     }
 
     /// How far off the middle to take the robot to be.
-    fn smooth(&mut self, pose: Pose, measured: Option<f64>) -> Option<f64> {
-        let Some(error) = self.parameters.reading_error else { return measured };
-        self.aside.predict(pose);
-        if let Some(off) = measured {
-            self.aside.correct(off, error);
+    fn smooth(&mut self, place: &mut PlaceInCell, readings: [f64; 3], error: f64) -> f64 {
+        let CellDriveParameters { cell, sensors_ahead, .. } = self.parameters;
+        let last = self.last.replace(readings).unwrap_or(readings);
+        for (sensor, side) in [(1, 1.0), (2, -1.0)] {
+            if let Some(missing) = self.edge(place, [last[sensor], readings[sensor]], side) {
+                place.correct_along(place.along + missing, Self::EDGE * cell);
+            }
         }
-        Some(self.aside.off)
+        let from_post = ((place.along + sensors_ahead) / cell).rem_euclid(1.0) - 0.5;
+        if from_post.abs() < Self::NEAR_POST {
+            return place.off;
+        }
+        // A sensor before the middle is moved aside as the robot turns.
+        let seen = self.by_walls(readings).map(|off| off.map(|off| off - sensors_ahead * place.turn));
+        let believed = seen.map(|off| off.filter(|&off| place.believes(off, error)));
+        if let Some(off) = middle(believed) {
+            place.correct_off(off, error);
+        } else if middle(seen).is_some() {
+            place.doubt(0.005 * cell);
+        }
+        place.off
+    }
+
+    /// Metres by which the robot is farther along than it takes itself to be, where a side sensor passes the end of a wall:
+    /// walls end at either face of a post. `side` is 1 on the left and -1 on the right.
+    fn edge(&self, place: &PlaceInCell, [before, now]: [f64; 2], side: f64) -> Option<f64> {
+        let CellDriveParameters { cell, wall, aside, sensors_ahead, .. } = self.parameters;
+        let beside = |reading: f64| (reading - aside).abs() < 0.12 * cell;
+        let open = |reading: f64| reading > aside + 0.3 * cell;
+        let face = match (beside(before) && open(now), open(before) && beside(now)) {
+            (true, _) => 0.5 * wall,
+            (_, true) => -0.5 * wall,
+            _ => return None,
+        };
+        // A beam slants as the robot is turned.
+        let met = place.along + sensors_ahead - side * 0.5 * (cell - wall) * place.turn;
+        let past_post = ((met / cell).rem_euclid(1.0) - 0.5) * cell;
+        Some(face - past_post).filter(|missing| missing.abs() < 0.25 * cell)
     }
 }
 
-/// Where a robot is aside of the middle and how it stands to it, by a Kalman filter from odometry and what the walls say.
-#[derive(Debug, Clone, Copy, Default)]
-struct Aside {
-    /// Metres to the left.
-    off: f64,
-    /// Radians to the left.
-    turn: f64,
-    /// Variances of both, and what they have in common.
-    spread: [f64; 2],
-    common: f64,
-    odometry: Pose,
-}
-
-impl Aside {
-    /// A robot that has turned on the spot, more or less in the middle of a cell.
-    fn at(odometry: Pose, cell: f64) -> Self {
-        const OFF: f64 = 0.08;
-        const TURN: f64 = 0.06;
-        Self { spread: [OFF * OFF * cell * cell, TURN * TURN], odometry, ..Self::default() }
-    }
-
-    fn predict(&mut self, odometry: Pose) {
-        /// How much of a turn and of a way odometry may miss.
-        const MISSED: f64 = 0.02;
-        let way = odometry.distance_to(self.odometry.position());
-        let turned = angle_difference(odometry.heading, self.odometry.heading);
-        self.odometry = odometry;
-        self.off += way * math::sin(self.turn + 0.5 * turned);
-        self.turn += turned;
-        let [off, turn] = self.spread;
-        self.spread[0] = off + 2.0 * way * self.common + way * way * turn;
-        self.common += way * turn;
-        self.spread[1] = turn + MISSED * MISSED * (turned.abs() + way);
-    }
-
-    fn correct(&mut self, off: f64, error: f64) {
-        let [own, turn] = self.spread;
-        let gains = [own, self.common].map(|spread| spread / (own + error * error));
-        let innovation = off - self.off;
-        self.off += gains[0] * innovation;
-        self.turn += gains[1] * innovation;
-        self.spread = [own * (1.0 - gains[0]), turn - gains[1] * self.common];
-        self.common *= 1.0 - gains[0];
+/// What two walls say, if both or one of them says anything.
+fn middle(by_walls: [Option<f64>; 2]) -> Option<f64> {
+    match by_walls {
+        [Some(left), Some(right)] => Some(0.5 * (left + right)),
+        [one, other] => one.or(other),
     }
 }

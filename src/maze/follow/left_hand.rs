@@ -33,6 +33,12 @@ pub struct LeftHandParameters {
     pub period: f64,
 }
 
+/// The same on the way.
+enum Way {
+    OpenLoop { length: f64, speed: f64 },
+    Controlled(Box<CellDrive>),
+}
+
 impl LeftHandParameters {
     /// The book's program, open loop: 400 mm, 45 degrees and 180 mm a second, cells of 360 mm.
     pub fn as_printed() -> Self {
@@ -115,6 +121,10 @@ impl LeftHand {
         mut watch: impl FnMut(),
     ) -> Result<LeftHandOutcome> {
         let mut at = (0, 0);
+        let mut way = match self.parameters.straight {
+            Straight::Controlled(drive) => Way::Controlled(Box::new(CellDrive::new(drive)?)),
+            Straight::OpenLoop { length, speed } => Way::OpenLoop { length, speed },
+        };
         loop {
             let quarters = self.choose(read(robot)?);
             if quarters != 0 {
@@ -122,12 +132,12 @@ impl LeftHand {
                 self.await_manoeuvre(robot, &mut watch)?;
                 heading = heading.turned_right((4 - quarters) as usize % 4);
             }
-            match self.parameters.straight {
-                Straight::OpenLoop { length, speed } => {
+            match &mut way {
+                Way::Controlled(controller) => self.drive(robot, controller, &mut watch)?,
+                &mut Way::OpenLoop { length, speed } => {
                     robot.straight(length, speed)?;
                     self.await_manoeuvre(robot, &mut watch)?;
                 }
-                Straight::Controlled(drive) => self.drive(robot, drive, &mut watch)?,
             }
             if robot.is_stalled()? {
                 robot.set_speed(Twist::STOP)?;
@@ -156,10 +166,9 @@ impl LeftHand {
     fn drive<R: Clock + Drive + DistanceSensors + ?Sized>(
         &self,
         robot: &mut R,
-        drive: CellDriveParameters,
+        controller: &mut CellDrive,
         watch: &mut impl FnMut(),
     ) -> Result<()> {
-        let mut controller = CellDrive::new(drive)?;
         let period = self.parameters.period;
         loop {
             let pose: Pose = robot.pose()?;
@@ -181,6 +190,7 @@ impl LeftHand {
             robot.wait(period)?;
             watch();
         }
+        controller.begin();
         Ok(())
     }
 }

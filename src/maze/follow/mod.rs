@@ -3,6 +3,7 @@
 mod cell_drive;
 mod left_hand;
 mod lidar_left;
+mod place;
 #[cfg(test)]
 mod tests;
 

@@ -89,6 +89,49 @@ fn controlled_it_goes_round_with_them() {
     }
 }
 
+/// A corridor with openings on both sides, between stubs of walls.
+fn comb() -> Maze {
+    let mut maze = Maze::open(9, 3).unwrap();
+    maze.set_goals([]);
+    for x in 0..8 {
+        for y in [0, 2] {
+            maze.set_wall(Cell::new(x, y), Direction::East, Wall::Present);
+        }
+    }
+    maze
+}
+
+#[test]
+fn ends_of_walls_at_side_openings_do_not_lead_astray() {
+    let (ideal, real) = (NoiseModel::ideal(), NoiseModel::real());
+    for (spec, scale, noises) in
+        [(RobotSpec::s4(), Scale::DOUBLED, &[ideal, real][..]), (mouse(), Scale::MICROMOUSE, &[ideal])]
+    {
+        for &noise in noises {
+            let rig = Rig::new(&spec, NO_ERRORS, noise.range).unwrap();
+            let drive = CellDriveParameters::pid(&rig, scale, 0.5 * scale.cell);
+            let parameters = LeftHandParameters::controlled(drive);
+            for seed in 0..10 {
+                let end = round(&comb(), &spec, scale, parameters, noise, seed);
+                assert_eq!(end, GOOD, "{} {noise:?} {seed}", spec.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_place_in_a_cell_turns_with_the_robot() {
+    let mut place = place::PlaceInCell::at(Pose::new(0.0, 0.0, 0.0), 0.36);
+    place.predict(Pose::new(0.03, 0.01, 0.02));
+    assert!((place.along - 0.03).abs() < 1e-12 && (place.off - 0.01).abs() < 1e-12);
+    // Facing left, what was along is to the right.
+    place.predict(Pose::new(0.03, 0.01, 0.02 + std::f64::consts::FRAC_PI_2));
+    assert!((place.along - 0.01).abs() < 1e-12 && (place.off + 0.03).abs() < 1e-12);
+    assert!((place.turn - 0.02).abs() < 1e-12);
+    place.predict(Pose::new(0.03, 0.01, 0.02 - std::f64::consts::FRAC_PI_2));
+    assert!((place.along + 0.01).abs() < 1e-12 && (place.off - 0.03).abs() < 1e-12);
+}
+
 #[test]
 fn of_a_hundred_mazes_the_controlled_rule_fails_in_none() {
     let (spec, scale) = (RobotSpec::s4(), Scale::DOUBLED);

@@ -36,6 +36,20 @@ fn the_left_hand_finds_the_goal_when_controlled() {
 }
 
 #[test]
+fn the_left_hand_touches_no_wall_of_published_mazes() {
+    let Some(data) = std::env::var_os("ROVERLAB_DATA") else { return };
+    let folder = std::path::Path::new(&data).join("micromouse/kerikun11/data");
+    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|file| file.file_name().unwrap().to_str().unwrap().starts_with("16"));
+    files.sort();
+    assert_eq!(files.len(), 45);
+    for (file, noise) in files.iter().flat_map(|file| [(file, "0"), (file, "1")]) {
+        let (status, report, _) = run("maze_left", &["--world", file.to_str().unwrap(), "--noise", noise]);
+        assert_eq!((status, &report["collisions"]), (0, &0.into()), "{} {noise}: {report}", file.display());
+    }
+}
+
+#[test]
 fn worlds_of_eyesim_are_driven() {
     for example in ["maze_left", "maze_lidar", "maze_explore"] {
         let (status, report, err) = run(example, &["--world", "tests/data/mazes/tiny.maz"]);

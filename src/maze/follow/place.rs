@@ -1,0 +1,100 @@
+use std::f64::consts::FRAC_PI_2;
+
+use crate::geometry::{Pose, angle_difference, math};
+
+/// Where a robot is in a cell and how it stands, by a Kalman filter from odometry and what the walls say.
+///
+/// It goes on from cell to cell: what was learnt in one with walls leads through those without.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PlaceInCell {
+    /// Metres past the middle of the cell that it left.
+    pub(super) along: f64,
+    /// Metres to the left of the middle.
+    pub(super) off: f64,
+    /// Radians to the left.
+    pub(super) turn: f64,
+    /// Variances of the three, and what the last two have in common.
+    spread: [f64; 3],
+    common: f64,
+    odometry: Pose,
+}
+
+impl PlaceInCell {
+    /// A robot more or less in the middle of a cell.
+    pub(super) fn at(odometry: Pose, cell: f64) -> Self {
+        const OFF: f64 = 0.05;
+        const TURN: f64 = 0.06;
+        let spread = [OFF * OFF * cell * cell, OFF * OFF * cell * cell, TURN * TURN];
+        Self { along: 0.0, off: 0.0, turn: 0.0, spread, common: 0.0, odometry }
+    }
+
+    /// Follows odometry. Quarter turns on the spot turn the cell with the robot.
+    pub(super) fn predict(&mut self, odometry: Pose) {
+        /// How much odometry may miss of a way, and of a turn.
+        const MISSED: f64 = 0.02;
+        const MISSED_OF_TURN: f64 = 0.04;
+        let moved = self.odometry.to_local(odometry.position());
+        let way = moved.coords.norm();
+        let turned = angle_difference(odometry.heading, self.odometry.heading);
+        let (sin, cos) = (math::sin(self.turn), math::cos(self.turn));
+        self.odometry = odometry;
+        self.along += cos * moved.x - sin * moved.y;
+        self.off += sin * moved.x + cos * moved.y;
+        let [along, off, turn] = self.spread;
+        let missed = MISSED * MISSED;
+        self.spread = [
+            along + missed * way * way.max(0.01),
+            off + 2.0 * way * self.common + way * way * turn,
+            turn + missed * way + MISSED_OF_TURN * MISSED_OF_TURN * turned.abs(),
+        ];
+        self.common += way * turn;
+        let quarters = (turned / FRAC_PI_2).round();
+        self.turn += turned - quarters * FRAC_PI_2;
+        self.turn_cell(quarters as i32);
+    }
+
+    /// Turns the cell to the left.
+    fn turn_cell(&mut self, quarters: i32) {
+        (self.along, self.off) = match quarters.rem_euclid(4) {
+            1 => (self.off, -self.along),
+            2 => (-self.along, -self.off),
+            3 => (-self.off, self.along),
+            _ => return,
+        };
+        if quarters % 2 != 0 {
+            self.spread.swap(0, 1);
+        }
+        self.common = 0.0;
+    }
+
+    /// Takes a measurement of how far along the robot is.
+    pub(super) fn correct_along(&mut self, along: f64, error: f64) {
+        let gain = self.spread[0] / (self.spread[0] + error * error);
+        self.along += gain * (along - self.along);
+        self.spread[0] *= 1.0 - gain;
+    }
+
+    /// Whether a measurement of how far off the middle the robot is can be one.
+    pub(super) fn believes(&self, off: f64, error: f64) -> bool {
+        const SIGMAS: f64 = 3.5;
+        let innovation = off - self.off;
+        innovation * innovation < SIGMAS * SIGMAS * (self.spread[1] + error * error)
+    }
+
+    /// Believes itself a little less, as measurements contradict it.
+    pub(super) fn doubt(&mut self, off: f64) {
+        self.spread[1] += off * off;
+    }
+
+    /// Takes a measurement of how far off the middle the robot is.
+    pub(super) fn correct_off(&mut self, off: f64, error: f64) {
+        let [_, own, turn] = self.spread;
+        let gains = [own, self.common].map(|spread| spread / (own + error * error));
+        let innovation = off - self.off;
+        self.off += gains[0] * innovation;
+        self.turn += gains[1] * innovation;
+        self.spread[1] = own * (1.0 - gains[0]);
+        self.spread[2] = turn - gains[1] * self.common;
+        self.common *= 1.0 - gains[0];
+    }
+}
