@@ -1,6 +1,9 @@
+use std::collections::BTreeMap;
+
 use roverlab::geometry::{Point, Pose};
 use roverlab::maze::{LidarLeft, LidarLeftParameters};
 use roverlab::picture::Style;
+use roverlab::world::Wall;
 
 use super::place::Place;
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres};
@@ -70,12 +73,8 @@ pub(crate) fn lidar(args: &LidarArgs) -> Result<Report, Failure> {
         picture.points(map.iter().copied(), Style::lidar().labelled("map by odometry"));
         picture
     });
-    let walls = &scene.world.walls;
-    let off = |point: &Point| {
-        let distances = walls.iter().map(|wall| wall.line.distance_to(*point) - 0.5 * wall.thickness);
-        distances.fold(f64::INFINITY, f64::min).max(0.0)
-    };
-    let error = map.iter().map(off).sum::<f64>() / map.len().max(1) as f64;
+    let walls = NearWalls::new(&scene.world.walls, scale.cell);
+    let error = map.iter().map(|&point| walls.distance(point)).sum::<f64>() / map.len().max(1) as f64;
     let report = run.report(|()| Outcome::verdict(if at_goal { "goal" } else { "returned" }));
     let lost = run.truth.pose.distance_to(run.odometry.position());
     let report = report
@@ -87,4 +86,60 @@ pub(crate) fn lidar(args: &LidarArgs) -> Result<Report, Failure> {
         .field("odometry_error_mm", millimetres(lost))
         .field("picture", picture);
     Ok(Report { trouble, ..report })
+}
+
+/// Walls by the squares of a grid that they come near, as a map has millions of points.
+struct NearWalls<'a> {
+    walls: &'a [Wall],
+    side: f64,
+    /// By column and row, the walls that are less than a side away from anywhere in the square.
+    squares: BTreeMap<(i64, i64), Vec<&'a Wall>>,
+}
+
+impl<'a> NearWalls<'a> {
+    fn new(walls: &'a [Wall], side: f64) -> Self {
+        let mut squares: BTreeMap<_, Vec<&Wall>> = BTreeMap::new();
+        for wall in walls {
+            let (a, b) = (wall.line.a, wall.line.b);
+            let reach = side + 0.5 * wall.thickness;
+            let column = |x: f64| (x / side).floor() as i64;
+            for x in column(a.x.min(b.x) - reach)..=column(a.x.max(b.x) + reach) {
+                for y in column(a.y.min(b.y) - reach)..=column(a.y.max(b.y) + reach) {
+                    squares.entry((x, y)).or_default().push(wall);
+                }
+            }
+        }
+        Self { walls, side, squares }
+    }
+
+    /// Metres from a point to the nearest wall; 0 within one.
+    fn distance(&self, point: Point) -> f64 {
+        let square = ((point.x / self.side).floor() as i64, (point.y / self.side).floor() as i64);
+        let near = self.squares.get(&square).map_or(&[][..], Vec::as_slice);
+        let distance = nearest(near.iter().copied(), point);
+        // Farther than a side, another wall may be nearer.
+        if distance <= self.side { distance } else { nearest(self.walls.iter(), point) }
+    }
+}
+
+fn nearest<'a>(walls: impl Iterator<Item = &'a Wall>, point: Point) -> f64 {
+    let distances = walls.map(|wall| wall.line.distance_to(point) - 0.5 * wall.thickness);
+    distances.fold(f64::INFINITY, f64::min).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use roverlab::maze::{Maze, Scale};
+
+    use super::*;
+
+    #[test]
+    fn near_walls_are_as_near_as_all() {
+        let world = Scale::DOUBLED.world(&Maze::open(3, 2).unwrap());
+        let walls = NearWalls::new(&world.walls, Scale::DOUBLED.cell);
+        for (x, y) in (-20..40).flat_map(|x| (-20..40).map(move |y| (x, y))) {
+            let point = Point::new(0.05 * f64::from(x), 0.05 * f64::from(y));
+            assert_eq!(walls.distance(point), nearest(world.walls.iter(), point), "{point}");
+        }
+    }
 }

@@ -85,7 +85,7 @@ impl Place {
         for goal in self.maze().goals() {
             let centre = self.scale.centre(goal);
             let corners = [(-half, -half), (half, -half), (half, half), (-half, half)];
-            let style = Style::new(SERIES[2]).filled(0.25).opacity(0.0).labelled("goal");
+            let style = Style::new(SERIES[2]).filled(0.25).width(0.5).labelled("goal");
             picture.polygon(corners.map(|(x, y)| centre + Vector::new(x, y)), style);
         }
         picture.mark(Mark::Start, self.scale.centre(self.maze().start()));

@@ -156,6 +156,8 @@ fn judged(args: &Args, name: &str, file: &MazeFile, seed: u64, run: &Run<Told>) 
         contacts: run.truth.contacts,
         wrong_walls: told.map_or(0, |told| {
             let sides = truth.cells().flat_map(|cell| Direction::ALL.map(|side| (cell, side)));
+            // A robot takes the outer wall for granted; gaps in it are defects of the file.
+            let sides = sides.filter(|&(cell, side)| truth.neighbour(cell, side).is_some());
             let wrong = |&(cell, side): &(_, _)| {
                 let known = told.known.wall(cell, side);
                 // An unknown wall of the file stands in the world.

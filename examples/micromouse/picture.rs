@@ -11,7 +11,7 @@ pub(crate) fn of_maze(maze: &Maze, scale: Scale) -> Picture {
     for goal in maze.goals() {
         let centre = scale.centre(goal);
         let corners = [(-half, -half), (half, -half), (half, half), (-half, half)];
-        let style = Style::new(SERIES[2]).filled(0.25).opacity(0.0).labelled("goal");
+        let style = Style::new(SERIES[2]).filled(0.25).width(0.5).labelled("goal");
         picture.polygon(corners.map(|(x, y)| centre + Vector::new(x, y)), style);
     }
     picture.mark(Mark::Start, scale.centre(maze.start()));

@@ -102,7 +102,8 @@ impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
         let at = (maze.start(), maze.heading());
         let odometry = robot.pose()?;
         let localiser = MazeLocaliser::new(rig.clone(), scale, scale.pose(at.0, at.1), odometry);
-        let visited = vec![false; maze.cell_count()];
+        let mut visited = vec![false; maze.cell_count()];
+        visited[maze.index(at.0)] = true;
         Ok(Self { robot, parameters, rig, scale, localiser, maze, at, visited, explorer, racer })
     }
 

@@ -79,6 +79,20 @@ fn a_campaign_tells_of_every_maze() {
     assert_eq!(err, format!("{}: found no file that holds a maze; expected one or more\n", empty.display()));
 }
 
+#[test]
+fn the_smallest_maze_is_visited_and_gaps_outside_are_no_wrong_walls() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("odd_mazes");
+    fs::create_dir_all(&folder).unwrap();
+    let smallest = folder.join("smallest.maze");
+    fs::write(&smallest, "+---+\n| G |\n+---+\n").unwrap();
+    let (status, report, err) = run(&["--explore", "--maze", smallest.to_str().unwrap()]);
+    assert_eq!((status, &report["visited_cells"]), (0, &1.into()), "{err} {report}");
+    fs::write(folder.join("gap.maze"), "+---+---+\n|     G |\n+   +---+\n| S |    \n+---+---+\n").unwrap();
+    let (_, report, err) = run(&["--campaign", folder.to_str().unwrap(), "--noise", "0"]);
+    assert_eq!(report["mazes"], 2, "{err}");
+    assert!(!report["failures"].to_string().contains("known wrongly"), "{report}");
+}
+
 /// A left-hand mouse for mms, as a shell script.
 const LEFT_HAND: &str = r#"ask() { echo "$1"; read -r answer; }
 for i in $(seq 300); do
