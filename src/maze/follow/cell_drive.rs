@@ -131,14 +131,14 @@ impl CellDrive {
         let CellDriveParameters { aside, cell, .. } = self.parameters;
         // As in the book: 100 to 180 mm where 125 are to be read in cells of 360 mm.
         let wall = |reading: f64| (-0.07 * cell..0.16 * cell).contains(&(reading - aside));
-        [wall(left).then(|| aside - left), wall(right).then(|| right - aside)]
+        [wall(left).then_some(aside - left), wall(right).then_some(right - aside)]
     }
 
     /// The speed for a pose by odometry and three readings (front, left, right), `seconds` after the last step; `None` once
     /// the robot is there.
     pub fn step(&mut self, pose: Pose, readings: [f64; 3], seconds: f64) -> Result<Option<Twist>> {
         let CellDriveParameters { cell, speed, ahead, coast, reading_error, .. } = self.parameters;
-        let mut place = self.place.unwrap_or_else(|| PlaceInCell::at(pose, cell));
+        let mut place = self.place.unwrap_or(PlaceInCell::at(pose, cell));
         place.predict(pose);
         let front = readings[0];
         // A wall ahead tells better than odometry, once it can be that of the next cell alone.

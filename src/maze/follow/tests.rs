@@ -197,17 +197,21 @@ proptest! {
 fn it_steers_to_the_middle_and_stops_at_walls() {
     let spec = RobotSpec::s4();
     let drive = CellDriveParameters::proportional(&rig(&spec), Scale::DOUBLED, 0.18);
-    let mut controller = CellDrive::new(drive).unwrap();
-    let mut step = |x: f64, readings| controller.step(Pose::new(x, 0.0, 0.0), readings, 0.01).unwrap();
+    // What a drive over open ground does `x` metres on.
+    let step = |x: f64, readings| {
+        let mut controller = CellDrive::new(drive).unwrap();
+        controller.step(Pose::default(), [1.0; 3], 0.01).unwrap();
+        controller.step(Pose::new(x, 0.0, 0.0), readings, 0.01).unwrap()
+    };
     // Left of the middle it turns right.
     let twist = step(0.0, [1.0, drive.aside - 0.01, drive.aside + 0.01]).unwrap();
     assert!(twist.angular < 0.0 && twist.linear == 0.18);
-    assert_eq!(step(0.2, [1.0, 1.0, 1.0]).map(|twist| twist.angular), Some(0.0));
+    assert_eq!(step(0.2, [1.0; 3]).map(|twist| twist.angular), Some(0.0));
     // A wall ahead ends the way before odometry, and odometry does without one.
     let nearly = 0.355 - drive.coast;
     assert_eq!(step(nearly, [drive.ahead - 0.001, 1.0, 1.0]), None);
-    assert!(step(nearly, [1.0, 1.0, 1.0]).is_some());
-    assert_eq!(step(nearly + 0.006, [1.0, 1.0, 1.0]), None);
+    assert!(step(nearly, [1.0; 3]).is_some());
+    assert_eq!(step(nearly + 0.006, [1.0; 3]), None);
     let broken = CellDriveParameters { speed: -1.0, ..drive };
     assert!(CellDrive::new(broken).unwrap_err().to_string().contains("speed"));
     let printed = LeftHandParameters { threshold: f64::NAN, ..LeftHandParameters::as_printed() };
