@@ -135,17 +135,17 @@ fn trial(args: &Args, name: &str, file: &MazeFile, seed: u64) -> Result<Trial, F
         time_limit: args.common.time_limit.unwrap_or_else(|| limit(&file.maze)),
         common: None,
     };
+    let mut told = None;
     let run = conditions.run(
         &scene,
         |_| {},
-        |robot, step| drive(robot, args, &file.maze, conditions.noise, conditions.odometry_errors(), step),
+        |robot, step| drive(robot, args, &file.maze, &conditions, &mut told, step),
     )?;
-    Ok(judged(args, name, file, seed, &run))
+    Ok(judged(args, name, file, seed, &run, told.as_ref()))
 }
 
-fn judged(args: &Args, name: &str, file: &MazeFile, seed: u64, run: &Run<Told>) -> Trial {
+fn judged(args: &Args, name: &str, file: &MazeFile, seed: u64, run: &Run<()>, told: Option<&Told>) -> Trial {
     let truth = &file.maze;
-    let told = run.ending.as_ref().ok();
     let plan = told.and_then(|told| told.plan.as_ref());
     Trial {
         maze: name.to_owned(),

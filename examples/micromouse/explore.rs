@@ -1,4 +1,7 @@
+use std::cell::Cell;
+
 use roverlab::geometry::{Point, Pose};
+use roverlab::io;
 use roverlab::io::sim::NoiseModel;
 use roverlab::maze::files::MazeFile;
 use roverlab::maze::{
@@ -10,7 +13,7 @@ use roverlab::world::{RobotSpec, Scene};
 
 use super::plan::with_maze;
 use super::{Args, picture, scene};
-use crate::common::{Failure, Outcome, Report, millimetres, rounded};
+use crate::common::{Driven, Failure, Outcome, Report, millimetres, rounded};
 use crate::driving::{Conditions, Run, drawn, paced};
 
 /// What the robot says after its drive.
@@ -46,17 +49,21 @@ pub(crate) fn explore(args: &Args) -> Result<Report, Failure> {
     }
     let scene = stage(&file, &spec, scale);
     let conditions = Conditions::new(&args.common, limit(&file.maze))?;
+    let mut told = None;
     let run = conditions.run(&scene, paced(&args.common), |robot, step| {
-        drive(robot, args, &file.maze, conditions.noise, conditions.odometry_errors(), step)
+        drive(robot, args, &file.maze, &conditions, &mut told, step)
     })?;
-    let (drawing, trouble) = drawn(&args.common, "micromouse.svg", || picture_of(&file, &run, scale));
-    let report = run.report(|told| match (told.exploration.verdict, told.race) {
-        (Verdict::Unreachable, _) => Outcome::verdict("unreachable"),
-        (_, Some(_)) => Outcome::verdict("raced"),
-        (_, None) => Outcome::verdict("explored"),
+    let told = told.as_ref();
+    let (drawing, trouble) = drawn(&args.common, "micromouse.svg", || picture_of(&file, &run, told, scale));
+    let report = run.report(|()| match told {
+        Some(Told { exploration: Exploration { verdict: Verdict::Unreachable, .. }, .. }) => {
+            Outcome::verdict("unreachable")
+        }
+        Some(Told { race: Some(_), .. }) => Outcome::verdict("raced"),
+        _ => Outcome::verdict("explored"),
     });
     let report = with_maze(report, args, &file);
-    Ok(Report { trouble, ..with_run(report, &run, scale).field("picture", drawing) })
+    Ok(Report { trouble, ..with_run(report, told, run.truth.pose, scale).field("picture", drawing) })
 }
 
 /// Simulated seconds that are more than any maze needs.
@@ -69,43 +76,46 @@ pub(crate) fn stage(file: &MazeFile, spec: &RobotSpec, scale: Scale) -> Scene {
     Scene::with_robot(scale.world(&file.maze), spec.clone(), start)
 }
 
-/// The robot's program: it knows the size of the maze, its start and its goal.
+/// The robot's program: it knows the size of the maze, its start and its goal. What it says of the maze holds even if the fast
+/// run fails.
 pub(crate) fn drive(
-    robot: &mut crate::common::Driven,
+    robot: &mut Driven,
     args: &Args,
     truth: &Maze,
-    noise: f64,
-    errors: roverlab::kinematics::OdometryErrors,
+    conditions: &Conditions,
+    told: &mut Option<Told>,
     step: &mut dyn FnMut(),
-) -> roverlab::io::Result<Told> {
+) -> io::Result<()> {
     let (spec, scale, parameters) = kit(args.doubled);
-    let rig = Rig::new(&spec, errors, NoiseModel::real().scaled(noise).range)?;
-    let mut known = Maze::unexplored(truth.width(), truth.height()).map_err(|error| {
-        roverlab::io::Error::new(roverlab::io::ErrorKind::InvalidInput, error.to_string())
-    })?;
+    let rig =
+        Rig::new(&spec, conditions.odometry_errors(), NoiseModel::real().scaled(conditions.noise).range)?;
+    let mut known = Maze::unexplored(truth.width(), truth.height())
+        .map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error.to_string()))?;
     known.set_start(truth.start(), truth.heading());
     known.set_goals(truth.goals());
-    let mut steps = 0;
+    let steps = Cell::new(0);
     let mut watch = |_: Pose| {
-        steps += 1;
+        steps.set(steps.get() + 1);
         step();
     };
     let mut runner = MazeRunner::new(robot, rig, known, scale, parameters)?;
     let mut explorer = TwoPhaseExplorer::new(Goals::StepsAndTime(Box::new(runner.planner())));
     let exploration = runner.explore(&mut explorer, &mut watch)?;
     let plan = runner.plan_fast_run();
-    let race = plan.as_ref().map(|plan| runner.race(plan, &mut watch)).transpose()?;
-    let (known, pose) = (runner.maze().clone(), runner.pose());
-    drop(runner);
-    let raced = race.map_or(0, |race| (race / parameters.tracker.period) as usize);
-    Ok(Told { exploration, known, plan, race, explored_steps: steps.max(raced) - raced, pose })
+    let (known, explored_steps, pose) = (runner.maze().clone(), steps.get(), runner.pose());
+    let told = told.insert(Told { exploration, known, plan, race: None, explored_steps, pose });
+    if let Some(plan) = &told.plan {
+        let race = runner.race(plan, &mut watch);
+        told.pose = runner.pose();
+        told.race = Some(race?);
+    }
+    Ok(())
 }
 
-fn with_run(report: Report, run: &Run<Told>, scale: Scale) -> Report {
-    let told = run.ending.as_ref().ok();
+fn with_run(report: Report, told: Option<&Told>, truth: Pose, scale: Scale) -> Report {
     let proved = told.is_some_and(|told| told.exploration.verdict != Verdict::Explored);
     let seconds = |time: Option<f64>| time.map(rounded);
-    let error = told.map(|told| run.truth.pose.distance_to(told.pose.position()));
+    let error = told.map(|told| truth.distance_to(told.pose.position()));
     report
         .field("proved_optimal", proved)
         .field("visited_cells", told.map(|told| told.exploration.visited))
@@ -119,9 +129,8 @@ fn with_run(report: Report, run: &Run<Told>, scale: Scale) -> Report {
         .field("cell_mm", millimetres(scale.cell))
 }
 
-fn picture_of(file: &MazeFile, run: &Run<Told>, scale: Scale) -> Picture {
+fn picture_of(file: &MazeFile, run: &Run<()>, told: Option<&Told>, scale: Scale) -> Picture {
     let path: Vec<Point> = run.positions().collect();
-    let told = run.ending.as_ref().ok();
     let split = told.map_or(path.len(), |told| told.explored_steps.min(path.len()));
     let mut picture = picture::of_maze(&file.maze, scale);
     let caption = match told.map(|told| (told, told.race)) {
@@ -131,6 +140,7 @@ fn picture_of(file: &MazeFile, run: &Run<Told>, scale: Scale) -> Picture {
             told.exploration.visited,
             file.maze.cell_count()
         ),
+        Some((Told { plan: Some(_), .. }, None)) => "explored to the proof; the fast run failed".into(),
         Some((told, None)) => format!("no way to the goal; {} cells seen", told.exploration.visited),
         None => "the drive failed".into(),
     };

@@ -48,9 +48,24 @@ pub(super) fn gray_portable(input: RgbView<'_>, output: &mut GrayViewMut<'_>, we
 #[inline(always)]
 pub(super) fn triple_portable(input: GrayView<'_>, output: &mut RgbViewMut<'_>) {
     for y in 0..input.height() {
-        let row = input.row(y);
-        planes::merge(output.row_mut(y).as_chunks_mut::<3>().0, row, row, row);
+        triple_row(input.row(y), output.row_mut(y));
     }
+}
+
+/// Four pixels become three words, which vectorise better than twelve bytes.
+#[inline(always)]
+fn triple_row(row: &[u8], out: &mut [u8]) {
+    let (fours, last) = row.as_chunks::<4>();
+    let (words, last_out) = out.as_chunks_mut::<12>();
+    for (&pixels, out) in fours.iter().zip(words) {
+        let [a, b, c, d] = pixels.map(u32::from);
+        let words =
+            [(a * 0x01_01_01) | (b << 24), (b * 0x01_01) | (c * 0x01_01_00_00), c | (d * 0x01_01_01_00)];
+        for (out, word) in out.as_chunks_mut::<4>().0.iter_mut().zip(words) {
+            *out = word.to_le_bytes();
+        }
+    }
+    planes::merge(last_out.as_chunks_mut::<3>().0, last, last, last);
 }
 
 vectorised! {

@@ -61,7 +61,7 @@ impl Distances {
 /// Flood fills one after the other in the same memory.
 ///
 /// Mazes of up to 32 x 32 cells are filled by a wave of bits that takes all cells of one distance at once, compiled for
-/// several processors; the best is chosen at run time. Larger ones are filled from a queue without branches. Both take a
+/// several processors; the best is chosen at run time. Larger ones are filled from a queue with few branches. Both take a
 /// time that grows with the number of cells, and of wide waves only with the number of steps.
 ///
 /// ```

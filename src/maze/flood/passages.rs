@@ -21,7 +21,8 @@ pub(super) enum Grid {
     Large(Vec<u8>),
 }
 
-/// A bit for each cell that is open to the east, and to the north. The rows follow each other without a gap.
+/// A bit for each cell that is open to the east, and to the north. Of `N` words each has every `N`th row, so that the next
+/// row is in the next word at the same place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Boards<const N: usize> {
     pub(super) east: [u64; N],
@@ -32,11 +33,17 @@ impl<const N: usize> Boards<N> {
     /// Bits of a row, with which `N` words hold as many rows.
     pub(super) const ROW: usize = if N == 4 { 16 } else { 32 };
 
+    /// The word of a row, and its lowest bit there.
+    #[inline]
+    pub(super) fn place(row: usize) -> (usize, usize) {
+        (row % N, row / N * Self::ROW)
+    }
+
     /// The boards of a maze that is no wider and no higher than a row is long.
     fn read(maze: &Maze, unknown: Unknown) -> Self {
         let mut boards = Self { east: [0; N], north: [0; N] };
         for row in 0..maze.height() {
-            let (word, shift) = (row * Self::ROW / 64, row * Self::ROW % 64);
+            let (word, shift) = Self::place(row);
             let (east, north) = maze.open_row(row, unknown);
             boards.east[word] |= east << shift;
             boards.north[word] |= north << shift;
@@ -46,9 +53,9 @@ impl<const N: usize> Boards<N> {
 
     fn set(&mut self, (x, y): (usize, usize), eastward: bool, open: bool) {
         let board = if eastward { &mut self.east } else { &mut self.north };
-        let bit = y * Self::ROW + x;
-        let mask = 1 << (bit % 64);
-        let word = &mut board[bit / 64];
+        let (word, shift) = Self::place(y);
+        let mask = 1 << (shift + x);
+        let word = &mut board[word];
         *word = if open { *word | mask } else { *word & !mask };
     }
 }
@@ -150,7 +157,7 @@ impl<const N: usize> Boards<N> {
     #[inline]
     fn get(&self, (x, y): (usize, usize), eastward: bool) -> bool {
         let board = if eastward { &self.east } else { &self.north };
-        let bit = y * Self::ROW + x;
-        board[bit / 64] >> (bit % 64) & 1 != 0
+        let (word, shift) = Self::place(y);
+        board[word] >> (shift + x) & 1 != 0
     }
 }

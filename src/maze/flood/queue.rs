@@ -1,9 +1,9 @@
-//! Flood fill of large mazes: a queue, filled without branches.
+//! Flood fill of large mazes: a queue, filled with few branches.
 //!
-//! Whether a neighbour is new is as good as random to a processor, so that a branch on it costs more than to write every
-//! neighbour behind the end of the queue and to move the end by 0 or 1. Each entry says where it came from, so that the way
-//! back is not tried; few cells have more than two other openings. Cells have numbers of 16 bits, with which no index into
-//! the arrays can be out of range.
+//! Whether a neighbour is new is as good as random to a processor, so that a branch on it costs more than to write the
+//! neighbour behind the end of the queue in any case and to move the end by 0 or 1. Each entry has the ways on from its cell,
+//! without the one back; most cells have one. Cells have numbers of 16 bits, with which no index into the arrays can be out
+//! of range.
 
 use super::UNREACHED;
 use super::passages::LARGEST;
@@ -12,16 +12,17 @@ use crate::maze::Cell;
 /// The memory of a flood fill.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Queue {
-    /// Cells in the lower 16 bits, the direction back above. No cell enters twice, so that the end comes round to the
+    /// Cells in the lower 16 bits, open directions above. No cell enters twice, so that the end comes round to the
     /// beginning only when that has long been read.
     entries: Vec<u32>,
-    steps: Vec<u16>,
+    /// The open directions of cells that no entry has, and [`SEEN`] for the others.
+    unseen: Vec<u8>,
 }
 
-/// What is not reached, and the only cell that can be so far away: the last of a way through all cells of the largest maze.
-const FAR: u16 = u16::MAX;
-/// Where the direction back is.
-const BACK: u32 = 16;
+/// More than any set of directions.
+const SEEN: u8 = 1 << 7;
+/// Where the open directions of an entry are.
+const OPEN: u32 = 16;
 
 impl Queue {
     /// Fills a maze of some width, `steps` of it in number.
@@ -32,25 +33,17 @@ impl Queue {
         width: usize,
         steps: &mut [u32],
     ) {
+        steps.fill(UNREACHED);
         self.entries.resize(LARGEST, 0);
-        self.steps.resize(LARGEST, FAR);
-        self.steps[..steps.len()].fill(FAR);
-        let arrays = (openings.first_chunk(), self.entries.first_chunk_mut(), self.steps.first_chunk_mut());
-        let (Some(openings), Some(entries), Some(found)) = arrays else { return };
-        let mut end = 0;
+        self.unseen.resize(LARGEST, SEEN);
+        self.unseen[..steps.len()].copy_from_slice(&openings[..steps.len()]);
+        let arrays = (self.entries.first_chunk_mut(), self.unseen.first_chunk_mut());
+        let (Some(entries), Some(unseen)) = arrays else { return };
+        let mut run = Run { entries, unseen, ways: ways(width), end: 0 };
         for source in sources {
-            let index = usize::from(source.y) * width + usize::from(source.x);
-            if found[index] != 0 {
-                found[index] = 0;
-                entries[end] = index as u32;
-                end += 1;
-            }
+            run.enter(usize::from(source.y) * width + usize::from(source.x));
         }
-        let reached = spread(openings, entries, found, end, &ways(width));
-        let unreached = if reached == LARGEST { 0 } else { UNREACHED };
-        for (steps, &found) in steps.iter_mut().zip(found.iter()) {
-            *steps = if found == FAR { unreached.max(FAR.into()) } else { found.into() };
-        }
+        run.spread(steps);
     }
 }
 
@@ -64,43 +57,62 @@ fn ways(width: usize) -> Ways {
         let mut list = [0; 4];
         let open = (0..4).filter(|side| openings >> side & 1 != 0);
         for (way, side) in list.iter_mut().zip(open) {
-            *way = u32::from(offsets[side]) | 1 << (BACK as usize + (side + 2) % 4);
+            *way = u32::from(offsets[side]) | 1 << (OPEN as usize + (side + 2) % 4);
         }
         list
     })
 }
 
-/// Goes on from the first `end` cells of the queue. Returns how many cells were reached.
-fn spread(
-    openings: &[u8; LARGEST],
-    entries: &mut [u32; LARGEST],
-    found: &mut [u16; LARGEST],
-    mut end: usize,
-    ways: &Ways,
-) -> usize {
-    let mut next = 0;
-    // Once all cells are reached nothing is left to be found.
-    while next < end && end < LARGEST {
-        let entry = entries[usize::from(next as u16)];
-        next += 1;
-        let here = entry as u16;
-        let distance = found[usize::from(here)].wrapping_add(1);
-        let onward = openings[usize::from(here)] & !((entry >> BACK) as u8) & 0xf;
-        let ways = &ways[usize::from(onward)];
-        let mut visit = |way: u32| {
-            // Without a way one comes back to where one is, which has been met.
-            let there = here.wrapping_add(way as u16);
-            let known = found[usize::from(there)];
-            found[usize::from(there)] = known.min(distance);
-            entries[usize::from(end as u16)] = u32::from(there) | way & 0xf << BACK;
-            end += usize::from(known == FAR);
-        };
-        visit(ways[0]);
-        visit(ways[1]);
-        if ways[2] != 0 {
-            visit(ways[2]);
-            visit(ways[3]);
+struct Run<'a> {
+    entries: &'a mut [u32; LARGEST],
+    unseen: &'a mut [u8; LARGEST],
+    ways: Ways,
+    /// How many cells have entered the queue.
+    end: usize,
+}
+
+impl Run<'_> {
+    fn enter(&mut self, source: usize) {
+        let open = std::mem::replace(&mut self.unseen[source], SEEN);
+        if open != SEEN {
+            self.entries[self.end] = source as u32 | u32::from(open) << OPEN;
+            self.end += 1;
         }
     }
-    end
+
+    /// Goes on from the sources to all cells.
+    fn spread(&mut self, steps: &mut [u32]) {
+        let (mut next, mut distance) = (0, 0);
+        while next < self.end {
+            // All entries so far are as far away.
+            let level = self.end;
+            while next < level {
+                let entry = self.entries[usize::from(next as u16)];
+                next += 1;
+                let (here, open) = (entry as u16, entry >> OPEN & 0xf);
+                steps[usize::from(here)] = distance;
+                let ways = self.ways[open as usize];
+                self.visit(here, ways[0]);
+                // Few cells have more than one way on, and only sources have four.
+                if ways[1] != 0 {
+                    self.visit(here, ways[1]);
+                    self.visit(here, ways[2]);
+                    if distance == 0 {
+                        self.visit(here, ways[3]);
+                    }
+                }
+            }
+            distance += 1;
+        }
+    }
+
+    /// Enters a neighbour if it is new. Without a way one comes back to where one is, which is not.
+    #[inline]
+    fn visit(&mut self, here: u16, way: u32) {
+        let there = here.wrapping_add(way as u16);
+        let open = std::mem::replace(&mut self.unseen[usize::from(there)], SEEN);
+        let ahead = u32::from(open) << OPEN & !(way & 0xf << OPEN);
+        self.entries[usize::from(self.end as u16)] = u32::from(there) | ahead;
+        self.end += usize::from(open != SEEN);
+    }
 }

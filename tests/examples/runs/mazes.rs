@@ -60,6 +60,18 @@ fn the_examples_own_maze_is_explored_and_raced() {
 }
 
 #[test]
+fn what_was_explored_is_told_even_if_the_fast_run_fails() {
+    let (_, whole, _) = run(&["--explore"]);
+    let during_the_fast_run = whole["exploration_s"].as_f64().unwrap() + 0.5;
+    let (status, report, _) = run(&["--explore", "--fault", &format!("stuck@{during_the_fast_run}")]);
+    assert_eq!((status, &report["outcome"]), (1, &"collided".into()), "{report}");
+    for same in ["proved_optimal", "visited_cells", "exploration_s", "fast_run_planned_s"] {
+        assert_eq!(report[same], whole[same], "{same}");
+    }
+    assert_eq!(report["fast_run_s"], Value::Null);
+}
+
+#[test]
 fn a_campaign_tells_of_every_maze() {
     let (status, report, err) = run(&["--campaign", "tests/data/mazes", "--runs", "3"]);
     assert_eq!((status, err.as_str()), (0, ""), "{report}");
