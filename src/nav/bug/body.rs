@@ -65,6 +65,8 @@ const LOOKING_TURN: f64 = 2.0;
 /// The least speed along a free heading, in metres per second, and how far from it, in radians, the robot may point.
 const CREEP: f64 = 0.02;
 const POINTING: f64 = 0.3;
+/// How fast the robot closes in on the place where it must stand, in metres per second for each metre.
+const APPROACH_RATE: f64 = 4.0;
 /// A turn of more radians than this turns the robot round, and a speed of more metres per second is too much for that.
 const TURNING_ROUND: f64 = 2.0;
 const ROLLING: f64 = 0.05;
@@ -214,15 +216,13 @@ impl Body {
         };
         // The heading has been found free; where the robot points on its way there need not be.
         let least = if heading.abs() < POINTING { CREEP } else { 0.0 };
-        let linear = (cruise * aligned).min(self.safe_speed().max(least));
+        let linear = (cruise * aligned).min(self.safe_speed(speed.linear).max(least));
         Twist::new(linear, angular)
     }
 
-    /// The speed from which the robot can still stop before what is ahead, or at the goal.
-    fn safe_speed(&self) -> f64 {
+    /// The speed, from the present one, from which the robot can still stop before what is ahead, or at the goal.
+    fn safe_speed(&self, present: f64) -> f64 {
         const HAIR: f64 = 0.001;
-        // The motors' lag lets the robot roll on for about 0.2 s; a little more is reserve.
-        const STOPPING_TIME: f64 = 0.45;
         let passing = if self.slow_to_pass && self.phase == BugPhase::ToGoal { 1.0 } else { 0.5 };
         let outline = self.parameters.robot_radius + passing * self.parameters.least_clearance;
         // Nearer to something than that, it may drive off it, but not a hair's breadth nearer.
@@ -230,7 +230,43 @@ impl Body {
             return 0.0;
         }
         let (ahead, _) = self.surroundings.free_distance(direction(0.0), outline);
-        let goal = self.goal_distance();
-        ahead.min(goal) / STOPPING_TIME
+        approach(ahead.min(self.goal_distance()), present, &self.parameters)
+    }
+}
+
+/// The speed at which a robot that goes at `present` comes to stand after `room` metres, and not beyond them.
+///
+/// What it will roll on by itself is used up already. A speed in proportion to all of the room would be too much for the
+/// motors to follow: the robot would come to stand behind the place.
+fn approach(room: f64, present: f64, parameters: &BugParameters) -> f64 {
+    // Within one step it must not use up more than there is.
+    let rate = APPROACH_RATE.min(parameters.period.recip());
+    (rate * (room - present * parameters.lag)).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Motors follow what they are told exponentially, and are told anew each period.
+        #[test]
+        fn an_approach_ends_where_it_should(
+            lag in 0.05..0.5f64, period in 0.01..0.3f64, cruise in 0.05..0.5f64, spare in 0.0..1.0f64,
+        ) {
+            let parameters = BugParameters { lag, period, ..BugParameters::default() };
+            let fade = math::exp(-period / lag);
+            // As near as it may be found at this speed.
+            let (mut speed, mut room) = (cruise, cruise * lag + spare);
+            for _ in 0..2000 {
+                let told = approach(room, speed, &parameters).min(cruise);
+                let lacking = speed - told;
+                room -= told * period + lacking * lag * (1.0 - fade);
+                speed = told + lacking * fade;
+                prop_assert!(room > -1e-9, "{room} m left at {speed} m/s");
+            }
+            prop_assert!(room < 0.001, "stands {room} m before the place");
+        }
     }
 }

@@ -23,6 +23,8 @@ pub struct BugParameters {
     pub side: Option<WallSide>,
     /// Whether odometry is corrected by matching scans.
     pub match_scans: bool,
+    /// The seconds by which the robot does later what it is told: at a speed `v` it rolls `v * lag` farther before it stands.
+    pub lag: f64,
     /// Seconds from one control step to the next, for [`run_bug`](super::run_bug).
     pub period: f64,
 }
@@ -40,6 +42,7 @@ impl BugParameters {
             follow_speed: 0.2,
             side: None,
             match_scans: true,
+            lag: 0.2,
             period: 0.05,
         }
     }
@@ -52,6 +55,7 @@ impl BugParameters {
         require_positive("goal tolerance", self.goal_tolerance)?;
         require_positive("cruise speed", self.cruise_speed)?;
         require_positive("follow speed", self.follow_speed)?;
+        require_positive("lag", self.lag)?;
         require_positive("control period", self.period)?;
         if !(self.clearance >= self.least_clearance && self.clearance.is_finite()) {
             let expected = format!("at least the least clearance, {}", self.least_clearance);

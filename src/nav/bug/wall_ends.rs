@@ -20,8 +20,6 @@ struct WallEnd {
 
 /// What is seen in two beams side by side is not of one surface if it lies farther apart than this, in metres.
 const GAP: f64 = 0.03;
-/// Two points at the end of what is seen are of one wall if they lie no farther apart than this, in metres.
-const SAME_WALL: f64 = 0.06;
 /// Steps for which an end that is out of sight is taken to be there still.
 const MEMORY: u32 = 40;
 
@@ -92,7 +90,7 @@ fn gaps(seen: &[Point]) -> impl Iterator<Item = Gap> + '_ {
 /// Where the wall through two points, seen in beams side by side, would meet the next beam, if that is nearer by
 /// `least` metres. Along a straight line, the reciprocal of the range is linear for small angles.
 fn overhang(end: Point, before: Point, least: f64) -> Option<Point> {
-    if (end - before).norm_squared() > SAME_WALL * SAME_WALL {
+    if (end - before).norm_squared() > GAP * GAP {
         return None;
     }
     let (range, range_before) = (end.coords.norm(), before.coords.norm());

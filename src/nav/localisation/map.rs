@@ -23,8 +23,7 @@ impl LocalisationMap {
             space.add(Solid::from(object));
         }
         let clearance = Clearance::new(world, RESOLUTION, CLEARANCE).map_err(|error| {
-            Error::new(ErrorKind::InvalidInput, format!("the world cannot be mapped: {error}"))
-                .with_source(error)
+            Error::new(ErrorKind::InvalidInput, "the world cannot be mapped").with_source(error)
         })?;
         Ok(Self { space, clearance })
     }

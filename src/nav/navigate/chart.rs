@@ -45,8 +45,7 @@ impl Chart {
         });
         let limit = levels[0].room.max(MAX_STRAY) + resolution;
         let clearance = Clearance::new(world, resolution, limit).map_err(|error| {
-            Error::new(ErrorKind::InvalidInput, format!("the world cannot be planned in: {error}"))
-                .with_source(error)
+            Error::new(ErrorKind::InvalidInput, "the world cannot be planned in").with_source(error)
         })?;
         let evidence = vec![0; clearance.raster().cells()];
         Ok(Self { clearance, levels, evidence, marks: Vec::new() })

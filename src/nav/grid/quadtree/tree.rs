@@ -168,27 +168,20 @@ impl Quadtree {
             (cells & 0xff) << (8 * row)
         });
         let cells = by_quarters(rows.fold(0, |all, row| all | row));
-        let part = |of: Leaf, size: usize, index: usize| Leaf {
-            column: of.column + (index & 1) * size,
-            row: of.row + (index >> 1) * size,
-            size,
-        };
-        for index in 0..4 {
-            let (quarter, cells) = (part(block, 4, index), cells >> (16 * index) & 0xffff);
-            if cells == 0 || cells == 0xffff {
-                found(quarter, cells != 0);
-                continue;
-            }
-            for index in 0..4 {
-                let (four, cells) = (part(quarter, 2, index), cells >> (4 * index) & 0xf);
-                if cells == 0 || cells == 0xf {
-                    found(four, cells != 0);
-                    continue;
-                }
-                for index in 0..4 {
-                    found(part(four, 1, index), cells >> index & 1 != 0);
-                }
-            }
+        let (free, blocked) = (joined(cells, 1) & FOURS, joined(!cells, 1) & FOURS);
+        let fours = free | blocked;
+        let sixteens = (joined(free, 4) | joined(blocked, 4)) & SIXTEENS;
+        // A leaf is told at its first cell.
+        let mut firsts = !((fours * 0xe) | (sixteens * 0xfffe));
+        while firsts != 0 {
+            let index = firsts.trailing_zeros() as usize;
+            let leaf = Leaf {
+                column: block.column + every_second_bit(index),
+                row: block.row + every_second_bit(index >> 1),
+                size: 1 << ((fours >> index & 1) + (sixteens >> index & 1)),
+            };
+            found(leaf, cells >> index & 1 != 0);
+            firsts &= firsts - 1;
         }
     }
 
@@ -307,6 +300,20 @@ impl Quadtree {
 
 /// The size, as a power of two, of squares whose cells fill a word.
 const BLOCK: usize = 3;
+
+/// In the order of quarters, the first cells of the squares of four cells, and of sixteen.
+const FOURS: u64 = 0x1111_1111_1111_1111;
+const SIXTEENS: u64 = 0x0001_0001_0001_0001;
+
+/// The bits that are set together with the three that are so far apart behind them.
+fn joined(bits: u64, apart: u32) -> u64 {
+    bits & bits >> apart & bits >> (2 * apart) & bits >> (3 * apart)
+}
+
+/// The number that the bits 0, 2 and 4 make: of a cell's number in the order of quarters, its column.
+fn every_second_bit(number: usize) -> usize {
+    number & 1 | number >> 1 & 2 | number >> 2 & 4
+}
 
 /// Eight rows of eight cells, one after the other, in the order of quarters: the first quarter's cells first, each quarter
 /// likewise. The bits of a cell's number are those of its row and then of its column, and become one of each in turn.
