@@ -75,7 +75,7 @@ impl Course {
         };
         let start = track.start_pose().ok_or_else(|| refused("no start".into()))?;
         // Colours in a file are right.
-        let parameters = CentreLineParameters { colour: 12.0, ..CentreLineParameters::default() };
+        let parameters = CentreLineParameters { colour: f64::INFINITY, ..CentreLineParameters::default() };
         let line = CentreLine::from_cones(&track.cones, start, &parameters)
             .map_err(|error| refused(error.to_string()))?;
         if !line.corridor.is_closed() {
