@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use roverlab::drive::cones::{ClosedSpline, RacePhase, TrackFile, parse_track};
 use roverlab::geometry::{Point, Segment};
+use roverlab::io::sim::race::RaceCarSpec;
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
 use crate::cones::{Course, Spoils};
@@ -31,7 +32,8 @@ JSON fields:
   other_cones_hit, touched                             with a second car
   tracks, clean, clean_share                           of a campaign
   picture, animation
-Outcomes: finished, penalised, timed_out, failed, raced (a campaign)."
+Outcomes: finished, penalised, timed_out, failed, impassable (the car does not fit between the cones, which is told before
+the race), raced (a campaign)."
 )]
 pub(crate) struct Args {
     /// Track to race on [default: one of our own].
@@ -134,6 +136,9 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         Some(path) => Course::from_file(common, path)?,
         None => Course::generated(common.seed)?,
     };
+    if let Some(reason) = course.impassable(&RaceCarSpec::default()) {
+        return Ok(impassable(&course, reason));
+    }
     course.spoil(spoils, common.seed);
     let settings = args.settings(common.seed);
     let stage = common.stage_race(&course.scene(), || settings.world(&course))?;
@@ -145,6 +150,18 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         .field("picture", picture)
         .field("animation", animation);
     Ok(Report { trouble, ..report })
+}
+
+/// What is told about a track on which no race begins.
+fn impassable(course: &Course, reason: String) -> Report {
+    let report = Report::new(Outcome::failure("impassable"))
+        .field("laps", 0)
+        .field("cones_hit", 0)
+        .field("off_course", 0)
+        .field("lap_times_s", [0.0; 0])
+        .field("track_length_m", rounded(course.corridor.length()))
+        .field("cones", course.cones.len());
+    Report { error: Some(reason), ..report }
 }
 
 /// What is told about a race.

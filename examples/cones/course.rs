@@ -8,7 +8,7 @@ use roverlab::drive::cones::{
     RacerParameters, TrackFile, TrackOptions, generate, lined, parse_track,
 };
 use roverlab::geometry::{Aabb, Point, Pose, math};
-use roverlab::io::sim::race::RaceCone;
+use roverlab::io::sim::race::{RaceCarSpec, RaceCone};
 use roverlab::random::Stream;
 use roverlab::world::{Colour, Object, ObjectKind, Scene, Settings, Shape, World};
 
@@ -75,7 +75,7 @@ impl Course {
         };
         let start = track.start_pose().ok_or_else(|| refused("no start".into()))?;
         // Colours in a file are right.
-        let parameters = CentreLineParameters { colour: 12.0, ..CentreLineParameters::default() };
+        let parameters = CentreLineParameters { colour: f64::INFINITY, ..CentreLineParameters::default() };
         let line = CentreLine::from_cones(&track.cones, start, &parameters)
             .map_err(|error| refused(error.to_string()))?;
         if !line.corridor.is_closed() {
@@ -112,6 +112,24 @@ impl Course {
                 self.cones.push(Cone::unknown(place));
             }
         }
+    }
+
+    /// Why a car cannot go around it, whatever its program: a gate between a blue and a yellow cone is narrower than the car.
+    pub(crate) fn impassable(&self, car: &RaceCarSpec) -> Option<String> {
+        let of = |paint: ConeColour| self.cones.iter().filter(move |cone| cone.colour == paint);
+        let gates = of(ConeColour::Blue).flat_map(|left| {
+            let free = |right: &Cone| {
+                (left.position - right.position).norm() - left.colour.radius() - right.colour.radius()
+            };
+            of(ConeColour::Yellow).map(free)
+        });
+        let narrowest = gates.fold(f64::INFINITY, f64::min);
+        (narrowest < car.width).then(|| {
+            format!(
+                "a gate leaves {narrowest:.2} m between the feet of its cones; expected at least the car's width of {:.2} m",
+                car.width
+            )
+        })
     }
 
     /// The cones as the simulator takes them.

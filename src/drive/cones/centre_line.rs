@@ -1,7 +1,7 @@
 use super::cone::Cone;
 use super::corridor::Corridor;
 use super::error::PlanError;
-use super::walk::{Pair, Walker};
+use super::walk::{Mesh, Pair, Walker, Way, sides};
 use crate::geometry::{Point, Pose, Segment, Vector, cross, math};
 
 /// What the way between cones is expected to look like.
@@ -13,7 +13,8 @@ pub struct CentreLineParameters {
     pub spacing: f64,
     /// Metres between stations of the corridor.
     pub step: f64,
-    /// What a cone of the wrong colour costs; 0 to be colour-blind.
+    /// What a cone of the wrong colour costs; 0 to be colour-blind. Infinity where colours are certain: no cone is passed on the
+    /// wrong side, and none whose colour is known is taken for a false one.
     pub colour: f64,
     /// Metres of the shortest loop; infinity where a way must not close.
     pub shortest_loop: f64,
@@ -74,25 +75,23 @@ impl CentreLine {
         parameters: &CentreLineParameters,
     ) -> Result<Self, PlanError> {
         let mut kept = cones.to_vec();
-        let mut way = Walker::new(cones, parameters)?.near(driven).walk(car).ok_or(PlanError::NoWay)?;
+        let (mut mesh, mut beside) = (Mesh::new(cones)?, sides(cones, driven));
+        let mut way = walk(cones, &mesh, &beside, car, parameters).ok_or(PlanError::NoWay)?;
         for round in 0..ROUNDS {
             // Cones that stick out of an edge are left out, and the way is looked for again.
             let strays = strays(&kept, &way.pairs, way.closed, parameters);
             if strays.is_empty() && (round > 0 || !way.closed) {
                 break;
             }
-            let mut index = 0;
-            let fewer: Vec<Cone> = kept
-                .iter()
-                .copied()
-                .filter(|_| {
-                    index += 1;
-                    strays.binary_search(&(index - 1)).is_err()
-                })
-                .collect();
             // A loop is looked for from where it is most like a track: what stands around the car was taken on trust.
             let from = if way.closed { best_place(&kept, &way.pairs, parameters) } else { car };
-            let Some(again) = Walker::new(&fewer, parameters)?.near(driven).walk(from) else { break };
+            let mut fewer = kept.clone();
+            if !strays.is_empty() {
+                leave_out(&mut fewer, &strays);
+                leave_out(&mut beside, &strays);
+                mesh = Mesh::new(&fewer)?;
+            }
+            let Some(again) = walk(&fewer, &mesh, &beside, from, parameters) else { break };
             if way.closed && !again.closed {
                 break;
             }
@@ -130,6 +129,25 @@ impl CentreLine {
     }
 }
 
+fn walk(
+    cones: &[Cone],
+    mesh: &Mesh,
+    sides: &[i8],
+    from: Pose,
+    parameters: &CentreLineParameters,
+) -> Option<Way> {
+    Walker { cones, parameters, mesh, sides }.walk(from)
+}
+
+/// Takes what is at some places out of a list.
+fn leave_out<T>(list: &mut Vec<T>, places: &[usize]) {
+    let mut index = 0;
+    list.retain(|_| {
+        index += 1;
+        places.binary_search(&(index - 1)).is_err()
+    });
+}
+
 /// Times that cones are left out and the way is looked for again.
 const ROUNDS: usize = 3;
 /// Pairs to both sides in which the other edge is looked for.
@@ -150,9 +168,11 @@ fn complete(
     parameters: &CentreLineParameters,
 ) -> (Vec<Opposite>, [Vec<Point>; 2]) {
     let mut opposites: Vec<[Point; 2]> = pairs.iter().map(|pair| pair.map(|i| cones[i].position)).collect();
-    let width = usual_width(&opposites, parameters);
-    for side in 0..2 {
-        bridge(&mut opposites, side, closed, width, parameters);
+    if parameters.colour.is_finite() {
+        let width = usual_width(&opposites, parameters);
+        for side in 0..2 {
+            bridge(&mut opposites, side, closed, width, parameters);
+        }
     }
     let mut chains = [Vec::new(), Vec::new()];
     let mut result = Vec::with_capacity(opposites.len());
@@ -257,7 +277,8 @@ fn strays(cones: &[Cone], pairs: &[Pair], closed: bool, parameters: &CentreLineP
         let n = chain.len();
         let mut last = None;
         for k in 0..n {
-            if n < 4 || (!closed && (k == 0 || k + 1 == n)) {
+            let certain = parameters.colour.is_infinite() && cones[chain[k].0].colour.side() != 0;
+            if n < 4 || certain || (!closed && (k == 0 || k + 1 == n)) {
                 continue;
             }
             let place = |k: usize| cones[chain[k % n].0].position;

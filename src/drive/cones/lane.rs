@@ -4,6 +4,7 @@
 use super::cone::Cone;
 use super::corridor::Corridor;
 use super::error::PlanError;
+use super::rows::{RowParameters, legs, passes};
 use super::spline::ClosedSpline;
 use crate::geometry::{Point, Pose, Vector, direction, math};
 
@@ -26,6 +27,8 @@ pub struct LaneParameters {
     pub usual: f64,
     /// Metres by which a cone of an edge may stand off it.
     pub loose: f64,
+    /// Metres from cone to cone of an edge at most, where one or two are missing.
+    pub spacing: f64,
 }
 
 impl Default for LaneParameters {
@@ -39,6 +42,7 @@ impl Default for LaneParameters {
             half_width: [1.4, 2.8],
             usual: 1.9,
             loose: 0.8,
+            spacing: 10.5,
         }
     }
 }
@@ -54,12 +58,16 @@ pub struct Lane {
     pub half_width: f64,
 }
 
-/// What touching a cone costs, having it on the wrong side, leaving the lane found before, bending and steering.
+/// What touching a cone costs, having it on the wrong side, passing through a row of cones, leaving the lane found before,
+/// bending and steering.
 const TOUCH: f64 = 6.0;
 const WRONG_SIDE: f64 = 2.0;
+const THROUGH: f64 = 5.0;
 const KEEP: f64 = 0.35;
 const BEND: f64 = 4.0;
 const STEER: f64 = 16.0;
+/// How much farther outside a cone may stand than inside: tracks are wider here and there.
+const WIDER: f64 = 1.6;
 /// Metres along the lane over which a cone speaks for its edge.
 const SPEAKS: f64 = 6.5;
 /// Metres along the lane within which a cone is next to a station.
@@ -105,15 +113,23 @@ pub fn lane(
     parameters: &LaneParameters,
 ) -> Option<Lane> {
     let half_width = before.half_width;
-    let way = search(cones, car, before, parameters)?;
     let mut stations = behind.to_vec();
     stations.push(car);
+    let p = parameters;
+    let rows = legs(cones, &stations, &RowParameters { reach: p.spacing, half_width, loose: p.loose });
+    let way = search(cones, &rows, car, before, p)?;
     stations.extend(way);
     let found = settled(cones, &stations, half_width, parameters);
     found.edges.iter().any(|edge| !edge.is_empty()).then_some(found)
 }
 
-fn search(cones: &[Cone], car: Pose, before: &Lane, p: &LaneParameters) -> Option<Vec<Pose>> {
+fn search(
+    cones: &[Cone],
+    rows: &[[Point; 2]],
+    car: Pose,
+    before: &Lane,
+    p: &LaneParameters,
+) -> Option<Vec<Pose>> {
     let start = Piece { middle: car, end: car, bend: 0, cost: 0.0, parent: None };
     let mut pieces = vec![start];
     let mut beam = vec![0];
@@ -126,6 +142,9 @@ fn search(cones: &[Cone], car: Pose, before: &Lane, p: &LaneParameters) -> Optio
                 if bend.abs() <= BENDS {
                     let mut piece = extended(cones, &pieces, parent, (bend, turn), before.half_width, p);
                     piece.cost += KEEP * before.away(piece.middle.position());
+                    let way = [pieces[parent].end.position(), piece.end.position()];
+                    let through = rows.iter().filter(|leg| passes(way, **leg)).count();
+                    piece.cost += THROUGH * through as f64;
                     next.push(piece);
                 }
             }
@@ -183,7 +202,7 @@ fn extended(
         let aside = left.abs();
         let wrong = f64::from(cone.colour.side()) * left < 0.0;
         let close = ((p.clearance - aside) / 0.4).max(0.0);
-        let off = (aside - half_width) / p.loose;
+        let off = (aside - half_width) / if aside > half_width { WIDER * p.loose } else { p.loose };
         cost += TOUCH * (close * close).min(1.0);
         if !wrong {
             cost -= (1.0 - off * off).max(0.0);

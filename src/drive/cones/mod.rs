@@ -28,6 +28,7 @@ mod racer_tests;
 mod racing_line;
 mod referee;
 mod registration;
+mod rows;
 mod sight;
 mod spline;
 #[cfg(test)]

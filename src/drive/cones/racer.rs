@@ -92,6 +92,8 @@ const LINE: f64 = 6.0;
 const BEHIND: f64 = 25.0;
 /// Places behind the car that are taken for the lane.
 const BEHIND_POSES: usize = 4;
+/// Metres within which the lane tells on which side of it cones are: what is farther off changes from look to look.
+const VOTES: f64 = 8.0;
 /// Metres that a lap takes at least.
 const SHORTEST: f64 = 40.0;
 /// Metres from the line within which another car is in the way, metres ahead at which it begins to matter, and metres, from the
@@ -295,7 +297,8 @@ impl Racer {
         let behind: Vec<Pose> = behind.filter(|pose| own.to_local(pose.position()).x < -0.5).collect();
         let found = lane(near, &behind, own, &self.lane, &self.parameters.lane).ok_or(PlanError::NoWay)?;
         for (edge, side) in found.edges.iter().zip([1, -1]) {
-            self.map.vote_side(edge.iter().map(|&cone| near[cone].position), side);
+            let places = edge.iter().map(|&cone| near[cone].position);
+            self.map.vote_side(places.filter(|place| (place - own.position()).norm() < VOTES), side);
         }
         let limits = self.parameters.first_lap;
         let profile = SpeedProfile::open(&found.points, &limits, limits.top_speed, 2.0)?;

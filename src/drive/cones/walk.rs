@@ -3,7 +3,7 @@
 use super::centre_line::CentreLineParameters;
 use super::cone::Cone;
 use super::error::PlanError;
-use crate::geometry::{Point, Pose, Segment, Vector, cross};
+use crate::geometry::{Point, Pose, Vector, cross};
 
 /// Indices of a left and a right cone with the way between them.
 pub(super) type Pair = [usize; 2];
@@ -27,15 +27,21 @@ const GOOD_STEP: f64 = 0.15;
 const MEMORY: usize = 16;
 
 /// The triangulation of some cones.
-pub(super) struct Walker<'c> {
-    cones: &'c [Cone],
-    parameters: &'c CentreLineParameters,
+pub(super) struct Mesh {
     triangles: Vec<usize>,
     twins: Vec<usize>,
     /// Whether the triangles turn counter-clockwise.
     counter_clockwise: bool,
+}
+
+/// Goes from triangle to triangle between some cones.
+pub(super) struct Walker<'c> {
+    pub(super) cones: &'c [Cone],
+    pub(super) parameters: &'c CentreLineParameters,
+    /// The triangulation of these cones.
+    pub(super) mesh: &'c Mesh,
     /// On which side of the way that was driven before each cone is, 1 for left; empty without one.
-    sides: Vec<i8>,
+    pub(super) sides: &'c [i8],
 }
 
 /// The best way so far: how bad it is, and its last node.
@@ -57,8 +63,8 @@ struct Node {
     good: u32,
 }
 
-impl<'c> Walker<'c> {
-    pub(super) fn new(cones: &'c [Cone], parameters: &'c CentreLineParameters) -> Result<Self, PlanError> {
+impl Mesh {
+    pub(super) fn new(cones: &[Cone]) -> Result<Self, PlanError> {
         if cones.len() < 3 {
             return Err(PlanError::TooFew { found: cones.len(), needed: 3 });
         }
@@ -76,26 +82,19 @@ impl<'c> Walker<'c> {
         }
         let at = |k: usize| cones[triangles[k]].position;
         let counter_clockwise = cross(at(1) - at(0), at(2) - at(0)) > 0.0;
-        let twins = triangulation.halfedges;
-        Ok(Self { cones, parameters, triangles, twins, counter_clockwise, sides: Vec::new() })
+        Ok(Self { triangles, twins: triangulation.halfedges, counter_clockwise })
     }
+}
 
-    /// Takes the sides of cones from a way that was driven before, if it has two points or more.
-    pub(super) fn near(mut self, driven: &[Point]) -> Self {
-        if driven.len() >= 2 {
-            self.sides = self.cones.iter().map(|cone| side_of(driven, cone.position)).collect();
-        }
-        self
-    }
-
+impl Walker<'_> {
     fn position(&self, cone: usize) -> Point {
         self.cones[cone].position
     }
 
     /// The left and the right cone for whoever enters a triangle by a half-edge.
     fn pair(&self, edge: usize) -> Pair {
-        let (a, b) = (self.triangles[edge], self.triangles[following(edge)]);
-        if self.counter_clockwise { [a, b] } else { [b, a] }
+        let (a, b) = (self.mesh.triangles[edge], self.mesh.triangles[following(edge)]);
+        if self.mesh.counter_clockwise { [a, b] } else { [b, a] }
     }
 
     fn width(&self, [left, right]: Pair) -> f64 {
@@ -132,7 +131,7 @@ impl<'c> Walker<'c> {
 
     /// Edges across the car's way, nearly where it is, the best first.
     fn starts(&self, car: Pose) -> Vec<Node> {
-        let mut found: Vec<(f64, usize)> = (0..self.triangles.len())
+        let mut found: Vec<(f64, usize)> = (0..self.mesh.triangles.len())
             .filter_map(|edge| {
                 let pair = self.pair(edge);
                 let local = car.to_local(self.middle(pair));
@@ -148,6 +147,7 @@ impl<'c> Walker<'c> {
                 Some((away + 4.0 * turn + colours + beside + self.pair_cost(pair), edge))
             })
             .collect();
+        found.retain(|(cost, _)| cost.is_finite());
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         found.truncate(STARTS);
         let node = |(root, (cost, edge)): (usize, (f64, usize))| {
@@ -178,7 +178,7 @@ impl<'c> Walker<'c> {
                 let reached = node.length.min(self.parameters.horizon);
                 keep(&mut ended, node.cost - 0.4 * reached, index);
                 for exit in [following(node.edge), preceding(node.edge)] {
-                    let twin = self.twins[exit];
+                    let twin = self.mesh.twins[exit];
                     if twin == delaunator::EMPTY {
                         self.leave(&mut nodes, index, exit, &mut ended);
                     } else if twin / 3 == roots[node.root] / 3 && node.length > self.parameters.shortest_loop
@@ -191,6 +191,7 @@ impl<'c> Walker<'c> {
                     }
                 }
             }
+            candidates.retain(|candidate| candidate.cost.is_finite());
             candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
             beam.clear();
             for candidate in &candidates {
@@ -293,20 +294,42 @@ fn was_in(nodes: &[Node], index: usize, triangle: usize) -> bool {
     false
 }
 
-/// On which side of a way a point lies, by the leg that is nearest to it; ways whose ends are near each other are closed.
-fn side_of(way: &[Point], point: Point) -> i8 {
+/// On which side of a way that was driven before each cone is, 1 for left: by the leg that is nearest to it. Ways whose ends are
+/// near each other are closed. Nothing for a way of less than two points. Takes O(n m) for n cones and m points.
+pub(super) fn sides(cones: &[Cone], way: &[Point]) -> Vec<i8> {
+    let [first, .., last] = way else { return Vec::new() };
     let n = way.len();
-    let ends = (way[0] - way[n - 1]).norm() < 8.0;
-    let legs = if ends { n } else { n - 1 };
-    let mut best = (f64::INFINITY, 0);
-    for i in 0..legs {
-        let leg = Segment::new(way[i], way[(i + 1) % n]);
-        let squared = (leg.closest_point(point) - point).norm_squared();
+    let legs = if (first - last).norm() < 8.0 { n } else { n - 1 };
+    let legs: Vec<Leg> = (0..legs).map(|i| Leg::new(way[i], way[(i + 1) % n])).collect();
+    cones.iter().map(|cone| side_of(&legs, cone.position)).collect()
+}
+
+/// A leg of a way, and the square of its length upside down.
+#[derive(Debug, Clone, Copy)]
+struct Leg {
+    from: Point,
+    along: Vector,
+    inverse: f64,
+}
+
+impl Leg {
+    fn new(from: Point, to: Point) -> Self {
+        let along = to - from;
+        Self { from, along, inverse: 1.0 / along.norm_squared().max(1e-18) }
+    }
+}
+
+fn side_of(legs: &[Leg], point: Point) -> i8 {
+    let mut best = (f64::INFINITY, Vector::zeros(), Vector::zeros());
+    for leg in legs {
+        let away = point - leg.from;
+        let share = (away.dot(&leg.along) * leg.inverse).clamp(0.0, 1.0);
+        let squared = (away - leg.along * share).norm_squared();
         if squared < best.0 {
-            best = (squared, if cross(leg.b - leg.a, point - leg.a) > 0.0 { 1 } else { -1 });
+            best = (squared, leg.along, away);
         }
     }
-    best.1
+    if cross(best.1, best.2) > 0.0 { 1 } else { -1 }
 }
 
 fn following(edge: usize) -> usize {
