@@ -83,7 +83,7 @@ impl<S: Strategy> Engine<S> {
             side,
             boundary: BoundaryFollower::new(side, body.parameters.follow_distances(), anchor),
             nearest: view.distance,
-            progress: LoopProgress::new(pose, S::LAPS),
+            progress: LoopProgress::new(pose, side, S::LAPS),
             travelled: 0.0,
             last: point,
             in_line: false,
@@ -163,7 +163,8 @@ impl<S: Strategy> Engine<S> {
                 Some(None)
             }
             Decision::BeginLap => {
-                self.following.as_mut()?.progress = LoopProgress::new(self.body.pose, S::LAPS);
+                let following = self.following.as_mut()?;
+                following.progress = LoopProgress::new(self.body.pose, following.side, S::LAPS);
                 Some(None)
             }
             Decision::GiveUp => {
@@ -200,7 +201,7 @@ impl<S: Strategy> Engine<S> {
         let (pose, side) = (self.body.pose, following.side.other());
         following.side = side;
         following.boundary.turn_back();
-        following.progress = LoopProgress::new(pose, S::LAPS);
+        following.progress = LoopProgress::new(pose, side, S::LAPS);
         following.in_line = false;
         self.body.phase = BugPhase::Following(side);
         self.body.events.push(BugEvent::Reverse { point: pose.position(), side });

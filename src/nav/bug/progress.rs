@@ -1,6 +1,7 @@
 use std::f64::consts::TAU;
 
-use crate::geometry::{Pose, angle_difference, normalize_angle};
+use crate::geometry::{Point, Pose, angle_difference, normalize_angle};
+use crate::nav::boundary::WallSide;
 
 /// Whether the robot has been all round.
 #[derive(Debug, Clone)]
@@ -10,8 +11,10 @@ pub(super) struct LoopProgress {
     /// Metres since the boundary was met, and since the loop began.
     approach: f64,
     travelled: f64,
-    /// Radians turned since the loop began.
+    /// Radians that the boundary has turned since the loop began.
     turned: f64,
+    spin: Spin,
+    side: WallSide,
     /// Steps without a free heading.
     boxed_in: u32,
     /// How near the robot was to the loop's begin at the last step, if it was as good as there.
@@ -43,21 +46,31 @@ pub(super) enum Lap {
     BoxedIn,
 }
 
-/// Returns the same way after which a loop is closed, however the robot has turned on it: in a dead end it may turn the wrong
-/// way round, and then a lap has no net turn, each time.
+/// What a robot turns more or less on the spot.
+#[derive(Debug, Clone, Copy)]
+struct Spin {
+    from: Point,
+    turned: f64,
+}
+
+/// Radians by which a robot that turns towards the wall on the spot turns round: about the end of a wall it would drive.
+const TURNING_ROUND: f64 = 2.2;
+/// Returns the same way after which a loop is closed, however the robot has turned on it.
 const CERTAIN_RETURNS: u32 = 2;
 /// Steps without a free heading after which the robot is boxed in.
 const BOXED_IN_STEPS: u32 = 40;
 
 impl LoopProgress {
-    /// A loop that begins about here.
-    pub(super) fn new(pose: Pose, rule: LapRule) -> Self {
+    /// A loop that begins about here, with the boundary on one side.
+    pub(super) fn new(pose: Pose, side: WallSide, rule: LapRule) -> Self {
         Self {
             begin: None,
             last: pose,
             approach: 0.0,
             travelled: 0.0,
             turned: 0.0,
+            spin: Spin { from: pose.position(), turned: 0.0 },
+            side,
             boxed_in: 0,
             closing: None,
             away: false,
@@ -86,7 +99,7 @@ impl LoopProgress {
             return Lap::Open;
         };
         self.travelled += moved;
-        self.turned += turned;
+        self.turned += self.turn_of_boundary(pose, turned, radius);
         let near = pose.distance_to(begin.position()) < 1.5 * radius;
         let same_way = normalize_angle(pose.heading - begin.heading).abs() < 1.2;
         let been_away = self.travelled > 6.0 * radius || self.turned.abs() > 1.1 * TAU;
@@ -99,7 +112,7 @@ impl LoopProgress {
         let all_round = self.turned.abs() > 0.6 * TAU || self.returns >= CERTAIN_RETURNS;
         if self.turned.abs() > self.rule.lost_turns * TAU {
             // It has been round without finding the place, so its pose there was wrong. The loop begins anew here.
-            *self = Self { begin: Some(pose), ..Self::new(pose, self.rule) };
+            *self = Self { begin: Some(pose), ..Self::new(pose, self.side, self.rule) };
             return Lap::Open;
         }
         let there = near && same_way && been_away && all_round;
@@ -108,6 +121,21 @@ impl LoopProgress {
         } else {
             Lap::Open
         }
+    }
+
+    /// What the boundary turns by as the robot turns. In a dead end it turns away from the wall, by half a turn; the robot may
+    /// turn round the other way there, and comes to face the same way.
+    fn turn_of_boundary(&mut self, pose: Pose, turned: f64, radius: f64) -> f64 {
+        if pose.distance_to(self.spin.from) > radius {
+            self.spin = Spin { from: pose.position(), turned: 0.0 };
+        }
+        self.spin.turned += turned;
+        let away = self.side.sense();
+        if self.spin.turned * away > -TURNING_ROUND {
+            return turned;
+        }
+        self.spin.turned += away * TAU;
+        turned + away * TAU
     }
 
     /// Whether the loop is over for a robot that is, or is not, as good as at its begin.
@@ -125,6 +153,7 @@ impl LoopProgress {
 mod tests {
     use super::*;
     use crate::geometry::math;
+    use std::f64::consts::PI;
 
     /// Follows a closed line round and round. How many rounds it takes until the loop is closed.
     fn rounds(place: impl Fn(f64) -> (f64, f64)) -> f64 {
@@ -133,7 +162,7 @@ mod tests {
             Pose::new(x, y, math::atan2(ahead_y - y, ahead_x - x))
         };
         let rule = LapRule { lost_turns: 1.6, to_the_end: false };
-        let mut progress = LoopProgress::new(at(0.0), rule);
+        let mut progress = LoopProgress::new(at(0.0), WallSide::Right, rule);
         let steps = (0..5000).map(|step| f64::from(step) * 0.01);
         let mut laps = steps.map(|t| (t, progress.update(at(t), Some(0.0), 0.06)));
         let closed = laps.find(|(_, lap)| matches!(lap, Lap::Closed(_)));
@@ -144,6 +173,32 @@ mod tests {
     fn a_closed_line_is_gone_round_once() {
         let round = rounds(|t| (math::cos(t), math::sin(t)));
         assert!((0.9..1.1).contains(&round), "{round}");
+    }
+
+    /// Up and down a blind alley: all of its boundary is gone along in one way there and one back.
+    #[test]
+    fn a_dead_end_is_left_whichever_way_the_robot_turns_round() {
+        for (side, towards_the_wall) in [(WallSide::Right, -PI), (WallSide::Left, PI), (WallSide::Right, PI)]
+        {
+            let rule = LapRule { lost_turns: 1.6, to_the_end: false };
+            let mut progress = LoopProgress::new(Pose::default(), side, rule);
+            let mut lap = |pose: Pose| progress.update(pose, Some(0.0), 0.06) != Lap::Open;
+            let step = |i: u32| 0.01 * f64::from(i);
+            let straight = |from: f64, heading: f64| {
+                (0..=100).map(move |i| Pose::new(from + step(i) * math::cos(heading), 0.0, heading))
+            };
+            let turn = |x: f64, from: f64, by: f64| {
+                (0..=50).map(move |i| Pose::new(x, 0.0, from + 2.0 * step(i) * by))
+            };
+            let away = side.sense() * PI;
+            let way = straight(0.0, 0.0)
+                .chain(turn(1.0, 0.0, towards_the_wall))
+                .chain(straight(1.0, PI))
+                .chain(turn(0.0, PI, away))
+                .chain(straight(0.0, 0.0));
+            let closed = way.enumerate().find_map(|(index, pose)| lap(pose).then_some(index));
+            assert!(closed.is_some_and(|index| (250..420).contains(&index)), "{side:?} {closed:?}");
+        }
     }
 
     #[test]
