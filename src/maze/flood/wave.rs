@@ -84,32 +84,21 @@ fn step<const N: usize>(boards: &Boards<N>, front: &[u64; N], unseen: &[u64; N])
     })
 }
 
-/// Cells that are written together.
-const PIECE: usize = 16;
-
 /// Writes the distances of a maze of any width up to that of a row.
 #[inline(always)]
 fn write<const N: usize, const P: usize>(wave: &Wave<N, P>, width: usize, steps: &mut [u32]) {
     for (y, line) in steps.chunks_exact_mut(width).enumerate() {
         let (word, shift) = Boards::<N>::place(y);
-        for (x, steps) in (0..).step_by(PIECE).zip(line.chunks_mut(PIECE)) {
-            let bits = |plane: &[u64; N]| u32::from((plane[word] >> (shift + x)) as u16);
-            write_piece(std::array::from_fn::<_, P, _>(|p| bits(&wave.planes[p])), bits(&wave.unseen), steps);
+        // What stands above the row's bits is of no cell.
+        let bits = |plane: &[u64; N]| (plane[word] >> shift) as u32;
+        let rows: [u32; P] = std::array::from_fn(|p| bits(&wave.planes[p]));
+        let unseen = bits(&wave.unseen);
+        for (x, steps) in line.iter_mut().enumerate() {
+            let cell = 1 << x;
+            let bit = |p: usize| if rows[p] & cell != 0 { 1 << p } else { 0 };
+            let distance = (0..P).fold(0, |distance, p| distance | bit(p));
+            *steps = if unseen & cell != 0 { UNREACHED } else { distance };
         }
-    }
-}
-
-/// The same for cells that are bits of one row of each plane. Of an even number of planes the upper half is moved together
-/// with the lower one, in the upper bits of the same words.
-#[inline(always)]
-fn write_piece<const P: usize>(rows: [u32; P], unseen: u32, steps: &mut [u32]) {
-    let half = P / 2;
-    let pairs: [u32; P] = std::array::from_fn(|p| if p < half { rows[p] | rows[p + half] << 16 } else { 0 });
-    for (x, steps) in (0_u32..).zip(steps) {
-        let both = (0..half).fold(0, |both, p| both | (pairs[p] >> x & 0x1_0001) << p);
-        let distance = (both | both >> (16 - half)) & ((1 << P) - 1);
-        let reached = (unseen >> x & 1).wrapping_sub(1);
-        *steps = distance | !reached & UNREACHED;
     }
 }
 
