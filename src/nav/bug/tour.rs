@@ -70,6 +70,8 @@ struct Returning {
     /// Where it began, in metres from the hit point.
     from: f64,
     length: f64,
+    /// The merit a step ago.
+    before: Option<f64>,
 }
 
 /// The part of a free range that is not relied upon at first, and at the most: gaps between beams grow with the distance.
@@ -78,6 +80,8 @@ const MAX_DOUBT: f64 = 0.3;
 /// How much worse, in STEPs, the place may seem when it is met again, and for each metre that it has been missed by.
 const SLACK: f64 = 0.5;
 const SLACK_PER_METRE: f64 = 0.1;
+/// The same, in STEPs, where the merit grows again: round a corner the robot drives a little farther out or in than the other way.
+const SLACK_PASSING: f64 = 1.0;
 /// After so many robot radii the place has been missed for good, and the next one that can be left at all will do.
 const MISSED: f64 = 3.0;
 /// For so many steps a merit lasts.
@@ -124,12 +128,18 @@ impl<const BY_RANGE: bool> Tour<BY_RANGE> {
     }
 
     /// Whether the robot is back at the best place.
-    fn is_there(&self, sight: &Sight, way: Returning) -> bool {
-        let missed_by = (sight.travelled - way.from - way.length).max(0.0);
-        let slack = SLACK * sight.step + SLACK_PER_METRE * missed_by;
-        let missed = missed_by > MISSED * sight.radius;
-        self.place().zip(self.merit(sight)).is_some_and(|(best, merit)| {
-            merit <= best.merit + slack || missed && merit <= self.least_distance
+    fn is_there(&mut self, sight: &Sight) -> bool {
+        let merit = self.merit(sight);
+        let Some(way) = &mut self.returning else { return false };
+        let before = std::mem::replace(&mut way.before, merit);
+        let beyond = sight.travelled - way.from - way.length;
+        let slack = SLACK * sight.step + SLACK_PER_METRE * beyond.max(0.0);
+        let near = MISSED * sight.radius;
+        self.place().zip(merit).is_some_and(|(best, merit)| {
+            let receding = before.is_some_and(|before| merit > before);
+            let passing = beyond.abs() < near && receding && merit <= best.merit + SLACK_PASSING * sight.step;
+            let missed = beyond > near && merit <= self.least_distance;
+            merit <= best.merit + slack || passing || missed
         })
     }
 }
@@ -148,8 +158,7 @@ impl<const BY_RANGE: bool> Strategy for Tour<BY_RANGE> {
         if self.returning.is_none() {
             self.survey(sight);
         }
-        let leave = self.returning.is_some_and(|way| self.is_there(sight, way));
-        if leave || sight.is_goal_at_hand() { Decision::Leave } else { Decision::Follow }
+        if self.is_there(sight) || sight.is_goal_at_hand() { Decision::Leave } else { Decision::Follow }
     }
 
     fn all_round(&mut self, sight: &Sight, lap: f64) -> Decision {
@@ -161,7 +170,7 @@ impl<const BY_RANGE: bool> Strategy for Tour<BY_RANGE> {
         let ahead = (best.at - begin).rem_euclid(lap);
         let forward = ahead <= 0.5 * lap;
         let length = if forward { ahead } else { lap - ahead };
-        self.returning = Some(Returning { from: sight.travelled, length });
+        self.returning = Some(Returning { from: sight.travelled, length, before: None });
         if forward { Decision::BeginLap } else { Decision::Reverse }
     }
 }
