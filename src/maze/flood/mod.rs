@@ -3,6 +3,8 @@
 mod incremental;
 mod passages;
 mod queue;
+#[cfg(target_arch = "x86_64")]
+mod register;
 #[allow(clippy::inline_always, reason = "a function compiled for a processor takes in only what is inlined")]
 mod wave;
 

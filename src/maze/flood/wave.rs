@@ -8,16 +8,16 @@ use super::passages::Boards;
 use crate::maze::Cell;
 
 /// A wave on its way: the cells it is at, those it has not come to, and their distances, a plane for each bit.
-struct Wave<const N: usize, const P: usize> {
-    front: [u64; N],
-    unseen: [u64; N],
-    planes: [[u64; N]; P],
+pub(super) struct Wave<const N: usize, const P: usize> {
+    pub(super) front: [u64; N],
+    pub(super) unseen: [u64; N],
+    pub(super) planes: [[u64; N]; P],
 }
 
 impl<const N: usize, const P: usize> Wave<N, P> {
     /// A wave that has run to its end.
     #[inline(always)]
-    fn spread(boards: &Boards<N>, sources: [u64; N]) -> Self {
+    pub(super) fn spread(boards: &Boards<N>, sources: [u64; N]) -> Self {
         let mut wave = Self { front: sources, unseen: [!0; N], planes: [[0; N]; P] };
         let mut eighth = 0_usize;
         while wave.front.iter().fold(0, |any, word| any | word) != 0 {
@@ -137,7 +137,16 @@ pub(super) fn fill_medium(
     "x86_64+ssse3+sse4.1",
 ))]
 fn small(boards: &Boards<4>, sources: [u64; 4], width: usize, steps: &mut [u32]) {
-    write(&Wave::<4, 8>::spread(boards, sources), width, steps);
+    let wave = multiversion::target::match_target! {
+        "x86_64+avx512f+avx512bw+avx512dq+avx512vl" | "x86_64+avx2+bmi1+bmi2" => super::register::spread(boards, sources),
+        _ => Wave::<4, 8>::spread(boards, sources),
+    };
+    // The usual width, known beforehand: all of a row is written at once.
+    if width == 16 {
+        write(&wave, 16, steps);
+    } else {
+        write(&wave, width, steps);
+    }
 }
 
 #[multiversion::multiversion(targets(
