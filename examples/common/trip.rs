@@ -224,7 +224,7 @@ impl CommonArgs {
                 within(&scene.world.bounds())
             )));
         }
-        if clearance(scene) <= TOUCHING {
+        if scene.world.is_inside_walls(start.position()) || clearance(scene) <= TOUCHING {
             let radius = units::to_mm(scene.robots[0].spec.footprint.bounding_radius());
             return Err(Failure::input(format!(
                 "{from}: found a start at {place} mm, in a wall, an object or another robot; expected free floor \

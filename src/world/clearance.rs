@@ -190,6 +190,9 @@ impl Clearance {
         let mut field = Self { raster, limit, distances };
         world.walls.iter().map(Solid::of_wall).for_each(|solid| field.stamp(&solid));
         world.objects.iter().map(Solid::of_object).for_each(|solid| field.stamp(&solid));
+        if world.map.is_some() {
+            field.fill(|place| world.is_inside_walls(place));
+        }
         Ok(field)
     }
 
@@ -213,6 +216,15 @@ impl Clearance {
     /// outside of the raster.
     pub fn at_point(&self, point: Point) -> Option<f64> {
         self.raster.cell_at(point).map(|cell| self.at(cell))
+    }
+
+    /// Sets the distance to 0 inside what is solid.
+    fn fill(&mut self, is_solid: impl Fn(Point) -> bool) {
+        for (cell, distance) in self.distances.iter_mut().enumerate() {
+            if is_solid(self.raster.centre(cell)) {
+                *distance = 0.0;
+            }
+        }
     }
 
     fn stamp(&mut self, solid: &Solid) {
@@ -319,7 +331,7 @@ mod tests {
 
     use super::*;
     use crate::geometry::Pose;
-    use crate::world::ObjectKind;
+    use crate::world::{Cell, ObjectKind, OccupancyGrid};
     use proptest::prelude::*;
 
     fn point() -> impl Strategy<Value = Point> {
@@ -361,6 +373,21 @@ mod tests {
             let distance = Solid::of_wall(&wall).distance_to(from);
             prop_assert!((distance - wall.line.distance_to(from)).abs() < 1e-9);
         }
+    }
+
+    /// The walls of a map go round its blocks; the inside is as solid, wherever the map lies and however it is turned.
+    #[test]
+    fn the_inside_of_a_block_of_a_map_is_solid() {
+        let mut map = OccupancyGrid::unknown(10, 10, 0.5, Pose::new(2.0, -1.0, 0.4)).unwrap();
+        for (row, column) in (2..8).flat_map(|row| (2..8).map(move |column| (row, column))) {
+            map.set(column, row, Cell::Occupied);
+        }
+        let world = map.to_world();
+        let field = Clearance::new(&world, 0.1, 0.2).unwrap();
+        assert_eq!(field.at_point(map.centre(4, 4)), Some(0.0));
+        assert_eq!(field.at_point(map.centre(0, 0)), Some(0.2));
+        let hollow = World { map: None, ..world };
+        assert_eq!(Clearance::new(&hollow, 0.1, 0.2).unwrap().at_point(map.centre(4, 4)), Some(0.2));
     }
 
     #[test]

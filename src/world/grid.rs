@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use crate::geometry::{Aabb, Point, Pose, Segment};
 use crate::world::{Wall, World};
 
@@ -151,11 +153,12 @@ impl OccupancyGrid {
         walls
     }
 
-    /// A world with the outlines of the occupied cells as walls, and a floor as large as the grid.
+    /// A world with the outlines of the occupied cells as walls, and a floor as large as the grid, which it keeps as its map.
     pub fn to_world(&self) -> World {
         let mut world = World::empty(0.0, 0.0);
         world.floor = self.bounds();
         world.walls = self.to_walls();
+        world.map = Some(Arc::new(self.clone()));
         world
     }
 

@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::{Billboard, Marker, Object, RobotSpec, Wall};
+use super::{Billboard, Cell, Marker, Object, OccupancyGrid, RobotSpec, Wall};
 use crate::geometry::{Aabb, Point, Pose, Vector};
 
 /// A place without robots: floor, walls, objects and marks.
@@ -13,6 +13,8 @@ pub struct World {
     pub floor_texture: Option<PathBuf>,
     /// The walls.
     pub walls: Vec<Wall>,
+    /// The map that the walls outline, if they come from one: walls alone do not tell on which side of them it is solid.
+    pub map: Option<Arc<OccupancyGrid>>,
     /// The objects, in the order in which they were placed.
     pub objects: Vec<Object>,
     /// Marks on the floor.
@@ -36,6 +38,7 @@ impl World {
             floor: Aabb::new(Point::origin(), Point::new(width, height)),
             floor_texture: None,
             walls: Vec::new(),
+            map: None,
             objects: Vec::new(),
             markers: Vec::new(),
             billboards: Vec::new(),
@@ -67,6 +70,13 @@ impl World {
     pub fn add_loop(&mut self, corners: &[Point]) {
         let next = corners.iter().cycle().skip(1);
         self.walls.extend(corners.iter().zip(next).map(|(&a, &b)| Wall::new(a, b)));
+    }
+
+    /// Whether a point lies in an occupied cell of the map that the walls outline.
+    pub fn is_inside_walls(&self, point: Point) -> bool {
+        self.map.as_ref().is_some_and(|map| {
+            map.cell_at(point).is_some_and(|(column, row)| map.cell(column, row) == Cell::Occupied)
+        })
     }
 
     /// The smallest box around floor, walls and objects.

@@ -81,8 +81,10 @@ fn a_grid_map_is_a_floor() {
     // Column 2, row 2 of the map, and its upper right cell.
     let ended = run(&["--world", &world, "--start", "1250,1750,0", "--goal", "4250,2750"]);
     assert_reached(&ended);
-    // Inside of a blocked cell there is no way out.
-    let (status, report, _) = run(&["--world", &world, "--start", "750,2250,0", "--goal", "4250,2750"]);
+    // The inside of a blocked cell is solid, though the world's walls only go round it.
+    let (status, _, err) = run(&["--world", &world, "--start", "750,2250,0", "--goal", "4250,2750"]);
+    assert!(status == 2 && err.contains("--start: found a start at 750, 2250 mm, in a wall"), "{err}");
+    let (status, report, _) = run(&["--world", &world, "--start", "1250,1750,0", "--goal", "750,2250"]);
     assert_eq!((status, report["outcome"].as_str()), (0, Some("unreachable")), "{report}");
 }
 
