@@ -7,12 +7,16 @@ Options: --quick for shorter measurements, --rounds N for how often ours and the
 import argparse
 import json
 import math
+import os
 import pathlib
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
+
+# One thread for all: kornia-rs reads this when it is loaded.
+os.environ["RAYON_NUM_THREADS"] = "1"
 
 import cv2
 import numpy as np

@@ -55,15 +55,26 @@ pub(super) fn subtract_portable(first: GrayView<'_>, second: GrayView<'_>, outpu
     }
 }
 
+/// Pixels that are summed up side by side, and how many such blocks fit sums of 16 bits.
+const LANES: usize = 256;
+const BLOCKS: usize = 257;
+
 #[inline(always)]
 pub(super) fn sum_portable(first: GrayView<'_>, second: GrayView<'_>, from: usize, to: usize) -> u64 {
     let mut total = 0;
     for y in 0..first.height() {
-        // Pieces whose sums fit 32 bits.
-        let pieces = first.row(y)[from..to].chunks(1 << 16).zip(second.row(y)[from..to].chunks(1 << 16));
-        for (a, b) in pieces {
-            total += u64::from(a.iter().zip(b).map(|(a, b)| u32::from(a.abs_diff(*b))).sum::<u32>());
+        let (a, rest_a) = first.row(y)[from..to].as_chunks::<LANES>();
+        let (b, rest_b) = second.row(y)[from..to].as_chunks::<LANES>();
+        for (a, b) in a.chunks(BLOCKS).zip(b.chunks(BLOCKS)) {
+            let mut sums = [0_u16; LANES];
+            for (a, b) in a.iter().zip(b) {
+                for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+                    *sum += u16::from(a.abs_diff(*b));
+                }
+            }
+            total += u64::from(sums.iter().map(|&sum| u32::from(sum)).sum::<u32>());
         }
+        total += rest_a.iter().zip(rest_b).map(|(a, b)| u64::from(a.abs_diff(*b))).sum::<u64>();
     }
     total
 }

@@ -81,27 +81,23 @@ type Sums = [u16; STRIP + 6];
 pub(super) fn smooth_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>, kernel: GaussianKernel) {
     match kernel {
         // Small whole weights keep the sums within 16 bits.
-        GaussianKernel::THREE => filter::<1>(input, output, [2, 1, 0, 0], across_three),
-        GaussianKernel::FIVE => filter::<2>(input, output, [6, 4, 1, 0], across_five),
-        GaussianKernel::SEVEN => filter::<3>(input, output, [18, 14, 7, 2], across_seven),
-        GaussianKernel { weights, size } => {
-            let wide = weights.map(u32::from);
-            match size {
-                3 => filter::<1>(input, output, weights, |sums, out| across_32::<1>(sums, out, wide)),
-                5 => filter::<2>(input, output, weights, |sums, out| across_32::<2>(sums, out, wide)),
-                _ => filter::<3>(input, output, weights, |sums, out| across_32::<3>(sums, out, wide)),
-            }
-        }
+        GaussianKernel::THREE => filter::<1, true>(input, output, [2, 1, 0, 0]),
+        GaussianKernel::FIVE => filter::<2, true>(input, output, [6, 4, 1, 0]),
+        GaussianKernel::SEVEN => filter::<3, true>(input, output, [18, 14, 7, 2]),
+        GaussianKernel { weights, size: 3 } => filter::<1, false>(input, output, weights),
+        GaussianKernel { weights, size: 5 } => filter::<2, false>(input, output, weights),
+        GaussianKernel { weights, .. } => filter::<3, false>(input, output, weights),
     }
 }
 
-/// Sums up columns, then hands them to `across`, strip by strip.
+/// Sums up columns, then rows of those sums, strip by strip. `SMALL` weights are those of the kernels with a name.
+///
+/// No function is handed on here: what is called through one is not inlined, and so not compiled for the processor.
 #[inline(always)]
-fn filter<const R: usize>(
+fn filter<const R: usize, const SMALL: bool>(
     input: GrayView<'_>,
     output: &mut GrayViewMut<'_>,
     weights: [u16; 4],
-    across: impl Fn(&[u16], &mut [u8]),
 ) {
     let (width, height) = input.size();
     let mut sums: Sums = [0; STRIP + 6];
@@ -111,33 +107,60 @@ fn filter<const R: usize>(
         let (from, to) = (start.saturating_sub(R), (end + R).min(width));
         let offset = from + R - start;
         for y in 0..height {
-            let row = |dy: isize| &input.row(mirrored(y as isize + dy, height))[from..to];
-            down::<R>(row, weights, &mut sums[offset..][..to - from]);
+            down::<R>(input, y, (from, to), weights, &mut sums[offset..][..to - from]);
             if start == 0 || end == width {
                 mirror_columns::<R>(&mut sums, start, end, width);
             }
-            across(&sums[..end - start + 2 * R], &mut output.row_mut(y)[start..end]);
+            let out = &mut output.row_mut(y)[start..end];
+            let sums = &sums[..end - start + 2 * R];
+            match (SMALL, R) {
+                (true, 1) => across_three(sums, out),
+                (true, 2) => across_five(sums, out),
+                (true, _) => across_seven(sums, out),
+                (false, _) => across_32::<R>(sums, out, weights.map(u32::from)),
+            }
         }
     }
 }
 
+/// So many columns of the row `dy` rows below another.
+#[inline(always)]
+fn row<'a>(input: GrayView<'a>, y: usize, dy: isize, (from, to): (usize, usize)) -> &'a [u8] {
+    &input.row(mirrored(y as isize + dy, input.height()))[from..to]
+}
+
 /// Weighted sums of columns.
 #[inline(always)]
-fn down<'a, const R: usize>(row: impl Fn(isize) -> &'a [u8], weights: [u16; 4], sums: &mut [u16]) {
-    let both = |a: u8, b: u8| u16::from(a) + u16::from(b);
+fn down<const R: usize>(
+    input: GrayView<'_>,
+    y: usize,
+    columns: (usize, usize),
+    weights: [u16; 4],
+    sums: &mut [u16],
+) {
     let [w0, w1, w2, w3] = weights;
-    match R {
-        1 => in_blocks!(sums; c in row(0), n in row(-1), s in row(1) => w0 * u16::from(c) + w1 * both(n, s)),
-        2 => in_blocks!(sums; c in row(0), n1 in row(-1), s1 in row(1), n2 in row(-2), s2 in row(2) => {
-            w0 * u16::from(c) + w1 * both(n1, s1) + w2 * both(n2, s2)
-        }),
-        _ => {
-            let (c, n1, s1, n2, s2) = (row(0), row(-1), row(1), row(-2), row(2));
-            in_blocks!(sums; c in c, n1 in n1, s1 in s1, n2 in n2, s2 in s2, n3 in row(-3), s3 in row(3) => {
-                w0 * u16::from(c) + w1 * both(n1, s1) + w2 * both(n2, s2) + w3 * both(n3, s3)
-            });
-        }
+    let c = row(input, y, 0, columns);
+    let (n1, s1) = (row(input, y, -1, columns), row(input, y, 1, columns));
+    if R == 1 {
+        in_blocks!(sums; c in c, n in n1, s in s1 => w0 * u16::from(c) + w1 * both(n, s));
+        return;
     }
+    let (n2, s2) = (row(input, y, -2, columns), row(input, y, 2, columns));
+    if R == 2 {
+        in_blocks!(sums; c in c, n1 in n1, s1 in s1, n2 in n2, s2 in s2 => {
+            w0 * u16::from(c) + w1 * both(n1, s1) + w2 * both(n2, s2)
+        });
+        return;
+    }
+    let (n3, s3) = (row(input, y, -3, columns), row(input, y, 3, columns));
+    in_blocks!(sums; c in c, n1 in n1, s1 in s1, n2 in n2, s2 in s2, n3 in n3, s3 in s3 => {
+        w0 * u16::from(c) + w1 * both(n1, s1) + w2 * both(n2, s2) + w3 * both(n3, s3)
+    });
+}
+
+#[inline(always)]
+fn both(a: u8, b: u8) -> u16 {
+    u16::from(a) + u16::from(b)
 }
 
 /// Sums of the columns that the image lacks: those of their mirror images.

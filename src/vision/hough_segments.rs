@@ -43,7 +43,9 @@ impl Default for SegmentParameters {
 #[derive(Debug, Clone)]
 pub struct HoughSegments {
     directions: Vec<[f32; 2]>,
-    votes: Vec<u32>,
+    /// As many as 16 bits hold: no line has more pixels but in an image with a diagonal of 46,000 pixels. Half the memory is
+    /// looked up much faster.
+    votes: Vec<u16>,
     /// The edges that are left.
     mask: Vec<u8>,
     /// Which of them have voted.
@@ -141,18 +143,19 @@ impl HoughSegments {
         let (mut most, mut best) = (0, 0);
         for (angle, &place) in self.places.iter().enumerate() {
             let count = &mut self.votes[place as usize];
-            *count += 1;
+            *count = count.saturating_add(1);
             if *count > most {
                 (most, best) = (*count, angle);
             }
         }
-        (most, best)
+        (most.into(), best)
     }
 
     fn take_back(&mut self, x: usize, y: usize) {
         self.reckon(x, y);
         for &place in &self.places {
-            self.votes[place as usize] -= 1;
+            let count = &mut self.votes[place as usize];
+            *count = count.saturating_sub(1);
         }
     }
 

@@ -1,5 +1,5 @@
 use super::dispatch::vectorised;
-use super::hue::{fixed_quotient, opencv};
+use super::hue::{fixed_point, opencv};
 use super::planes::{PIECE, merge, split};
 use super::view::flatten;
 use super::{Error, RgbView, RgbViewMut};
@@ -19,11 +19,10 @@ pub struct Hsv {
 /// Red, green and blue to hue, saturation and value.
 #[inline(always)]
 pub fn rgb_to_hsv([red, green, blue]: [u8; 3]) -> Hsv {
-    let (r, g, b) = (i32::from(red), i32::from(green), i32::from(blue));
-    let largest = r.max(g).max(b);
-    let d = largest - r.min(g).min(b);
-    let saturation = (d * fixed_quotient(1_044_480.0, largest) + 2048) >> 12;
-    Hsv { hue: opencv(r, g, b, largest, d) as u8, saturation: saturation as u8, value: largest as u8 }
+    let value = red.max(green).max(blue);
+    let difference = value - red.min(green).min(blue);
+    let saturation = fixed_point(i16::from(difference), 255.0, value) as u8;
+    Hsv { hue: opencv([red, green, blue], value, difference), saturation, value }
 }
 
 /// The same for an image; the output has hue, saturation and value in the place of red, green and blue.

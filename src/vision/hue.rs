@@ -47,12 +47,13 @@ impl Default for HueLimits {
 /// The hue of red, green and blue; [`NO_HUE`] outside the limits and, on RoBIOS's scale, for grays.
 #[inline(always)]
 pub fn hue([red, green, blue]: [u8; 3], scale: HueScale, limits: HueLimits) -> u8 {
+    let brightest = red.max(green).max(blue);
+    let difference = brightest - red.min(green).min(blue);
     let (r, g, b) = (i32::from(red), i32::from(green), i32::from(blue));
-    let largest = r.max(g).max(b);
-    let d = largest - r.min(g).min(b);
+    let (largest, d) = (i32::from(brightest), i32::from(difference));
     let value = match scale {
         HueScale::Robios => robios(r, g, b, largest, d),
-        HueScale::OpenCv => opencv(r, g, b, largest, d),
+        HueScale::OpenCv => opencv([red, green, blue], brightest, difference).into(),
     };
     let gray = (scale == HueScale::Robios) & (d == 0);
     let pale = 255 * d < i32::from(limits.min_saturation) * largest;
@@ -70,30 +71,42 @@ fn robios(r: i32, g: i32, b: i32, largest: i32, d: i32) -> i32 {
         (r - g, 210)
     };
     let numerator = 42 * n.abs();
-    let nearest = fixed_quotient(numerator as f32, d);
+    // The number stands in the lowest bits of such a sum.
+    let nearest = ((numerator as f32 / d.max(1) as f32 + WHOLE).to_bits() & 0x007f_ffff) as i32;
     let quotient = if nearest * d > numerator { nearest - 1 } else { nearest };
     if n < 0 { base - quotient } else { base + quotient }
 }
 
 #[inline(always)]
-pub(super) fn opencv(r: i32, g: i32, b: i32, largest: i32, d: i32) -> i32 {
-    let n = if largest == r {
+pub(super) fn opencv([red, green, blue]: [u8; 3], largest: u8, difference: u8) -> u8 {
+    let (r, g, b) = (i16::from(red), i16::from(green), i16::from(blue));
+    let d = i16::from(difference);
+    let n = if largest == red {
         g - b
-    } else if largest == g {
+    } else if largest == green {
         b - r + 2 * d
     } else {
         r - g + 4 * d
     };
-    let h = (n * fixed_quotient(122_880.0, d) + 2048) >> 12;
-    if h < 0 { h + 180 } else { h }
+    let h = fixed_point(n, 30.0, difference);
+    (if h < 0 { h + 180 } else { h }) as u8
 }
 
-/// `n / d` rounded to the nearest whole number, halves to even ones; 0 for a `d` of 0. `n` must be below 2^22.
+/// The smallest float from which on all are whole numbers: adding it to a smaller one rounds that.
+const WHOLE: f32 = 8_388_608.0;
+
+/// `(n t + 2048) / 4096` rounded down, where `t / 4096` is `one / d` rounded to the nearest 4096th; 0 for an `n` of 0. Neither
+/// `one` nor the result may be above 255.
+///
+/// Floats are multiplied faster than whole numbers of 32 bits, and here they are as exact: `t / 4096` is, and the product
+/// misses the multiple of 1/4096 that it should be by less than 2^-16. So 2^-14 more of it rounds halves up and changes nothing
+/// else.
 #[inline(always)]
-pub(super) fn fixed_quotient(n: f32, d: i32) -> i32 {
-    // Adding 2^23 to a float rounds it to a whole number, which then stands in its lowest bits.
-    let rounded = (n / d.max(1) as f32 + 8_388_608.0).to_bits() & 0x007f_ffff;
-    if d == 0 { 0 } else { rounded as i32 }
+pub(super) fn fixed_point(n: i16, one: f32, d: u8) -> i16 {
+    // From 2048 on, floats are multiples of 1/4096.
+    let quotient = one / f32::from(d.max(1)) + 2048.0 - 2048.0;
+    // In the lowest bits, also of a negative one.
+    (f32::from(n) * quotient + 1.0 / 16384.0 + 1.5 * WHOLE).to_bits() as i16
 }
 
 /// The hues of an image; see [`hue`].
