@@ -1,4 +1,4 @@
-use crate::geometry::Point;
+use super::lines::{between_walls, entered, squeezed};
 use crate::nav::grid::{AnyAngle, GridPath, GridPlanner, GridSearch, PlanError};
 use crate::world::{BitGrid, GridCell};
 
@@ -26,6 +26,11 @@ pub struct Violation {
 /// Costs that differ by less are the same: sums are rounded.
 const TOLERANCE: f64 = 1e-6;
 
+/// Whether two costs are the same. NaN is no cost.
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= TOLERANCE
+}
+
 fn violation(start: GridCell, goal: GridCell, what: String) -> Violation {
     Violation { start, goal, what }
 }
@@ -45,7 +50,7 @@ pub fn optimal(
         Movement::AnyAngle => AnyAngle::new(grid).plan(start, goal),
     };
     match (planner.plan(start, goal), truth) {
-        (Ok(path), Ok(best)) if (path.cost - best.cost).abs() > TOLERANCE => {
+        (Ok(path), Ok(best)) if !same(path.cost, best.cost) => {
             let what = format!("a path of {} cells was found; the shortest has {}", path.cost, best.cost);
             Err(violation(start, goal, what))
         }
@@ -53,8 +58,9 @@ pub fn optimal(
     }
 }
 
-/// The planner's path leads from the start to the goal along straight lines that enter no blocked cell, and is as long as it
-/// says. Queries without an answer pass.
+/// The planner's path leads from the start to the goal along straight lines, and is as long as it says. It enters no blocked cell,
+/// but may run along one and touch corners; it squeezes neither between two blocked cells side by side nor between two that
+/// touch at a corner. Queries without an answer pass.
 pub fn collision_free(
     planner: &mut impl GridPlanner,
     grid: &BitGrid,
@@ -75,47 +81,20 @@ pub fn collision_free(
             let what = format!("the way from {} to {} enters the blocked cell {cell}", pair[0], pair[1]);
             return Err(violation(start, goal, what));
         }
+        if between_walls(grid, pair[0], pair[1]) {
+            let what = format!("the way from {} to {} runs between blocked cells", pair[0], pair[1]);
+            return Err(violation(start, goal, what));
+        }
+    }
+    if let Some(corner) = squeezed(grid, &path.points) {
+        let what = format!("the way squeezes between the blocked cells that touch at {corner}");
+        return Err(violation(start, goal, what));
     }
     let length: f64 = path.points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
-    if (length - path.cost).abs() > TOLERANCE {
+    if !same(length, path.cost) {
         return Err(violation(start, goal, format!("a cost of {} for a path of {length} cells", path.cost)));
     }
     Ok(())
-}
-
-/// A blocked cell, or a place outside, whose inside a segment meets.
-fn entered(grid: &BitGrid, a: Point, b: Point) -> Option<GridCell> {
-    let bounds = |a: f64, b: f64, cells: usize| {
-        let low = (a.min(b) - 1.0).floor().max(0.0) as usize;
-        low..((a.max(b) + 1.0).ceil() as usize).min(cells)
-    };
-    let outside = |p: Point| {
-        !(0.0..=grid.width() as f64).contains(&p.x) || !(0.0..=grid.height() as f64).contains(&p.y)
-    };
-    if outside(a) || outside(b) {
-        return Some(GridCell::new(grid.width(), grid.height()));
-    }
-    let rows = bounds(a.y, b.y, grid.height());
-    let cells =
-        rows.flat_map(|row| bounds(a.x, b.x, grid.width()).map(move |column| GridCell::new(column, row)));
-    cells.into_iter().find(|&cell| !grid.is_free(cell) && meets(a, b, cell))
-}
-
-/// Whether a part of a segment lies inside a cell, edges aside.
-fn meets(a: Point, b: Point, cell: GridCell) -> bool {
-    let (mut first, mut last) = (0.0f64, 1.0f64);
-    for (from, d, low) in [(a.x, b.x - a.x, cell.column as f64), (a.y, b.y - a.y, cell.row as f64)] {
-        let (low, high) = (low + TOLERANCE, low + 1.0 - TOLERANCE);
-        if d == 0.0 {
-            if from <= low || from >= high {
-                return false;
-            }
-            continue;
-        }
-        let (one, other) = ((low - from) / d, (high - from) / d);
-        (first, last) = (first.max(one.min(other)), last.min(one.max(other)));
-    }
-    first < last
 }
 
 /// The planner finds a path if there is one, and says that there is none if there is none.
@@ -145,7 +124,8 @@ pub fn triangle_inequality(
     let (Ok(direct), Ok(first), Ok(second)) = (cost(start, goal), cost(start, by), cost(by, goal)) else {
         return Ok(());
     };
-    if direct > first + second + TOLERANCE {
+    // So put, what is no number is caught.
+    if !(direct <= first + second + TOLERANCE) {
         let what = format!("a path of {direct} cells; by {by} there is one of {}", first + second);
         return Err(violation(start, goal, what));
     }

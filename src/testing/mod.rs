@@ -21,6 +21,7 @@
 //! ```
 
 mod checks;
+mod lines;
 mod strategies;
 #[cfg(test)]
 mod tests;

@@ -1,12 +1,15 @@
 use proptest::prelude::*;
 
+use super::lines::{between_walls, entered, squeezed};
 use super::{
     Movement, PlanWith, collision_free, complete, grid_queries, mazes, optimal, triangle_inequality,
 };
+use crate::geometry::Point;
 use crate::nav::grid::{
     AnyAngle, GridPath, GridPlanner, GridSearch, JumpPointSearch, PlanError, PreparedJumps, Quadtree,
     QuadtreePlanner, SearchStatistics,
 };
+use crate::random::Stream;
 use crate::world::{BitGrid, GridCell};
 
 proptest! {
@@ -23,8 +26,8 @@ proptest! {
             triangle_inequality(&mut planner, a, c, b)?;
         }
         let mut any = AnyAngle::new(&grid);
-        optimal(&mut any, &grid, Movement::AnyAngle, a, b)?;
         collision_free(&mut any, &grid, a, b)?;
+        complete(&mut any, &grid, a, b)?;
         triangle_inequality(&mut any, a, c, b)?;
         let mut quadtree = QuadtreePlanner::new(&Quadtree::new(&grid));
         collision_free(&mut quadtree, &grid, a, b)?;
@@ -50,6 +53,77 @@ fn worlds_are_drawn() {
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     let course = super::worlds().new_tree(&mut runner).unwrap().current();
     assert!(!course.world.walls.is_empty() && course.goal != course.start.position());
+}
+
+/// The planner's own lines of sight, in whole numbers, say the same of lines between middles and corners of cells.
+#[test]
+fn lines_are_free_as_the_planners_see_them() {
+    let mut stream = Stream::new(7);
+    let (mut free, mut squeezes, mut walled) = (0, 0, 0);
+    for _ in 0..20_000 {
+        let (width, height) = (1 + stream.below(6), 1 + stream.below(6));
+        let share = stream.between(0.3, 0.95);
+        let grid = BitGrid::from_fn(width, height, |_, _| stream.chance(share)).unwrap();
+        let mut point = || match stream.chance(0.5) {
+            true => GridCell::new(stream.below(width), stream.below(height)).centre(),
+            false => Point::new(stream.below(width + 1) as f64, stream.below(height + 1) as f64),
+        };
+        let (a, b) = (point(), point());
+        if a == b || entered(&grid, a, b).is_some() {
+            continue;
+        }
+        let (walls, squeeze) = (between_walls(&grid, a, b), squeezed(&grid, &[a, b]).is_some());
+        assert_eq!(AnyAngle::new(&grid).points_in_sight(a, b), !walls && !squeeze, "{a} to {b} on {grid:?}");
+        free += u32::from(!walls && !squeeze);
+        squeezes += u32::from(squeeze);
+        walled += u32::from(walls);
+    }
+    assert!(free > 1000 && squeezes > 100 && walled > 100, "{free} {squeezes} {walled}");
+}
+
+#[test]
+fn squeezing_between_blocked_cells_is_caught() {
+    let straight = |points: Vec<Point>| {
+        let length = points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+        PlanWith(move |_, _| {
+            Ok(GridPath { points: points.clone(), cost: length, statistics: SearchStatistics::default() })
+        })
+    };
+    let crosswise = BitGrid::from_text("..#\n.#.\n...").unwrap();
+    let (a, b) = (GridCell::new(1, 0), GridCell::new(2, 1));
+    let through = vec![a.centre(), b.centre()];
+    let by_the_corner = vec![a.centre(), Point::new(2.0, 1.0), b.centre()];
+    for points in [through, by_the_corner] {
+        let caught = collision_free(&mut straight(points), &crosswise, a, b).unwrap_err();
+        assert!(caught.what.contains("squeezes"), "{caught}");
+    }
+    // Touching that corner and going back is no squeeze.
+    let touching = vec![a.centre(), Point::new(2.0, 1.0), a.centre()];
+    collision_free(&mut straight(touching), &crosswise, a, a).unwrap();
+
+    let block = BitGrid::from_text("....\n.##.\n.##.\n....").unwrap();
+    let (a, b) = (GridCell::new(1, 0), GridCell::new(2, 3));
+    let inside = vec![a.centre(), Point::new(2.0, 1.0), Point::new(2.0, 3.0), b.centre()];
+    let caught = collision_free(&mut straight(inside), &block, a, b).unwrap_err();
+    assert!(caught.what.contains("between blocked cells"), "{caught}");
+    // Along one of them it is free.
+    let (a, b) = (GridCell::new(0, 0), GridCell::new(0, 3));
+    let beside = vec![a.centre(), Point::new(1.0, 1.0), Point::new(1.0, 3.0), b.centre()];
+    collision_free(&mut straight(beside), &block, a, b).unwrap();
+}
+
+#[test]
+fn a_cost_that_is_no_number_is_caught() {
+    let grid = BitGrid::from_text("...").unwrap();
+    let [a, b, c] = [0, 1, 2].map(|column| GridCell::new(column, 0));
+    let mut planner = PlanWith(|start: GridCell, goal: GridCell| {
+        let points = vec![start.centre(), goal.centre()];
+        Ok(GridPath { points, cost: f64::NAN, statistics: SearchStatistics::default() })
+    });
+    assert!(optimal(&mut planner, &grid, Movement::Octile, a, c).is_err());
+    assert!(optimal(&mut planner, &grid, Movement::AnyAngle, a, c).is_err());
+    assert!(collision_free(&mut planner, &grid, a, c).is_err());
+    assert!(triangle_inequality(&mut planner, a, b, c).is_err());
 }
 
 #[test]
