@@ -26,7 +26,7 @@ pub(super) struct Arrival {
 }
 
 /// What is known about a node.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 struct Label {
     cost: u64,
     x: u32,
@@ -36,10 +36,27 @@ struct Label {
     query: u32,
 }
 
+impl Label {
+    fn pack(self) -> Packed {
+        let pair = |low: u32, high: u32| u64::from(high) << 32 | u64::from(low);
+        [self.cost, pair(self.x, self.y), pair(self.parent, self.query)]
+    }
+
+    fn unpack([cost, place, rest]: Packed) -> Self {
+        let low = |pair: u64| pair as u32;
+        let high = |pair: u64| (pair >> 32) as u32;
+        Self { cost, x: low(place), y: high(place), parent: low(rest), query: high(rest) }
+    }
+}
+
+/// A label as plain numbers: memory for those comes zeroed and takes none before it is written, so a search costs what it touches,
+/// however large the map is.
+type Packed = [u64; 3];
+
 /// Everything that a search keeps from one query to the next.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Search {
-    labels: Vec<Label>,
+    labels: Vec<Packed>,
     query: u32,
     queue: BucketQueue,
 }
@@ -78,7 +95,7 @@ impl Search {
             );
         });
         while let Some((node, cost)) = self.queue.pop_below(best) {
-            let label = self.labels[node as usize];
+            let label = Label::unpack(self.labels[node as usize]);
             let (x, y) = (label.x as usize, label.y as usize);
             if label.cost != cost || cost + estimate(x, y) >= best {
                 continue;
@@ -100,7 +117,7 @@ impl Search {
 
     fn begin(&mut self, count: usize) {
         if self.labels.len() != count || self.query >= u32::MAX - 16 {
-            self.labels = vec![Label::default(); count];
+            self.labels = vec![[0; 3]; count];
             self.query = 0;
         }
         self.query += 8;
@@ -116,7 +133,8 @@ impl Search {
         estimate: &impl Fn(usize, usize) -> u64,
         statistics: &mut SearchStatistics,
     ) {
-        let label = &mut self.labels[arrival.node as usize];
+        let place = &mut self.labels[arrival.node as usize];
+        let label = Label::unpack(*place);
         if label.query & !7 == self.query && label.cost <= cost {
             return;
         }
@@ -126,7 +144,7 @@ impl Search {
             return;
         }
         let query = self.query | at.direction as u32;
-        *label = Label { cost, x: at.x as u32, y: at.y as u32, parent, query };
+        *place = Label { cost, x: at.x as u32, y: at.y as u32, parent, query }.pack();
         statistics.generated += 1;
         self.queue.push(sum, arrival.node, cost);
     }
@@ -135,7 +153,7 @@ impl Search {
         let mut turns = vec![GridCell::new(goal_x - 1, goal_y - 1)];
         let mut node = last;
         while node != NO_NODE {
-            let label = self.labels[node as usize];
+            let label = Label::unpack(self.labels[node as usize]);
             turns.push(GridCell::new(label.x as usize - 1, label.y as usize - 1));
             node = label.parent;
         }
