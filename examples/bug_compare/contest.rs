@@ -1,10 +1,12 @@
 use std::panic::resume_unwind;
 use std::thread;
 
+use roverlab::geometry::Point;
+use roverlab::nav::grid::{AnyAngle, GridPlanner};
 use roverlab::nav::{BugKind, Reachability};
 use roverlab::random::Stream;
 use roverlab::world::generate::{Course, CourseFamily, CourseOptions, obstacle_course};
-use roverlab::world::{RobotSpec, Scene};
+use roverlab::world::{BitGrid, BitGridError, GridCell, RobotSpec, Scene};
 
 use super::ride::{Conditions, Ride, ride, ride_with};
 use super::{Args, job};
@@ -30,7 +32,7 @@ impl Setting {
     pub(crate) fn new(family: &str, seed: u64, trip: Trip) -> Result<Self, Failure> {
         let radius = trip.spec().footprint.bounding_radius();
         let ways = Reachability::new(&trip.scene.world, radius, RESOLUTION).map_err(Failure::run)?;
-        let shortest = ways.shortest_path_length(trip.start().position(), trip.goal);
+        let shortest = shortest_way(&ways, trip.start().position(), trip.goal).map_err(Failure::run)?;
         Ok(Self { family: family.to_owned(), seed, trip, shortest })
     }
 
@@ -49,6 +51,17 @@ impl Setting {
         let time_limit = args.common.time_limit.unwrap_or_else(|| PATIENCE * self.trip.generous_time_limit());
         Conditions { seed: self.seed, noise: args.common.noise, time_limit }
     }
+}
+
+/// Metres along the shortest way between two places in any direction, if there is one.
+fn shortest_way(ways: &Reachability, start: Point, goal: Point) -> Result<Option<f64>, BitGridError> {
+    let raster = ways.raster();
+    let (Some(from), Some(to)) = (raster.cell_at(start), raster.cell_at(goal)) else { return Ok(None) };
+    let columns = raster.columns();
+    let is_free = |column, row| ways.is_free(raster.centre(row * columns + column));
+    let floor = BitGrid::from_fn(columns, raster.rows(), is_free)?;
+    let [from, to] = [from, to].map(|cell| GridCell::new(cell % columns, cell / columns));
+    Ok(AnyAngle::new(&floor).plan(from, to).ok().map(|path| path.cost * raster.resolution()))
 }
 
 /// What all algorithms did in one setting.
