@@ -74,7 +74,7 @@ pub(super) fn sum_portable(first: GrayView<'_>, second: GrayView<'_>, from: usiz
             }
             total += u64::from(sums.iter().map(|&sum| u32::from(sum)).sum::<u32>());
         }
-        total += rest_a.iter().zip(rest_b).map(|(a, b)| u64::from(a.abs_diff(*b))).sum::<u64>();
+        total += u64::from(rest_a.iter().zip(rest_b).map(|(a, b)| u32::from(a.abs_diff(*b))).sum::<u32>());
     }
     total
 }

@@ -27,8 +27,8 @@ pub struct HoughLines {
     rho_step: f64,
     /// Cosine and sine of each angle, divided by the step.
     directions: Vec<[f32; 2]>,
-    /// A row of votes for each angle, and an empty one before and behind.
-    votes: Vec<u32>,
+    /// The votes of three neighbouring angles; all of them would not fit the faster caches.
+    votes: [Vec<u32>; 3],
     /// Columns and rows of the pixels that vote.
     columns: Vec<f32>,
     rows: Vec<f32>,
@@ -54,7 +54,13 @@ impl HoughLines {
             [(cos / rho_step) as f32, (sin / rho_step) as f32]
         };
         let directions = (0..angles).map(direction).collect();
-        Ok(Self { rho_step, directions, votes: Vec::new(), columns: Vec::new(), rows: Vec::new() })
+        Ok(Self {
+            rho_step,
+            directions,
+            votes: [const { Vec::new() }; 3],
+            columns: Vec::new(),
+            rows: Vec::new(),
+        })
     }
 
     /// The lines with more than `threshold` votes, those with most votes first.
@@ -63,13 +69,29 @@ impl HoughLines {
         let (width, height) = edges.size();
         // Votes for `rho` from minus to plus the largest distance, and an empty place on either side.
         let reach = ((width + height) as f64 / self.rho_step).ceil() as usize + 1;
-        let stride = 2 * reach + 1;
-        self.votes.clear();
-        self.votes.resize(stride * (self.directions.len() + 2), 0);
-        for (direction, votes) in self.directions.iter().zip(self.votes.chunks_exact_mut(stride).skip(1)) {
-            vote(&self.columns, &self.rows, *direction, reach as u32, votes);
+        for votes in &mut self.votes {
+            votes.clear();
+            votes.resize(2 * reach + 1, 0);
         }
-        self.peaks(reach, threshold)
+        let mut lines = Vec::new();
+        // Peaks of an angle are found when the votes of the next one are there; behind the last, there are none.
+        for angle in 0..=self.directions.len() {
+            self.votes.rotate_left(1);
+            let [before, votes, after] = &mut self.votes;
+            after.fill(0);
+            if let Some(&direction) = self.directions.get(angle) {
+                vote(&self.columns, &self.rows, direction, reach as u32, after);
+            }
+            let Some(angle) = angle.checked_sub(1) else { continue };
+            for_each_peak([before, votes, after], threshold, |place| {
+                let rho = (place as f64 - reach as f64) * self.rho_step;
+                let theta = PI * angle as f64 / self.directions.len() as f64;
+                lines.push(HoughLine { rho, theta, votes: votes[place] });
+            });
+        }
+        // Stable, so that lines with equally many votes keep the order of their angles.
+        lines.sort_by_key(|line| std::cmp::Reverse(line.votes));
+        lines
     }
 
     /// Collects the pixels that vote.
@@ -88,35 +110,27 @@ impl HoughLines {
             }
         }
     }
+}
 
-    fn peaks(&self, reach: usize, threshold: u32) -> Vec<HoughLine> {
-        let (stride, angles) = (2 * reach + 1, self.directions.len());
-        let votes = &self.votes;
-        let is_peak = |place: usize| {
-            let count = votes[place];
-            count > votes[place - 1]
-                && count >= votes[place + 1]
-                && count > votes[place - stride]
-                && count >= votes[place + stride]
-        };
-        let mut lines = Vec::new();
-        for angle in 0..angles {
-            let row = (angle + 1) * stride;
-            for place in (row + 1..row + stride - 1).filter(|&place| votes[place] > threshold) {
-                if is_peak(place) {
-                    let rho = ((place - row) as f64 - reach as f64) * self.rho_step;
-                    let theta = PI * angle as f64 / angles as f64;
-                    lines.push(HoughLine { rho, theta, votes: votes[place] });
-                }
-            }
+/// Calls `found` with every place that has more votes than the threshold and is a peak among the rows of three angles. The first and
+/// the last place of a row have no votes.
+fn for_each_peak([before, votes, after]: [&[u32]; 3], threshold: u32, mut found: impl FnMut(usize)) {
+    let is_peak = |place: usize| {
+        let count = votes[place];
+        count > threshold
+            && count > votes[place - 1]
+            && count >= votes[place + 1]
+            && count > before[place]
+            && count >= after[place]
+    };
+    for (piece, start) in votes.chunks(BLOCK).zip((0..).step_by(BLOCK)) {
+        if piece.iter().fold(false, |any, &count| any | (count > threshold)) {
+            (start..start + piece.len()).filter(|&place| is_peak(place)).for_each(&mut found);
         }
-        // Stable, so that lines with equally many votes keep the order of their angles.
-        lines.sort_by_key(|line| std::cmp::Reverse(line.votes));
-        lines
     }
 }
 
-/// Points whose places are reckoned together.
+/// Points whose places are reckoned together, and places that are looked through together.
 const BLOCK: usize = 64;
 /// Adding one and a half times 2^23 to a float rounds it to a whole number, halves to even ones, which then stands in
 /// its bits above those of the sum's own.

@@ -46,14 +46,17 @@ pub struct HoughSegments {
     /// As many as 16 bits hold: no line has more pixels but in an image with a diagonal of 46,000 pixels. Half the memory is
     /// looked up much faster.
     votes: Vec<u16>,
-    /// The edges that are left.
+    /// The edges that are left, and which of them have voted.
     mask: Vec<u8>,
-    /// Which of them have voted.
-    voted: Vec<bool>,
     points: Vec<(u32, u32)>,
     places: Vec<u32>,
     size: (usize, usize),
 }
+
+/// What the mask has for a pixel that is no edge, or none any more, for an edge, and for one that has voted.
+const NO_EDGE: u8 = 0;
+const EDGE: u8 = 1;
+const VOTED: u8 = 2;
 
 /// Fixed-point fractions of a pixel in a walk along a line.
 const FRACTION: u32 = 16;
@@ -73,7 +76,6 @@ impl HoughSegments {
             directions: (0..angles).map(direction).collect(),
             votes: Vec::new(),
             mask: Vec::new(),
-            voted: Vec::new(),
             points: Vec::new(),
             places: Vec::new(),
             size: (0, 0),
@@ -90,7 +92,7 @@ impl HoughSegments {
             self.points.swap(drawn, left - 1);
             let (x, y) = self.points[left - 1];
             let (x, y) = (x as usize, y as usize);
-            if self.mask[y * self.size.0 + x] == 0 {
+            if self.mask[y * self.size.0 + x] == NO_EDGE {
                 continue;
             }
             let (count, angle) = self.vote(x, y);
@@ -109,7 +111,7 @@ impl HoughSegments {
         self.points.clear();
         for y in 0..height {
             let row = edges.row(y);
-            self.mask.extend_from_slice(row);
+            self.mask.extend(row.iter().map(|&edge| if edge == 0 { NO_EDGE } else { EDGE }));
             for (piece, start) in row.chunks(32).zip((0..).step_by(32)) {
                 if piece.iter().all(|&edge| edge == 0) {
                     continue;
@@ -118,8 +120,6 @@ impl HoughSegments {
                 self.points.extend(set.map(|(x, _)| ((start + x) as u32, y as u32)));
             }
         }
-        self.voted.clear();
-        self.voted.resize(width * height, false);
         self.votes.clear();
         self.votes.resize(self.stride() * self.directions.len(), 0);
         self.places.resize(self.directions.len(), 0);
@@ -138,7 +138,7 @@ impl HoughSegments {
 
     /// Lets a pixel vote. Returns the most votes that one of its lines has, and that line's angle.
     fn vote(&mut self, x: usize, y: usize) -> (u32, usize) {
-        self.voted[y * self.size.0 + x] = true;
+        self.mask[y * self.size.0 + x] = VOTED;
         self.reckon(x, y);
         let (mut most, mut best) = (0, 0);
         for (angle, &place) in self.places.iter().enumerate() {
@@ -182,13 +182,10 @@ impl HoughSegments {
             let (x, y) = walk.pixel(step);
             let (x, y) = (x as usize, y as usize);
             let place = y * self.size.0 + x;
-            if self.mask[place] == 0 {
-                continue;
+            match std::mem::replace(&mut self.mask[place], NO_EDGE) {
+                VOTED if is_long => self.take_back(x, y),
+                _ => {}
             }
-            if is_long && self.voted[place] {
-                self.take_back(x, y);
-            }
-            self.mask[place] = 0;
         }
         let pixel = |(x, y): (i64, i64)| (x as usize, y as usize);
         is_long.then(|| LineSegment { from: pixel(from), to: pixel(to) })
@@ -203,7 +200,7 @@ impl HoughSegments {
             if x < 0 || y < 0 || x >= self.size.0 as i64 || y >= self.size.1 as i64 {
                 return last;
             }
-            if self.mask[y as usize * self.size.0 + x as usize] != 0 {
+            if self.mask[y as usize * self.size.0 + x as usize] != NO_EDGE {
                 (last, gap) = (step, 0);
             } else {
                 gap += 1;
