@@ -47,6 +47,12 @@ pub(crate) fn work(args: &Args) -> std::result::Result<Printed, Failure> {
         (Some(map), Some(scen)) => {
             let grid = movingai::load_map(map).map_err(Failure::input)?.value.grid();
             let queries = movingai::load_scenarios(scen).map_err(Failure::input)?.value;
+            if queries.is_empty() {
+                return Err(Failure::input(format!(
+                    "{}: found no queries; expected at least one",
+                    scen.display()
+                )));
+            }
             if let Some(query) = queries.iter().find(|q| (q.width, q.height) != (grid.width(), grid.height()))
             {
                 return Err(Failure::input(format!(

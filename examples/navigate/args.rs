@@ -13,7 +13,8 @@ Without --world, the robot drives through a world of the example's own, in which
 --world, what --unmapped says is added to it, where it leaves a way, and the robot is told of the world without that. Other
 robots stand still, and nobody tells of them either.
 
---world also takes MovingAI maps (.map): cells of 500 mm, the lower left corner of the map at 0,0.
+--world also takes MovingAI maps (.map): cells of 500 mm, the lower left corner of the map at 0,0. Unknown cells of a ROS map
+are floor.
 
 With --campaign, generated worlds in each of which up to five obstacles are unmapped; every goal can be reached.
 

@@ -99,6 +99,9 @@ fn what_is_wrong_with_files_is_named() {
     }
     let (status, _, err) = run(&["--map", "nowhere.map", "--scen", "nowhere.scen"]);
     assert!(status == 2 && err.contains("nowhere.map:1:1: found"), "{err}");
+    fs::write(&scen, "version 1\n").unwrap();
+    let (status, _, err) = run(&["--map", map.to_str().unwrap(), "--scen", scen.to_str().unwrap()]);
+    assert!(status == 2 && err.contains("found no queries"), "{err}");
     let (status, _, err) = run(&["--map", "nowhere.map"]);
     assert!(status == 2 && err.contains("--scen"), "{err}");
 }
