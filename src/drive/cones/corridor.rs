@@ -72,6 +72,17 @@ impl Corridor {
         &self.stations
     }
 
+    /// The same loop with the station nearest to a place as its first one. A corridor with two ends stays as it is.
+    #[must_use]
+    pub fn beginning_near(mut self, place: Point) -> Self {
+        if self.closed {
+            let away = |i: &usize| (self.stations[*i].position - place).norm_squared();
+            let nearest = (0..self.stations.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
+            self.stations.rotate_left(nearest.unwrap_or(0));
+        }
+        self
+    }
+
     /// Whether it is a loop.
     pub fn is_closed(&self) -> bool {
         self.closed
