@@ -31,6 +31,17 @@ fn files_of_cones_are_raced_on() {
 }
 
 #[test]
+fn flying_laps_are_near_the_optimum() {
+    let (_, report, err) = race(&["--seed", "3", "--laps", "4"]);
+    assert_eq!(err, "", "{report}");
+    let ratios = report["lap_over_optimum"].as_array().unwrap();
+    // All but the lap of the map and the one that begins slowly.
+    assert!(ratios.len() == 2 && report["cones_hit"] == 0 && report["laps"] == 4, "{report}");
+    // None is faster than a car without yaw and lags could be.
+    assert!(ratios.iter().all(|ratio| (1.0..1.08).contains(&ratio.as_f64().unwrap())), "{report}");
+}
+
+#[test]
 fn the_printed_driver_drives_some_way() {
     let words = ["cone_drive", "--json", "--track", "tests/data/cones/oval.csv", "--time-limit", "40"];
     let (mut out, mut err) = (Vec::new(), Vec::new());
