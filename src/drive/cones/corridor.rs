@@ -219,7 +219,6 @@ impl Corridor {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::drive::cones::{TrackOptions, generate};
     use proptest::prelude::*;
 
