@@ -53,7 +53,7 @@ fn tell(name: &str, times: &[f64]) {
 
 fn planning(c: &mut Criterion) {
     let parameters = CentreLineParameters::default();
-    let limits = CarLimits { grip: 8.5, drive: 5.0, brake: 7.0, top_speed: 20.0 };
+    let limits = CarLimits::circle(8.5, 5.0, 7.0, 20.0);
     let racing = RacingLineParameters { margin: 0.95, ..RacingLineParameters::default() };
     let maps = maps();
     let (mut ways, mut lines, mut profiles) = (Vec::new(), Vec::new(), Vec::new());

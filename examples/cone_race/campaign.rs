@@ -9,7 +9,7 @@ use crate::cones::{Course, Spoils};
 pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Failure> {
     let common = &args.common;
     let (mut clean, mut finished, mut cones, mut off) = (0_u32, 0_u32, 0, 0);
-    let mut times = Vec::new();
+    let (mut times, mut ratios) = (Vec::new(), Vec::new());
     for seed in common.seed..common.seed + u64::from(tracks) {
         let mut course = Course::generated(seed)?;
         course.spoil(spoils, seed);
@@ -30,9 +30,12 @@ pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Fa
                 verdict.off_course
             ));
         }
+        ratios.extend(outcome.over_optimum.iter().copied());
         times.extend(verdict.lap_times.iter().skip(1).map(|time| course.corridor.length() / time));
     }
     let mean = times.iter().sum::<f64>() / times.len().max(1) as f64;
+    let worst = ratios.iter().copied().fold(0.0, f64::max);
+    let ratio = ratios.iter().sum::<f64>() / ratios.len().max(1) as f64;
     Ok(Report::new(Outcome::verdict("raced"))
         .field("tracks", tracks)
         .field("clean", clean)
@@ -40,5 +43,7 @@ pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Fa
         .field("finished", finished)
         .field("cones_hit", cones)
         .field("off_course", off)
-        .field("mean_racing_speed_m_s", rounded(mean)))
+        .field("mean_racing_speed_m_s", rounded(mean))
+        .field("mean_lap_over_optimum", rounded(ratio))
+        .field("worst_lap_over_optimum", rounded(worst)))
 }

@@ -28,9 +28,11 @@ JSON fields:
   laps, cones_hit, off_course, lap_times_s, total_s    of the race; the total is with penalties
   track_length_m, cones                                of the track
   racing_line_rms_m                                    distance of the racing line from that of --line
+  lap_over_optimum                                     of each flying lap: its time over the quasi-steady optimum for the same
+                                                       car on the same line
   mapped                                               whether the whole track was planned after the first lap
   other_cones_hit, touched                             with a second car
-  tracks, clean, clean_share                           of a campaign
+  tracks, clean, clean_share, mean_lap_over_optimum    of a campaign
   picture, animation
 Outcomes: finished, penalised, timed_out, failed, impassable (the car does not fit between the cones, which is told before
 the race), raced (a campaign)."
@@ -180,6 +182,10 @@ fn report(course: &Course, outcome: &race::Outcome) -> Report {
         .field("off_course", verdict.off_course)
         .field("lap_times_s", times)
         .field("total_s", rounded(verdict.total()))
+        .field(
+            "lap_over_optimum",
+            outcome.over_optimum.iter().map(|ratio| rounded(*ratio)).collect::<Vec<_>>(),
+        )
         .field("track_length_m", rounded(course.corridor.length()))
         .field("cones", course.cones.len())
         .field("mapped", !outcome.line.is_empty())

@@ -2,7 +2,8 @@
 
 use image::RgbImage;
 use roverlab::drive::cones::{
-    CameraMount, CameraSight, GapDriver, RacePhase, Racer, Sighting, Verdict, fuse, sightings,
+    CameraMount, CameraSight, CarLimits, GapDriver, RacePhase, Racer, Sighting, SpeedProfile, Verdict, fuse,
+    sightings,
 };
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
@@ -88,6 +89,8 @@ pub(crate) struct Outcome {
     pub(crate) trail: Vec<(Pose, f64)>,
     /// The racing line in the frame of the world.
     pub(crate) line: Vec<Point>,
+    /// Of each flying lap on a racing line, the lap time over the quasi-steady optimum on that line.
+    pub(crate) over_optimum: Vec<f64>,
     pub(crate) standing: Vec<bool>,
     /// Cones that the second car hit, and whether the two touched.
     pub(crate) other: Option<(usize, bool)>,
@@ -136,15 +139,60 @@ impl Eyes {
     }
 }
 
+/// What a racer has planned, in its map's frame.
+#[derive(Default)]
+struct Plans {
+    /// The first racing line.
+    first: Vec<Point>,
+    /// Of each lap: seconds of the quasi-steady optimum on its racing line. `None` for laps that do not begin at full speed.
+    optima: Vec<Option<f64>>,
+    racing: bool,
+}
+
+impl Plans {
+    fn see(&mut self, racer: &Racer) {
+        let flying = std::mem::replace(&mut self.racing, racer.phase() == RacePhase::Racing) && self.racing;
+        let points = racer.line().filter(|_| self.racing).map(|line| line.points());
+        if self.first.is_empty() {
+            self.first = points.map(<[Point]>::to_vec).unwrap_or_default();
+        }
+        if racer.laps() < self.optima.len() {
+            return;
+        }
+        let optimum = |points: &[Point]| SpeedProfile::closed(points, &limits(&RaceCarSpec::default())).ok();
+        self.optima.resize(racer.laps(), None);
+        self.optima.push(points.filter(|_| flying).and_then(optimum).map(|profile| profile.lap_time));
+    }
+
+    fn over_optimum(&self, lap_times: &[f64]) -> Vec<f64> {
+        let pairs = lap_times.iter().zip(&self.optima);
+        pairs.filter_map(|(time, optimum)| optimum.map(|optimum| time / optimum)).collect()
+    }
+}
+
+/// What a car can do at most, in balance: what the optimum is for.
+fn limits(spec: &RaceCarSpec) -> CarLimits {
+    CarLimits {
+        grip: spec.cornering(),
+        turned: 0.0,
+        traction: spec.grip,
+        drive: spec.drive,
+        brake: spec.brake,
+        top_speed: spec.top_speed,
+    }
+}
+
 /// Races on a course.
 pub(crate) fn race(course: &Course, settings: &Settings, stage: &Stage) -> Result<Outcome, Failure> {
     let mut judge = Judge::new(course, stage.truth(0)?, 0).map_err(Failure::run)?;
     let mut car = stage.robot(0)?;
     let mut other = settings.other.then(|| Other::new(course, stage)).transpose()?;
-    let mut line = Vec::new();
-    let driven = drive(course, settings, car.as_mut(), (&mut judge, other.as_mut()), &mut line);
+    let mut plans = Plans::default();
+    let driven = drive(course, settings, car.as_mut(), (&mut judge, other.as_mut()), &mut plans);
     drop(car);
+    let line = plans.first.iter().map(|point| course.start.to_world(*point)).collect();
     Ok(Outcome {
+        over_optimum: plans.over_optimum(&judge.verdict().lap_times),
         verdict: judge.verdict().clone(),
         ending: driven.map_err(|error| Failure::from(error).to_string()),
         truth: judge.truth().clone(),
@@ -161,7 +209,7 @@ fn drive<R: RobotIo + ?Sized>(
     settings: &Settings,
     car: &mut R,
     (judge, mut other): (&mut Judge, Option<&mut Other>),
-    line: &mut Vec<Point>,
+    plans: &mut Plans,
 ) -> io::Result<RacePhase> {
     let parameters = course.parameters(settings.laps);
     let mut racer = Racer::new(parameters);
@@ -183,11 +231,7 @@ fn drive<R: RobotIo + ?Sized>(
             }
             None => pass(car, &mut [&mut *judge], parameters.period)?,
         }
-        if racer.phase() == RacePhase::Racing && line.is_empty() {
-            // The map's frame is that of the start.
-            let points = racer.line().map(|line| line.points().to_vec()).unwrap_or_default();
-            line.extend(points.into_iter().map(|point| course.start.to_world(point)));
-        }
+        plans.see(&racer);
         if racer.phase() == RacePhase::Finished && speed.linear.abs() < 0.05 {
             break;
         }

@@ -38,6 +38,19 @@ pub(crate) struct Spoils {
     pub(crate) gap: f64,
 }
 
+/// Metres from the rear axle at the start to the line where time is taken, if a file has none ahead of the car.
+const RUN_UP: f64 = 6.0;
+
+/// The middle of the line where time is taken: ahead of the car at the start, so that the first lap counts as well.
+fn line_of(track: &ConeTrack, start: Pose) -> Point {
+    let gates = track.gates.iter().map(|[a, b]| a + (b - a) * 0.5);
+    let ahead = gates.filter(|middle| {
+        let local = start.to_local(*middle);
+        (2.0..12.0).contains(&local.x) && local.y.abs() < 3.0
+    });
+    ahead.last().unwrap_or_else(|| start.to_world(Point::new(RUN_UP, 0.0)))
+}
+
 impl Course {
     /// A generated track.
     pub(crate) fn generated(seed: u64) -> Result<Self, Failure> {
@@ -81,7 +94,8 @@ impl Course {
         if !line.corridor.is_closed() {
             return Err(refused(format!("a way of {:.0} m that does not close", line.corridor.length())));
         }
-        Ok(Self { cones: track.cones.clone(), corridor: line.corridor, start, wide: false })
+        let corridor = line.corridor.beginning_near(line_of(track, start));
+        Ok(Self { cones: track.cones.clone(), corridor, start, wide: false })
     }
 
     /// Takes cones away and adds others.

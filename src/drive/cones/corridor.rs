@@ -72,6 +72,17 @@ impl Corridor {
         &self.stations
     }
 
+    /// The same loop with the station nearest to a place as its first one. A corridor with two ends stays as it is.
+    #[must_use]
+    pub fn beginning_near(mut self, place: Point) -> Self {
+        if self.closed {
+            let away = |i: &usize| (self.stations[*i].position - place).norm_squared();
+            let nearest = (0..self.stations.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
+            self.stations.rotate_left(nearest.unwrap_or(0));
+        }
+        self
+    }
+
     /// Whether it is a loop.
     pub fn is_closed(&self) -> bool {
         self.closed
@@ -203,5 +214,28 @@ impl Corridor {
             })
             .collect();
         Self::closed(&points)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::drive::cones::{TrackOptions, generate};
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20))]
+        #[test]
+        fn a_loop_begins_where_it_is_told(seed in 0_u64..50, share in 0.0..1.0f64, aside in -1.0..1.0f64) {
+            let corridor = generate(seed, &TrackOptions::drawn(seed)).unwrap().corridor;
+            let n = corridor.stations().len();
+            let at = ((share * n as f64) as usize).min(n - 1);
+            let turned = corridor.clone().beginning_near(corridor.stations()[at].aside(aside));
+            // The same stations in the same order, from the nearest one on.
+            let first = turned.stations()[0];
+            let shift = corridor.stations().iter().position(|station| *station == first).unwrap();
+            prop_assert!((0..n).all(|i| turned.stations()[i] == corridor.stations()[(i + shift) % n]));
+            prop_assert!((shift + n - at) % n <= 2 || (at + n - shift) % n <= 2, "{shift} for {at}");
+            prop_assert!((turned.length() - corridor.length()).abs() < 1e-9);
+        }
     }
 }

@@ -34,6 +34,7 @@ mod spline;
 #[cfg(test)]
 mod tests;
 mod tracker;
+mod tyres;
 mod walk;
 
 pub use camera_sight::{CameraMount, CameraSight, fuse};
@@ -56,3 +57,4 @@ pub use referee::{Referee, Verdict};
 pub use sight::{Sighting, sightings};
 pub use spline::{ClosedSpline, SplinePoint};
 pub use tracker::{LineTracker, TrackerParameters};
+pub use tyres::Tyres;

@@ -5,8 +5,12 @@ use crate::geometry::Point;
 /// What a car's tyres and motors do.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarLimits {
-    /// The greatest acceleration of the tyres in any direction, the radius of the friction circle, in m/s².
+    /// The greatest acceleration of the tyres across, straight on, in m/s²: one radius of the friction ellipse.
     pub grip: f64,
+    /// The share of it that is lost for a curvature of 1/m: wheels that are turned push backwards as well.
+    pub turned: f64,
+    /// The greatest acceleration of the tyres along the way, in m/s²: the other radius of the friction ellipse.
+    pub traction: f64,
     /// The greatest acceleration of the motors, in m/s².
     pub drive: f64,
     /// The greatest deceleration of the brakes, in m/s².
@@ -16,17 +20,36 @@ pub struct CarLimits {
 }
 
 impl CarLimits {
+    /// A car whose tyres hold as well in all directions: those of a friction circle.
+    pub const fn circle(grip: f64, drive: f64, brake: f64, top_speed: f64) -> Self {
+        Self { grip, turned: 0.0, traction: grip, drive, brake, top_speed }
+    }
+
     fn check(&self) -> Result<(), PlanError> {
         positive("grip", self.grip)?;
+        positive("traction", self.traction)?;
+        if !(0.0..=1.0).contains(&self.turned) {
+            return Err(PlanError::Parameter {
+                name: "grip lost by turned wheels",
+                value: self.turned,
+                expected: "0 to 1",
+            });
+        }
         positive("drive", self.drive)?;
         positive("brake", self.brake)?;
         positive("top speed", self.top_speed)
     }
 
-    /// What is left of the friction circle along the way at a speed and a curvature.
+    /// The greatest acceleration across at a curvature.
+    pub fn across(&self, curvature: f64) -> f64 {
+        // Never less than a fifth: so tightly no car turns.
+        self.grip * (1.0 - self.turned * curvature.abs()).max(0.2)
+    }
+
+    /// What is left of the friction ellipse along the way at a speed and a curvature.
     fn along(&self, squared_speed: f64, curvature: f64) -> f64 {
-        let across = squared_speed * curvature;
-        (self.grip * self.grip - across * across).max(0.0).sqrt()
+        let share = squared_speed * curvature / self.across(curvature);
+        self.traction * (1.0 - share * share).max(0.0).sqrt()
     }
 }
 
@@ -44,14 +67,14 @@ pub struct SpeedProfile {
 }
 
 impl SpeedProfile {
-    /// The fastest way around a closed line within the friction circle, for a point mass in balance at each moment (the
+    /// The fastest way around a closed line within the friction ellipse, for a point mass in balance at each moment (the
     /// quasi-steady optimum): the speed of each bend, limited forwards by what the motors give and backwards by what the
     /// brakes take. O(n).
     ///
     /// ```
     /// use roverlab::drive::cones::{CarLimits, SpeedProfile};
     /// use roverlab::geometry::{Point, direction};
-    /// let limits = CarLimits { grip: 10.0, drive: 5.0, brake: 8.0, top_speed: 30.0 };
+    /// let limits = CarLimits::circle(10.0, 5.0, 8.0, 30.0);
     /// let circle: Vec<_> = (0..100).map(|i| Point::origin() + direction(f64::from(i) * 0.0628318) * 9.0).collect();
     /// let profile = SpeedProfile::closed(&circle, &limits)?;
     /// // The root of grip times radius.
@@ -100,7 +123,9 @@ impl SpeedProfile {
         if let Some(index) = lengths_used.iter().position(|&length| !(length > 1e-9 && length.is_finite())) {
             return Err(PlanError::Degenerate { index });
         }
-        let speed = |curvature: &f64| (limits.grip / curvature.abs().max(1e-9)).sqrt().min(limits.top_speed);
+        let speed = |curvature: &f64| {
+            (limits.across(*curvature) / curvature.abs().max(1e-9)).sqrt().min(limits.top_speed)
+        };
         let speeds = curvatures.iter().map(speed).collect();
         let mut profile = Self { speeds, curvatures, lengths, lap_time: 0.0 };
         profile.limit(limits, closed);
@@ -125,6 +150,12 @@ impl SpeedProfile {
             .sum();
     }
 
+    /// The acceleration along the way from a point to the next one.
+    pub(super) fn along(&self, from: usize, to: usize) -> f64 {
+        let (before, after) = (self.speeds[from], self.speeds[to]);
+        (after * after - before * before) / (2.0 * self.lengths[from].max(1e-9))
+    }
+
     /// Limits the speed at `to` by an acceleration from `from` over a length, with Heun's rule.
     fn pass(&mut self, limits: &CarLimits, most: f64, from: usize, to: usize, length: usize) {
         let length = self.lengths[length];
@@ -145,7 +176,7 @@ mod tests {
     use proptest::prelude::*;
     use std::f64::consts::TAU;
 
-    const LIMITS: CarLimits = CarLimits { grip: 12.0, drive: 6.0, brake: 11.0, top_speed: 25.0 };
+    const LIMITS: CarLimits = CarLimits::circle(12.0, 6.0, 11.0, 25.0);
 
     fn ellipse(n: u32, a: f64, b: f64) -> Vec<Point> {
         (0..n)

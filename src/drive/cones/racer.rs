@@ -9,7 +9,7 @@ use super::profile::{CarLimits, SpeedProfile};
 use super::racing_line::{CarOutline, LineSolver, RacingLineParameters};
 use super::sight::{Sighting, sightings};
 use super::tracker::{LineTracker, TrackerParameters};
-use crate::geometry::{Point, Pose, Twist};
+use crate::geometry::{Point, Pose, Twist, math};
 use crate::io::{self, Clock, Drive, Lidar, LidarScan};
 
 /// How a track is raced.
@@ -39,9 +39,16 @@ impl Default for RacerParameters {
     fn default() -> Self {
         Self {
             laps: 10,
-            limits: CarLimits { grip: 7.5, drive: 4.5, brake: 6.0, top_speed: 20.0 },
-            first_lap: CarLimits { grip: 5.0, drive: 3.0, brake: 5.0, top_speed: 6.0 },
-            outline: CarOutline { half_width: 0.7, nose: 2.15, ahead: 0.9, room: 0.36 },
+            limits: CarLimits {
+                grip: 9.9,
+                turned: 0.5,
+                traction: 10.5,
+                drive: 8.0,
+                brake: 10.0,
+                top_speed: 30.0,
+            },
+            first_lap: CarLimits::circle(5.0, 3.0, 5.0, 6.0),
+            outline: CarOutline { half_width: 0.7, nose: 2.15, ahead: 0.9, room: 0.5 },
             centre_line: CentreLineParameters::default(),
             map: ConeMapParameters::default(),
             lane: LaneParameters::default(),
@@ -72,6 +79,8 @@ pub struct Racer {
     /// Metres by odometry since the start line was crossed.
     since_line: f64,
     last: Option<Pose>,
+    /// Where the car is by odometry and by how its tyres slip.
+    reckoned: Pose,
     tracker: Option<LineTracker>,
     solver: LineSolver,
     /// Decisions since the way was planned.
@@ -99,6 +108,8 @@ const SHORTEST: f64 = 40.0;
 /// Metres from the line within which another car is in the way, metres ahead at which it begins to matter, and metres, from the
 /// middle of a car to the end of another one, that are kept.
 const OTHERS: (f64, f64, f64) = (1.5, 24.0, 4.5);
+/// Metres per second above which tyres slip.
+const SLIPS: f64 = 4.0;
 /// Metres per second at which it feels its way where nothing is known.
 const CRAWL: f64 = 1.5;
 
@@ -112,6 +123,7 @@ impl Racer {
             laps: 0,
             since_line: 0.0,
             last: None,
+            reckoned: Pose::default(),
             tracker: None,
             solver: LineSolver::default(),
             stale: 0,
@@ -148,8 +160,17 @@ impl Racer {
 
     /// The same for what was found already.
     pub fn decide(&mut self, odometry: Pose, speed: Twist, seen: &[Sighting]) -> Twist {
-        self.map.update(odometry, seen);
-        self.count(odometry);
+        let step =
+            self.last.replace(odometry).map_or(Pose::default(), |last| last.inverse().compose(&odometry));
+        self.since_line += step.position().coords.norm();
+        // Odometry knows of no tyres that slip.
+        let across = speed.linear * speed.angular;
+        let slip =
+            if speed.linear > SLIPS { self.parameters.tracker.tyres.slips(across, 0.0)[1] } else { 0.0 };
+        let aside = Pose::new(0.0, -step.x * math::tan(slip), 0.0);
+        self.reckoned = self.reckoned.compose(&aside.compose(&step));
+        self.map.update(self.reckoned, seen);
+        self.count();
         let command = self.command(speed);
         self.behind_others(command, seen)
     }
@@ -219,10 +240,7 @@ impl Racer {
     }
 
     /// Counts laps at the line, and ends the race.
-    fn count(&mut self, odometry: Pose) {
-        let way =
-            self.last.replace(odometry).map_or(0.0, |last| (odometry.position() - last.position()).norm());
-        self.since_line += way;
+    fn count(&mut self) {
         // A line that was crossed lately is not crossed again.
         if self.since_line < SHORTEST + 2.0 * self.map.tolerance() || !self.is_behind_line() {
             return;
@@ -249,7 +267,7 @@ impl Racer {
 
     fn follow(&mut self, speed: Twist) -> Twist {
         let pose = self.map.pose();
-        let command = self.tracker.as_mut().and_then(|tracker| tracker.step(pose, speed.linear));
+        let command = self.tracker.as_mut().and_then(|tracker| tracker.step(pose, speed));
         match command {
             Some((twist, _)) => twist,
             None => Twist::new(CRAWL, 0.0),

@@ -123,12 +123,23 @@ fn what_is_written_is_read_again() {
         for colour in ConeColour::ALL {
             assert!(track.of(colour).eq(again.of(colour)));
         }
-        assert_eq!((again.start, again.gates), (track.start, track.gates.clone()));
+        // The file has the place of the front wing.
+        let (start, before) = (again.start.unwrap(), track.start.unwrap());
+        assert!((start.position() - before.position()).norm() < 1e-9 && start.heading == before.heading);
+        assert_eq!(again.gates, track.gates);
         let again = parse_eufs(&write_eufs(&track), "a.csv").unwrap();
         assert_eq!((&again.cones, again.start), (&track.cones, track.start));
         let again = parse_tum(&write_tum(&corridor), "a.csv").unwrap();
         assert_eq!(again, corridor);
     }
+}
+
+#[test]
+fn the_wing_is_where_a_file_says() {
+    let text = "cones_left:\n- [1, 2]\nstarting_pose_front_wing: [3.0, 4.0, 0.5]\n";
+    let start = parse_fssim(text, "t").unwrap().start.unwrap();
+    let wing = start.to_world(Point::new(2.15, 0.0));
+    assert!((wing - Point::new(3.0, 4.0)).norm() < 1e-9 && start.heading == 0.5, "{start:?}");
 }
 
 #[test]

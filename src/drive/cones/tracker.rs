@@ -1,4 +1,5 @@
 use super::profile::SpeedProfile;
+use super::tyres::Tyres;
 use crate::geometry::{Point, Pose, Twist, angle_difference, cross, math};
 
 /// How a car is kept on a line.
@@ -14,12 +15,13 @@ pub struct TrackerParameters {
     pub steering_lag: f64,
     /// Seconds by which the speed lags behind.
     pub speed_lag: f64,
-    /// Radians by which the rear tyres slip, for a small acceleration across, of 1 m/s².
-    pub slip: f64,
-    /// The acceleration across, in m/s², near which they slip ever more.
-    pub grip: f64,
-    /// Radians more of the steering, for an acceleration across of 1 m/s², that front tyres need which slide first.
-    pub understeer: f64,
+    /// Seconds of the acceleration that the tyres have left by which more speed is asked for than there is. The inverse of the gain of
+    /// the car's own controller is what spins no wheel; with more, a car that only slides a little is not slowed down.
+    pub speed_time: f64,
+    /// How the car answers to its steering when it is fast.
+    pub tyres: Tyres,
+    /// How much more it is steered for a rate of turn that it does not have yet: curvature for curvature.
+    pub yaw: f64,
     /// The greatest curvature that is asked for, in 1/m.
     pub curvature: f64,
 }
@@ -29,19 +31,19 @@ impl Default for TrackerParameters {
         Self {
             ahead: 0.9,
             length: 2.0,
-            length_by_speed: 0.22,
-            steering_lag: 0.1,
-            speed_lag: 0.08,
-            slip: 0.0047,
-            grip: 11.5,
-            understeer: 0.0008,
+            length_by_speed: 0.08,
+            steering_lag: 0.14,
+            speed_lag: 0.13,
+            speed_time: 0.15,
+            tyres: Tyres::default(),
+            yaw: 2.5,
             curvature: 0.42,
         }
     }
 }
 
-/// Metres between the axles for which [`TrackerParameters::understeer`] is a curvature.
-const WHEELBASE: f64 = 1.55;
+/// Metres per second below which wheels roll: they turn the car at once.
+const ROLLS: f64 = 4.0;
 
 /// A line with its speeds, and how far along it the car is.
 #[derive(Debug, Clone)]
@@ -80,12 +82,14 @@ impl LineTracker {
         if self.closed { (i + 1) % n } else { (i + 1).min(n - 1) }
     }
 
-    /// Speed and rate of turn that keep a car on the line: the curvature ahead, and what brings errors of place and heading
-    /// to nothing within some metres, critically damped. Also the distance from the line, positive to its left.
+    /// Speed and rate of turn that keep a car on the line, for what both are now: the curvature ahead, and what brings errors of
+    /// place and heading to nothing within some metres, both as the tyres slip. Also the distance from the line, positive to its
+    /// left.
     ///
     /// `None` beyond the end of an open line.
-    pub fn step(&mut self, rear: Pose, speed: f64) -> Option<(Twist, f64)> {
+    pub fn step(&mut self, rear: Pose, moving: Twist) -> Option<(Twist, f64)> {
         let p = self.parameters;
+        let speed = moving.linear;
         let place = rear.to_world(Point::new(p.ahead, 0.0));
         self.locate(place);
         let (i, j) = (self.nearest, self.next(self.nearest));
@@ -103,9 +107,8 @@ impl LineTracker {
         let heading = math::atan2(along.y, along.x) + curvature_here * (share - 0.5) * chord.norm();
         let slip = math::asin((p.ahead * bent).clamp(-0.9, 0.9));
         // Tyres that slip let the nose point into the bend.
-        let across = speed * speed * bent;
-        let strained = (across / p.grip).clamp(-0.95, 0.95);
-        let inwards = p.slip * across / (1.0 - strained * strained).sqrt();
+        let push = self.profile.along(i, j);
+        let inwards = p.tyres.slips(speed * speed * bent, push)[1];
         let turned = angle_difference(rear.heading, heading - slip + inwards);
         let beyond = speed.max(0.0) * p.steering_lag - p.ahead;
         let curvature = self.at(&self.profile.curvatures, i, share, beyond);
@@ -113,9 +116,16 @@ impl LineTracker {
         let wanted = curvature - aside / (length * length) - 1.6 * math::sin(turned) / length;
         // The rear axle drives a tighter bend than the point ahead of it.
         let inside = (1.0 - (p.ahead * wanted) * (p.ahead * wanted)).max(0.5).sqrt();
-        let more = p.understeer * speed * speed * curvature / WHEELBASE;
-        let curvature = (wanted / inside + more).clamp(-p.curvature, p.curvature);
-        let speed = self.at(&self.profile.speeds, i, share, (speed.max(0.0) + 0.5) * p.speed_lag);
+        // Near the limit, tyres answer the less the more is asked, to what brings the car back as well.
+        let tyres = p.tyres.steering(wanted, speed * speed * wanted, push) - wanted;
+        // They answer late as well: a car that does not turn yet is steered more.
+        let late = if speed > ROLLS { p.yaw * (wanted - moving.angular / speed) } else { 0.0 };
+        let curvature = (wanted / inside + tyres + late).clamp(-p.curvature, p.curvature);
+        let planned = self.at(&self.profile.speeds, i, share, (speed.max(0.0) + 0.5) * p.speed_lag);
+        // Motors take no more than the tyres have left beside what they give across; brakes do, as there is no other way to be slower.
+        let left = if speed > ROLLS { p.tyres.left_along(speed * moving.angular) } else { p.tyres.grip };
+        let most = left * p.speed_time;
+        let speed = planned.min(speed.max(0.0) + most);
         Some((Twist::new(speed, speed * curvature), aside))
     }
 

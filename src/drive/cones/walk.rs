@@ -32,6 +32,31 @@ pub(super) struct Mesh {
     twins: Vec<usize>,
     /// Whether the triangles turn counter-clockwise.
     counter_clockwise: bool,
+    /// What there is to know of each half-edge, for whoever enters its triangle by it.
+    gaps: Vec<Gap>,
+}
+
+/// The gap between a left and a right cone.
+#[derive(Debug, Clone, Copy)]
+struct Gap {
+    middle: Point,
+    /// The unit vector through it.
+    forward: Vector,
+    width: f64,
+}
+
+impl Gap {
+    fn between(left: Point, right: Point) -> Self {
+        let across = left - right;
+        let width = across.norm();
+        let forward = Vector::new(across.y, -across.x) / width.max(1e-9);
+        Self { middle: nalgebra::center(&left, &right), forward, width }
+    }
+
+    /// The same for whoever comes from the other side.
+    fn reversed(self) -> Self {
+        Self { forward: -self.forward, ..self }
+    }
 }
 
 /// Goes from triangle to triangle between some cones.
@@ -82,7 +107,12 @@ impl Mesh {
         }
         let at = |k: usize| cones[triangles[k]].position;
         let counter_clockwise = cross(at(1) - at(0), at(2) - at(0)) > 0.0;
-        Ok(Self { triangles, twins: triangulation.halfedges, counter_clockwise })
+        let gap = |edge: usize| {
+            let [a, b] = [at(edge), at(following(edge))];
+            if counter_clockwise { Gap::between(a, b) } else { Gap::between(b, a) }
+        };
+        let gaps = (0..triangles.len()).map(gap).collect();
+        Ok(Self { gaps, triangles, twins: triangulation.halfedges, counter_clockwise })
     }
 }
 
@@ -97,24 +127,9 @@ impl Walker<'_> {
         if self.mesh.counter_clockwise { [a, b] } else { [b, a] }
     }
 
-    fn width(&self, [left, right]: Pair) -> f64 {
-        (self.position(left) - self.position(right)).norm()
-    }
-
-    /// The unit vector through between a pair.
-    fn forward(&self, [left, right]: Pair) -> Vector {
-        let across = self.position(left) - self.position(right);
-        Vector::new(across.y, -across.x) / across.norm().max(1e-9)
-    }
-
-    fn middle(&self, [left, right]: Pair) -> Point {
-        nalgebra::center(&self.position(left), &self.position(right))
-    }
-
     /// What a pair costs by itself: for being too near or too far from each other, and for wrong colours.
-    fn pair_cost(&self, pair: Pair) -> f64 {
+    fn gap_cost(&self, width: f64) -> f64 {
         let [low, high] = self.parameters.width;
-        let width = self.width(pair);
         let short = ((low - width) / 0.4).max(0.0);
         let long = ((width - high) / 2.0).max(0.0);
         // A pair is far apart wherever one side has lost its cones, which alone must not drive the way off the other side.
@@ -133,9 +148,9 @@ impl Walker<'_> {
     fn starts(&self, car: Pose) -> Vec<Node> {
         let mut found: Vec<(f64, usize)> = (0..self.mesh.triangles.len())
             .filter_map(|edge| {
-                let pair = self.pair(edge);
-                let local = car.to_local(self.middle(pair));
-                let turn = 1.0 - self.forward(pair).dot(&car.forward());
+                let (pair, gap) = (self.pair(edge), self.mesh.gaps[edge]);
+                let local = car.to_local(gap.middle);
+                let turn = 1.0 - gap.forward.dot(&car.forward());
                 if !(-2.0..9.0).contains(&local.x) || local.y.abs() > 3.5 || turn > 0.5 {
                     return None;
                 }
@@ -144,7 +159,7 @@ impl Walker<'_> {
                 // The car passes between them and not beside both.
                 let sides = [car.to_local(self.position(pair[0])).y, car.to_local(self.position(pair[1])).y];
                 let beside = if sides[0] > 0.0 && sides[1] < 0.0 { 0.0 } else { 4.0 };
-                Some((away + 4.0 * turn + colours + beside + self.pair_cost(pair), edge))
+                Some((away + 4.0 * turn + colours + beside + self.gap_cost(gap.width), edge))
             })
             .collect();
         found.retain(|(cost, _)| cost.is_finite());
@@ -170,7 +185,7 @@ impl Walker<'_> {
             }
         };
         let mut candidates: Vec<Node> = Vec::new();
-        for _ in 0..self.cones.len() + self.cones.len() / 4 + 8 {
+        for left in (0..self.cones.len() + self.cones.len() / 4 + 8).rev() {
             candidates.clear();
             for &index in &beam {
                 let node = nodes[index];
@@ -187,11 +202,18 @@ impl Walker<'_> {
                         // Of two loops, that with more of what a track looks like: not the shorter one.
                         keep(&mut closed, node.cost + aslant - GOOD_STEP * f64::from(node.good), index);
                     } else if !was_in(&nodes, index, twin / 3) {
-                        candidates.push(self.step(&node, index, self.pair(twin), twin));
+                        let step = self.step(&node, index, (self.pair(twin), self.mesh.gaps[twin]), twin);
+                        candidates.push(step);
                     }
                 }
             }
-            candidates.retain(|candidate| candidate.cost.is_finite());
+            // Nothing takes costs back, so a way is left that cannot become a better loop than the best one, were all its steps good.
+            let bound = closed.map_or(f64::INFINITY, |(badness, _)| badness);
+            let best = |node: &Node| node.cost - GOOD_STEP * (f64::from(node.good) + left as f64);
+            candidates.retain(|candidate| candidate.cost.is_finite() && best(candidate) < bound);
+            if candidates.is_empty() {
+                break;
+            }
             candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
             beam.clear();
             for candidate in &candidates {
@@ -227,7 +249,7 @@ impl Walker<'_> {
         let node = nodes[index];
         let [a, b] = self.pair(exit);
         // Seen from the triangle that is left, the sides are the other way around.
-        let last = self.step(&node, index, [b, a], exit);
+        let last = self.step(&node, index, ([b, a], self.mesh.gaps[exit].reversed()), exit);
         let badness = last.cost - 0.4 * last.length.min(self.parameters.horizon);
         if ended.is_none_or(|(least, _)| badness < least) {
             nodes.push(last);
@@ -236,26 +258,28 @@ impl Walker<'_> {
     }
 
     /// The step to a pair that shares a cone with the present one.
-    fn step(&self, node: &Node, parent: usize, pair: Pair, edge: usize) -> Node {
+    fn step(&self, node: &Node, parent: usize, (pair, gap): (Pair, Gap), edge: usize) -> Node {
+        let from = self.mesh.gaps[node.edge];
         let side = usize::from(pair[0] == node.pair[0]);
         let (new, old) = (pair[side], node.pair[side]);
         let leg = self.position(new) - self.position(old);
-        let far = ((leg.norm() - self.parameters.spacing) / 2.0).max(0.0);
-        let mut cost = self.pair_cost(pair) + (far * far).min(5.0) + self.colour_cost(new, side);
+        let length = leg.norm();
+        let far = ((length - self.parameters.spacing) / 2.0).max(0.0);
+        let mut cost = self.gap_cost(gap.width) + (far * far).min(5.0) + self.colour_cost(new, side);
         // An edge goes on ahead: neither back nor around a sharp corner.
-        let ahead = leg.dot(&self.forward(node.pair)) / leg.norm().max(1e-9);
+        let ahead = leg.dot(&from.forward) / length.max(1e-9);
         cost += 2.5 * (0.3 - ahead).max(0.0);
         if let Some(earlier) = node.before[side] {
             let last = self.position(old) - self.position(earlier);
-            let turn = last.dot(&leg) / (last.norm() * leg.norm()).max(1e-9);
+            let turn = last.dot(&leg) / (last.norm() * length).max(1e-9);
             cost += 2.5 * (0.2 - turn).max(0.0);
         }
-        let turn = self.forward(pair).dot(&self.forward(node.pair));
+        let turn = gap.forward.dot(&from.forward);
         cost += 2.0 * (0.5 - turn).max(0.0);
         let good = node.good + u32::from(cost < 0.3);
         let mut before = node.before;
         before[side] = Some(old);
-        let length = node.length + (self.middle(pair) - self.middle(node.pair)).norm();
+        let length = node.length + (gap.middle - from.middle).norm();
         Node {
             edge,
             pair,
@@ -272,7 +296,8 @@ impl Walker<'_> {
     fn cut(&self, pairs: &mut Vec<Pair>) {
         let mut length = 0.0;
         for k in 1..pairs.len() {
-            length += (self.middle(pairs[k]) - self.middle(pairs[k - 1])).norm();
+            let middle = |[left, right]: Pair| nalgebra::center(&self.position(left), &self.position(right));
+            length += (middle(pairs[k]) - middle(pairs[k - 1])).norm();
             if length > self.parameters.horizon {
                 pairs.truncate(k + 1);
                 return;

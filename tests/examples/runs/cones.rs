@@ -24,10 +24,21 @@ fn files_of_cones_are_raced_on() {
         assert!(report["mapped"] == true && report["off_course"] == 0, "{report}");
         let times: Vec<f64> =
             report["lap_times_s"].as_array().unwrap().iter().map(|time| time.as_f64().unwrap()).collect();
-        // The last lap is on the racing line.
-        assert!(times.len() >= 2 && times[times.len() - 1] < times[0], "{report}");
+        // The last lap is on the racing line, and the first one counts as well.
+        assert!(report["laps"] == 3 && times.len() == 3 && times[times.len() - 1] < times[0], "{report}");
         assert!(report["racing_line_rms_m"].as_f64().unwrap() < 2.0, "{report}");
     }
+}
+
+#[test]
+fn flying_laps_are_near_the_optimum() {
+    let (_, report, err) = race(&["--seed", "3", "--laps", "4"]);
+    assert_eq!(err, "", "{report}");
+    let ratios = report["lap_over_optimum"].as_array().unwrap();
+    // All but the lap of the map and the one that begins slowly.
+    assert!(ratios.len() == 2 && report["cones_hit"] == 0 && report["laps"] == 4, "{report}");
+    // None is faster than a car without yaw and lags could be.
+    assert!(ratios.iter().all(|ratio| (1.0..1.08).contains(&ratio.as_f64().unwrap())), "{report}");
 }
 
 #[test]

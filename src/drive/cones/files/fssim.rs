@@ -14,8 +14,11 @@ const KEYS: [(&str, ConeColour); 4] = [
     ("cones_orange_big", ConeColour::BigOrange),
 ];
 
+/// Metres from the rear axle to the front wing, where these files say that the car starts.
+const WING: f64 = 2.15;
+
 /// Reads a track of FSSIM: lists of cones by colour, the pose of the front wing at the start, and the ends of the lines
-/// where time is taken. Other keys with lists of numbers are left out.
+/// where time is taken. The start of the track is that of the rear axle, 2.15 m behind the wing. Other keys with lists of numbers are left out.
 pub fn parse_fssim(text: &str, file: &str) -> Result<ConeTrack, FormatError> {
     let mut events = YamlEvents::new(text, file, "keys with lists");
     let mut track = ConeTrack::default();
@@ -57,7 +60,7 @@ fn take(
                 let found = format!("{} numbers", numbers.len());
                 return Err(events.error(at, found, "x, y and the heading"));
             };
-            track.start = Some(Pose::new(x, y, heading));
+            track.start = Some(Pose::new(x, y, heading).compose(&Pose::new(-WING, 0.0, 0.0)));
         }
     }
     Ok(())
@@ -70,7 +73,7 @@ pub fn write_fssim(track: &ConeTrack) -> String {
         list(&mut text, key, track.of(colour));
     }
     list(&mut text, "tk_device", track.gates.iter().flatten().copied());
-    if let Some(start) = track.start {
+    if let Some(start) = track.start.map(|start| start.compose(&Pose::new(WING, 0.0, 0.0))) {
         let _ = writeln!(
             text,
             "starting_pose_front_wing:\n- {:?}\n- {:?}\n- {:?}",

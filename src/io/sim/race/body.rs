@@ -77,6 +77,34 @@ impl RaceCarSpec {
         self.front + self.rear
     }
 
+    /// The greatest acceleration across in balance, in m/s², on bends that are wide for the car: no steering angle gives more.
+    pub fn cornering(&self) -> f64 {
+        let (mut least, mut most) = (0.0, self.grip);
+        for _ in 0..40 {
+            let middle = 0.5 * (least + most);
+            if self.balances(middle) { least = middle } else { most = middle }
+        }
+        least
+    }
+
+    /// Whether tyres hold an acceleration across.
+    fn balances(&self, across: f64) -> bool {
+        let stiffness = self.stiffness * GRAVITY;
+        let strained = across / self.grip;
+        if strained >= 1.0 {
+            return false;
+        }
+        let rear = across / (stiffness * (1.0 - strained * strained).sqrt());
+        // The front axle gives more the more it slips, and less the more it is turned.
+        (0..400).any(|k| {
+            let slip = self.max_steering * 2.0 * f64::from(k) / 400.0;
+            let steering = slip - rear;
+            let linear = stiffness * slip / self.grip;
+            let force = self.balance * self.grip * linear / (1.0 + linear * linear).sqrt();
+            steering <= self.max_steering && force * math::cos(steering) >= across
+        })
+    }
+
     /// Fails with the name of the number that is out of range.
     pub(super) fn validate(&self) -> Result<()> {
         for (name, value) in [
@@ -275,6 +303,27 @@ mod tests {
                 let acceleration = math::hypot(c - a, d - b) / dt;
                 assert!(acceleration < 1.02 * spec.grip, "{acceleration} at {before:?}");
             }
+        }
+    }
+
+    #[test]
+    fn no_steering_gives_more_across_than_the_balance() {
+        let bound = RaceCarSpec::default().cornering();
+        for curvature in [0.03, 0.08, 0.15, 0.25] {
+            // Of all circles that the car comes to drive at some speeds, those of about that curvature.
+            let mut best = 0.0_f64;
+            for steering in 1..30 {
+                for speed in 1..20 {
+                    let speed = (0.06 * f64::from(speed) * bound / curvature).sqrt();
+                    let (spec, body) = settle(CarModel::Dynamic, speed, 0.02 * f64::from(steering), 6.0);
+                    let velocity = math::hypot(body.along, body.across);
+                    if (body.yaw_rate / velocity / curvature - 1.0).abs() < 0.03 && body.along > SLIPS {
+                        best = best.max(body.yaw_rate * velocity);
+                    }
+                    assert!(body.slip(&spec).is_finite());
+                }
+            }
+            assert!(best < 1.02 * bound && best > 0.85 * bound, "{curvature}: {best} of {bound}");
         }
     }
 

@@ -1,0 +1,138 @@
+use crate::geometry::math;
+
+/// How the tyres of a car slip: the bicycle model in balance, whose axles carry what the levers give them and drive in proportion.
+///
+/// An axle pushes across in proportion to its slip angle as long as that is small, and near the rim of the friction circle, of
+/// which driving and braking take their share, it needs ever more of it:
+/// force = stiffness · slip / √(1 + (stiffness · slip / limit)²).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tyres {
+    /// The radius of the friction circle, in m/s².
+    pub grip: f64,
+    /// Acceleration across for a small slip angle, in m/s² for a radian.
+    pub stiffness: f64,
+    /// Grip and stiffness of the front tyres as a share of that of the rear ones.
+    pub front: f64,
+    /// Metres between the axles.
+    pub wheelbase: f64,
+}
+
+impl Default for Tyres {
+    fn default() -> Self {
+        Self { grip: 12.0, stiffness: 216.0, front: 0.9, wheelbase: 1.55 }
+    }
+}
+
+/// The share of what an axle can give beyond which no more is asked of it.
+const MOST: f64 = 0.97;
+
+impl Tyres {
+    /// The angles by which the front and the rear axle slip for an acceleration across, while the car gains speed at `along`, both
+    /// in m/s². They are the larger the nearer the tyres are to their limit, and no larger than a little below that.
+    ///
+    /// ```
+    /// use roverlab::drive::cones::Tyres;
+    /// let [front, rear] = Tyres::default().slips(8.0, 0.0);
+    /// // The front slides first: it needs more steering.
+    /// assert!(front > rear && rear > 8.0 / 216.0);
+    /// ```
+    pub fn slips(&self, across: f64, along: f64) -> [f64; 2] {
+        [self.slip(self.front, across, along), self.slip(1.0, across, along)]
+    }
+
+    /// That of an axle whose tyres have a share of grip and stiffness.
+    fn slip(&self, share: f64, across: f64, along: f64) -> f64 {
+        let circle = (self.grip * self.grip - along * along).max(1.0).sqrt();
+        let strained = (across / (share * circle)).clamp(-MOST, MOST);
+        strained * circle / (self.stiffness * (1.0 - strained * strained).sqrt())
+    }
+
+    /// What is left along the way beside an acceleration across, both in m/s²: at least a tenth of the grip, so that a car that
+    /// slides is not left without motors.
+    pub fn left_along(&self, across: f64) -> f64 {
+        let strained = across / (MOST * self.front.min(1.0) * self.grip);
+        self.grip * (1.0 - strained * strained).max(0.01).sqrt()
+    }
+
+    /// The curvature for which wheels that only roll would be steered as these are for that one at that acceleration.
+    pub fn steering(&self, curvature: f64, across: f64, along: f64) -> f64 {
+        let rear = self.slip(1.0, across, along);
+        let rolling = math::atan(self.wheelbase * curvature - math::tan(rear));
+        let mut steering = rolling;
+        for _ in 0..TURNS {
+            // What turned wheels push, they push less across the car.
+            steering = rolling + self.slip(self.front, across / math::cos(steering), along);
+        }
+        math::tan(steering.clamp(-1.2, 1.2)) / self.wheelbase
+    }
+}
+
+/// Times that the steering angle is put in where it is looked for.
+const TURNS: usize = 3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Pose, Twist};
+    use crate::io::Drive;
+    use crate::io::sim::NoiseModel;
+    use crate::io::sim::race::{Race, RaceCarSpec, RaceOptions};
+    use proptest::prelude::*;
+
+    /// A car that is steered for a circle at a speed, for some seconds: speed and rate of turn as they are, and how far it slides to
+    /// the left at its rear axle.
+    fn driven(curvature: f64, speed: f64, tyres: Option<Tyres>) -> (Twist, f64) {
+        let options = RaceOptions { noise: NoiseModel::real().scaled(0.0), ..RaceOptions::default() };
+        let mut race = Race::new(&[], &[(RaceCarSpec::default(), Pose::default())], options).unwrap();
+        let bend = tyres.map_or(curvature, |t| t.steering(curvature, speed * speed * curvature, 0.0));
+        race.car(0).unwrap().set_speed(Twist::new(speed, speed * bend)).unwrap();
+        race.advance(8.0);
+        (race.car(0).unwrap().speed().unwrap(), race.truth(0).unwrap().slip)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+        #[test]
+        fn a_car_in_balance_drives_the_circle_that_is_wanted(
+            radius in 6.0..40.0f64, share in 0.2..0.9f64, left in any::<bool>(),
+        ) {
+            let curvature = if left { 1.0 / radius } else { -1.0 / radius };
+            let tyres = Tyres::default();
+            let speed = (10.4 * (1.0 - 0.5 / radius) * share * radius).sqrt();
+            let (twist, slides) = driven(curvature, speed, Some(tyres));
+            let found = twist.angular / twist.linear;
+            prop_assert!((found / curvature - 1.0).abs() < 0.04, "{found} {curvature}");
+            let rear = tyres.slips(twist.linear * twist.angular, 0.0)[1];
+            prop_assert!((-slides / twist.linear - math::tan(rear)).abs() < 0.01, "{slides} {rear}");
+        }
+
+        #[test]
+        fn slip_grows_with_every_force(across in 0.0..10.0f64, along in 0.0..6.0f64) {
+            let tyres = Tyres::default();
+            let (less, more) = (tyres.slips(across, along), tyres.slips(across + 0.3, along));
+            let pushed = tyres.slips(across, along + 0.5);
+            for axle in 0..2 {
+                prop_assert!(less[axle] <= more[axle] && less[axle] <= pushed[axle]);
+            }
+            prop_assert!(less[0] >= less[1]);
+            prop_assert_eq!(tyres.slips(-across, -along), less.map(|slip| -slip));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_more_is_left_than_the_friction_circle(across in -14.0..14.0f64) {
+            let tyres = Tyres::default();
+            let left = tyres.left_along(across);
+            prop_assert!(left <= tyres.left_along(0.9 * across) && left >= 1.19);
+            prop_assert!(left < 1.21 || across * across + left * left <= 144.0);
+        }
+    }
+
+    #[test]
+    fn wheels_that_only_roll_are_steered_too_little() {
+        let (curvature, speed) = (0.08, 10.5);
+        let without = driven(curvature, speed, None).0;
+        assert!(without.angular / without.linear < 0.93 * curvature, "{without:?}");
+    }
+}
