@@ -2,8 +2,8 @@
 
 use image::RgbImage;
 use roverlab::drive::cones::{
-    CameraMount, CameraSight, CarLimits, GapDriver, RacePhase, Racer, Sighting, SpeedProfile, Verdict, fuse,
-    sightings,
+    CameraMount, CameraSight, CarLimits, GapDriver, LineTracker, RacePhase, Racer, Sighting, SpeedProfile,
+    Verdict, fuse, sightings,
 };
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
@@ -152,7 +152,7 @@ struct Plans {
 impl Plans {
     fn see(&mut self, racer: &Racer) {
         let flying = std::mem::replace(&mut self.racing, racer.phase() == RacePhase::Racing) && self.racing;
-        let points = racer.line().filter(|_| self.racing).map(|line| line.points());
+        let points = racer.line().filter(|_| self.racing).map(LineTracker::points);
         if self.first.is_empty() {
             self.first = points.map(<[Point]>::to_vec).unwrap_or_default();
         }

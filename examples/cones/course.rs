@@ -44,11 +44,11 @@ const RUN_UP: f64 = 6.0;
 /// The middle of the line where time is taken: ahead of the car at the start, so that the first lap counts as well.
 fn line_of(track: &ConeTrack, start: Pose) -> Point {
     let gates = track.gates.iter().map(|[a, b]| a + (b - a) * 0.5);
-    let ahead = gates.filter(|middle| {
+    let mut ahead = gates.filter(|middle| {
         let local = start.to_local(*middle);
         (2.0..12.0).contains(&local.x) && local.y.abs() < 3.0
     });
-    ahead.last().unwrap_or_else(|| start.to_world(Point::new(RUN_UP, 0.0)))
+    ahead.next_back().unwrap_or_else(|| start.to_world(Point::new(RUN_UP, 0.0)))
 }
 
 impl Course {

@@ -124,8 +124,8 @@ pub fn triangle_inequality(
     let (Ok(direct), Ok(first), Ok(second)) = (cost(start, goal), cost(start, by), cost(by, goal)) else {
         return Ok(());
     };
-    // So put, what is no number is caught.
-    if !(direct <= first + second + TOLERANCE) {
+    let is_no_longer = direct <= first + second + TOLERANCE;
+    if !is_no_longer {
         let what = format!("a path of {direct} cells; by {by} there is one of {}", first + second);
         return Err(violation(start, goal, what));
     }

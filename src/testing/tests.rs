@@ -64,9 +64,12 @@ fn lines_are_free_as_the_planners_see_them() {
         let (width, height) = (1 + stream.below(6), 1 + stream.below(6));
         let share = stream.between(0.3, 0.95);
         let grid = BitGrid::from_fn(width, height, |_, _| stream.chance(share)).unwrap();
-        let mut point = || match stream.chance(0.5) {
-            true => GridCell::new(stream.below(width), stream.below(height)).centre(),
-            false => Point::new(stream.below(width + 1) as f64, stream.below(height + 1) as f64),
+        let mut point = || {
+            if stream.chance(0.5) {
+                GridCell::new(stream.below(width), stream.below(height)).centre()
+            } else {
+                Point::new(stream.below(width + 1) as f64, stream.below(height + 1) as f64)
+            }
         };
         let (a, b) = (point(), point());
         if a == b || entered(&grid, a, b).is_some() {

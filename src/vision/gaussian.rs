@@ -125,7 +125,7 @@ fn filter<const R: usize, const SMALL: bool>(
 
 /// So many columns of the row `dy` rows below another.
 #[inline(always)]
-fn row<'a>(input: GrayView<'a>, y: usize, dy: isize, (from, to): (usize, usize)) -> &'a [u8] {
+fn row(input: GrayView<'_>, y: usize, dy: isize, (from, to): (usize, usize)) -> &[u8] {
     &input.row(mirrored(y as isize + dy, input.height()))[from..to]
 }
 

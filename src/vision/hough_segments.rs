@@ -200,13 +200,13 @@ impl HoughSegments {
             if x < 0 || y < 0 || x >= self.size.0 as i64 || y >= self.size.1 as i64 {
                 return last;
             }
-            if self.mask[y as usize * self.size.0 + x as usize] != NO_EDGE {
-                (last, gap) = (step, 0);
-            } else {
+            if self.mask[y as usize * self.size.0 + x as usize] == NO_EDGE {
                 gap += 1;
                 if gap > max_gap {
                     return last;
                 }
+            } else {
+                (last, gap) = (step, 0);
             }
         }
     }
