@@ -119,6 +119,23 @@ impl CommonArgs {
         }
     }
 
+    /// Fails if the options say what the file of a maze says.
+    pub(crate) fn check_maze(&self) -> Result<(), Failure> {
+        let options = [
+            ("--robot", self.robot.is_some()),
+            ("--start", self.start.is_some()),
+            ("--goal", self.goal.is_some()),
+        ];
+        options.into_iter().find(|(_, given)| *given).map_or(Ok(()), |(name, _)| {
+            let says = if name == "--robot" {
+                "the robot is that for mazes"
+            } else {
+                "the maze's file says where it is"
+            };
+            Err(Failure::input(format!("{name}: found one; expected none, as {says}")))
+        })
+    }
+
     /// Tells a person what happens during a run. Silent with `--json`.
     pub(crate) fn tell(&self, event: impl Display) {
         if !self.json {

@@ -34,17 +34,7 @@ pub(super) struct Place {
 impl Place {
     /// The maze of `--world`, or the examples' own, in the size of a robot.
     pub(super) fn new(common: &CommonArgs, small: bool) -> Result<Self, Failure> {
-        for (name, given) in [
-            ("--robot", common.robot.is_some()),
-            ("--start", common.start.is_some()),
-            ("--goal", common.goal.is_some()),
-        ] {
-            if given {
-                let message =
-                    format!("{name}: found one; expected none, as the maze's file says where it is");
-                return Err(Failure::input(message));
-            }
-        }
+        common.check_maze()?;
         let file = match &common.world {
             Some(path) => {
                 let bytes = common.read("world", path).map_err(Failure::input)?;

@@ -38,6 +38,7 @@ With a drive instead of the last six:
   fast_run_s                  the same as driven
   fast_run_steps              cells of the fast run
   localisation_error_mm       true error of where the robot takes itself to be in the end
+  goal_error_mm               from where it truly is after the fast run to the middle of a cell of the goal; null without one
   cell_mm
   picture                     always
 With --campaign:
@@ -46,7 +47,8 @@ With --campaign:
   rows                        a row for each size and for all: mazes, runs, proved, collided, with the best plan, raced within
                               2 percent of the plan, the worst relative difference, the largest localisation error in mm
   failures                    maze, seed, and what went wrong, of each run that is not good
-A run is good if it proves its maze without a contact, plans the fastest run of the true maze, and keeps to that plan.
+A run is good if it proves its maze without a contact, plans the fastest run of the true maze, keeps to that plan, and
+ends it within a quarter of a cell of the goal.
 With --mms-run, after the fields of the maze, whose start is the lower left corner, facing north, and whose goal is the centre:
   program                     the command that was run
   solved, score               whether a run came to the goal; the simulator's score, the lower the better, 2000 unsolved

@@ -8,7 +8,7 @@ use roverlab::maze::{Direction, FastPlanner, Unknown, Verdict, Wall};
 use serde_json::{Value, json};
 
 use super::Args;
-use super::explore::{Told, drive, kit, limit, stage};
+use super::explore::{Told, drive, goal_error, kit, limit, stage};
 use crate::common::{Failure, Outcome, Report, millimetres, rounded, share_out};
 use crate::driving::{Conditions, Run};
 
@@ -28,6 +28,8 @@ pub(crate) struct Trial {
     pub(crate) best_plan: bool,
     /// By how much the fast run took longer than planned, relatively; none where there is no way.
     pub(crate) late: Option<f64>,
+    /// Cells between where the fast run truly ended and the middle of the goal; none without one.
+    pub(crate) goal_error: Option<f64>,
     /// Metres between where the robot was in the end and where it took itself to be.
     pub(crate) lost: f64,
     pub(crate) sim_time: f64,
@@ -37,6 +39,8 @@ pub(crate) struct Trial {
 impl Trial {
     /// Relative difference to the plan that is good.
     const LATE: f64 = 0.02;
+    /// Cells from the middle of the goal at which a fast run may end.
+    const NEAR: f64 = 0.25;
 
     pub(crate) fn is_good(&self) -> bool {
         self.trouble().is_none()
@@ -62,6 +66,8 @@ impl Trial {
             self.ideal && !self.keeps_to_plan(),
             format!("{:+.1} % of the planned time", 100.0 * self.late.unwrap_or(0.0)),
         );
+        let missed = self.goal_error.filter(|error| *error > Self::NEAR);
+        add(missed.is_some(), format!("the fast run ended {:.2} cells from the goal", missed.unwrap_or(0.0)));
         (!list.is_empty()).then(|| list.join(", "))
     }
 }
@@ -171,6 +177,10 @@ fn judged(args: &Args, name: &str, file: &MazeFile, seed: u64, run: &Run<()>, to
         late: plan
             .zip(told.and_then(|told| told.race))
             .and_then(|(plan, race)| (plan.time > 0.0).then(|| race / plan.time - 1.0)),
+        goal_error: told.and_then(|told| told.race).map(|_| {
+            let scale = kit(args.doubled).1;
+            goal_error(run.truth.pose, truth, scale) / scale.cell
+        }),
         lost: told.map_or(0.0, |told| run.truth.pose.distance_to(told.pose.position())),
         sim_time: run.sim_time,
         error: run.ending.as_ref().err().cloned(),

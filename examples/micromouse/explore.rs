@@ -63,7 +63,15 @@ pub(crate) fn explore(args: &Args) -> Result<Report, Failure> {
         _ => Outcome::verdict("explored"),
     });
     let report = with_maze(report, args, &file);
-    Ok(Report { trouble, ..with_run(report, told, run.truth.pose, scale).field("picture", drawing) })
+    let at_goal = goal_error(run.truth.pose, &file.maze, scale);
+    let report = with_run(report, told, run.truth.pose, scale)
+        .field("goal_error_mm", told.and_then(|told| told.race).map(|_| millimetres(at_goal)));
+    Ok(Report { trouble, ..report.field("picture", drawing) })
+}
+
+/// Metres from where a robot is to the middle of the nearest cell of the goal.
+pub(crate) fn goal_error(truth: Pose, maze: &Maze, scale: Scale) -> f64 {
+    maze.goals().map(|goal| truth.distance_to(scale.centre(goal))).fold(f64::INFINITY, f64::min)
 }
 
 /// Simulated seconds that are more than any maze needs.

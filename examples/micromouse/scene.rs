@@ -26,6 +26,7 @@ o---o---o---o---o---o---o---o---o
 
 /// The maze that the options name, or the example's own.
 pub(crate) fn maze(args: &Args) -> Result<MazeFile, Failure> {
+    args.common.check_maze()?;
     let named = args.maze.as_ref().map(|file| ("maze", file));
     let file = match named.or(args.common.world.as_ref().map(|file| ("world", file))) {
         Some((option, file)) => {

@@ -74,7 +74,7 @@ fn bound(hop: &Hop, steps: usize, times: &[[u32; ENDS]], cruising: &[[u32; ENDS]
     let onward = match hop.to {
         Some(to) if hop.count == LONG => cruising[rest][to],
         Some(to) => times[rest][to],
-        None if hop.count == LONG => per_step * rest as u32,
+        None if hop.count == LONG => per_step.saturating_mul(rest as u32),
         None if rest == 0 => 0,
         None => u32::MAX,
     };
@@ -109,6 +109,14 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn bounds_of_the_slowest_robot_are_numbers() {
+        let slowest = RunLimits { speed: 0.001, diagonal_speed: 0.001, ..RunLimits::MICROMOUSE };
+        let tables = Tables::new(&Repertoire::new(Scale::MICROMOUSE, slowest).unwrap());
+        let bounds = Bounds::new(&tables);
+        assert!((1..300).all(|steps| bounds.get(steps - 1, 0) <= bounds.get(steps, 0)));
     }
 
     #[test]

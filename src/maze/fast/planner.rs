@@ -18,6 +18,8 @@ use crate::maze::{Cell, Direction, FloodFill, Maze, Passages, Scale, Unknown};
 ///
 /// For n cells there are at most 60 n ends of turns, each with as many ways on as its straight passes cells.
 ///
+/// Times are counted in microseconds up to 4294 s: a run that takes longer is not found.
+///
 /// ```
 /// use roverlab::maze::{FastPlanner, Maze, RunLimits, Scale, Unknown};
 ///

@@ -188,6 +188,8 @@ impl Finder<'_> {
             let then = self.kind(self.next + 1);
             if here == Some(wanted) {
                 self.take();
+            } else if then == Some(wanted) && self.is_top_again() {
+                self.skip(wanted);
             } else if wanted == Kind::Cells && self.another_begins() {
                 return;
             } else if here.is_some_and(|kind| kind != Kind::Other) {
@@ -204,6 +206,11 @@ impl Finder<'_> {
                 return;
             }
         }
+    }
+
+    /// Whether the next line is the top one once more.
+    fn is_top_again(&self) -> bool {
+        self.found.len() == 1 && self.found[0].text == Some(self.lines[self.next])
     }
 
     /// Whether another picture begins below this one: both are closed there.

@@ -206,6 +206,14 @@ fn damaged_pictures_are_read_whole() {
 }
 
 #[test]
+fn a_top_line_that_stands_twice_is_left_out() {
+    let file = read(&format!("{}\n{}", LINES[0], LINES.join("\n")));
+    assert_eq!(file.maze, read(&LINES.join("\n")).maze);
+    assert_eq!(file.defects.len(), 1);
+    assert!(file.defects[0].to_string().starts_with("line 2: found \"o---o---o"), "{}", file.defects[0]);
+}
+
+#[test]
 fn a_second_picture_is_named() {
     let whole = read(&LINES.join("\n"));
     for between in ["\n", "\n\n", "\nAnother:\n", "\n\nAnother\n\n"] {

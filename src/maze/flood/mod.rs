@@ -63,8 +63,8 @@ impl Distances {
 /// Flood fills one after the other in the same memory.
 ///
 /// Mazes of up to 32 x 32 cells are filled by a wave of bits that takes all cells of one distance at once, compiled for
-/// several processors; the best is chosen at run time. Larger ones are filled from a queue with few branches. Both take a
-/// time that grows with the number of cells, and of wide waves only with the number of steps.
+/// several processors; the best is chosen at run time: a time in proportion to the steps to the farthest cell, however many cells
+/// the wave is wide. Larger ones are filled from a queue with few branches, in a time in proportion to the cells.
 ///
 /// ```
 /// use roverlab::maze::{Cell, Direction, FloodFill, Maze, Passages, Unknown, Wall};

@@ -6,7 +6,7 @@ use crate::random::Stream;
 /// four cells around the centre with one entrance, a wall on every post but the goal's, and more than one way to most
 /// cells.
 ///
-/// Both sides must be even and at least 6.
+/// Both sides have so many cells, rounded up to an even number of at least 6.
 pub fn competition(side: usize, seed: u64) -> Result<Maze, SizeError> {
     let side = side.max(6).next_multiple_of(2);
     let mut maze = Maze::filled(side, side, Wall::Present)?;

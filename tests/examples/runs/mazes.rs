@@ -36,6 +36,15 @@ fn the_examples_own_maze_is_planned() {
 }
 
 #[test]
+fn what_the_mazes_file_says_is_no_option() {
+    for option in [["--start", "900,900,0"], ["--goal", "200,200"], ["--robot", "nowhere.robi"]] {
+        let (status, report, err) = run(&[&["--plan"], &option[..]].concat());
+        assert_eq!((status, report, err.lines().count()), (2, Value::Null, 1), "{err}");
+        assert!(err.contains(&format!("{}: found one; expected none", option[0])), "{err}");
+    }
+}
+
+#[test]
 fn turns_are_counted_from_north() {
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("heading_east.maz");
     fs::write(&file, " _ _ _\n|r   G|\n|_ _ _|\n").unwrap();
@@ -55,6 +64,7 @@ fn the_examples_own_maze_is_explored_and_raced() {
         let number = |name: &str| report[name].as_f64().unwrap();
         let (planned, driven) = (number("fast_run_planned_s"), number("fast_run_s"));
         assert!((driven - planned).abs() < 0.02 * planned, "{report}");
+        assert!(number("goal_error_mm") < 10.0, "{report}");
         assert!(number("visited_cells") <= 64.0 && number("localisation_error_mm") < 10.0, "{report}");
     }
 }
