@@ -58,6 +58,13 @@ impl Default for RacerParameters {
     }
 }
 
+impl RacerParameters {
+    /// For a car whose tyres do not slip.
+    pub fn rolling() -> Self {
+        Self { tracker: TrackerParameters::rolling(), ..Self::default() }
+    }
+}
+
 /// What a racer does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum RacePhase {

@@ -42,6 +42,20 @@ impl Default for TrackerParameters {
     }
 }
 
+impl TrackerParameters {
+    /// For a car whose tyres do not slip.
+    pub fn rolling() -> Self {
+        Self {
+            length_by_speed: 0.22,
+            steering_lag: 0.1,
+            speed_lag: 0.08,
+            tyres: Tyres::ROLLING,
+            yaw: 0.0,
+            ..Self::default()
+        }
+    }
+}
+
 /// Metres per second below which wheels roll: they turn the car at once.
 const ROLLS: f64 = 4.0;
 

@@ -23,6 +23,11 @@ impl Default for Tyres {
     }
 }
 
+impl Tyres {
+    /// Tyres that roll and do not slip, as those of slow cars as good as do.
+    pub const ROLLING: Self = Self { grip: 12.0, stiffness: f64::INFINITY, front: 1.0, wheelbase: 1.55 };
+}
+
 /// The share of what an axle can give beyond which no more is asked of it.
 const MOST: f64 = 0.97;
 
@@ -127,6 +132,13 @@ mod tests {
             prop_assert!(left <= tyres.left_along(0.9 * across) && left >= 1.19);
             prop_assert!(left < 1.21 || across * across + left * left <= 144.0);
         }
+    }
+
+    #[test]
+    fn tyres_that_do_not_slip_need_no_more_steering() {
+        let rolling = Tyres::ROLLING;
+        assert_eq!(rolling.slips(8.0, 3.0), [0.0, 0.0]);
+        assert!((rolling.steering(0.2, 8.0, 3.0) - 0.2).abs() < 1e-12);
     }
 
     #[test]
