@@ -58,6 +58,8 @@ const START: [f64; 2] = [1e-3, 4e-3];
 const SLIP: f64 = 2.0;
 /// Innovations beyond so many standard deviations come from something else than the wall.
 const GATE: f64 = 4.0;
+/// Cells by which a robot that does not know better may be wrong about its place: what it sees is then the nearest that it can be.
+const NEAREST: f64 = 0.45;
 /// Metres from a corner within which a ray may meet something else than a wall's face.
 const CORNER: f64 = 0.012;
 /// Beams square to a wall, up to 14 degrees: others may see what stands behind an opening beside it.
@@ -178,7 +180,7 @@ impl MazeLocaliser {
                 self.notice_edge(sensor, &model, reading);
             }
             let slack = GATE * (deviation + self.deviation(&model.range_slope()));
-            let agrees = (reading - crossing.distance).abs() < slack.min(0.3 * self.scale.cell);
+            let agrees = (reading - crossing.distance).abs() < slack.min(NEAREST * self.scale.cell);
             // How far along the wall the ray may be from where it seems to be.
             let margin = CORNER + 2.0 * self.deviation(&model.along_slope());
             let post = margin + 0.5 * self.scale.wall;
@@ -232,7 +234,8 @@ impl MazeLocaliser {
         // It changed at some time since the last reading.
         let innovation = edge - (along - 0.5 * step);
         let variance = step * step / 12.0 + EDGE * EDGE;
-        if innovation.abs() < 0.3 * self.scale.cell {
+        let slack = GATE * (EDGE + self.deviation(&model.along_slope()));
+        if innovation.abs() < slack.clamp(0.3 * self.scale.cell, NEAREST * self.scale.cell) {
             self.update(&model.along_slope(), innovation, variance);
         }
     }
