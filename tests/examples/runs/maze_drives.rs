@@ -47,6 +47,14 @@ fn the_left_hand_touches_no_wall_of_published_mazes() {
         let (status, report, _) = run("maze_left", &["--world", file.to_str().unwrap(), "--noise", noise]);
         assert_eq!((status, &report["collisions"]), (0, &0.into()), "{} {noise}: {report}", file.display());
     }
+    // In the same mazes, the drive as printed runs into walls.
+    let some: Vec<_> = files.iter().step_by(5).collect();
+    let collides = |file: &&&std::path::PathBuf| {
+        let world = ["--world", file.to_str().unwrap(), "--drive", "open", "--noise", "1"];
+        run("maze_left", &world).1["outcome"] == "collided"
+    };
+    let collided = some.iter().filter(collides).count();
+    assert!(collided + 1 >= some.len(), "{collided} of {}", some.len());
 }
 
 #[test]
