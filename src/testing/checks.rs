@@ -58,9 +58,9 @@ pub fn optimal(
     }
 }
 
-/// The planner's path leads from the start to the goal along straight lines, and is as long as it says. It enters no blocked cell,
-/// but may run along one and touch corners; it squeezes neither between two blocked cells side by side nor between two that
-/// touch at a corner. Queries without an answer pass.
+/// The planner's path leads from the start to the goal along straight lines, and is as long as it says. It enters no blocked
+/// cell, but may run along one and touch corners; it squeezes neither between two blocked cells side by side nor between two
+/// that touch at a corner. Queries without an answer pass.
 pub fn collision_free(
     planner: &mut impl GridPlanner,
     grid: &BitGrid,

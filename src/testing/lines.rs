@@ -93,8 +93,8 @@ fn corner_is_on(corner: Point, a: Point, b: Point) -> bool {
     aside < TOLERANCE && along > TOLERANCE && along < d.norm() - TOLERANCE
 }
 
-/// Whether two of the four cells at a point are blocked crosswise, and none of the free ones is on the way both from `a` to the point
-/// and from the point to `b`.
+/// Whether two of the four cells at a point are blocked crosswise, and none of the free ones is on the way both from `a` to
+/// the point and from the point to `b`.
 fn passes(grid: &BitGrid, corner: Point, a: Point, b: Point) -> bool {
     let (x, y) = (corner.x as isize, corner.y as isize);
     let free = |dx: isize, dy: isize| is_free(grid, x + dx.min(0), y + dy.min(0));

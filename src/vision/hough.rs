@@ -112,8 +112,8 @@ impl HoughLines {
     }
 }
 
-/// Calls `found` with every place that has more votes than the threshold and is a peak among the rows of three angles. The first and
-/// the last place of a row have no votes.
+/// Calls `found` with every place that has more votes than the threshold and is a peak among the rows of three angles. The
+/// first and the last place of a row have no votes.
 fn for_each_peak([before, votes, after]: [&[u32]; 3], threshold: u32, mut found: impl FnMut(usize)) {
     let is_peak = |place: usize| {
         let count = votes[place];

@@ -9,6 +9,7 @@ use super::profile::{CarLimits, SpeedProfile};
 use super::racing_line::{CarOutline, LineSolver, RacingLineParameters};
 use super::sight::{Sighting, sightings};
 use super::tracker::{LineTracker, TrackerParameters};
+use super::tyres::SLIPS;
 use crate::geometry::{Point, Pose, Twist, math};
 use crate::io::{self, Clock, Drive, Lidar, LidarScan};
 
@@ -115,8 +116,6 @@ const SHORTEST: f64 = 40.0;
 /// Metres from the line within which another car is in the way, metres ahead at which it begins to matter, and metres, from the
 /// middle of a car to the end of another one, that are kept.
 const OTHERS: (f64, f64, f64) = (1.5, 24.0, 4.5);
-/// Metres per second above which tyres slip.
-const SLIPS: f64 = 4.0;
 /// Metres per second at which it feels its way where nothing is known.
 const CRAWL: f64 = 1.5;
 

@@ -1,5 +1,5 @@
 use super::profile::SpeedProfile;
-use super::tyres::Tyres;
+use super::tyres::{SLIPS, Tyres};
 use crate::geometry::{Point, Pose, Twist, angle_difference, cross, math};
 
 /// How a car is kept on a line.
@@ -55,9 +55,6 @@ impl TrackerParameters {
         }
     }
 }
-
-/// Metres per second below which wheels roll: they turn the car at once.
-const ROLLS: f64 = 4.0;
 
 /// A line with its speeds, and how far along it the car is.
 #[derive(Debug, Clone)]
@@ -133,11 +130,11 @@ impl LineTracker {
         // Near the limit, tyres answer the less the more is asked, to what brings the car back as well.
         let tyres = p.tyres.steering(wanted, speed * speed * wanted, push) - wanted;
         // They answer late as well: a car that does not turn yet is steered more.
-        let late = if speed > ROLLS { p.yaw * (wanted - moving.angular / speed) } else { 0.0 };
+        let late = if speed > SLIPS { p.yaw * (wanted - moving.angular / speed) } else { 0.0 };
         let curvature = (wanted / inside + tyres + late).clamp(-p.curvature, p.curvature);
         let planned = self.at(&self.profile.speeds, i, share, (speed.max(0.0) + 0.5) * p.speed_lag);
         // Motors take no more than the tyres have left beside what they give across; brakes do, as there is no other way to be slower.
-        let left = if speed > ROLLS { p.tyres.left_along(speed * moving.angular) } else { p.tyres.grip };
+        let left = if speed > SLIPS { p.tyres.left_along(speed * moving.angular) } else { p.tyres.grip };
         let most = left * p.speed_time;
         let speed = planned.min(speed.max(0.0) + most);
         Some((Twist::new(speed, speed * curvature), aside))

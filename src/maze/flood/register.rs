@@ -1,5 +1,5 @@
-//! The wave of small mazes in registers of 256 bits, one for each board: left to itself, the compiler spreads the four words of
-//! a board over smaller ones, and gathers them again in each step.
+//! The wave of small mazes in registers of 256 bits, one for each board: left to itself, the compiler spreads the four words
+//! of a board over smaller ones, and gathers them again in each step.
 
 use std::arch::x86_64::{
     __m256i, _mm256_and_si256, _mm256_andnot_si256, _mm256_extract_epi64, _mm256_or_si256,

@@ -58,7 +58,8 @@ const START: [f64; 2] = [1e-3, 4e-3];
 const SLIP: f64 = 2.0;
 /// Innovations beyond so many standard deviations come from something else than the wall.
 const GATE: f64 = 4.0;
-/// Cells by which a robot that does not know better may be wrong about its place: what it sees is then the nearest that it can be.
+/// Cells by which a robot that does not know better may be wrong about its place: what it sees is then the nearest that it
+/// can be.
 const NEAREST: f64 = 0.45;
 /// Metres from a corner within which a ray may meet something else than a wall's face.
 const CORNER: f64 = 0.012;

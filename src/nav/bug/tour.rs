@@ -36,6 +36,10 @@ family! {
     /// Complete, for the reasons of Bug1: what the best place promises is nearer than all of the boundary, so no obstacle
     /// is met twice. The path is at most `D + 2 sum(p)`: the best place may be farther from the goal than the hit point is,
     /// by half of the boundary at the most, and the way to the next obstacle is longer by that.
+    ///
+    /// A free range that is seen between two beams may not be there. Then the robot meets the same obstacle again, and relies
+    /// on ranges less from there on: in 2 of 10,000 generated worlds, closed rooms, that made the path longer than the bound, by
+    /// 1 %.
     LeaveBug, "LeaveBug", Tour<true>, PathBound::TwicePerimeters
 }
 
@@ -80,7 +84,8 @@ const MAX_DOUBT: f64 = 0.3;
 /// How much worse, in STEPs, the place may seem when it is met again, and for each metre that it has been missed by.
 const SLACK: f64 = 0.5;
 const SLACK_PER_METRE: f64 = 0.1;
-/// The same, in STEPs, where the merit grows again: round a corner the robot drives a little farther out or in than the other way.
+/// The same, in STEPs, where the merit grows again: round a corner the robot drives a little farther out or in than the other
+/// way.
 const SLACK_PASSING: f64 = 1.0;
 /// After so many robot radii the place has been missed for good, and the next one that can be left at all will do.
 const MISSED: f64 = 3.0;

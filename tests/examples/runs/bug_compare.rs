@@ -126,7 +126,8 @@ fn the_campaign_checks_verdicts_and_bounds() {
 
 /// Lines to the goal that graze an obstacle or go on behind the goal, ends of thin walls before narrow gaps, obstacles met
 /// where others are as near, places to leave that are seen for a moment only, walls of no thickness that are seen along
-/// themselves, ends that a robot turns back at, and ways that seem to lead out of a closed room.
+/// themselves, ends that a robot turns back at, ways that seem to lead out of a closed room, dead ends in which it turns round the
+/// other way, and places to leave that are passed the other way round a corner.
 #[test]
 fn hard_worlds_are_done_right() {
     for (seed, bugs) in [
@@ -137,6 +138,8 @@ fn hard_worlds_are_done_right() {
         ("1318", "bug2,alg1"),
         ("1361", "bug1"),
         ("1381", "bug1,leavebug"),
+        ("1837", "bug2"),
+        ("2727", "bug1"),
         ("10015", "class1"),
         ("10070", "tangentbug"),
         ("10209", "rev2"),

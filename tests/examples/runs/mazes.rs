@@ -81,6 +81,21 @@ fn what_was_explored_is_told_even_if_the_fast_run_fails() {
     assert_eq!(report["fast_run_s"], Value::Null);
 }
 
+/// Where odometry is far off and a corridor long, a robot must not take a wall for that of the next cell.
+#[test]
+fn long_corridors_are_explored_right_with_odometry_that_is_far_off() {
+    let Some(folder) = published() else { return };
+    for (name, seconds) in [("32MM2022HX", 38.590_468), ("32MM2012HX", 25.228_637)] {
+        let maze = folder.join(format!("kerikun11/data/{name}.maze"));
+        let options = ["--explore", "--maze", maze.to_str().unwrap(), "--noise", "1", "--seed", "29"];
+        let (status, report, err) = run(&options);
+        assert_eq!((status, err.as_str()), (0, ""), "{report}");
+        assert_eq!((&report["proved_optimal"], &report["collisions"]), (&true.into(), &0.into()), "{report}");
+        let planned = report["fast_run_planned_s"].as_f64().unwrap();
+        assert!((planned - seconds).abs() < 2e-3, "{name}: {planned}");
+    }
+}
+
 #[test]
 fn a_campaign_tells_of_every_maze() {
     let (status, report, err) = run(&["--campaign", "tests/data/mazes", "--runs", "3"]);

@@ -18,7 +18,8 @@ const KEYS: [(&str, ConeColour); 4] = [
 const WING: f64 = 2.15;
 
 /// Reads a track of FSSIM: lists of cones by colour, the pose of the front wing at the start, and the ends of the lines
-/// where time is taken. The start of the track is that of the rear axle, 2.15 m behind the wing. Other keys with lists of numbers are left out.
+/// where time is taken. The start of the track is that of the rear axle, 2.15 m behind the wing. Other keys with lists of
+/// numbers are left out.
 pub fn parse_fssim(text: &str, file: &str) -> Result<ConeTrack, FormatError> {
     let mut events = YamlEvents::new(text, file, "keys with lists");
     let mut track = ConeTrack::default();

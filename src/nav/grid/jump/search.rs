@@ -49,8 +49,8 @@ impl Label {
     }
 }
 
-/// A label as plain numbers: memory for those comes zeroed and takes none before it is written, so a search costs what it touches,
-/// however large the map is.
+/// A label as plain numbers: memory for those comes zeroed and takes none before it is written, so a search costs what it
+/// touches, however large the map is.
 type Packed = [u64; 3];
 
 /// Everything that a search keeps from one query to the next.
