@@ -13,10 +13,10 @@ pub const NOTHING: i32 = 9999;
 const FRAME: f64 = 0.033;
 
 impl Robios {
-    /// `PSDGet`.
+    /// `PSDGet`: at least 1 mm, as 0 says that there is no such sensor.
     pub fn psd_get(&mut self, psd: i32) -> Result<i32> {
         let number = u8::try_from(psd).map_err(|_| invalid("PSD", psd, "0 to 255"))?;
-        Ok(range(self.number(&Request::Distance(number))?))
+        Ok(range(self.number(&Request::Distance(number))?).max(1))
     }
 
     /// How many distances `LIDARGet` writes.

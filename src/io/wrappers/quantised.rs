@@ -36,6 +36,8 @@ pub struct Quantised<R> {
 
 /// RoBIOS reports nothing at this many millimetres and beyond.
 const NOTHING: f64 = 9999.0;
+/// In metres: 0 says that there is no such sensor.
+const NEAREST: f64 = 0.001;
 /// Seconds that an image takes: RoBIOS's camera gives 30 of them in a second.
 const FRAME: f64 = 0.033;
 
@@ -189,8 +191,7 @@ impl<R: Drive> Drive for Quantised<R> {
 impl<R: DistanceSensors> DistanceSensors for Quantised<R> {
     /// As through RoBIOS, a distance of 0 is a sensor that the robot lacks.
     fn distance(&mut self, sensor: Psd) -> Result<f64> {
-        let distance = range(self.inner.distance(sensor)?);
-        if distance == 0.0 { Err(Error::unsupported(sensor)) } else { Ok(distance) }
+        Ok(range(self.inner.distance(sensor)?).max(NEAREST))
     }
 }
 
@@ -411,11 +412,11 @@ mod tests {
     }
 
     #[test]
-    fn distances_end_at_9999_and_nothing_is_at_0() {
+    fn distances_end_at_9999_and_begin_at_1() {
         let robot = MockRobot::new().with_distance(Psd::FRONT, 9.9986).with_distance(Psd::LEFT, 0.0002);
         let mut robot = Quantised::new(robot);
         assert_eq!(robot.distance(Psd::FRONT).unwrap(), f64::INFINITY);
-        assert!(robot.distance(Psd::LEFT).is_err());
+        assert_eq!(robot.distance(Psd::LEFT).unwrap(), 0.001);
         assert_eq!(range(9.9984), 9.998);
     }
 }

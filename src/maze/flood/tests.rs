@@ -80,7 +80,10 @@ proptest! {
     }
 
     #[test]
-    fn incremental_fill_equals_full_fill_after_every_wall(maze in mazes(12), seed in any::<u64>()) {
+    fn incremental_fill_equals_full_fill_after_every_wall(
+        maze in prop_oneof![mazes(12), mazes(40)],
+        seed in any::<u64>(),
+    ) {
         let mut stream = Stream::new(seed);
         let sources: Vec<Cell> = maze.goals().collect();
         let mut incremental = IncrementalFlood::new(Passages::new(&maze, Unknown::Closed), sources.clone());
@@ -138,6 +141,19 @@ proptest! {
 }
 
 #[test]
+fn waves_spread_alike_with_and_without_wide_registers() {
+    // Where there are such registers, nothing else tries the wave that does without them.
+    for seed in 0..50 {
+        let maze = braided(16, 16, 0.1, seed).unwrap();
+        let passages = Passages::new(&maze, Unknown::Closed);
+        let passages::Grid::Small(boards) = &passages.grid else { panic!("16 x 16 cells are few") };
+        let mut steps = vec![0; 256];
+        wave::write(&wave::Wave::<4, 8>::spread(boards, [1, 0, 0, 0]), 16, &mut steps);
+        assert_eq!(distances_from_start(&maze, Unknown::Closed).as_slice(), steps);
+    }
+}
+
+#[test]
 fn the_longest_possible_ways_are_counted() {
     // A snake through all cells: the last one is as far as a cell can be.
     for side in [16, 32, 256] {
@@ -159,4 +175,23 @@ fn a_large_braided_maze_is_filled_as_by_breadth_first_search() {
     let maze = braided(256, 256, 0.1, 1).unwrap();
     let expected = breadth_first(&maze, Unknown::Closed, &[maze.start()]);
     assert_eq!(found(&maze, &distances_from_start(&maze, Unknown::Closed)), expected);
+}
+
+#[test]
+fn an_incremental_fill_of_a_large_maze_equals_a_full_one() {
+    let mut maze = braided(256, 256, 0.1, 2).unwrap();
+    let mut stream = Stream::new(3);
+    let mut incremental = IncrementalFlood::new(Passages::new(&maze, Unknown::Closed), [maze.start()]);
+    let mut flood = FloodFill::default();
+    for _ in 0..40 {
+        let (cell, side) = (maze.cell_at(stream.below(maze.cell_count())), Direction::ALL[stream.below(4)]);
+        if maze.neighbour(cell, side).is_none() {
+            continue;
+        }
+        let open = maze.wall(cell, side) == Wall::Present;
+        maze.set_wall(cell, side, if open { Wall::Absent } else { Wall::Present });
+        incremental.set(cell, side, open);
+        let full = flood.run(&Passages::new(&maze, Unknown::Closed), [maze.start()]);
+        assert_eq!(incremental.distances().as_slice(), full.as_slice());
+    }
 }

@@ -86,7 +86,7 @@ fn step<const N: usize>(boards: &Boards<N>, front: &[u64; N], unseen: &[u64; N])
 
 /// Writes the distances of a maze of any width up to that of a row.
 #[inline(always)]
-fn write<const N: usize, const P: usize>(wave: &Wave<N, P>, width: usize, steps: &mut [u32]) {
+pub(super) fn write<const N: usize, const P: usize>(wave: &Wave<N, P>, width: usize, steps: &mut [u32]) {
     for (y, line) in steps.chunks_exact_mut(width).enumerate() {
         let (word, shift) = Boards::<N>::place(y);
         // What stands above the row's bits is of no cell.

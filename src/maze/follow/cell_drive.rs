@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use super::place::PlaceInCell;
 use crate::drive::{Pid, PidParameters};
 use crate::geometry::{Pose, Twist};
@@ -121,16 +123,23 @@ impl CellDrive {
         self.pid.reset();
     }
 
-    /// Metres that the robot is left of the middle; `None` where no wall is beside it.
-    pub fn off_middle(&self, readings: [f64; 3]) -> Option<f64> {
-        middle(self.by_walls(readings))
+    /// Follows a turn on the spot, in steps of less than half a turn.
+    pub fn turned(&mut self, pose: Pose) {
+        if let Some(place) = &mut self.place {
+            place.predict(pose);
+        }
     }
 
-    /// The same by the left and by the right wall.
-    fn by_walls(&self, [_, left, right]: [f64; 3]) -> [Option<f64>; 2] {
-        let CellDriveParameters { aside, cell, .. } = self.parameters;
+    /// Metres that the robot is left of the middle; `None` where no wall is beside it.
+    pub fn off_middle(&self, readings: [f64; 3]) -> Option<f64> {
         // As in the book: 100 to 180 mm where 125 are to be read in cells of 360 mm.
-        let wall = |reading: f64| (-0.07 * cell..0.16 * cell).contains(&(reading - aside));
+        middle(self.by_walls(readings, -0.07..0.16))
+    }
+
+    /// The same by the left and by the right wall: by what is, in cells, so far from what would be read in the middle.
+    fn by_walls(&self, [_, left, right]: [f64; 3], walls: Range<f64>) -> [Option<f64>; 2] {
+        let CellDriveParameters { aside, cell, .. } = self.parameters;
+        let wall = |reading: f64| walls.contains(&((reading - aside) / cell));
         [wall(left).then_some(aside - left), wall(right).then_some(right - aside)]
     }
 
@@ -152,7 +161,12 @@ impl CellDrive {
             None => self.off_middle(readings),
         };
         self.place = Some(place);
-        let there = if by_wall { front <= ahead + coast || far } else { place.along + coast >= cell };
+        // A reading as it is may say too early that the wall is there.
+        let there = if by_wall && reading_error.is_none() {
+            front <= ahead + coast || far
+        } else {
+            place.along + coast >= cell
+        };
         if there {
             return Ok(None);
         }
@@ -178,8 +192,10 @@ impl CellDrive {
         if from_post.abs() < Self::NEAR_POST {
             return place.off;
         }
-        // A sensor before the middle is moved aside as the robot turns.
-        let seen = self.by_walls(readings).map(|off| off.map(|off| off - sensors_ahead * place.turn));
+        // A sensor before the middle is moved aside as the robot turns. What counts is whether a reading agrees with what is
+        // known: a narrow gate would keep the errors to one side.
+        let seen =
+            self.by_walls(readings, -0.4..0.4).map(|off| off.map(|off| off - sensors_ahead * place.turn));
         let believed = seen.map(|off| off.filter(|&off| place.believes(off, error)));
         if let Some(off) = middle(believed) {
             place.correct_off(off, error);

@@ -50,9 +50,10 @@ impl LeftHandParameters {
         }
     }
 
-    /// The same with another way to drive, for cells of the size that this is for.
+    /// The same with another way to drive. The threshold lies half a cell beyond a wall of the robot's own cell, half a cell
+    /// before one of the next.
     pub fn controlled(drive: CellDriveParameters) -> Self {
-        let threshold = 0.400 / 0.360 * drive.cell;
+        let threshold = 0.5 * (drive.ahead + drive.aside + drive.cell);
         Self { threshold, straight: Straight::Controlled(drive), ..Self::as_printed() }
     }
 }
@@ -129,14 +130,19 @@ impl LeftHand {
             let quarters = self.choose(read(robot)?);
             if quarters != 0 {
                 robot.turn(f64::from(quarters) * FRAC_PI_2, self.parameters.turn_rate)?;
-                self.await_manoeuvre(robot, &mut watch)?;
+                self.await_manoeuvre(robot, |pose| {
+                    if let Way::Controlled(controller) = &mut way {
+                        controller.turned(pose);
+                    }
+                    watch();
+                })?;
                 heading = heading.turned_right((4 - quarters) as usize % 4);
             }
             match &mut way {
                 Way::Controlled(controller) => self.drive(robot, controller, &mut watch)?,
                 &mut Way::OpenLoop { length, speed } => {
                     robot.straight(length, speed)?;
-                    self.await_manoeuvre(robot, &mut watch)?;
+                    self.await_manoeuvre(robot, |_| watch())?;
                 }
             }
             if robot.is_stalled()? {
@@ -154,11 +160,11 @@ impl LeftHand {
     fn await_manoeuvre<R: Clock + Drive + ?Sized>(
         &self,
         robot: &mut R,
-        watch: &mut impl FnMut(),
+        mut watch: impl FnMut(Pose),
     ) -> Result<()> {
         while !robot.is_done()? && !robot.is_stalled()? {
             robot.wait(self.parameters.period)?;
-            watch();
+            watch(robot.pose()?);
         }
         Ok(())
     }

@@ -2,6 +2,15 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::geometry::{Pose, angle_difference, math};
 
+/// How much farther a robot rolls than odometry says, as a share of the way: tyres are worn or new.
+#[derive(Debug, Clone, Copy)]
+struct Stretch {
+    share: f64,
+    variance: f64,
+    /// What it has in common with how far along the robot is.
+    along: f64,
+}
+
 /// Where a robot is in a cell and how it stands, by a Kalman filter from odometry and what the walls say.
 ///
 /// It goes on from cell to cell: what was learnt in one with walls leads through those without.
@@ -16,6 +25,7 @@ pub(super) struct PlaceInCell {
     /// Variances of the three, and what the last two have in common.
     spread: [f64; 3],
     common: f64,
+    stretch: Stretch,
     odometry: Pose,
 }
 
@@ -24,32 +34,42 @@ impl PlaceInCell {
     pub(super) fn at(odometry: Pose, cell: f64) -> Self {
         const OFF: f64 = 0.05;
         const TURN: f64 = 0.06;
+        const STRETCH: f64 = 0.015;
         let spread = [OFF * OFF * cell * cell, OFF * OFF * cell * cell, TURN * TURN];
-        Self { along: 0.0, off: 0.0, turn: 0.0, spread, common: 0.0, odometry }
+        let stretch = Stretch { share: 0.0, variance: STRETCH * STRETCH, along: 0.0 };
+        Self { along: 0.0, off: 0.0, turn: 0.0, spread, common: 0.0, stretch, odometry }
     }
 
-    /// Follows odometry. Quarter turns on the spot turn the cell with the robot.
+    /// Follows odometry. The cell turns with a robot that has turned by more than half a quarter.
     pub(super) fn predict(&mut self, odometry: Pose) {
         /// How much odometry may miss of a way, and of a turn.
-        const MISSED: f64 = 0.02;
-        const MISSED_OF_TURN: f64 = 0.04;
+        const MISSED: f64 = 0.01;
+        const MISSED_OF_TURN: f64 = 0.006;
         let moved = self.odometry.to_local(odometry.position());
         let way = moved.coords.norm();
-        let turned = angle_difference(odometry.heading, self.odometry.heading);
+        // Wheels that roll farther turn the robot farther, too.
+        let turned = angle_difference(odometry.heading, self.odometry.heading) * (1.0 + self.stretch.share);
         let (sin, cos) = (math::sin(self.turn), math::cos(self.turn));
         self.odometry = odometry;
-        self.along += cos * moved.x - sin * moved.y;
+        let ahead = cos * moved.x - sin * moved.y;
+        self.along += ahead * (1.0 + self.stretch.share);
         self.off += sin * moved.x + cos * moved.y;
         let [along, off, turn] = self.spread;
         let missed = MISSED * MISSED;
         self.spread = [
-            along + missed * way * way.max(0.01),
+            along
+                + missed * way * way.max(0.01)
+                + ahead * (2.0 * self.stretch.along + ahead * self.stretch.variance),
             off + 2.0 * way * self.common + way * way * turn,
-            turn + missed * way + MISSED_OF_TURN * MISSED_OF_TURN * turned.abs(),
+            // What is missed of a turn is so of each of its parts: its square goes by the whole turn, a quarter.
+            turn + missed * way
+                + turned.abs() * FRAC_PI_2 * (self.stretch.variance + MISSED_OF_TURN * MISSED_OF_TURN),
         ];
         self.common += way * turn;
-        let quarters = (turned / FRAC_PI_2).round();
-        self.turn += turned - quarters * FRAC_PI_2;
+        self.stretch.along += ahead * self.stretch.variance;
+        self.turn += turned;
+        let quarters = (self.turn / FRAC_PI_2).round();
+        self.turn -= quarters * FRAC_PI_2;
         self.turn_cell(quarters as i32);
     }
 
@@ -61,17 +81,25 @@ impl PlaceInCell {
             3 => (-self.off, self.along),
             _ => return,
         };
-        if quarters % 2 != 0 {
+        if quarters % 2 == 0 {
+            self.stretch.along = -self.stretch.along;
+        } else {
             self.spread.swap(0, 1);
+            self.stretch.along = 0.0;
         }
         self.common = 0.0;
     }
 
     /// Takes a measurement of how far along the robot is.
     pub(super) fn correct_along(&mut self, along: f64, error: f64) {
-        let gain = self.spread[0] / (self.spread[0] + error * error);
-        self.along += gain * (along - self.along);
-        self.spread[0] *= 1.0 - gain;
+        let Stretch { variance, along: common, .. } = self.stretch;
+        let gains = [self.spread[0], common].map(|spread| spread / (self.spread[0] + error * error));
+        let innovation = along - self.along;
+        self.along += gains[0] * innovation;
+        self.stretch.share += gains[1] * innovation;
+        self.spread[0] *= 1.0 - gains[0];
+        self.stretch.variance = variance - gains[1] * common;
+        self.stretch.along = common * (1.0 - gains[0]);
     }
 
     /// Whether a measurement of how far off the middle the robot is can be one.
