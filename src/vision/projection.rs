@@ -17,30 +17,59 @@ pub fn maximum(histogram: &[u32]) -> Option<(usize, u32)> {
     histogram.iter().position(|&value| value == largest).map(|place| (place, largest))
 }
 
-/// Columns that are summed up together: their sums fit the fastest cache, and long rows are read at a stretch.
-const STRIP: usize = 4096;
+/// Pixels of a block. They are added up as words of two, which are parted by a shift: nothing moves from lane to lane.
+const BLOCK: usize = 64;
+/// Blocks that are summed up together: their sums fit the fastest cache, and those of a row 16 bits.
+const STRIP: usize = 64;
 /// Rows of bytes whose sum fits 16 bits.
 const ROWS: usize = 257;
 
+/// Sums of the columns of a block: those of even ones, then those of odd ones.
+type Sums = [[u16; BLOCK / 2]; 2];
+
 #[inline(always)]
 pub(super) fn project_portable(input: GrayView<'_>, columns: &mut [u32], rows: &mut [u32]) {
-    let (width, height) = input.size();
     columns.fill(0);
     rows.fill(0);
-    for start in (0..width).step_by(STRIP) {
-        let end = (start + STRIP).min(width);
-        for top in (0..height).step_by(ROWS) {
-            let mut sums = [0_u16; STRIP];
-            let sums = &mut sums[..end - start];
-            let bottom = (top + ROWS).min(height);
-            for (y, total) in (top..bottom).zip(&mut rows[top..bottom]) {
-                let row = &input.row(y)[start..end];
-                for (sum, &shade) in sums.iter_mut().zip(row) {
-                    *sum += u16::from(shade);
-                }
-                *total += row.iter().map(|&shade| u32::from(shade)).sum::<u32>();
+    for (strip, columns) in columns.chunks_mut(STRIP * BLOCK).enumerate() {
+        let start = strip * STRIP * BLOCK;
+        for (part, rows) in rows.chunks_mut(ROWS).enumerate() {
+            let mut sums = [[[0; BLOCK / 2]; 2]; STRIP];
+            for (y, total) in (part * ROWS..).zip(rows) {
+                *total += add_row(&input.row(y)[start..start + columns.len()], &mut sums);
             }
-            for (column, &sum) in columns[start..end].iter_mut().zip(&*sums) {
+            add_columns(&sums, columns);
+        }
+    }
+}
+
+/// Adds a row to the sums of its columns; returns its own.
+#[inline(always)]
+fn add_row(row: &[u8], sums: &mut [Sums; STRIP]) -> u32 {
+    let (blocks, rest) = row.as_chunks::<BLOCK>();
+    let mut totals = [0_u16; BLOCK / 2];
+    for (block, [evens, odds]) in blocks.iter().zip(&mut *sums) {
+        let (words, _) = block.as_chunks::<2>();
+        for i in 0..BLOCK / 2 {
+            let word = u16::from_le_bytes(words[i]);
+            let (even, odd) = (word & 0xff, word >> 8);
+            evens[i] += even;
+            odds[i] += odd;
+            totals[i] += even + odd;
+        }
+    }
+    for (i, &shade) in rest.iter().enumerate() {
+        sums[blocks.len()][i % 2][i / 2] += u16::from(shade);
+    }
+    let rest = rest.iter().map(|&shade| u32::from(shade)).sum::<u32>();
+    rest + totals.iter().map(|&total| u32::from(total)).sum::<u32>()
+}
+
+#[inline(always)]
+fn add_columns(sums: &[Sums; STRIP], columns: &mut [u32]) {
+    for (columns, [evens, odds]) in columns.chunks_mut(BLOCK).zip(sums) {
+        for ((pair, even), odd) in columns.chunks_mut(2).zip(evens).zip(odds) {
+            for (column, &sum) in pair.iter_mut().zip([even, odd]) {
                 *column += u32::from(sum);
             }
         }

@@ -223,3 +223,13 @@ fn naive_canny(image: &Image<1>, low: i32, high: i32) -> Vec<u8> {
     }
     edges
 }
+
+#[test]
+fn sums_of_large_bright_images_do_not_overflow() {
+    let (width, height) = (4200, 300);
+    let white = vec![255; width * height];
+    let (mut columns, mut rows) = (vec![0; width], vec![0; height]);
+    projections_into(GrayView::new(&white, width, height).unwrap(), &mut columns, &mut rows).unwrap();
+    assert!(columns.iter().all(|&sum| sum == 255 * height as u32));
+    assert!(rows.iter().all(|&sum| sum == 255 * width as u32));
+}
