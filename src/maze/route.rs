@@ -184,18 +184,25 @@ mod tests {
 
     #[test]
     fn preferences_differ_where_they_should() {
-        // A straight detour beside a short staircase.
-        let mut maze = Maze::open(6, 6).unwrap();
-        maze.set_goals([Cell::new(2, 2)]);
-        maze.set_wall(Cell::new(0, 1), Direction::North, Wall::Present);
-        maze.set_wall(Cell::new(1, 0), Direction::East, Wall::Present);
-        maze.set_wall(Cell::new(0, 0), Direction::East, Wall::Present);
-        let route = |preference| shortest_route(&maze, Unknown::Closed, preference).unwrap();
-        let (short, straight) = (route(Preference::Steps), route(Preference::Turns));
-        assert_eq!(short.steps(), 4);
-        assert!(straight.turns() <= short.turns());
-        let both = route(Preference::StepsAndTurns);
-        assert!(both.steps() + both.turns() <= short.steps() + short.turns());
-        assert!(both.steps() + both.turns() <= straight.steps() + straight.turns());
+        // Three ways to the goal: a staircase, one round the lower corner and past the goal, and one round the upper corner.
+        let mut maze = Maze::filled(7, 7, Wall::Present).unwrap();
+        maze.set_goals([Cell::new(4, 4)]);
+        for way in ["NENENENE", "EEEEENNNNW", "NNNNNNEEEESS"] {
+            let mut cell = maze.start();
+            for letter in way.chars() {
+                let direction =
+                    Direction::ALL.into_iter().find(|side| format!("{side:?}").starts_with(letter)).unwrap();
+                maze.set_wall(cell, direction, Wall::Absent);
+                cell = maze.neighbour(cell, direction).unwrap();
+            }
+            assert!(maze.is_goal(cell));
+        }
+        let route = |preference| {
+            let route = shortest_route(&maze, Unknown::Closed, preference).unwrap();
+            (route.steps(), route.turns())
+        };
+        assert_eq!(route(Preference::Steps), (8, 7));
+        assert_eq!(route(Preference::StepsAndTurns), (10, 3));
+        assert_eq!(route(Preference::Turns), (12, 2));
     }
 }

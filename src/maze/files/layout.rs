@@ -3,6 +3,9 @@
 //! Files are damaged: a line is lost, cut short or put in between. The lines of posts therefore vote on the width, and
 //! what stands in the wrong place is a defect rather than the end of the picture.
 
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+
 use crate::maze::Defect;
 
 /// The lines of a picture: posts and cells by turns, uppermost first.
@@ -54,9 +57,9 @@ pub(super) fn shown(bytes: &[u8]) -> String {
 /// Looks for a picture.
 pub(super) fn find<'a>(lines: &[&'a str]) -> Option<Layout<'a>> {
     let votes: Vec<Frame> = lines.iter().filter_map(|line| vote(line)).collect();
-    let indent = most(&votes.iter().map(|vote| vote.indent))?;
+    let indent = most(votes.iter().map(|vote| vote.indent))?;
     let votes = votes.iter().filter(|vote| vote.indent == indent);
-    let width = most(&votes.clone().map(|vote| vote.width))?;
+    let width = most(votes.clone().map(|vote| vote.width))?;
     let frame = *votes.clone().find(|vote| vote.width == width)?;
     let lines = lines.iter().map(|line| frame.cut(line)).collect();
     let mut finder = Finder { lines, frame, next: 0, found: Vec::new(), defects: Vec::new() };
@@ -83,10 +86,12 @@ fn vote(line: &str) -> Option<Frame> {
 }
 
 /// The value that comes most often, the first of those.
-fn most(values: &(impl Iterator<Item = usize> + Clone)) -> Option<usize> {
-    let count = |value| values.clone().filter(|&other| other == value).count();
-    let counted = values.clone().map(|value| (count(value), value));
-    counted.reduce(|best, other| if other.0 > best.0 { other } else { best }).map(|(_, value)| value)
+fn most(values: impl Iterator<Item = usize>) -> Option<usize> {
+    let mut tallies = BTreeMap::new();
+    for (index, value) in values.enumerate() {
+        tallies.entry(value).or_insert((0_usize, Reverse(index))).0 += 1;
+    }
+    tallies.into_iter().max_by_key(|&(_, tally)| tally).map(|(value, _)| value)
 }
 
 fn is_blank(line: &[u8]) -> bool {

@@ -53,10 +53,18 @@ pub enum MazeFormat {
     Binary,
 }
 
+/// Bytes of a file at most. No text of a maze of 256 x 256 cells is half as long.
+const LONGEST: u64 = 4 << 20;
+
+fn require_length(bytes: u64, file: &str) -> Result<(), FormatError> {
+    if bytes <= LONGEST {
+        return Ok(());
+    }
+    Err(FormatError::new(file, Location::START, format!("{bytes} bytes"), "a file of at most 4 MiB"))
+}
+
 /// Reads a maze file from disk.
 pub fn load(path: impl AsRef<Path>) -> Result<MazeFile, FormatError> {
-    /// No text of a maze of 256 x 256 cells is half as long.
-    const LONGEST: u64 = 4 << 20;
     let path = path.as_ref();
     let name = path.display().to_string();
     let error = |found: String, expected: &str| FormatError::new(&name, Location::START, found, expected);
@@ -68,14 +76,13 @@ pub fn load(path: impl AsRef<Path>) -> Result<MazeFile, FormatError> {
     if !metadata.is_file() {
         return Err(error("something that is no regular file".into(), "a file"));
     }
-    if metadata.len() > LONGEST {
-        return Err(error(format!("{} bytes", metadata.len()), "a file of at most 4 MiB"));
-    }
+    require_length(metadata.len(), &name)?;
     parse(&std::fs::read(path).map_err(unreadable)?, &name)
 }
 
 /// Reads a maze of any format. `file` is the name that messages call it by.
 pub fn parse(bytes: &[u8], file: &str) -> Result<MazeFile, FormatError> {
+    require_length(bytes.len() as u64, file)?;
     let mut read = if binary::is_binary(bytes) { binary::read(bytes) } else { read_text(bytes, file)? };
     read.defects.extend(defects(&read.maze));
     read.defects.truncate(MazeFile::MAX_DEFECTS);
@@ -86,9 +93,10 @@ fn read_text(bytes: &[u8], file: &str) -> Result<MazeFile, FormatError> {
     if bytes.contains(&0) {
         return Err(FormatError::new(file, Location::START, "bytes that are no text", "a maze"));
     }
-    // What is no UTF-8 stands in remarks: a maze needs none but ASCII characters.
+    // A maze needs none but ASCII characters. Any other one takes a column, as on the screen, whatever its bytes.
     let text = String::from_utf8_lossy(bytes);
     let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n").replace('\r', "\n");
+    let text = text.replace(|character: char| !character.is_ascii(), "?");
     let lines: Vec<&str> = text.split('\n').collect();
     if let Some(layout) = layout::find(&lines) {
         picture::read(layout, file)

@@ -8,8 +8,8 @@
 //! o---o---o   +---+---+
 //! ```
 //!
-//! Text before and after the picture, and to the right of it, is ignored. Where a line of it is missing, its walls are
-//! unknown.
+//! Text before and after the picture, and to the right of it after a blank, is ignored. Where a line of it is missing, its
+//! walls are unknown.
 
 use super::layout::{Layout, Line, is_post, shown};
 use super::{MazeFile, MazeFormat, size_error};
@@ -41,6 +41,7 @@ pub(super) fn read(layout: Layout<'_>, file: &str) -> Result<MazeFile, FormatErr
     let mut picture = Picture { lines, width, defects };
     let (mut starts, mut goals) = (Vec::new(), Vec::new());
     for index in 0..picture.lines.len() {
+        picture.note_doubts(index);
         if index % 2 == 0 {
             picture.posts(index, &mut maze);
         } else {
@@ -77,6 +78,19 @@ impl Picture<'_> {
 
     fn note(&mut self, index: usize, message: String) {
         self.defects.push(Defect::at(self.lines[index].number, message));
+    }
+
+    /// Names what may be seen otherwise: blanks that are tabs, and walls beyond the last column.
+    fn note_doubts(&mut self, index: usize) {
+        let end = 4 * self.width + 1;
+        let Some(text) = self.lines[index].text else { return };
+        if let Some(column) = text.iter().take(end).position(|&byte| byte == b'\t') {
+            self.note(index, format!("a tab in column {}; taken as one blank", column + 1));
+        }
+        if text.get(end).is_some_and(|byte| !byte.is_ascii_whitespace()) {
+            let rest = &text[end..text.len().min(end + 40)];
+            self.note(index, format!("{} to the right of the maze; ignored", shown(rest)));
+        }
     }
 
     /// Enters the walls between the posts of a line.

@@ -328,3 +328,30 @@ fn what_is_no_maze_is_an_error() {
     assert_eq!(error, "wide:1:1: found a maze of 257 by 1 cells; expected 1 to 256 cells either way");
     assert!(load("/nowhere/at/all.maze").unwrap_err().to_string().contains("no such file"));
 }
+
+#[test]
+fn what_may_be_seen_otherwise_is_named() {
+    let named = |text: &str, message: &str| {
+        let file = read(text);
+        assert!(messages(&file).iter().any(|found| found.contains(message)), "{:?}", messages(&file));
+        file
+    };
+    named("+---+---+\n| S\t  G |\n+---+---+\n", "line 2: a tab in column 4");
+    let wide = "+---+---+---+\n| S   G     |\n+---+---+---+\n";
+    let cut = named(
+        &format!("{wide}| |\n{}", "+---+---+\n|       |\n".repeat(4)),
+        "\"---+\" to the right of the maze",
+    );
+    assert_eq!(cut.maze.width(), 2);
+    // Whatever its bytes, a character takes a column.
+    let odd = named("+---+---+\n| é   G |\n+   +---+\n| S     |\n+---+---+\n", "has no meaning");
+    assert_eq!(odd.maze.goals().collect::<Vec<_>>(), [Cell::new(1, 1)]);
+}
+
+#[test]
+fn long_texts_are_read_or_refused_at_once() {
+    let posts = "+---+\n|   |\n".repeat(150_000);
+    assert!(parse(posts.as_bytes(), "posts").unwrap_err().to_string().contains("1 by 150000 cells"));
+    let long = vec![b' '; (LONGEST + 1) as usize];
+    assert!(parse(&long, "long").unwrap_err().to_string().contains("at most 4 MiB"));
+}

@@ -138,14 +138,15 @@ impl LeftHand {
                 })?;
                 heading = heading.turned_right((4 - quarters) as usize % 4);
             }
-            match &mut way {
+            let stalled = match &mut way {
                 Way::Controlled(controller) => self.drive(robot, controller, &mut watch)?,
                 &mut Way::OpenLoop { length, speed } => {
                     robot.straight(length, speed)?;
                     self.await_manoeuvre(robot, |_| watch())?;
+                    robot.is_stalled()?
                 }
-            }
-            if robot.is_stalled()? {
+            };
+            if stalled {
                 robot.set_speed(Twist::STOP)?;
                 return Ok(LeftHandOutcome::Stalled);
             }
@@ -169,19 +170,20 @@ impl LeftHand {
         Ok(())
     }
 
+    /// Drives into the next cell. Returns whether something holds the robot.
     fn drive<R: Clock + Drive + DistanceSensors + ?Sized>(
         &self,
         robot: &mut R,
         controller: &mut CellDrive,
         watch: &mut impl FnMut(),
-    ) -> Result<()> {
+    ) -> Result<bool> {
         let period = self.parameters.period;
         loop {
             let pose: Pose = robot.pose()?;
             let readings = read(robot)?;
             let Some(speed) = controller.step(pose, readings, period)? else { break };
             if robot.is_stalled()? {
-                break;
+                return Ok(true);
             }
             robot.set_speed(speed)?;
             robot.wait(period)?;
@@ -197,6 +199,6 @@ impl LeftHand {
             watch();
         }
         controller.begin();
-        Ok(())
+        Ok(false)
     }
 }

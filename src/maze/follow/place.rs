@@ -2,6 +2,9 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::geometry::{Pose, angle_difference, math};
 
+/// Standard deviations by which a measurement may be off and still be one.
+const SIGMAS: f64 = 3.5;
+
 /// How much farther a robot rolls than odometry says, as a share of the way: tyres are worn or new.
 #[derive(Debug, Clone, Copy)]
 struct Stretch {
@@ -102,9 +105,13 @@ impl PlaceInCell {
         self.stretch.along = common * (1.0 - gains[0]);
     }
 
+    /// Whether the robot can be so much farther along than it takes itself to be.
+    pub(super) fn believes_along(&self, farther: f64, error: f64) -> bool {
+        farther * farther < SIGMAS * SIGMAS * (self.spread[0] + error * error)
+    }
+
     /// Whether a measurement of how far off the middle the robot is can be one.
     pub(super) fn believes(&self, off: f64, error: f64) -> bool {
-        const SIGMAS: f64 = 3.5;
         let innovation = off - self.off;
         innovation * innovation < SIGMAS * SIGMAS * (self.spread[1] + error * error)
     }

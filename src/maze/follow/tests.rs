@@ -239,3 +239,35 @@ fn half_a_turn_is_followed_step_by_step() {
     assert!((place.along + 0.02).abs() < 1e-12 && (place.off + 0.01).abs() < 1e-12);
     assert!((place.turn - (3.2 - std::f64::consts::PI)).abs() < 1e-12);
 }
+
+/// A corridor of 16 cells to an opening on the left, then of 4 more.
+fn long_corridor() -> Maze {
+    let mut maze = Maze::filled(21, 2, Wall::Present).unwrap();
+    maze.set_goals([]);
+    for x in 0..20 {
+        maze.set_wall(Cell::new(x, 0), Direction::East, Wall::Absent);
+    }
+    maze.set_wall(Cell::new(16, 0), Direction::North, Wall::Absent);
+    maze.set_start(Cell::default(), Direction::East);
+    maze
+}
+
+#[test]
+fn after_a_long_corridor_the_opening_is_found() {
+    for (spec, scale) in [(RobotSpec::s4(), Scale::DOUBLED), (mouse(), Scale::MICROMOUSE)] {
+        let drive = CellDriveParameters::pid(&rig(&spec), scale, 0.5 * scale.cell);
+        let start = scale.pose(Cell::default(), Direction::East);
+        // A robot in a hundred has wheels so odd that it cannot know.
+        for seed in 0..20 {
+            let maze = long_corridor();
+            let scene = Scene::with_robot(scale.world(&maze), spec.clone(), start);
+            let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, seed)).unwrap();
+            let rule = LeftHand::new(LeftHandParameters::controlled(drive)).unwrap();
+            let mut robot = simulation.robot(0).unwrap();
+            rule.run(&mut robot, maze.heading(), |at, _| at == (16, 1), || ()).unwrap();
+            let end = simulation.truth().robot(0).unwrap();
+            let cell = scale.cell_of(&maze, end.pose.position());
+            assert_eq!((cell, end.contacts), (Some(Cell::new(16, 1)), 0), "{} {seed}", spec.name);
+        }
+    }
+}
