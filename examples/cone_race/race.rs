@@ -179,6 +179,7 @@ fn limits(spec: &RaceCarSpec) -> CarLimits {
         drive: spec.drive,
         brake: spec.brake,
         top_speed: spec.top_speed,
+        turning: f64::INFINITY,
     }
 }
 

@@ -4,7 +4,7 @@
 use super::cone::Cone;
 use super::corridor::Corridor;
 use super::error::PlanError;
-use super::rows::{RowParameters, legs, passes};
+use super::rows::{RowParameters, Rows, passes, rows};
 use super::spline::ClosedSpline;
 use crate::geometry::{Point, Pose, Vector, direction, math};
 
@@ -36,7 +36,7 @@ impl Default for LaneParameters {
         Self {
             piece: 2.5,
             pieces: 7,
-            curvature: 0.28,
+            curvature: 0.38,
             beam: 40,
             clearance: 1.15,
             half_width: [1.4, 2.8],
@@ -62,7 +62,7 @@ pub struct Lane {
 /// bending and steering.
 const TOUCH: f64 = 6.0;
 const WRONG_SIDE: f64 = 2.0;
-const THROUGH: f64 = 5.0;
+const THROUGH: f64 = 10.0;
 const KEEP: f64 = 0.35;
 const BEND: f64 = 4.0;
 const STEER: f64 = 16.0;
@@ -73,7 +73,7 @@ const SPEAKS: f64 = 6.5;
 /// Metres along the lane within which a cone is next to a station.
 const NEXT_TO: f64 = 1.6;
 /// Different curvatures to one side.
-const BENDS: i32 = 4;
+const BENDS: i32 = 5;
 
 /// A piece of a way.
 #[derive(Debug, Clone, Copy)]
@@ -116,20 +116,18 @@ pub fn lane(
     let mut stations = behind.to_vec();
     stations.push(car);
     let p = parameters;
-    let rows = legs(cones, &stations, &RowParameters { reach: p.spacing, half_width, loose: p.loose });
+    let narrowest = p.half_width[0];
+    let along_rows = RowParameters { reach: p.spacing, half_width, narrowest, loose: p.loose };
+    let rows = rows(cones, &stations, &along_rows);
     let way = search(cones, &rows, car, before, p)?;
     stations.extend(way);
-    let found = settled(cones, &stations, half_width, parameters);
+    let sides = rows.sides(cones.len());
+    let found = settled((cones, &sides), &stations, half_width, parameters);
     found.edges.iter().any(|edge| !edge.is_empty()).then_some(found)
 }
 
-fn search(
-    cones: &[Cone],
-    rows: &[[Point; 2]],
-    car: Pose,
-    before: &Lane,
-    p: &LaneParameters,
-) -> Option<Vec<Pose>> {
+fn search(cones: &[Cone], rows: &Rows, car: Pose, before: &Lane, p: &LaneParameters) -> Option<Vec<Pose>> {
+    let (legs, sides) = (rows.legs(cones), rows.sides(cones.len()));
     let start = Piece { middle: car, end: car, bend: 0, cost: 0.0, parent: None };
     let mut pieces = vec![start];
     let mut beam = vec![0];
@@ -140,10 +138,11 @@ fn search(
             for turn in turns {
                 let bend = pieces[parent].bend + turn;
                 if bend.abs() <= BENDS {
-                    let mut piece = extended(cones, &pieces, parent, (bend, turn), before.half_width, p);
+                    let mut piece =
+                        extended((cones, &sides), &pieces, parent, (bend, turn), before.half_width, p);
                     piece.cost += KEEP * before.away(piece.middle.position());
                     let way = [pieces[parent].end.position(), piece.end.position()];
-                    let through = rows.iter().filter(|leg| passes(way, **leg)).count();
+                    let through = legs.iter().filter(|leg| passes(way, **leg)).count();
                     piece.cost += THROUGH * through as f64;
                     next.push(piece);
                 }
@@ -175,7 +174,7 @@ fn search(
 
 /// A way with one more piece.
 fn extended(
-    cones: &[Cone],
+    (cones, sides): (&[Cone], &[i8]),
     pieces: &[Piece],
     parent: usize,
     (bend, turn): (i32, i32),
@@ -192,7 +191,7 @@ fn extended(
     let ahead = direction(middle.heading);
     let steer = p.curvature * f64::from(turn) / f64::from(BENDS);
     let mut cost = pieces[parent].cost + BEND * curvature * curvature + STEER * steer * steer;
-    for cone in cones {
+    for (cone, side) in cones.iter().zip(sides) {
         let away = cone.position - middle.position();
         let along = away.dot(&ahead);
         if along.abs() > 0.5 * p.piece {
@@ -200,7 +199,7 @@ fn extended(
         }
         let left = crate::geometry::cross(ahead, away);
         let aside = left.abs();
-        let wrong = f64::from(cone.colour.side()) * left < 0.0;
+        let wrong = f64::from(cone.colour.side()) * left < 0.0 || f64::from(*side) * left < 0.0;
         let close = ((p.clearance - aside) / 0.4).max(0.0);
         let off = (aside - half_width) / if aside > half_width { WIDER * p.loose } else { p.loose };
         cost += TOUCH * (close * close).min(1.0);
@@ -223,12 +222,12 @@ struct EdgeCone {
 }
 
 /// The middle between the edges along some stations.
-fn settled(cones: &[Cone], stations: &[Pose], half_width: f64, p: &LaneParameters) -> Lane {
+fn settled((cones, sides): (&[Cone], &[i8]), stations: &[Pose], half_width: f64, p: &LaneParameters) -> Lane {
     let mut along = vec![0.0];
     for pair in stations.windows(2) {
         along.push(along[along.len() - 1] + (pair[1].position() - pair[0].position()).norm());
     }
-    let edges = [1.0, -1.0].map(|side| edge(cones, stations, &along, (half_width, p.loose), side));
+    let edges = [1.0, -1.0].map(|side| edge((cones, sides), stations, &along, (half_width, p.loose), side));
     let mut offsets: Vec<f64> = along.iter().map(|at| offset(&edges, *at, half_width)).collect();
     for _ in 0..3 {
         let old = offsets.clone();
@@ -247,23 +246,21 @@ fn settled(cones: &[Cone], stations: &[Pose], half_width: f64, p: &LaneParameter
         .map(|(pose, offset)| pose.position() + normal(pose) * *offset)
         .collect();
     let half_width = width(&edges, half_width, p);
-    Lane {
-        points: even(&points),
-        edges: edges.map(|edge| edge.iter().map(|cone| cone.index).collect()),
-        half_width,
-    }
+    let mut points = even(&points);
+    keep_clear(&mut points, cones, p.clearance + BEYOND_TOUCH);
+    Lane { points, edges: edges.map(|edge| edge.iter().map(|cone| cone.index).collect()), half_width }
 }
 
 /// The cones of a side, in their order along the lane: 1 for the left one.
 fn edge(
-    cones: &[Cone],
+    (cones, sides): (&[Cone], &[i8]),
     stations: &[Pose],
     along: &[f64],
     (half_width, loose): (f64, f64),
     side: f64,
 ) -> Vec<EdgeCone> {
     let mut found: Vec<EdgeCone> = Vec::new();
-    for (index, cone) in cones.iter().enumerate() {
+    for (index, (cone, known)) in cones.iter().zip(sides).enumerate() {
         let nearest = (0..stations.len()).min_by(|&a, &b| {
             let squared = |i: usize| (stations[i].position() - cone.position).norm_squared();
             squared(a).total_cmp(&squared(b))
@@ -272,7 +269,13 @@ fn edge(
         let local = stations[nearest].to_local(cone.position);
         let aside = side * local.y;
         let wrong = f64::from(cone.colour.side()) * side < 0.0;
-        if local.x.abs() < NEXT_TO && (aside - half_width).abs() < loose && !wrong {
+        // A cone of a row is at that row's edge wherever the lane is wider or narrower than usual.
+        let at_edge = if *known == 0 {
+            (aside - half_width).abs() < loose && !wrong
+        } else {
+            f64::from(*known) * side > 0.0 && (0.0..2.0 * half_width).contains(&aside)
+        };
+        if local.x.abs() < NEXT_TO && at_edge {
             found.push(EdgeCone { along: along[nearest] + local.x, aside, index });
         }
     }
@@ -392,13 +395,39 @@ fn even(chain: &[Point]) -> Vec<Point> {
         }
         left -= length;
     }
-    for _ in 0..3 {
-        let old = points.clone();
+    (0..3).for_each(|_| smooth(&mut points));
+    points
+}
+
+/// Moves points towards the middle of their neighbours, and then as much outwards again, as bends would shrink.
+fn smooth(points: &mut [Point]) {
+    for share in [0.5, -0.52] {
+        let old = points.to_vec();
         for i in 1..old.len().saturating_sub(1) {
-            points[i] = nalgebra::center(&old[i], &nalgebra::center(&old[i - 1], &old[i + 1]));
+            points[i] += (nalgebra::center(&old[i - 1], &old[i + 1]) - old[i]) * share;
         }
     }
-    points
+}
+
+/// Rounds in which points are moved away from cones.
+const PUSHES: usize = 8;
+/// Metres to a cone that are kept beside those at which a car touches it, where the lane is wide enough.
+const BEYOND_TOUCH: f64 = 0.4;
+
+/// Moves points away from cones that are nearer than some metres, where those of the other edge let them.
+fn keep_clear(points: &mut [Point], cones: &[Cone], room: f64) {
+    for _ in 0..PUSHES {
+        for point in points.iter_mut() {
+            let push = |cone: &Cone| {
+                let away = *point - cone.position;
+                let distance = away.norm().max(1e-6);
+                away * (0.5 * (room - distance).max(0.0) / distance)
+            };
+            let pushes: Vector = cones.iter().map(push).sum();
+            *point += pushes;
+        }
+        smooth(points);
+    }
 }
 
 #[cfg(test)]
@@ -431,6 +460,16 @@ mod tests {
         cones.extend([Point::new(8.0, -3.0), Point::new(13.0, -3.4)].map(Cone::unknown));
         let found = known(&cones);
         assert!(found.points.len() > 12 && found.points.iter().all(|p| p.y.abs() < 0.3), "{found:?}");
+    }
+
+    #[test]
+    fn a_cone_that_stands_in_the_lane_is_given_room() {
+        let mut cones = [row(1.8, 0..8), row(-1.8, 0..8)].concat();
+        cones[3].position.y = 1.1;
+        let found = known(&cones);
+        let nearest =
+            found.points.iter().map(|p| (p - cones[3].position).norm()).fold(f64::INFINITY, f64::min);
+        assert!(nearest > 1.3, "{nearest}: {found:?}");
     }
 
     #[test]

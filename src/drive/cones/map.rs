@@ -3,7 +3,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::cone::{Cone, ConeColour};
 use super::registration::{Expected, register, spread};
 use super::sight::Sighting;
-use crate::geometry::{Point, Pose, cross, direction, normalize_angle};
+use crate::geometry::{Point, Pose, Vector, cross, math, normalize_angle};
 
 /// How a map of cones is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -140,16 +140,22 @@ const MOST_VOTES: i16 = 30;
 const MEMORY: u32 = 80;
 /// Metres from the sensor, and radians from straight ahead, within which a cone that is not seen is missed.
 const VIEW: (f64, f64) = (9.0, 0.8);
+/// Metres from the middle of a thing within which it hides what is behind it, about.
+const SHADOW: f64 = 0.3;
 /// Metres that the car goes while a cone is fresh: so far, odometry and sightings are good.
 const FRESH: f64 = 25.0;
 /// Metres from place to place of the trail.
 const STRIDE: f64 = 2.0;
-/// Metres of the way in which the first cones were seen.
+/// Metres of the way in which the first cones were seen, at most.
 const BEGINNING: f64 = 30.0;
 /// Metres of the way in which the last cones were seen.
 const END: f64 = 8.0;
 /// Metres between two cones that are the same one, after a loop was closed.
-const SAME: f64 = 0.6;
+const SAME: f64 = 0.5;
+/// Metres between two cones at least.
+const APART: f64 = 0.35;
+/// Metres between a cone and what was seen of it earlier in the first lap, at most: what has added up since, and less than a lane.
+const EARLIER: f64 = 1.5;
 /// By how much a map may be wrong when it is closed: metres, metres after one metre, radians.
 const WRONG: (f64, f64, f64) = (4.0, 0.02, 0.4);
 
@@ -181,7 +187,20 @@ impl ConeMap {
     /// that.
     pub fn fresh_cones(&self) -> impl Iterator<Item = Cone> + '_ {
         let fresh = self.confirmed().filter(|landmark| self.is_fresh(landmark));
-        fresh.map(|landmark| Cone::new(landmark.position, landmark.colour()))
+        fresh.map(|landmark| Cone::new(landmark.position, self.colour_of(landmark)))
+    }
+
+    /// The colour of a cone, or that of one near it that was passed earlier in the first lap: a circuit that does not cross itself
+    /// has all cones on its inside on one hand wherever it goes by them.
+    fn colour_of(&self, landmark: &Landmark) -> ConeColour {
+        let own = landmark.colour();
+        if own != ConeColour::Unknown {
+            return own;
+        }
+        let away = |other: &&Landmark| (other.position - landmark.position).norm();
+        let earlier = self.confirmed().filter(|other| !self.is_fresh(other) && away(other) < EARLIER);
+        let nearest = earlier.min_by(|a, b| away(a).total_cmp(&away(b)));
+        nearest.map_or(ConeColour::Unknown, Landmark::colour)
     }
 
     /// Whether the first lap is closed to a loop.
@@ -223,7 +242,9 @@ impl ConeMap {
             }
         }
         let matches = self.matches(&seen);
+        let known = self.landmarks.len();
         self.learn(&seen, &matches);
+        self.forget(known, &matches, sightings);
         if !self.closed && self.trail.last().is_none_or(|(_, way)| self.way - way >= STRIDE) {
             self.trail.push((self.pose, self.way));
         }
@@ -244,8 +265,14 @@ impl ConeMap {
         if self.closed {
             return true;
         }
-        let first = |l: &&Landmark| l.first < BEGINNING && !self.is_fresh(l);
-        let last = |l: &&Landmark| self.way - l.last < END && l.first > BEGINNING;
+        if self.confirmed().all(|landmark| self.is_fresh(landmark)) {
+            // A short lap has led back to cones that it went by just now: pose and map are good without.
+            self.closed = true;
+            return true;
+        }
+        let beginning = self.beginning();
+        let first = |l: &&Landmark| l.first < beginning && !self.is_fresh(l);
+        let last = |l: &&Landmark| self.way - l.last < END && l.first > beginning;
         let at = |landmark: &Landmark| landmark.position;
         let onto: Vec<Point> = self.confirmed().filter(first).map(at).collect();
         let points: Vec<Point> = self.confirmed().filter(last).map(at).collect();
@@ -260,8 +287,9 @@ impl ConeMap {
     /// Moves the end of the lap by a motion, its beginning not at all, and what is between in proportion to the way.
     fn bend(&mut self, motion: Pose) {
         self.trail.push((self.pose, self.way));
-        let until = (self.way - END - BEGINNING).max(BEGINNING + STRIDE);
-        let share = |way: f64| ((way - BEGINNING) / (until - BEGINNING)).clamp(0.0, 1.0);
+        let beginning = self.beginning();
+        let until = (self.way - END - beginning).max(beginning + STRIDE);
+        let share = |way: f64| ((way - beginning) / (until - beginning)).clamp(0.0, 1.0);
         let (before, shares): (Vec<Pose>, Vec<f64>) =
             self.trail.iter().map(|(pose, way)| (*pose, share(*way))).unzip();
         let after = spread(&before, &shares, motion);
@@ -280,6 +308,11 @@ impl ConeMap {
         }
     }
 
+    /// Metres of the way in which the first cones were seen.
+    fn beginning(&self) -> f64 {
+        BEGINNING.min(0.5 * self.way)
+    }
+
     /// Makes one cone of those that are too near each other to be two.
     fn merge(&mut self) {
         let mut kept: Vec<Landmark> = Vec::with_capacity(self.landmarks.len());
@@ -293,19 +326,29 @@ impl ConeMap {
         self.landmarks = kept;
     }
 
+    /// The cone of the map that each sighting is, no cone twice: the nearest ones first.
     fn matches(&self, seen: &[&Sighting]) -> Vec<Option<usize>> {
         let gate = self.parameters.gate * self.parameters.gate;
-        let nearest = |point: Point| {
-            let mut best = (gate, None);
-            for (index, landmark) in self.landmarks.iter().enumerate() {
-                let distance = (landmark.position - point).norm_squared();
-                if distance < best.0 && self.is_fresh(landmark) {
-                    best = (distance, Some(index));
+        let mut near: Vec<(f64, usize, usize)> = Vec::new();
+        for (index, sighting) in seen.iter().enumerate() {
+            let place = self.pose.to_world(sighting.position);
+            for (at, landmark) in self.landmarks.iter().enumerate() {
+                let distance = (landmark.position - place).norm_squared();
+                if distance < gate && self.is_fresh(landmark) {
+                    near.push((distance, index, at));
                 }
             }
-            best.1
-        };
-        seen.iter().map(|sighting| nearest(self.pose.to_world(sighting.position))).collect()
+        }
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut found = vec![None; seen.len()];
+        let mut taken = vec![false; self.landmarks.len()];
+        for (_, sighting, landmark) in near {
+            if found[sighting].is_none() && !taken[landmark] {
+                found[sighting] = Some(landmark);
+                taken[landmark] = true;
+            }
+        }
+        found
     }
 
     /// Moves the pose to where sightings and odometry agree best.
@@ -342,46 +385,122 @@ impl ConeMap {
         self.pose.heading = normalize_angle(self.pose.heading + change.z);
     }
 
-    /// Moves, adds and forgets cones.
+    /// Moves and adds cones.
     fn learn(&mut self, seen: &[&Sighting], matches: &[Option<usize>]) {
-        let mut matched = vec![false; self.landmarks.len()];
-        for (sighting, landmark) in seen.iter().zip(matches) {
+        let near = seen.iter().zip(matches).filter(|(s, _)| s.range <= self.parameters.farthest);
+        for (sighting, landmark) in near {
             let place = self.pose.to_world(sighting.position);
             if let Some(index) = *landmark {
-                let landmark = &mut self.landmarks[index];
-                if matched[index] || sighting.range > self.parameters.farthest {
-                    matched[index] = true;
-                    continue;
-                }
-                matched[index] = true;
-                landmark.see(place, sighting.colour, self.way);
-            } else if sighting.range < self.parameters.farthest {
+                self.landmarks[index].see(place, sighting.colour, self.way);
+            } else if !seen.iter().any(|other| is_part(sighting, other)) {
                 self.landmarks.push(Landmark::new(place, sighting.colour, self.way));
-                matched.push(true);
             }
         }
-        self.forget(&matched);
     }
 
-    /// Forgets what should have been seen and was not.
-    fn forget(&mut self, matched: &[bool]) {
-        let ahead = direction(self.pose.heading);
-        let eye = self.pose.position() + ahead * self.parameters.sensor;
+    /// Forgets what should have been seen and was not, of so many cones that were known before. What is new stands at the end.
+    fn forget(&mut self, known: usize, matches: &[Option<usize>], sightings: &[Sighting]) {
+        let mut matched = vec![false; self.landmarks.len()];
+        matches.iter().flatten().for_each(|&landmark| matched[landmark] = true);
+        let eye = self.pose.compose(&Pose::new(self.parameters.sensor, 0.0, 0.0));
         let mut index = 0;
         let (confirmed, closed, way) = (self.parameters.confirmed, self.closed, self.way);
         self.landmarks.retain_mut(|landmark| {
             index += 1;
-            let away = landmark.position - eye;
-            let distance = away.norm();
-            let angle = crate::geometry::math::atan2(cross(ahead, away), ahead.dot(&away));
-            let in_view = distance < VIEW.0 && distance > 1.0 && angle.abs() < VIEW.1;
+            let away = eye.to_local(landmark.position).coords;
+            let in_view = in_view(away) && !sightings.iter().any(|s| hides(s, self.parameters.sensor, away));
             let fresh = closed || way - landmark.last < FRESH;
-            if matched[index - 1] || !fresh || !(in_view || landmark.seen < confirmed) {
+            if index > known || matched[index - 1] || !fresh || !(in_view || landmark.seen < confirmed) {
                 return true;
             }
             landmark.missed += 1;
             // A phantom is seen once; a cone now and then not.
             landmark.missed <= if landmark.seen < confirmed { 3 + landmark.seen } else { 8 }
         });
+    }
+}
+
+/// Whether something new that was seen is a part of another one: no two cones stand so near each other.
+fn is_part(new: &Sighting, other: &Sighting) -> bool {
+    let away = (new.position - other.position).norm();
+    away > 0.0 && away < APART
+}
+
+/// Whether a cone at a place, from the sensor, would be seen.
+fn in_view(place: Vector) -> bool {
+    let distance = place.norm();
+    distance < VIEW.0 && distance > 1.0 && math::atan2(place.y, place.x).abs() < VIEW.1
+}
+
+/// Whether a thing stands before a place, both seen by a sensor, the thing in the frame of the car.
+fn hides(thing: &Sighting, sensor: f64, place: Vector) -> bool {
+    let thing = thing.position.coords - Vector::new(sensor, 0.0);
+    let (distance, along) = (place.norm(), thing.dot(&place) / place.norm());
+    along > 0.0 && along < distance - SHADOW && (cross(place, thing) / distance).abs() < SHADOW
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sighting(x: f64, y: f64) -> Sighting {
+        let position = Point::new(x, y);
+        let range = position.coords.norm();
+        let colour = ConeColour::Unknown;
+        Sighting { position, size: 0.1, confidence: 1.0, range, error: 0.03, colour }
+    }
+
+    /// A map after some looks from one place.
+    fn seen(map: &mut ConeMap, from: Pose, looks: usize, places: &[(f64, f64)]) {
+        let sightings: Vec<Sighting> = places.iter().map(|&(x, y)| sighting(x, y)).collect();
+        (0..looks).for_each(|_| map.update(from, &sightings));
+    }
+
+    #[test]
+    fn two_things_in_one_scan_are_two_cones() {
+        let mut map = ConeMap::new(ConeMapParameters::default());
+        seen(&mut map, Pose::default(), 10, &[(6.0, 1.5), (6.6, 1.5), (6.0, -1.5), (6.0, -1.3)]);
+        // The last one is too near the one before it to be another one.
+        assert_eq!(map.cones().count(), 3);
+    }
+
+    #[test]
+    fn what_is_hidden_is_not_forgotten() {
+        for (hidden, left) in [(true, 2), (false, 1)] {
+            let mut map = ConeMap::new(ConeMapParameters::default());
+            seen(&mut map, Pose::default(), 10, &[(5.0, 1.0), (8.0, 1.9)]);
+            // From there, the second one is behind the first one, or not.
+            let before = if hidden { (5.0, 1.0) } else { (5.0, -1.0) };
+            seen(&mut map, Pose::default(), 20, &[before]);
+            let stays =
+                map.cones().filter(|cone| (cone.position - Point::new(8.0, 1.9)).norm() < 0.1).count();
+            assert_eq!(stays + 1, left, "{hidden}");
+        }
+    }
+
+    #[test]
+    fn cones_that_were_passed_before_tell_their_edge() {
+        let mut map = ConeMap::new(ConeMapParameters::default());
+        seen(&mut map, Pose::default(), 10, &[(6.0, -1.5)]);
+        let place = map.cones().next().unwrap().position;
+        (0..SURE).for_each(|_| map.vote_side([place].into_iter(), -1));
+        // A way around, with nothing in sight, and back by the other end of it, a little wrong.
+        for step in 1..=40 {
+            let angle = 0.157 * f64::from(step);
+            map.update(Pose::new(8.0 * math::sin(angle), 8.0 - 8.0 * math::cos(angle), angle), &[]);
+        }
+        let back = map.pose();
+        seen(&mut map, Pose::new(0.0, 0.0, 0.0), 10, &[(6.4, -1.0)]);
+        assert!(map.way > FRESH, "{back:?}");
+        let found: Vec<Cone> = map.fresh_cones().collect();
+        assert!(found.len() == 1 && found[0].colour == ConeColour::Yellow, "{found:?}");
+        assert!(!map.is_closed());
+    }
+
+    #[test]
+    fn a_short_lap_closes_of_itself() {
+        let mut map = ConeMap::new(ConeMapParameters::default());
+        seen(&mut map, Pose::default(), 10, &[(6.0, 1.5), (6.0, -1.5)]);
+        assert!(map.close() && map.is_closed() && map.cones().count() == 2);
     }
 }

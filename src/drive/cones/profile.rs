@@ -17,12 +17,14 @@ pub struct CarLimits {
     pub brake: f64,
     /// Metres per second that are never exceeded.
     pub top_speed: f64,
+    /// How fast the curvature of its way changes at most, in 1/m each second: as fast as the steering turns. Infinity for no limit.
+    pub turning: f64,
 }
 
 impl CarLimits {
     /// A car whose tyres hold as well in all directions: those of a friction circle.
     pub const fn circle(grip: f64, drive: f64, brake: f64, top_speed: f64) -> Self {
-        Self { grip, turned: 0.0, traction: grip, drive, brake, top_speed }
+        Self { grip, turned: 0.0, traction: grip, drive, brake, top_speed, turning: f64::INFINITY }
     }
 
     fn check(&self) -> Result<(), PlanError> {
@@ -33,6 +35,13 @@ impl CarLimits {
                 name: "grip lost by turned wheels",
                 value: self.turned,
                 expected: "0 to 1",
+            });
+        }
+        if self.turning.is_nan() || self.turning <= 0.0 {
+            return Err(PlanError::Parameter {
+                name: "change of curvature",
+                value: self.turning,
+                expected: "a positive number",
             });
         }
         positive("drive", self.drive)?;
@@ -123,10 +132,18 @@ impl SpeedProfile {
         if let Some(index) = lengths_used.iter().position(|&length| !(length > 1e-9 && length.is_finite())) {
             return Err(PlanError::Degenerate { index });
         }
-        let speed = |curvature: &f64| {
-            (limits.across(*curvature) / curvature.abs().max(1e-9)).sqrt().min(limits.top_speed)
+        let speed = |i: usize| {
+            let around = if closed {
+                [(i + n - 1) % n, (i + 1) % n]
+            } else {
+                [i.saturating_sub(1), (i + 1).min(n - 1)]
+            };
+            let change = (curvatures[around[1]] - curvatures[around[0]]).abs();
+            let turns = limits.turning * (lengths[around[0]] + lengths[i]) / change.max(1e-9);
+            let holds = (limits.across(curvatures[i]) / curvatures[i].abs().max(1e-9)).sqrt();
+            holds.min(turns).min(limits.top_speed)
         };
-        let speeds = curvatures.iter().map(speed).collect();
+        let speeds = (0..n).map(speed).collect();
         let mut profile = Self { speeds, curvatures, lengths, lap_time: 0.0 };
         profile.limit(limits, closed);
         Ok(profile)
@@ -225,6 +242,22 @@ mod tests {
         let reached = profile.speeds.iter().copied().fold(0.0, f64::max);
         assert!((reached - top).abs() < 0.2 && profile.speeds[0] == 0.0 && profile.speeds[150] == 0.0);
         assert!((profile.lap_time - (top / 6.0 + top / 11.0)).abs() < 0.1);
+    }
+
+    #[test]
+    fn the_steering_keeps_up_with_the_bends() {
+        // A straight way that becomes a circle at once.
+        let mut points: Vec<Point> = (0..40).map(|i| Point::new(0.5 * f64::from(i), 0.0)).collect();
+        let circle = (0..30).map(|i| direction(0.05 * f64::from(i) - TAU / 4.0) * 10.0);
+        points.extend(circle.map(|arm| Point::new(20.0, 10.0) + arm));
+        let limits = CarLimits { turning: 0.5, ..LIMITS };
+        let [free, slow] =
+            [LIMITS, limits].map(|limits| SpeedProfile::open(&points, &limits, 20.0, 20.0).unwrap());
+        // The curvature becomes 0.1 within a metre.
+        assert!(slow.speeds[39] < 5.5 && free.speeds[39] > 10.0, "{} {}", slow.speeds[39], free.speeds[39]);
+        assert!((slow.speeds[65] / free.speeds[65] - 1.0).abs() < 0.02);
+        let error = SpeedProfile::closed(&points, &CarLimits { turning: f64::NAN, ..LIMITS }).unwrap_err();
+        assert_eq!(error.to_string(), "change of curvature is NaN; expected a positive number");
     }
 
     #[test]

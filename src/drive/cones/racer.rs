@@ -47,8 +47,10 @@ impl Default for RacerParameters {
                 drive: 8.0,
                 brake: 10.0,
                 top_speed: 30.0,
+                turning: 1.2,
             },
-            first_lap: CarLimits::circle(5.0, 3.0, 5.0, 6.0),
+            // What is seen late is driven slowly: tight bends, in which a car answers late as well.
+            first_lap: CarLimits { turned: 1.0, ..CarLimits::circle(5.0, 3.0, 5.0, 6.0) },
             outline: CarOutline { half_width: 0.7, nose: 2.15, ahead: 0.9, room: 0.5 },
             centre_line: CentreLineParameters::default(),
             map: ConeMapParameters::default(),
@@ -86,6 +88,10 @@ pub struct Racer {
     laps: usize,
     /// Metres by odometry since the start line was crossed.
     since_line: f64,
+    /// Where the line is: the car's pose as it crossed it for the first time.
+    line: Option<Pose>,
+    /// Whether it was in front of the line since it counted a lap.
+    in_front: bool,
     last: Option<Pose>,
     /// Where the car is by odometry and by how its tyres slip.
     reckoned: Pose,
@@ -103,16 +109,18 @@ pub struct Racer {
 
 /// Metres around the car within which cones are planned with in the first lap.
 const NEAR: f64 = 24.0;
-/// Metres in front of where it stands at first, where the line lies at which the racer counts laps.
+/// Metres of the way from where it stands at first to the line at which the racer counts laps.
 const LINE: f64 = 6.0;
 /// Metres behind the line where it has just been crossed.
 const BEHIND: f64 = 25.0;
+/// Metres before the line at which it is in front of it for certain.
+const BEFORE: f64 = 3.0;
 /// Places behind the car that are taken for the lane.
 const BEHIND_POSES: usize = 4;
 /// Metres within which the lane tells on which side of it cones are: what is farther off changes from look to look.
-const VOTES: f64 = 8.0;
+const VOTES: f64 = 5.0;
 /// Metres that a lap takes at least.
-const SHORTEST: f64 = 40.0;
+const SHORTEST: f64 = 12.0;
 /// Metres from the line within which another car is in the way, metres ahead at which it begins to matter, and metres, from the
 /// middle of a car to the end of another one, that are kept.
 const OTHERS: (f64, f64, f64) = (1.5, 24.0, 4.5);
@@ -128,6 +136,8 @@ impl Racer {
             phase: RacePhase::Mapping,
             laps: 0,
             since_line: 0.0,
+            line: None,
+            in_front: false,
             last: None,
             reckoned: Pose::default(),
             tracker: None,
@@ -200,6 +210,9 @@ impl Racer {
     fn command(&mut self, speed: Twist) -> Twist {
         match self.phase {
             RacePhase::Finished => {
+                if self.tracker.as_ref().is_some_and(|tracker| !tracker.is_closed()) {
+                    self.look_ahead();
+                }
                 let command = self.follow(speed);
                 // Straight on would lead off the track: it brakes along the line.
                 let slower = (speed.linear - 0.3).min(command.linear).max(0.0);
@@ -247,16 +260,28 @@ impl Racer {
 
     /// Counts laps at the line, and ends the race.
     fn count(&mut self) {
+        let pose = self.map.pose();
+        let Some(line) = self.line else {
+            self.line = (self.since_line >= LINE).then_some(pose);
+            return;
+        };
         // A line that was crossed lately is not crossed again.
-        if self.since_line < SHORTEST + 2.0 * self.map.tolerance() || !self.is_behind_line() {
+        let ahead = pose.forward().dot(&line.forward());
+        self.in_front |= line.to_local(pose.position()).x < -BEFORE || ahead < 0.0;
+        if !self.in_front || self.since_line < SHORTEST || !self.is_behind(line) {
             return;
         }
+        if !self.map.is_closed() {
+            // What closes the map moves it: the lane lies elsewhere then.
+            self.lane.points.clear();
+        }
         // Without a loop, it has driven around once all the same.
-        let around = self.map.close() || self.map.pose().x > LINE + 0.6 * BEHIND;
-        if !(around && self.is_behind_line()) {
+        let around = self.map.close() || line.to_local(pose.position()).x > 0.6 * BEHIND;
+        if !(around && self.is_behind(line)) {
             return;
         }
         self.since_line = 0.0;
+        self.in_front = false;
         self.laps += 1;
         self.plan_again = true;
         if self.laps >= self.parameters.laps {
@@ -264,11 +289,12 @@ impl Racer {
         }
     }
 
-    /// Whether the car has crossed the line, which lies across the start's heading, the x axis of the map, some metres ago.
-    fn is_behind_line(&self) -> bool {
-        let pose = self.map.pose();
-        let wrong = self.map.tolerance();
-        (LINE..LINE + BEHIND + wrong).contains(&pose.x) && pose.y.abs() < wrong && pose.forward().x > 0.3
+    /// Whether the car has crossed the line some metres ago.
+    fn is_behind(&self, line: Pose) -> bool {
+        let (pose, wrong) = (self.map.pose(), self.map.tolerance());
+        let place = line.to_local(pose.position());
+        let ahead = pose.forward().dot(&line.forward());
+        (0.0..BEHIND + wrong).contains(&place.x) && place.y.abs() < wrong && ahead > 0.3
     }
 
     fn follow(&mut self, speed: Twist) -> Twist {
@@ -292,6 +318,11 @@ impl Racer {
             }
         }
         self.patience = self.patience.saturating_sub(1);
+        self.look_ahead();
+    }
+
+    /// Plans as far as is seen.
+    fn look_ahead(&mut self) {
         let pose = self.map.pose();
         let near: Vec<Cone> = self
             .map

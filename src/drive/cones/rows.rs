@@ -1,5 +1,9 @@
 //! The rows of cones that a lane lies between, followed from cone to cone from where the car is: a way that passes through one of
 //! them leaves the track.
+//!
+//! Both are followed together, as it takes both to know either one: from a pair of a left and a right cone to the next pair, of
+//! which one cone is new. So a row can turn sharply around one cone where the other one goes around it, and goes over to the other
+//! edge nowhere.
 
 use super::cone::Cone;
 use crate::geometry::{Point, Pose, Vector, cross, math};
@@ -7,178 +11,330 @@ use crate::geometry::{Point, Pose, Vector, cross, math};
 /// How rows are followed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RowParameters {
-    /// Metres from cone to cone at most.
+    /// Metres from cone to cone at most, where one is missing.
     pub(super) reach: f64,
     /// Metres from the middle of the lane to its edge, about.
     pub(super) half_width: f64,
+    /// The least that this may be.
+    pub(super) narrowest: f64,
     /// Metres by which a cone of an edge may stand off it.
     pub(super) loose: f64,
 }
 
-/// Rows that are followed at a time.
-const BEAM: usize = 10;
-/// Cones of a row at most.
-const LONGEST: usize = 12;
+/// Pairs that are followed at a time.
+const BEAM: usize = 16;
+/// Cones of both rows at most.
+const LONGEST: usize = 24;
 /// Cones beside the car with which a row may begin.
 const SEEDS: usize = 3;
+/// Cones that may come next, the nearest ones.
+const NEXT: usize = 10;
 /// Metres ahead of the car, or behind a place where it was, at which a cone is beside it.
 const BESIDE: f64 = 2.0;
 /// Metres between two cones of a row at least.
-const NEAREST: f64 = 0.7;
-/// Radians by which a row turns at most at one cone.
-const SHARPEST: f64 = 1.35;
-/// What a radian of turn costs, squared, a radian by which turns differ, a metre from cone to cone, and the known edge being the
-/// other one. One more cone is worth 1, and none is added that costs more: from one edge to the other, a row would have to turn to
-/// and fro.
-const TURN: f64 = 0.5;
-const CHANGE: f64 = 1.2;
+const NEAREST: f64 = 0.3;
+/// Radians by which a row turns at most at one cone, and by which its leg is aslant to the lane at most.
+const SHARPEST: f64 = 1.9;
+const ASLANT: f64 = 1.2;
+/// How much farther apart than usual the cones of a pair are at most: where they are farther, one row is missing.
+const FARTHER: f64 = 1.7;
+/// What it costs that a leg is aslant to the lane, for a radian squared, that it is long, for a metre, that a cone is missing on it,
+/// that it turns otherwise than the last one, for a radian squared, that the known edge of a cone is the other one, that the other
+/// row is missing, that a pair is narrower or wider than usual, in the square of its share, and that a cone stands between the
+/// rows. One more cone is worth 1, and each of a row less than the one before by a share: of what is farther off, less is seen.
+const SLANT: f64 = 0.5;
 const FAR: f64 = 0.07;
+const MISSING: f64 = 0.5;
+const CHANGE: f64 = 0.3;
 const OTHER_EDGE: f64 = 2.5;
+const ALONE: f64 = 0.3;
+const WIDTH: f64 = 1.0;
+const BETWEEN: f64 = 1.5;
+const LESS: f64 = 0.85;
+/// What a cone may cost that is followed all the same.
+const DEAREST: f64 = 2.4;
 
-/// A cone of a row, and how the row got there.
+/// The end of a row.
 #[derive(Debug, Clone, Copy)]
-struct Step {
-    cone: usize,
+struct End {
+    /// `None` where a row begins without a cone.
+    cone: Option<usize>,
+    place: Point,
     heading: Vector,
     turn: f64,
+    /// What the next cone is worth.
+    share: f64,
+}
+
+/// A left and a right row, by their ends, and how they got there.
+#[derive(Debug, Clone, Copy)]
+struct Pair {
+    ends: [End; 2],
     worth: f64,
     parent: Option<usize>,
 }
 
-/// A row: its cones, and what they are worth together.
-#[derive(Debug, Clone, Default)]
-struct Row {
-    cones: Vec<usize>,
-    worth: f64,
+/// The rows of a lane.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Rows {
+    /// The left and the right one: their cones, by their indices, in their order along the lane.
+    pub(super) edges: [Vec<usize>; 2],
 }
 
-/// The legs of the rows on the left and on the right of a lane, from cone to cone.
+impl Rows {
+    /// The legs of both rows, from cone to cone.
+    pub(super) fn legs(&self, cones: &[Cone]) -> Vec<[Point; 2]> {
+        let leg = |pair: &[usize]| [cones[pair[0]].position, cones[pair[1]].position];
+        self.edges.iter().flat_map(|edge| edge.windows(2).map(leg)).collect()
+    }
+
+    /// On which side of the lane each of so many cones is, 1 for left, 0 for those of no row.
+    pub(super) fn sides(&self, cones: usize) -> Vec<i8> {
+        let mut sides = vec![0; cones];
+        for (edge, side) in self.edges.iter().zip([1, -1]) {
+            edge.iter().for_each(|&cone| sides[cone] = side);
+        }
+        sides
+    }
+}
+
+/// The rows on the left and on the right of a lane.
 ///
-/// `places` is where the car was and is, oldest first. A row ends where no cone goes on with it. No cone belongs to both: of the
-/// ways to share them out, that with the worthier rows is taken. Takes O(n) for n cones.
-pub(super) fn legs(cones: &[Cone], places: &[Pose], p: &RowParameters) -> Vec<[Point; 2]> {
-    let mut taken = [vec![false; cones.len()], vec![false; cones.len()]];
-    let follow = |side: usize, taken: &[bool]| row(cones, places, [1.0, -1.0][side], taken, p);
-    let mut rows = [0, 1].map(|side| follow(side, &taken[side]));
-    while let Some(at) = parting(&rows) {
-        // Either row keeps what it has from there on, and the other one is followed again without that.
-        let again = [0, 1].map(|keeper| {
-            let other = 1 - keeper;
-            let mut without = taken[other].clone();
-            rows[keeper].cones[at[keeper]..].iter().for_each(|&cone| without[cone] = true);
-            (follow(other, &without), without)
-        });
-        let worth = [0, 1].map(|keeper| rows[keeper].worth + again[keeper].0.worth);
-        let keeper = usize::from(worth[1] > worth[0]);
-        let [left_keeps, right_keeps] = again;
-        let (row, without) = if keeper == 0 { left_keeps } else { right_keeps };
-        (rows[1 - keeper], taken[1 - keeper]) = (row, without);
-    }
-    let points = |row: &Row| -> Vec<[Point; 2]> {
-        row.cones.windows(2).map(|pair| [cones[pair[0]].position, cones[pair[1]].position]).collect()
-    };
-    rows.iter().flat_map(points).collect()
-}
-
-/// The places in both rows of the first cone of the left one that the right one has as well.
-fn parting(rows: &[Row; 2]) -> Option<[usize; 2]> {
-    rows[0].cones.iter().enumerate().find_map(|(at, cone)| {
-        let other = rows[1].cones.iter().position(|other| other == cone)?;
-        Some([at, other])
-    })
-}
-
-/// The row on a side, 1 for the left one, without the cones that are taken.
-fn row(cones: &[Cone], places: &[Pose], side: f64, taken: &[bool], p: &RowParameters) -> Row {
-    let mut steps = seeds(cones, places, side, p);
-    steps.retain(|step| !taken[step.cone]);
-    let mut beam: Vec<usize> = (0..steps.len()).collect();
+/// `places` is where the car was and is, oldest first. A row ends where no cone goes on with it. Takes O(n²) for n cones.
+pub(super) fn rows(cones: &[Cone], places: &[Pose], p: &RowParameters) -> Rows {
+    let Some(car) = places.last() else { return Rows::default() };
+    let mut search = Search { cones, nearest: nearest(cones, p.reach), p, pairs: Vec::new() };
+    search.begin(places, *car);
+    let mut beam: Vec<usize> = (0..search.pairs.len()).collect();
     for _ in 0..LONGEST {
-        let mut next: Vec<Step> = Vec::new();
-        for &parent in &beam {
-            let onwards = (0..cones.len()).filter(|&cone| !taken[cone] && !holds(&steps, parent, cone));
-            next.extend(onwards.filter_map(|cone| onward(cones, &steps, parent, (cone, side), p)));
-        }
+        let mut next: Vec<Pair> = beam.iter().flat_map(|&parent| search.onward(parent)).collect();
         next.sort_by(|a, b| b.worth.total_cmp(&a.worth));
-        next.truncate(BEAM);
-        beam = (steps.len()..steps.len() + next.len()).collect();
-        steps.extend(next);
+        beam.clear();
+        for pair in next {
+            let alike = |&other: &usize| search.pairs[other].cones() == pair.cones();
+            if beam.len() < BEAM && !beam.iter().any(alike) {
+                search.pairs.push(pair);
+                beam.push(search.pairs.len() - 1);
+            }
+        }
     }
-    let Some(best) = (0..steps.len()).max_by(|&a, &b| steps[a].worth.total_cmp(&steps[b].worth)) else {
-        return Row::default();
+    search.best()
+}
+
+/// For each cone the others within reach, the nearest ones first.
+fn nearest(cones: &[Cone], reach: f64) -> Vec<Vec<usize>> {
+    let others = |cone: &Cone| {
+        let away = |other: &usize| (cones[*other].position - cone.position).norm();
+        let mut near: Vec<usize> =
+            (0..cones.len()).filter(|other| (NEAREST..reach).contains(&away(other))).collect();
+        near.sort_by(|a, b| away(a).total_cmp(&away(b)));
+        near.truncate(NEXT);
+        near
     };
-    let mut found = Row { cones: Vec::new(), worth: steps[best].worth };
-    let mut at = Some(best);
-    while let Some(index) = at {
-        found.cones.push(steps[index].cone);
-        at = steps[index].parent;
-    }
-    found.cones.reverse();
-    found
+    cones.iter().map(others).collect()
 }
 
-/// Cones beside the car, or beside where it was, with which a row may begin: those farthest back.
-fn seeds(cones: &[Cone], places: &[Pose], side: f64, p: &RowParameters) -> Vec<Step> {
-    let mut found: Vec<(usize, Step)> = Vec::new();
-    for (cone, Cone { position, colour }) in cones.iter().enumerate() {
-        let beside = places.iter().enumerate().find_map(|(at, place)| {
-            let local = place.to_local(*position);
-            let aside = side * local.y;
-            let near = (0.5 * p.half_width..p.half_width + p.loose + 0.4).contains(&aside);
-            (local.x.abs() < BESIDE && near).then_some((at, place.forward(), (aside - p.half_width).abs()))
+impl Pair {
+    fn cones(&self) -> [Option<usize>; 2] {
+        self.ends.map(|end| end.cone)
+    }
+}
+
+struct Search<'c> {
+    cones: &'c [Cone],
+    nearest: Vec<Vec<usize>>,
+    p: &'c RowParameters,
+    pairs: Vec<Pair>,
+}
+
+impl Search<'_> {
+    /// The pairs beside the car, or beside where it was.
+    fn begin(&mut self, places: &[Pose], car: Pose) {
+        let [left, right] = [1.0, -1.0].map(|side| self.seeds(places, car, side));
+        for (left, worth) in &left {
+            for (right, other) in &right {
+                let narrow = (left.place - right.place).norm() < 1.5 * self.p.narrowest;
+                if !narrow {
+                    self.pairs.push(Pair { ends: [*left, *right], worth: worth + other, parent: None });
+                }
+            }
+        }
+    }
+
+    /// Cones beside the car, or beside where it was, with which a row may begin, those farthest back; or none.
+    fn seeds(&self, places: &[Pose], car: Pose, side: f64) -> Vec<(End, f64)> {
+        let p = self.p;
+        let mut found: Vec<(usize, End, f64)> = Vec::new();
+        for (cone, Cone { position, colour }) in self.cones.iter().enumerate() {
+            let beside = places.iter().enumerate().find_map(|(at, place)| {
+                let local = place.to_local(*position);
+                let aside = side * local.y;
+                let near = (0.5 * p.half_width..p.half_width + p.loose + 0.4).contains(&aside);
+                (local.x.abs() < BESIDE && near).then_some((
+                    at,
+                    place.forward(),
+                    (aside - p.half_width).abs(),
+                ))
+            });
+            let Some((at, heading, off)) = beside else { continue };
+            if f64::from(colour.side()) * side >= 0.0 {
+                let end = End { cone: Some(cone), place: *position, heading, turn: 0.0, share: 1.0 };
+                found.push((at, end, -0.5 * off));
+            }
+        }
+        found.sort_by_key(|(at, ..)| *at);
+        let place = car.to_world(Point::new(0.0, side * p.half_width));
+        let none = End { cone: None, place, heading: car.forward(), turn: 0.0, share: 1.0 };
+        found.into_iter().take(SEEDS).map(|(_, end, worth)| (end, worth)).chain([(none, -1.0)]).collect()
+    }
+
+    /// The pairs that may come next.
+    fn onward(&self, parent: usize) -> Vec<Pair> {
+        let mut found = Vec::new();
+        for side in 0..2 {
+            let candidates: Vec<usize> = match self.pairs[parent].ends[side].cone {
+                Some(cone) => self.nearest[cone].clone(),
+                None => (0..self.cones.len()).collect(),
+            };
+            found.extend(candidates.into_iter().filter_map(|cone| self.with(parent, side, cone)));
+        }
+        found
+    }
+
+    /// A pair with its cone of one side replaced by the next one. `None` where that cannot be.
+    fn with(&self, parent: usize, side: usize, cone: usize) -> Option<Pair> {
+        let (pair, p) = (&self.pairs[parent], self.p);
+        let sign = [1.0, -1.0][side];
+        let (own, other) = (&pair.ends[side], &pair.ends[1 - side]);
+        let Cone { position, colour } = self.cones[cone];
+        let leg = position - own.place;
+        let length = leg.norm();
+        if !(NEAREST..p.reach).contains(&length) || self.holds(parent, cone) {
+            return None;
+        }
+        let turn = angle(own.heading, leg);
+        // The lane's direction is across the pair, as long as there is a pair.
+        let across = (own.place - other.place) * sign;
+        let usual = 2.0 * p.half_width;
+        let paired = across.norm() < FARTHER * usual;
+        let lane = if paired { Vector::new(across.y, -across.x) } else { own.heading };
+        let slant = turn.abs().min(angle(lane, leg).abs());
+        if turn.abs() > SHARPEST || slant > ASLANT || lane.dot(&leg) < 0.0 {
+            return None;
+        }
+        let width = self.distance_to_row(parent, 1 - side, position);
+        if width < 1.5 * p.narrowest || self.crosses(parent, 1 - side, [own.place, position]) {
+            return None;
+        }
+        // Half of the reach is as far as cones stand apart where none is missing.
+        let missing = (3.0 * (length / (0.5 * p.reach) - 1.0)).clamp(0.0, 1.0);
+        let mut cost = SLANT * slant * slant + FAR * length + MISSING * missing * missing;
+        let change = turn - own.turn;
+        // The first leg may be aslant: the car is.
+        if own.share < 1.0 {
+            cost += CHANGE * (change * change).min(1.0);
+        }
+        if f64::from(colour.side()) * sign < 0.0 {
+            cost += OTHER_EDGE;
+        }
+        let apart = (position - other.place).norm();
+        if apart < FARTHER * usual {
+            let narrow = (1.0 - width / (2.0 * p.narrowest)).max(0.0);
+            let wide = (apart / usual - 1.2).max(0.0);
+            cost += WIDTH * (16.0 * narrow * narrow + wide * wide);
+        } else {
+            cost += ALONE;
+        }
+        if cost > DEAREST {
+            return None;
+        }
+        if paired {
+            cost += BETWEEN * self.between([own.place, position, other.place]) as f64;
+        }
+        cost += BETWEEN * self.beside([own.place, position], sign) as f64;
+        let end =
+            End { cone: Some(cone), place: position, heading: leg / length, turn, share: own.share * LESS };
+        let mut ends = pair.ends;
+        ends[side] = end;
+        (cost < DEAREST).then(|| Pair {
+            ends,
+            worth: pair.worth + own.share * (1.0 - cost),
+            parent: Some(parent),
+        })
+    }
+
+    /// A pair and those before it.
+    fn back(&self, pair: usize) -> impl Iterator<Item = &Pair> {
+        std::iter::successors(Some(&self.pairs[pair]), |pair| pair.parent.map(|parent| &self.pairs[parent]))
+    }
+
+    /// Whether a row has a cone already.
+    fn holds(&self, pair: usize, cone: usize) -> bool {
+        self.back(pair).any(|pair| pair.cones().contains(&Some(cone)))
+    }
+
+    /// The legs of one of the rows of a pair, the last one first.
+    fn legs(&self, pair: usize, side: usize) -> impl Iterator<Item = [Point; 2]> {
+        let ends = self.back(pair).map(move |pair| pair.ends[side].place);
+        let mut last = None;
+        ends.filter_map(move |place| {
+            last.replace(place).filter(|after| *after != place).map(|after| [place, after])
+        })
+    }
+
+    /// Metres from a point to one of the rows of a pair.
+    fn distance_to_row(&self, pair: usize, side: usize, point: Point) -> f64 {
+        let end = (self.pairs[pair].ends[side].place - point).norm();
+        self.legs(pair, side)
+            .map(|[a, b]| crate::geometry::Segment::new(a, b).distance_to(point))
+            .fold(end, f64::min)
+    }
+
+    /// Whether a leg passes through one of the rows of a pair.
+    fn crosses(&self, pair: usize, side: usize, leg: [Point; 2]) -> bool {
+        self.legs(pair, side).any(|other| passes(leg, other))
+    }
+
+    /// How many cones stand within a triangle.
+    fn between(&self, [a, b, c]: [Point; 3]) -> usize {
+        let inside = |cone: &&Cone| {
+            let turns = [(a, b), (b, c), (c, a)].map(|(from, to)| cross(to - from, cone.position - from));
+            turns.iter().all(|turn| *turn > 1e-9) || turns.iter().all(|turn| *turn < -1e-9)
+        };
+        self.cones.iter().filter(inside).count()
+    }
+
+    /// How many cones stand near a leg on the side of the lane, which is to the right of a left row's leg.
+    fn beside(&self, [from, to]: [Point; 2], sign: f64) -> usize {
+        let leg = to - from;
+        let length = leg.norm();
+        let inside = |cone: &&Cone| {
+            let away = cone.position - from;
+            let (along, inwards) = (leg.dot(&away) / length, -sign * cross(leg, away) / length);
+            (NEAREST..length - NEAREST).contains(&along) && (NEAREST..self.p.narrowest).contains(&inwards)
+        };
+        self.cones.iter().filter(inside).count()
+    }
+
+    /// The rows that are worth most.
+    fn best(&self) -> Rows {
+        let worth = |pair: usize| self.pairs[pair].worth;
+        let Some(best) = (0..self.pairs.len()).max_by(|&a, &b| worth(a).total_cmp(&worth(b))) else {
+            return Rows::default();
+        };
+        let edges = [0, 1].map(|side| {
+            let mut edge: Vec<usize> = self.back(best).filter_map(|pair| pair.ends[side].cone).collect();
+            edge.dedup();
+            edge.reverse();
+            edge
         });
-        let Some((at, heading, off)) = beside else { continue };
-        if f64::from(colour.side()) * side >= 0.0 {
-            let step = Step { cone, heading, turn: 0.0, worth: -0.5 * off, parent: None };
-            found.push((at, step));
-        }
+        Rows { edges }
     }
-    found.sort_by_key(|(at, _)| *at);
-    found.into_iter().take(SEEDS).map(|(_, step)| step).collect()
 }
 
-/// Whether a row has a cone already.
-fn holds(steps: &[Step], row: usize, cone: usize) -> bool {
-    let mut at = Some(row);
-    while let Some(index) = at {
-        if steps[index].cone == cone {
-            return true;
-        }
-        at = steps[index].parent;
-    }
-    false
-}
-
-/// A row with one more cone. `None` where that is too far off, or too far aside.
-fn onward(
-    cones: &[Cone],
-    steps: &[Step],
-    parent: usize,
-    (cone, side): (usize, f64),
-    p: &RowParameters,
-) -> Option<Step> {
-    let last = &steps[parent];
-    let leg = cones[cone].position - cones[last.cone].position;
-    let length = leg.norm();
-    if !(NEAREST..p.reach).contains(&length) {
-        return None;
-    }
-    let turn = math::atan2(cross(last.heading, leg), last.heading.dot(&leg));
-    if turn.abs() > SHARPEST {
-        return None;
-    }
-    // The first leg may be aslant: the car is.
-    let change = if last.parent.is_none() { 0.0 } else { turn - last.turn };
-    let other = f64::from(cones[cone].colour.side()) * side < 0.0;
-    let own =
-        TURN * turn * turn + CHANGE * change * change + FAR * length + if other { OTHER_EDGE } else { 0.0 };
-    (own < 1.0).then(|| Step {
-        cone,
-        heading: leg / length,
-        turn,
-        worth: last.worth + 1.0 - own,
-        parent: Some(parent),
-    })
+/// The angle from one vector to another, positive to the left.
+fn angle(from: Vector, to: Vector) -> f64 {
+    math::atan2(cross(from, to), from.dot(&to))
 }
 
 /// Whether the way from one point to another passes through a leg.
@@ -191,7 +347,11 @@ pub(super) fn passes([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
 mod tests {
     use super::*;
 
-    const P: RowParameters = RowParameters { reach: 10.5, half_width: 1.8, loose: 0.8 };
+    const P: RowParameters = RowParameters { reach: 10.5, half_width: 1.8, narrowest: 1.4, loose: 0.8 };
+
+    fn legs(cones: &[Cone], places: &[Pose], p: &RowParameters) -> Vec<[Point; 2]> {
+        rows(cones, places, p).legs(cones)
+    }
 
     fn at(places: &[(f64, f64)]) -> Vec<Cone> {
         places.iter().map(|&(x, y)| Cone::unknown(Point::new(x, y))).collect()
@@ -225,6 +385,47 @@ mod tests {
         let found = legs(&cones, &[Pose::new(-2.8, 0.0, 0.0), Pose::default()], &P);
         let crosses = |[a, b]: &[Point; 2]| left.contains(&(a.x, a.y)) && right.contains(&(b.x, b.y));
         assert!(found.len() >= 8 && !found.iter().any(crosses), "{found:?}");
+    }
+
+    #[test]
+    fn an_inner_row_turns_on_one_cone() {
+        // A hairpin to the right: four cones inside, one of them at its tip, and nine around them.
+        let inner = [(0.0, -1.8), (3.0, -2.0), (5.2, -4.0), (3.0, -6.0), (0.0, -6.2)];
+        let outer = [
+            (0.0, 1.8),
+            (3.5, 1.8),
+            (6.8, 1.0),
+            (9.0, -1.2),
+            (9.6, -4.0),
+            (9.0, -6.8),
+            (6.8, -9.0),
+            (3.5, -9.8),
+            (0.0, -9.8),
+        ];
+        let found = rows(&at(&[&outer[..], &inner[..]].concat()), &[Pose::default()], &P);
+        assert_eq!(found.edges, [(0..9).collect::<Vec<_>>(), (9..14).collect()]);
+    }
+
+    #[test]
+    fn a_row_does_not_go_over_to_another_lane() {
+        // A bend to the left by a right angle; beyond its outer row, another lane goes by across the car's way.
+        let left = [(-3.0, 1.8), (0.0, 1.8), (2.0, 3.4), (2.2, 6.5), (2.2, 9.5)];
+        let right = [(-3.0, -1.8), (0.0, -1.8), (3.0, -1.2), (5.4, 1.2), (6.0, 4.2), (6.0, 7.2), (6.0, 10.2)];
+        let other = [
+            (9.0, -9.0),
+            (9.0, -5.5),
+            (9.2, -2.0),
+            (9.5, 1.5),
+            (9.5, 5.0),
+            (13.0, -5.5),
+            (13.0, -2.0),
+            (13.2, 1.5),
+        ];
+        let cones = at(&[&left[..], &right[..], &other[..]].concat());
+        let found = rows(&cones, &[Pose::new(-3.0, 0.0, 0.0), Pose::default()], &P);
+        assert_eq!(found.edges, [(0..5).collect::<Vec<_>>(), (5..12).collect()]);
+        let sides = found.sides(cones.len());
+        assert!(sides[..5] == [1; 5] && sides[5..12] == [-1; 7] && sides[12..] == [0; 8]);
     }
 
     #[test]

@@ -78,6 +78,11 @@ impl LineTracker {
         Self { parameters, points, profile, closed, nearest: 0, started: false }
     }
 
+    /// Whether the line is a loop.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
     /// The points of the line.
     pub fn points(&self) -> &[Point] {
         &self.points
