@@ -204,6 +204,8 @@ impl Course {
                 half_width: [3.0, 11.0],
                 usual: 5.5,
                 loose: 2.0,
+                // Where a circuit crosses itself, no edge goes around the corner.
+                sharpest: 1.0,
                 ..LaneParameters::default()
             };
         }

@@ -29,6 +29,8 @@ pub struct LaneParameters {
     pub loose: f64,
     /// Metres from cone to cone of an edge at most, where one or two are missing.
     pub spacing: f64,
+    /// Radians by which an edge turns at most at one cone.
+    pub sharpest: f64,
 }
 
 impl Default for LaneParameters {
@@ -43,6 +45,7 @@ impl Default for LaneParameters {
             usual: 1.9,
             loose: 0.8,
             spacing: 10.5,
+            sharpest: 1.9,
         }
     }
 }
@@ -117,7 +120,8 @@ pub fn lane(
     stations.push(car);
     let p = parameters;
     let narrowest = p.half_width[0];
-    let along_rows = RowParameters { reach: p.spacing, half_width, narrowest, loose: p.loose };
+    let along_rows =
+        RowParameters { reach: p.spacing, half_width, narrowest, loose: p.loose, sharpest: p.sharpest };
     let rows = rows(cones, &stations, &along_rows);
     let way = search(cones, &rows, car, before, p)?;
     stations.extend(way);

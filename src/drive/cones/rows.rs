@@ -19,6 +19,8 @@ pub(super) struct RowParameters {
     pub(super) narrowest: f64,
     /// Metres by which a cone of an edge may stand off it.
     pub(super) loose: f64,
+    /// Radians by which a row turns at most at one cone.
+    pub(super) sharpest: f64,
 }
 
 /// Pairs that are followed at a time.
@@ -33,8 +35,7 @@ const NEXT: usize = 10;
 const BESIDE: f64 = 2.0;
 /// Metres between two cones of a row at least.
 const NEAREST: f64 = 0.3;
-/// Radians by which a row turns at most at one cone, and by which its leg is aslant to the lane at most.
-const SHARPEST: f64 = 1.9;
+/// Radians by which a leg of a row is aslant to the lane at most.
 const ASLANT: f64 = 1.2;
 /// How much farther apart than usual the cones of a pair are at most: where they are farther, one row is missing.
 const FARTHER: f64 = 1.7;
@@ -219,7 +220,7 @@ impl Search<'_> {
         let paired = across.norm() < FARTHER * usual;
         let lane = if paired { Vector::new(across.y, -across.x) } else { own.heading };
         let slant = turn.abs().min(angle(lane, leg).abs());
-        if turn.abs() > SHARPEST || slant > ASLANT || lane.dot(&leg) < 0.0 {
+        if turn.abs() > p.sharpest || slant > ASLANT || lane.dot(&leg) < 0.0 {
             return None;
         }
         let width = self.distance_to_row(parent, 1 - side, position);
@@ -347,7 +348,8 @@ pub(super) fn passes([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
 mod tests {
     use super::*;
 
-    const P: RowParameters = RowParameters { reach: 10.5, half_width: 1.8, narrowest: 1.4, loose: 0.8 };
+    const P: RowParameters =
+        RowParameters { reach: 10.5, half_width: 1.8, narrowest: 1.4, loose: 0.8, sharpest: 1.9 };
 
     fn legs(cones: &[Cone], places: &[Pose], p: &RowParameters) -> Vec<[Point; 2]> {
         rows(cones, places, p).legs(cones)
