@@ -156,6 +156,8 @@ const SAME: f64 = 0.5;
 const APART: f64 = 0.35;
 /// Metres between a cone and what was seen of it earlier in the first lap, at most: what has added up since, and less than a lane.
 const EARLIER: f64 = 1.5;
+/// The cosine of the angle between two ways below which they cross.
+const ATHWART: f64 = 0.5;
 /// By how much a map may be wrong when it is closed: metres, metres after one metre, radians.
 const WRONG: (f64, f64, f64) = (4.0, 0.02, 0.4);
 
@@ -190,15 +192,22 @@ impl ConeMap {
         fresh.map(|landmark| Cone::new(landmark.position, self.colour_of(landmark)))
     }
 
-    /// The colour of a cone, or that of one near it that was passed earlier in the first lap: a circuit that does not cross itself
-    /// has all cones on its inside on one hand wherever it goes by them.
+    /// The colour of a cone, or that of one near it that was passed earlier in the first lap: between crossings, a circuit has all
+    /// cones on its inside on one hand wherever it goes by them. Where it goes by athwart, it crosses itself, which changes hands.
     fn colour_of(&self, landmark: &Landmark) -> ConeColour {
         let own = landmark.colour();
         if own != ConeColour::Unknown {
             return own;
         }
         let away = |other: &&Landmark| (other.position - landmark.position).norm();
-        let earlier = self.confirmed().filter(|other| !self.is_fresh(other) && away(other) < EARLIER);
+        let ahead = self.pose.forward();
+        let athwart = |other: &&Landmark| {
+            let node = self.trail.partition_point(|(_, way)| *way < other.mean);
+            self.trail.get(node).is_some_and(|(pose, _)| pose.forward().dot(&ahead).abs() < ATHWART)
+        };
+        let earlier = self
+            .confirmed()
+            .filter(|other| !self.is_fresh(other) && away(other) < EARLIER && !athwart(other));
         let nearest = earlier.min_by(|a, b| away(a).total_cmp(&away(b)));
         nearest.map_or(ConeColour::Unknown, Landmark::colour)
     }
@@ -387,12 +396,16 @@ impl ConeMap {
 
     /// Moves and adds cones.
     fn learn(&mut self, seen: &[&Sighting], matches: &[Option<usize>]) {
-        let near = seen.iter().zip(matches).filter(|(s, _)| s.range <= self.parameters.farthest);
-        for (sighting, landmark) in near {
+        for (at, (sighting, landmark)) in seen.iter().zip(matches).enumerate() {
+            if sighting.range > self.parameters.farthest {
+                continue;
+            }
             let place = self.pose.to_world(sighting.position);
+            let others = seen.iter().zip(matches).enumerate();
+            let mut taken = others.filter(|(other, (_, landmark))| *other < at || landmark.is_some());
             if let Some(index) = *landmark {
                 self.landmarks[index].see(place, sighting.colour, self.way);
-            } else if !seen.iter().any(|other| is_part(sighting, other)) {
+            } else if !taken.any(|(_, (other, _))| is_part(sighting, other)) {
                 self.landmarks.push(Landmark::new(place, sighting.colour, self.way));
             }
         }
