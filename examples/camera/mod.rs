@@ -7,7 +7,7 @@ use roverlab::io::{self, Camera, Clock, Display, Picture, Resolution, Servos, Vi
 use roverlab::picture::Picture as Drawing;
 use roverlab::vision::{Error, GrayView, GrayViewMut, GrayWeights, gray_into};
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, Stopwatch, rounded};
+use crate::common::{CommonArgs, Failure, Outcome, Report, Stopwatch, rounded, write_image};
 use crate::driving::{Conditions, Run, drawn, paced};
 use crate::room;
 
@@ -203,7 +203,7 @@ fn brightness(image: &RgbImage) -> Result<f64, Error> {
 fn save(args: &Args, run: &Run<Seen>) -> Result<Option<PathBuf>, Failure> {
     let unasked = (!args.common.json).then(|| PathBuf::from("camera.png"));
     let (Some(file), Ok(seen)) = (args.output.clone().or(unasked), &run.ending) else { return Ok(None) };
-    seen.image.save(&file).map_err(|error| {
+    write_image(&seen.image.clone().into(), &file).map_err(|error| {
         Failure::input(format!(
             "--output {}: {error}; expected a file ending in .png, .ppm or .bmp that can be written",
             file.display()

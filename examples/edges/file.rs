@@ -6,7 +6,7 @@ use image::RgbImage;
 
 use super::kernel::Runner;
 use super::{Args, Processed};
-use crate::common::{Failure, Outcome, Report, Stopwatch, rounded};
+use crate::common::{Failure, Outcome, Report, Stopwatch, rounded, write_image};
 
 pub(crate) fn work(args: &Args, input: &Path) -> Result<Report, Failure> {
     let image = load("--input", input)?;
@@ -59,7 +59,7 @@ fn load(option: &str, file: &Path) -> Result<RgbImage, Failure> {
 
 /// Writes an image in the format that its name asks for.
 pub(crate) fn save(image: &image::DynamicImage, file: &Path) -> Result<(), Failure> {
-    image.save(file).map_err(|error| {
+    write_image(image, file).map_err(|error| {
         Failure::input(format!(
             "--output {}: {error}; expected a file ending in .png, .pgm, .ppm or .bmp that can be written",
             file.display()

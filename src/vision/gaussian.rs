@@ -108,7 +108,7 @@ fn filter<const R: usize, const SMALL: bool>(
         let offset = from + R - start;
         for y in 0..height {
             down::<R>(input, y, (from, to), weights, &mut sums[offset..][..to - from]);
-            if start == 0 || end == width {
+            if start == 0 || end + R > width {
                 mirror_columns::<R>(&mut sums, start, end, width);
             }
             let out = &mut output.row_mut(y)[start..end];
@@ -166,14 +166,14 @@ fn both(a: u8, b: u8) -> u16 {
 /// Sums of the columns that the image lacks: those of their mirror images.
 fn mirror_columns<const R: usize>(sums: &mut Sums, start: usize, end: usize, width: usize) {
     let column = |x: isize| mirrored(x, width) + R - start;
-    for i in 1..=R {
-        if start == 0 {
+    if start == 0 {
+        for i in 1..=R {
             sums[R - i] = sums[column(-(i as isize))];
         }
-        if end == width {
-            let x = (width - 1 + i) as isize;
-            sums[width - 1 + i + R - start] = sums[column(x)];
-        }
+    }
+    // The strip may end a column or two before the image does.
+    for x in width..end + R {
+        sums[x + R - start] = sums[column(x as isize)];
     }
 }
 

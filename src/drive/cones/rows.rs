@@ -93,7 +93,9 @@ impl Rows {
     pub(super) fn sides(&self, cones: usize) -> Vec<i8> {
         let mut sides = vec![0; cones];
         for (edge, side) in self.edges.iter().zip([1, -1]) {
-            edge.iter().for_each(|&cone| sides[cone] = side);
+            for &cone in edge {
+                sides[cone] = side;
+            }
         }
         sides
     }
@@ -257,11 +259,8 @@ impl Search<'_> {
             End { cone: Some(cone), place: position, heading: leg / length, turn, share: own.share * LESS };
         let mut ends = pair.ends;
         ends[side] = end;
-        (cost < DEAREST).then(|| Pair {
-            ends,
-            worth: pair.worth + own.share * (1.0 - cost),
-            parent: Some(parent),
-        })
+        let worth = pair.worth + own.share * (1.0 - cost);
+        (cost < DEAREST).then_some(Pair { ends, worth, parent: Some(parent) })
     }
 
     /// A pair and those before it.

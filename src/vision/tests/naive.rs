@@ -233,3 +233,30 @@ fn sums_of_large_bright_images_do_not_overflow() {
     assert!(columns.iter().all(|&sum| sum == 255 * height as u32));
     assert!(rows.iter().all(|&sum| sum == 255 * width as u32));
 }
+
+#[test]
+fn strips_of_wide_images_are_smoothed_alike() {
+    // Whatever is cut off on the left, the right end is smoothed as before.
+    const RIGHT: usize = 40;
+    for width in (4090..4104).chain(8190..8200) {
+        let mut stream = crate::random::Stream::new(width as u64);
+        let image: Vec<u8> = (0..3 * width).map(|_| stream.bits() as u8).collect();
+        let view = GrayView::new(&image, width, 3).unwrap();
+        for kernel in [
+            GaussianKernel::THREE,
+            GaussianKernel::FIVE,
+            GaussianKernel::SEVEN,
+            GaussianKernel::new(7, 2.0).unwrap(),
+        ] {
+            let mut whole = vec![0; 3 * width];
+            gaussian_into(view, GrayViewMut::new(&mut whole, width, 3).unwrap(), kernel).unwrap();
+            let mut part = vec![0; 3 * RIGHT];
+            let right = view.region((width - RIGHT, 0), RIGHT, 3).unwrap();
+            gaussian_into(right, GrayViewMut::new(&mut part, RIGHT, 3).unwrap(), kernel).unwrap();
+            for y in 0..3 {
+                let (all, cut) = (&whole[y * width..][..width], &part[y * RIGHT..][..RIGHT]);
+                assert_eq!(all[width - RIGHT + 3..], cut[3..], "{width} {kernel:?}");
+            }
+        }
+    }
+}

@@ -104,6 +104,26 @@ fn wrong_images_are_refused_by_name() {
 }
 
 #[test]
+fn images_are_written_whole_in_the_format_of_their_names() {
+    let input = squares("squares4.png");
+    for (kernel, name, begins) in [("gray", "shades.pgm", "P5"), ("gray_to_rgb", "colours.ppm", "P6")] {
+        let output = temporary(name);
+        let options =
+            ["--input", text(&input), "--kernel", kernel, "--output", text(&output), "--repeat", "1"];
+        assert_outcome(&run("edges", edges::work, &options), "filtered");
+        assert!(std::fs::read(&output).unwrap().starts_with(begins.as_bytes()), "{name}");
+    }
+    if cfg!(target_os = "linux") {
+        let full = temporary("full.png");
+        let _ = std::fs::remove_file(&full);
+        #[cfg(unix)]
+        std::os::unix::fs::symlink("/dev/full", &full).unwrap();
+        let (status, _, err) = run("edges", edges::work, &["--input", text(&input), "--output", text(&full)]);
+        assert!(status == 2 && err.contains("full.png"), "{status} {err}");
+    }
+}
+
+#[test]
 fn edges_live_on_the_display() {
     let output = temporary("display.png");
     for kernel in ["laplace", "canny", "overlay"] {
