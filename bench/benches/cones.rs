@@ -1,5 +1,5 @@
-//! Planning between cones: the way through a whole map of about 200 cones, and the racing line on it. What counts is the worst
-//! track, so the slowest of many is printed beside the mean; each is the fastest of some repetitions, as the machine has other
+//! Planning between cones: the lane around the car in a map of about 200 cones, the way through all of it, and the racing line on
+//! it. What counts is the worst track, so the slowest of many is printed beside the mean; each is the fastest of some repetitions, as the machine has other
 //! things to do.
 
 use std::hint::black_box;
@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use roverlab::drive::cones::{
-    CarLimits, CentreLine, CentreLineParameters, Cone, GeneratedTrack, LineSolver, RacingLineParameters,
-    SpeedProfile, TrackOptions, generate,
+    CarLimits, CentreLine, CentreLineParameters, Cone, GeneratedTrack, Lane, LaneParameters, LineSolver,
+    RacingLineParameters, SpeedProfile, TrackOptions, generate, lane,
 };
 use roverlab::geometry::{Point, Pose};
 
@@ -34,6 +34,17 @@ fn maps() -> Vec<Map> {
     maps
 }
 
+/// The lane from a place on the way that was driven, as it is looked for in the first lap.
+fn lane_from(map: &Map, place: usize) -> Option<Lane> {
+    let pose = |i: usize| {
+        let ahead = map.driven[i + 1] - map.driven[i];
+        Pose::new(map.driven[i].x, map.driven[i].y, ahead.y.atan2(ahead.x))
+    };
+    let behind: Vec<Pose> = (place - 5..place).map(pose).collect();
+    let unknown = Lane { points: Vec::new(), edges: [Vec::new(), Vec::new()], half_width: 1.9 };
+    lane(&map.cones, &behind, pose(place), &unknown, &LaneParameters::default())
+}
+
 /// Milliseconds, the fastest of twenty.
 #[allow(clippy::disallowed_methods, reason = "a benchmark measures")]
 fn fastest(mut work: impl FnMut()) -> f64 {
@@ -48,7 +59,7 @@ fn fastest(mut work: impl FnMut()) -> f64 {
 fn tell(name: &str, times: &[f64]) {
     let worst = times.iter().copied().fold(0.0, f64::max);
     let mean = times.iter().sum::<f64>() / times.len() as f64;
-    println!("{name}: worst {worst:.3} ms, mean {mean:.3} ms of {} maps", times.len());
+    println!("{name}: worst {worst:.3} ms, mean {mean:.3} ms of {}", times.len());
 }
 
 fn planning(c: &mut Criterion) {
@@ -56,9 +67,15 @@ fn planning(c: &mut Criterion) {
     let limits = CarLimits::circle(8.5, 5.0, 7.0, 20.0);
     let racing = RacingLineParameters { margin: 0.95, ..RacingLineParameters::default() };
     let maps = maps();
-    let (mut ways, mut lines, mut profiles) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut lanes, mut ways, mut lines, mut profiles) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut solver = LineSolver::default();
     for map in &maps {
+        for place in (5..map.driven.len() - 1).step_by(100) {
+            assert!(lane_from(map, place).is_some(), "there are cones beside the car");
+            lanes.push(fastest(|| {
+                black_box(lane_from(map, place));
+            }));
+        }
         let plan = || CentreLine::along(&map.cones, map.start, &map.driven, &parameters).expect("a way");
         let way = plan();
         assert!(way.corridor.is_closed(), "the whole track is planned");
@@ -73,6 +90,7 @@ fn planning(c: &mut Criterion) {
             black_box(SpeedProfile::closed(&line.points, &limits).expect("a profile"));
         }));
     }
+    tell("lane around the car", &lanes);
     tell("triangulation, way and corridor", &ways);
     tell("racing line", &lines);
     tell("speed profile", &profiles);

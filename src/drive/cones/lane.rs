@@ -115,6 +115,25 @@ pub fn lane(
     before: &Lane,
     parameters: &LaneParameters,
 ) -> Option<Lane> {
+    let reach = parameters.piece * parameters.pieces as f64 + parameters.spacing;
+    let near: Vec<usize> =
+        (0..cones.len()).filter(|&cone| (cones[cone].position - car.position()).norm() < reach).collect();
+    let cones: Vec<Cone> = near.iter().map(|&cone| cones[cone]).collect();
+    let mut found = lane_between(&cones, behind, car, before, parameters)?;
+    for cone in found.edges.iter_mut().flatten() {
+        *cone = near[*cone];
+    }
+    Some(found)
+}
+
+/// The same between cones that are all near.
+fn lane_between(
+    cones: &[Cone],
+    behind: &[Pose],
+    car: Pose,
+    before: &Lane,
+    parameters: &LaneParameters,
+) -> Option<Lane> {
     let half_width = before.half_width;
     let mut stations = behind.to_vec();
     stations.push(car);
