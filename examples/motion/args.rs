@@ -16,7 +16,7 @@ of the absolute difference, with its threshold of 15 and with one of its own.
 JSON fields:
   images, alarms              compared images; those with motion
   sectors                     alarms by sector: left, middle, right
-  strongest                   the largest change of a block, in levels
+  strongest                   the largest change of blocks, in standard deviations of the noise
   turned_deg                  how far the robot turned, by its true heading
   time_limit_s, picture
   pairs                       campaign: of each kind

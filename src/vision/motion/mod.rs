@@ -2,11 +2,12 @@
 //! turns (section 11.6).
 
 mod detector;
+mod range;
 #[cfg(test)]
 mod tests;
 mod turning;
 mod watch;
 
 pub use detector::{Motion, MotionDetector, MotionParameters};
-pub use turning::TurnCompensator;
+pub use turning::{TurnCompensator, Turned};
 pub use watch::{MotionWatch, WatchParameters};

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::geometry::{Pose, Twist, units};
 use crate::io::sim::{SimOptions, Simulation};
-use crate::io::{Camera, Clock, Drive};
+use crate::io::{Camera, Clock, Drive, Resolution};
 use crate::random::Stream;
 use crate::vision::{Error, GrayView};
 use crate::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
@@ -88,7 +88,7 @@ fn a_turn_is_taken_out_of_the_image() {
     let second = robot.gray_image().unwrap();
     let mut compensator = TurnCompensator::new(field_of_view).unwrap();
     let angle = robot.pose().unwrap().heading;
-    let (moved, from, to) = compensator.turn(view(&first), view(&second), angle).unwrap();
+    let Turned { image: moved, from, to, .. } = compensator.turn(view(&first), view(&second), angle).unwrap();
     assert!(from == 0 || to == 160, "{from} {to}");
     assert!(to - from > 140);
     let difference = |a: &GrayImage| {
@@ -97,6 +97,93 @@ fn a_turn_is_taken_out_of_the_image() {
     };
     let (without, with) = (difference(&first), difference(moved));
     assert!(with < 0.4 * without, "{with} {without}");
+}
+
+/// How many of the images of one run are alarms while the robot turns, and how many there are. The watched room is still
+/// or has another robot that drives across; odometry jumps in the midst of a turn.
+fn alarms_while_turning(moves: bool, noise: f64, light: f64, seed: u64) -> (usize, usize) {
+    let options = SimOptions { light, ..SimOptions::with_noise(noise, seed) };
+    let simulation = Simulation::new(&scene(), options).unwrap();
+    let mut other = simulation.robot(1).unwrap();
+    if moves {
+        other.set_speed(Twist::new(0.25, 2.0)).unwrap();
+    }
+    // Whose program has ended keeps its speed.
+    drop(other);
+    let mut robot = simulation.robot(0).unwrap();
+    robot.set_resolution(Resolution::Qqvga).unwrap();
+    let parameters = WatchParameters::new(RobotSpec::s4().camera.unwrap().field_of_view);
+    let mut watch = MotionWatch::new(parameters).unwrap();
+    let (mut alarms, mut images) = (0, 0);
+    // To and fro with pauses, in radians per second, each for half a second.
+    for (part, speed) in [0.0, 0.4, 0.0, -0.4, -0.4, 0.0, 0.4, -0.2].into_iter().enumerate() {
+        for i in 0..5 {
+            let image = robot.gray_image().unwrap();
+            let mut pose = robot.pose().unwrap();
+            if (part, i) >= (3, 3) {
+                pose.heading += units::from_deg(15.0);
+            }
+            watch.step(robot.now().unwrap(), &image, pose).unwrap();
+            if let Some(motion) = watch.motion() {
+                images += 1;
+                alarms += usize::from(motion.is_moving());
+            }
+            robot.set_speed(Twist::new(0.0, speed)).unwrap();
+            robot.wait(0.1).unwrap();
+        }
+    }
+    (alarms, images)
+}
+
+#[test]
+fn a_still_world_is_no_motion_while_the_robot_turns() {
+    for (noise, light) in [(0.0, 1.0), (1.0, 1.0), (1.0, 1.5), (1.5, 1.0)] {
+        for seed in 1..=3 {
+            assert_eq!(alarms_while_turning(false, noise, light, seed), (0, 39), "{noise} {light} {seed}");
+        }
+    }
+}
+
+#[test]
+fn what_moves_is_seen_while_the_robot_turns() {
+    for noise in [0.0, 1.0] {
+        let (alarms, images) = alarms_while_turning(true, noise, 1.0, 1);
+        assert!(3 * alarms > images, "{noise}: {alarms} of {images}");
+    }
+}
+
+/// Pairs of images with an alarm, of twenty of a room by a standing robot, under some light and noise.
+fn alarms_standing(moves: bool, light: f64, noise: f64) -> usize {
+    let options = SimOptions { light, ..SimOptions::with_noise(noise, 5) };
+    let simulation = Simulation::new(&scene(), options).unwrap();
+    let mut other = simulation.robot(1).unwrap();
+    if moves {
+        other.set_speed(Twist::new(0.15, 2.2)).unwrap();
+    }
+    drop(other);
+    let mut robot = simulation.robot(0).unwrap();
+    robot.set_resolution(Resolution::Qqvga).unwrap();
+    robot.wait(0.5).unwrap();
+    let mut before = robot.gray_image().unwrap();
+    let mut detector = detector();
+    let pairs = (0..20).filter(|_| {
+        robot.wait(0.1).unwrap();
+        let image = robot.gray_image().unwrap();
+        let motion = detector.compare(view(&before), view(&image)).unwrap();
+        before = image;
+        motion.is_moving()
+    });
+    pairs.count()
+}
+
+#[test]
+fn motion_and_stillness_are_told_apart_in_any_light_and_noise() {
+    for (light, noise) in [(0.3, 1.0), (0.6, 1.0), (1.0, 0.0), (1.0, 1.0), (1.0, 2.0), (1.5, 1.0), (3.0, 1.0)]
+    {
+        assert_eq!(alarms_standing(false, light, noise), 0, "{light} {noise}");
+        let moving = alarms_standing(true, light, noise);
+        assert!(moving >= 19, "{light} {noise}: {moving}");
+    }
 }
 
 #[test]
@@ -125,8 +212,10 @@ fn the_robot_turns_to_what_moves_and_stands_when_nothing_does() {
 
 #[test]
 fn parameters_out_of_range() {
-    for (block, threshold, slack) in [(1, 1.0, 0.0), (8, f64::NAN, 0.0), (8, 1.0, -1.0), (999, 1.0, 0.0)] {
-        assert!(MotionDetector::new(MotionParameters { block, threshold, slack }).is_err());
+    for (block, threshold, least_noise) in
+        [(1, 6.0, 1.0), (8, f64::NAN, 1.0), (8, -1.0, 1.0), (8, 6.0, 0.0), (999, 6.0, 1.0)]
+    {
+        assert!(MotionDetector::new(MotionParameters { block, threshold, least_noise }).is_err());
     }
     assert!(TurnCompensator::new(0.0).is_err());
     let (a, b) = (GrayImage::new(4, 4), GrayImage::new(4, 5));

@@ -7,18 +7,35 @@ use crate::vision::{Error, GrayView};
 /// 11.6).
 ///
 /// A camera that turns about its own axis sees the world through another rotation, whatever the distances: each pixel's
-/// line of sight is turned back, and the image is read where it came from. A camera that sits ahead of the axis moves a
-/// little as well, which shifts what is near; [`MotionParameters::slack`](super::MotionParameters::slack) is for that.
+/// line of sight is turned back, and the image is read where it came from. Odometry says by how much, and may be wrong by
+/// a slip or a jump; the turn that explains the second image best corrects it. A camera that sits ahead of the axis moves
+/// a little as well, which shifts what is near:
+/// [`MotionDetector::compare_loosely`](super::MotionDetector::compare_loosely) is for that.
 #[derive(Debug, Clone)]
 pub struct TurnCompensator {
     field_of_view: f64,
     turned: GrayImage,
-    trial: Vec<f64>,
 }
 
-/// Pixels by which odometry's turn may be wrong, and the steps in which the best one is looked for.
-const SEARCH: f64 = 1.5;
-const STEP: f64 = 0.25;
+/// An image as the camera would have seen it after a turn.
+#[derive(Debug, Clone, Copy)]
+pub struct Turned<'a> {
+    /// The image; its columns outside of `from..to` mean nothing.
+    pub image: &'a GrayImage,
+    /// The first column that both images show.
+    pub from: usize,
+    /// The column after the last one that both show.
+    pub to: usize,
+    /// Pixels by which the turn moves what is straight ahead, to either side.
+    pub shift: f64,
+}
+
+/// Pixels by which odometry's turn may be wrong, beside all of the turn.
+const SEARCH: f64 = 16.0;
+/// Steps in pixels in which the best turn is looked for, first and then around the best of the first.
+const STEPS: [f64; 2] = [1.0, 0.25];
+/// Levels by which each pixel of the turn that differs from odometry must better the match.
+const TRUST: f64 = 0.03;
 
 impl TurnCompensator {
     /// For a level camera with a horizontal field of view in radians.
@@ -27,34 +44,27 @@ impl TurnCompensator {
             let expected = "more than 0 and below 3 radians";
             return Err(Error::Parameter { parameter: "field of view", found: field_of_view, expected });
         }
-        Ok(Self { field_of_view, turned: GrayImage::default(), trial: Vec::new() })
+        Ok(Self { field_of_view, turned: GrayImage::default() })
     }
 
-    /// The first image as the camera would have seen it after turning left by `angle`, beside the columns, from one to
-    /// before the other, that both images show. The angle is that of odometry; what the images say corrects it.
+    /// The first image as the camera would have seen it after turning left by `angle`: the turn of odometry, which the
+    /// second image corrects.
     pub fn turn(
         &mut self,
         first: GrayView<'_>,
         second: GrayView<'_>,
         angle: f64,
-    ) -> Result<(&GrayImage, usize, usize), Error> {
+    ) -> Result<Turned<'_>, Error> {
         crate::vision::view::require_size("second image", second.size(), first.size())?;
         let (width, height) = first.size();
         let focal = 0.5 * width as f64 / math::tan(0.5 * self.field_of_view);
-        let steps = (2.0 * SEARCH / STEP) as i32;
-        let angles = (0..=steps).map(|i| angle + (STEP * f64::from(i) - SEARCH) / focal);
-        self.trial.clear();
-        for angle in angles.clone() {
-            self.trial.push(mismatch(first, second, angle, focal));
-        }
-        let best = (0..self.trial.len()).min_by(|&a, &b| self.trial[a].total_cmp(&self.trial[b]));
-        let best = best.and_then(|best| angles.clone().nth(best)).unwrap_or(angle);
+        let angle = registered(first, second, angle, focal);
         if self.turned.dimensions() != (width as u32, height as u32) {
             self.turned = GrayImage::new(width as u32, height as u32);
         }
         let (mut from, mut to) = (width, 0);
         for x in 0..width {
-            let Some((column, scale)) = source(x as f64, width, best, focal) else { continue };
+            let Some((column, scale)) = source(x as f64, width, angle, focal) else { continue };
             (from, to) = (from.min(x), x + 1);
             for y in 0..height {
                 let middle = 0.5 * (height as f64 - 1.0);
@@ -62,8 +72,29 @@ impl TurnCompensator {
                 self.turned.put_pixel(x as u32, y as u32, image::Luma([sample(first, column, row)]));
             }
         }
-        Ok((&self.turned, from.min(to), to))
+        Ok(Turned { image: &self.turned, from: from.min(to), to, shift: (angle * focal).abs() })
     }
+}
+
+/// The turn near that of odometry which explains the second image best. A jump of odometry may be all of its turn, or
+/// may have hidden as much.
+fn registered(first: GrayView<'_>, second: GrayView<'_>, angle: f64, focal: f64) -> f64 {
+    let cost = |shift: f64| mismatch(first, second, angle + shift / focal, focal) + TRUST * shift.abs();
+    let mut reach = (SEARCH + angle.abs() * focal).min(0.5 * first.width() as f64);
+    let mut best = (cost(0.0), 0.0);
+    for step in STEPS {
+        let around = best.1;
+        for i in 1..=(reach / step) as i32 {
+            for shift in [around + step * f64::from(i), around - step * f64::from(i)] {
+                let cost = cost(shift);
+                if cost < best.0 {
+                    best = (cost, shift);
+                }
+            }
+        }
+        reach = step;
+    }
+    angle + best.1 / focal
 }
 
 /// The column of an image that a column of the turned one shows, and the factor of distances from the middle row.
@@ -90,14 +121,14 @@ fn sample(image: GrayView<'_>, column: f64, row: f64) -> u8 {
     (upper * (1.0 - v) + lower * v + 0.5) as u8
 }
 
-/// How badly a turn explains the second image, on every fourth row.
+/// How badly a turn explains the second image, on every eighth row.
 fn mismatch(first: GrayView<'_>, second: GrayView<'_>, angle: f64, focal: f64) -> f64 {
     let (width, height) = first.size();
     let middle = 0.5 * (height as f64 - 1.0);
     let (mut sum, mut count) = (0.0, 0.0);
     for x in 0..width {
         let Some((column, scale)) = source(x as f64, width, angle, focal) else { continue };
-        for y in (0..height).step_by(4) {
+        for y in (0..height).step_by(8) {
             let shade = sample(first, column, middle + (y as f64 - middle) * scale);
             // What others move must not pull the turn along.
             sum += f64::from(shade.abs_diff(second.row(y)[x]).min(20));

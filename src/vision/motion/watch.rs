@@ -18,6 +18,9 @@ pub struct WatchParameters {
     pub turn_speed: f64,
     /// Seconds between two images, as in Program 11.14.
     pub period: f64,
+    /// Pixels by which edges of near things may be off for each pixel of a turn, as the camera is not on the robot's
+    /// axis: its distance from there over that of the nearest things.
+    pub parallax: f64,
     /// Seconds for which it turns on after the last motion to a side.
     pub patience: f64,
 }
@@ -25,13 +28,14 @@ pub struct WatchParameters {
 impl WatchParameters {
     /// For a camera with a horizontal field of view in radians.
     pub fn new(field_of_view: f64) -> Self {
-        let turning = MotionParameters { threshold: 7.0, slack: 0.9, ..MotionParameters::default() };
+        let turning = MotionParameters { threshold: 8.0, least_noise: 4.0, ..MotionParameters::default() };
         Self {
             standing: MotionParameters::default(),
             turning,
             field_of_view,
             turn_speed: 0.4,
             period: 0.1,
+            parallax: 0.3,
             patience: 0.3,
         }
     }
@@ -46,6 +50,9 @@ pub struct MotionWatch {
     compensator: TurnCompensator,
     before: Option<(GrayImage, Pose)>,
     motion: Option<Motion>,
+    /// Whether it did not turn from the image before the last one to the last one, and whether it is told to now.
+    settled: bool,
+    turns: bool,
     side: f64,
     until: f64,
 }
@@ -60,6 +67,8 @@ impl MotionWatch {
             parameters,
             before: None,
             motion: None,
+            settled: true,
+            turns: false,
             side: 0.0,
             until: f64::NEG_INFINITY,
         })
@@ -84,25 +93,35 @@ impl MotionWatch {
             self.side = 1.0 - sector as f64;
             self.until = time + self.parameters.patience;
         }
-        let turns = time < self.until;
-        Ok(Twist::new(0.0, if turns { self.side * self.parameters.turn_speed } else { 0.0 }))
+        let turn = if time < self.until { self.side * self.parameters.turn_speed } else { 0.0 };
+        self.turns = turn != 0.0;
+        Ok(Twist::new(0.0, turn))
     }
 
     fn compare(&mut self, before: &GrayImage, image: &GrayImage, turned: f64) -> Result<Motion, Error> {
         /// Less is below what the camera can tell.
         const STILL: f64 = 3e-4;
+        /// What whole pixels and the registration may put edges off by.
+        const PIXELS: f64 = 1.25;
         let (first, second): (GrayView<'_>, GrayView<'_>) = (before.try_into()?, image.try_into()?);
-        if turned.abs() < STILL {
+        // Encoders count whole ticks: a robot that has not turned for one image only may not stand yet.
+        let settled = self.settled;
+        self.settled = turned.abs() < STILL && !self.turns;
+        if settled && self.settled {
             return self.standing.compare(first, second);
         }
-        let (moved, from, to) = self.compensator.turn(first, second, turned)?;
+        let seen = self.compensator.turn(first, second, turned)?;
+        // Half of what edges may be off by is granted to each of the images.
+        let slack = (0.5 * (PIXELS + self.parameters.parallax * seen.shift) + 0.5) as usize;
+        // What was beyond the edge of one image may be in the other by as much.
+        let (from, to) = (seen.from + 2 * slack, seen.to.saturating_sub(2 * slack));
         if to < from + self.parameters.turning.block {
             return self.standing.compare(second, second);
         }
-        let moved: GrayView<'_> = moved.try_into()?;
-        let (width, height) = (to - from, first.height());
-        self.turning
-            .compare(moved.region((from, 0), width, height)?, second.region((from, 0), width, height)?)
+        let moved: GrayView<'_> = seen.image.try_into()?;
+        let (width, height) = (to - from, second.height());
+        let moved = moved.region((from, 0), width, height)?;
+        self.turning.compare_loosely(moved, second.region((from, 0), width, height)?, slack)
     }
 
     /// Watches for some seconds. `observe` is called at each step.

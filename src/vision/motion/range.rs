@@ -1,0 +1,43 @@
+use crate::vision::GrayView;
+
+/// The darkest and the brightest shade around each pixel of an image.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Ranges {
+    width: usize,
+    rows: Vec<(u8, u8)>,
+    ranges: Vec<(u8, u8)>,
+}
+
+impl Ranges {
+    /// Finds them for the squares that reach so many pixels from their middle: along the rows, then down the columns.
+    pub(super) fn find(&mut self, image: GrayView<'_>, reach: usize) {
+        let (width, height) = image.size();
+        self.width = width;
+        self.rows.clear();
+        for y in 0..height {
+            let row = image.row(y);
+            self.rows.extend((0..width).map(|x| {
+                let near = &row[x.saturating_sub(reach)..(x + reach + 1).min(width)];
+                near.iter().fold((u8::MAX, u8::MIN), |range, &shade| joined(range, (shade, shade)))
+            }));
+        }
+        self.ranges.clear();
+        for y in 0..height {
+            let near = y.saturating_sub(reach)..(y + reach + 1).min(height);
+            let column = |x| near.clone().map(move |y| y * width + x);
+            self.ranges.extend(
+                (0..width)
+                    .map(|x| column(x).fold((u8::MAX, u8::MIN), |range, i| joined(range, self.rows[i]))),
+            );
+        }
+    }
+
+    /// The ranges of a row.
+    pub(super) fn row(&self, y: usize) -> impl Iterator<Item = (u8, u8)> + '_ {
+        self.ranges[y * self.width..][..self.width].iter().copied()
+    }
+}
+
+fn joined(a: (u8, u8), b: (u8, u8)) -> (u8, u8) {
+    (a.0.min(b.0), a.1.max(b.1))
+}
