@@ -5,7 +5,7 @@ use crate::vision::GrayView;
 pub(super) struct Ranges {
     width: usize,
     rows: Vec<(u8, u8)>,
-    ranges: Vec<(u8, u8)>,
+    squares: Vec<(u8, u8)>,
 }
 
 impl Ranges {
@@ -21,11 +21,11 @@ impl Ranges {
                 near.iter().fold((u8::MAX, u8::MIN), |range, &shade| joined(range, (shade, shade)))
             }));
         }
-        self.ranges.clear();
+        self.squares.clear();
         for y in 0..height {
             let near = y.saturating_sub(reach)..(y + reach + 1).min(height);
             let column = |x| near.clone().map(move |y| y * width + x);
-            self.ranges.extend(
+            self.squares.extend(
                 (0..width)
                     .map(|x| column(x).fold((u8::MAX, u8::MIN), |range, i| joined(range, self.rows[i]))),
             );
@@ -34,7 +34,7 @@ impl Ranges {
 
     /// The ranges of a row.
     pub(super) fn row(&self, y: usize) -> impl Iterator<Item = (u8, u8)> + '_ {
-        self.ranges[y * self.width..][..self.width].iter().copied()
+        self.squares[y * self.width..][..self.width].iter().copied()
     }
 }
 

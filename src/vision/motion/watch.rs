@@ -112,7 +112,8 @@ impl MotionWatch {
         }
         let seen = self.compensator.turn(first, second, turned)?;
         // Half of what edges may be off by is granted to each of the images.
-        let slack = (0.5 * (PIXELS + self.parameters.parallax * seen.shift) + 0.5) as usize;
+        let off = PIXELS + self.parameters.parallax * seen.shift;
+        let slack = (0.5 * off + 0.5).min(first.width() as f64) as usize;
         // What was beyond the edge of one image may be in the other by as much.
         let (from, to) = (seen.from + 2 * slack, seen.to.saturating_sub(2 * slack));
         if to < from + self.parameters.turning.block {
