@@ -10,7 +10,7 @@ use roverlab::drive::cones::{
     CarLimits, CentreLine, CentreLineParameters, Cone, GeneratedTrack, Lane, LaneParameters, LineSolver,
     RacingLineParameters, SpeedProfile, TrackOptions, generate, lane,
 };
-use roverlab::geometry::{Point, Pose};
+use roverlab::geometry::{Point, Pose, math};
 
 /// A map without colours, where the car is, and a way that was driven.
 struct Map {
@@ -38,7 +38,7 @@ fn maps() -> Vec<Map> {
 fn lane_from(map: &Map, place: usize) -> Option<Lane> {
     let pose = |i: usize| {
         let ahead = map.driven[i + 1] - map.driven[i];
-        Pose::new(map.driven[i].x, map.driven[i].y, ahead.y.atan2(ahead.x))
+        Pose::new(map.driven[i].x, map.driven[i].y, math::atan2(ahead.y, ahead.x))
     };
     let behind: Vec<Pose> = (place - 5..place).map(pose).collect();
     let unknown = Lane { points: Vec::new(), edges: [Vec::new(), Vec::new()], half_width: 1.9 };
