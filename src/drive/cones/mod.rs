@@ -20,6 +20,7 @@ mod files;
 mod gap;
 mod generate;
 mod lane;
+mod lap;
 mod map;
 mod profile;
 mod racer;

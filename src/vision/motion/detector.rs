@@ -122,8 +122,8 @@ impl Block {
 }
 
 impl MotionDetector {
-    /// A detector. Fails unless blocks have 2 to 256 pixels a side, threshold and least
-    /// noise are numbers of at least 0, the noise above it.
+    /// A detector. Fails unless blocks have 2 to 256 pixels a side, the threshold is a number of at least 0 and the least
+    /// noise one above 0.
     pub fn new(parameters: MotionParameters) -> Result<Self, Error> {
         let MotionParameters { block, threshold, least_noise } = parameters;
         let fail = |parameter, found, expected| Err(Error::Parameter { parameter, found, expected });

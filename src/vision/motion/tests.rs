@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::geometry::{Pose, Twist, units};
-use crate::io::sim::{SimOptions, Simulation};
+use crate::io::sim::{SimOptions, SimRobot, Simulation};
 use crate::io::{Camera, Clock, Drive, Resolution};
 use crate::random::Stream;
 use crate::vision::{Error, GrayView};
@@ -99,19 +99,21 @@ fn a_turn_is_taken_out_of_the_image() {
     assert!(with < 0.4 * without, "{with} {without}");
 }
 
+/// The robot that watches a room, in which another one drives or stands.
+fn watcher(options: SimOptions, other: Twist) -> SimRobot {
+    let simulation = Simulation::new(&scene(), options).unwrap();
+    // Whose program has ended keeps its speed.
+    simulation.robot(1).unwrap().set_speed(other).unwrap();
+    let mut robot = simulation.robot(0).unwrap();
+    robot.set_resolution(Resolution::Qqvga).unwrap();
+    robot
+}
+
 /// How many of the images of one run are alarms while the robot turns, and how many there are. The watched room is still
 /// or has another robot that drives across; odometry jumps in the midst of a turn.
 fn alarms_while_turning(moves: bool, noise: f64, light: f64, seed: u64) -> (usize, usize) {
     let options = SimOptions { light, ..SimOptions::with_noise(noise, seed) };
-    let simulation = Simulation::new(&scene(), options).unwrap();
-    let mut other = simulation.robot(1).unwrap();
-    if moves {
-        other.set_speed(Twist::new(0.25, 2.0)).unwrap();
-    }
-    // Whose program has ended keeps its speed.
-    drop(other);
-    let mut robot = simulation.robot(0).unwrap();
-    robot.set_resolution(Resolution::Qqvga).unwrap();
+    let mut robot = watcher(options, if moves { Twist::new(0.25, 2.0) } else { Twist::STOP });
     let parameters = WatchParameters::new(RobotSpec::s4().camera.unwrap().field_of_view);
     let mut watch = MotionWatch::new(parameters).unwrap();
     let (mut alarms, mut images) = (0, 0);
@@ -155,14 +157,7 @@ fn what_moves_is_seen_while_the_robot_turns() {
 /// Pairs of images with an alarm, of twenty of a room by a standing robot, under some light and noise.
 fn alarms_standing(moves: bool, light: f64, noise: f64) -> usize {
     let options = SimOptions { light, ..SimOptions::with_noise(noise, 5) };
-    let simulation = Simulation::new(&scene(), options).unwrap();
-    let mut other = simulation.robot(1).unwrap();
-    if moves {
-        other.set_speed(Twist::new(0.15, 2.2)).unwrap();
-    }
-    drop(other);
-    let mut robot = simulation.robot(0).unwrap();
-    robot.set_resolution(Resolution::Qqvga).unwrap();
+    let mut robot = watcher(options, if moves { Twist::new(0.15, 2.2) } else { Twist::STOP });
     robot.wait(0.5).unwrap();
     let mut before = robot.gray_image().unwrap();
     let mut detector = detector();

@@ -1,0 +1,61 @@
+use super::*;
+
+fn sighting(x: f64, y: f64) -> Sighting {
+    let position = Point::new(x, y);
+    let range = position.coords.norm();
+    let colour = ConeColour::Unknown;
+    Sighting { position, size: 0.1, confidence: 1.0, range, error: 0.03, colour }
+}
+
+/// A map after some looks from one place.
+fn seen(map: &mut ConeMap, from: Pose, looks: usize, places: &[(f64, f64)]) {
+    let sightings: Vec<Sighting> = places.iter().map(|&(x, y)| sighting(x, y)).collect();
+    (0..looks).for_each(|_| map.update(from, &sightings));
+}
+
+#[test]
+fn two_things_in_one_scan_are_two_cones() {
+    let mut map = ConeMap::new(ConeMapParameters::default());
+    seen(&mut map, Pose::default(), 10, &[(6.0, 1.5), (6.6, 1.5), (6.0, -1.5), (6.0, -1.3)]);
+    // The last one is too near the one before it to be another one.
+    assert_eq!(map.cones().count(), 3);
+}
+
+#[test]
+fn what_is_hidden_is_not_forgotten() {
+    for (hidden, left) in [(true, 2), (false, 1)] {
+        let mut map = ConeMap::new(ConeMapParameters::default());
+        seen(&mut map, Pose::default(), 10, &[(5.0, 1.0), (8.0, 1.9)]);
+        // From there, the second one is behind the first one, or not.
+        let before = if hidden { (5.0, 1.0) } else { (5.0, -1.0) };
+        seen(&mut map, Pose::default(), 20, &[before]);
+        let stays = map.cones().filter(|cone| (cone.position - Point::new(8.0, 1.9)).norm() < 0.1).count();
+        assert_eq!(stays + 1, left, "{hidden}");
+    }
+}
+
+#[test]
+fn cones_that_were_passed_before_tell_their_edge() {
+    let mut map = ConeMap::new(ConeMapParameters::default());
+    seen(&mut map, Pose::default(), 10, &[(6.0, -1.5)]);
+    let place = map.cones().next().unwrap().position;
+    (0..SURE).for_each(|_| map.vote_side([place].into_iter(), -1));
+    // A way around, with nothing in sight, and back by the other end of it, a little wrong.
+    for step in 1..=40 {
+        let angle = 0.157 * f64::from(step);
+        map.update(Pose::new(8.0 * math::sin(angle), 8.0 - 8.0 * math::cos(angle), angle), &[]);
+    }
+    let back = map.pose();
+    seen(&mut map, Pose::new(0.0, 0.0, 0.0), 10, &[(6.4, -1.0)]);
+    assert!(map.way > FRESH, "{back:?}");
+    let found: Vec<Cone> = map.fresh_cones().collect();
+    assert!(found.len() == 1 && found[0].colour == ConeColour::Yellow, "{found:?}");
+    assert!(!map.is_closed());
+}
+
+#[test]
+fn a_short_lap_closes_of_itself() {
+    let mut map = ConeMap::new(ConeMapParameters::default());
+    seen(&mut map, Pose::default(), 10, &[(6.0, 1.5), (6.0, -1.5)]);
+    assert!(map.close() && map.is_closed() && map.cones().count() == 2);
+}
