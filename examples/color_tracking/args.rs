@@ -22,7 +22,8 @@ JSON fields:
   home_mm                     home: true distance of the object from home at the end
   time_limit_s, picture
   scenes, reached, wrong      campaign: how many, and the seeds of those not reached
-Outcomes: reached, home, blocked, timed_out, collided, failed; with --campaign: passed, wrong."
+Outcomes: reached, home, missed (if the true distance is above 200 mm), blocked, timed_out, collided, failed; with
+--campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// What the robot does.

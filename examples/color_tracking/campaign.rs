@@ -1,7 +1,6 @@
 use roverlab::random::Stream;
 
-use super::drive::{Ended, nearest};
-use super::job::{one, wanted};
+use super::job::{Truth, one};
 use super::{Args, Job, scene};
 use crate::common::{Failure, Outcome, Report};
 use crate::driving::Conditions;
@@ -14,10 +13,6 @@ pub(crate) struct Tally {
     /// Seeds of the others.
     pub(crate) wrong: Vec<u64>,
 }
-
-/// Metres between the middles of robot and object that count as reached, and from home that count as home.
-const REACHED: f64 = 0.2;
-const HOME: f64 = 0.2;
 
 /// Drives in many scenes.
 pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
@@ -48,13 +43,6 @@ fn good(args: &Args, seed: u64) -> Result<bool, Failure> {
     let conditions =
         Conditions { seed, light, pushing: home, common: None, ..Conditions::new(&args.common, 300.0)? };
     let run = one(args, &scene, &conditions, &mut |_| {})?;
-    let Ok((Some(hue), ended)) = run.ending else { return Ok(false) };
-    let objects = wanted(&scene, hue, args.tolerance)?;
-    let places = || objects.iter().filter_map(|&index| run.objects.get(index).copied());
-    let (goal, near, distance) = if home {
-        (Ended::Home, HOME, nearest(places(), scene.robots[0].pose.position()))
-    } else {
-        (Ended::Reached, REACHED, nearest(places(), run.truth.pose.position()))
-    };
-    Ok(ended == goal && run.truth.contacts == 0 && distance.is_some_and(|distance| distance <= near))
+    let Ok((_, ended)) = run.ending else { return Ok(false) };
+    Ok(run.truth.contacts == 0 && !Truth::new(args, &scene, &run)?.verdict(ended).is_failure())
 }

@@ -1,4 +1,3 @@
-use roverlab::geometry::Point;
 use roverlab::io::Key;
 use roverlab::picture::{Mark, Picture};
 use roverlab::vision::tracking::{CameraGeometry, ColourFinder};
@@ -83,7 +82,7 @@ fn taught(scene: &Scene, conditions: &Conditions) -> Result<Option<u8>, Failure>
 }
 
 /// The objects whose colour the robot looks for, by their index.
-pub(crate) fn wanted(scene: &Scene, hue_wanted: u8, tolerance: u8) -> Result<Vec<usize>, Failure> {
+fn wanted(scene: &Scene, hue_wanted: u8, tolerance: u8) -> Result<Vec<usize>, Failure> {
     let range = HueRange::around(hue_wanted, tolerance, HueScale::Robios).map_err(Failure::input)?;
     let is_it = |object: &Object| {
         let Colour { red, green, blue } = object.kind.colour;
@@ -93,25 +92,55 @@ pub(crate) fn wanted(scene: &Scene, hue_wanted: u8, tolerance: u8) -> Result<Vec
     Ok(objects.filter(|(_, object)| is_it(object)).map(|(index, _)| index).collect())
 }
 
+/// Metres between the middles of robot and object that count as reached, and from home that count as home.
+const REACHED: f64 = 0.2;
+const HOME: f64 = 0.2;
+
+/// Where the object truly is at the end.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Truth {
+    /// Metres from the robot's middle, and from where the robot started, to the nearest object of the colour.
+    pub(crate) distance: Option<f64>,
+    pub(crate) home: Option<f64>,
+}
+
+impl Truth {
+    pub(crate) fn new(args: &Args, scene: &Scene, run: &Run<Ending>) -> Result<Self, Failure> {
+        let hue = run.ending.as_ref().ok().and_then(|ending| ending.0);
+        let objects = wanted(scene, hue.unwrap_or(RED), args.tolerance)?;
+        let places = || objects.iter().filter_map(|&index| run.objects.get(index).copied());
+        Ok(Self {
+            distance: nearest(places(), run.truth.pose.position()),
+            home: nearest(places(), scene.robots[0].pose.position()),
+        })
+    }
+
+    /// How a run ended: the robot's own opinion counts where it is true.
+    pub(crate) fn verdict(&self, ended: Ended) -> Outcome {
+        let within = |distance: Option<f64>, limit| distance.is_some_and(|distance| distance <= limit);
+        match ended {
+            Ended::Reached if within(self.distance, REACHED) => Outcome::verdict("reached"),
+            Ended::Home if within(self.home, HOME) => Outcome::verdict("home"),
+            Ended::Reached | Ended::Home => Outcome::failure("missed"),
+            Ended::Blocked => Outcome::failure("blocked"),
+            Ended::TimedOut => Outcome::failure("timed_out"),
+        }
+    }
+}
+
+/// Red on RoBIOS's scale.
+const RED: u8 = 42;
+
 fn report(args: &Args, scene: &Scene, run: &Run<Ending>) -> Result<Report, Failure> {
-    let report = run.report(|&(_, ended)| match ended {
-        Ended::Reached => Outcome::verdict("reached"),
-        Ended::Home => Outcome::verdict("home"),
-        Ended::Blocked => Outcome::failure("blocked"),
-        Ended::TimedOut => Outcome::failure("timed_out"),
-    });
-    let taught = run.ending.as_ref().ok().and_then(|ending| ending.0);
-    let objects = wanted(scene, taught.unwrap_or(42), args.tolerance)?;
-    let places: Vec<Point> = objects.iter().filter_map(|&index| run.objects.get(index).copied()).collect();
-    let home = scene.robots[0].pose.position();
-    let distance = nearest(places.iter().copied(), run.truth.pose.position());
-    let home = nearest(places, home).filter(|_| args.job == Job::Home);
+    let truth = Truth::new(args, scene, run)?;
+    let report = run.report(|&(_, ended)| truth.verdict(ended));
+    let home = truth.home.filter(|_| args.job == Job::Home);
     Ok(report
         .field("job", args.job.name())
         .field("method", args.method.name())
         .field("light", args.light)
-        .field("hue", taught)
-        .field("distance_mm", distance.map(millimetres))
+        .field("hue", run.ending.as_ref().ok().and_then(|ending| ending.0))
+        .field("distance_mm", truth.distance.map(millimetres))
         .field("home_mm", home.map(millimetres)))
 }
 

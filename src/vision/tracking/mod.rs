@@ -5,6 +5,7 @@ mod finder;
 mod home;
 mod observation;
 mod steering;
+mod surroundings;
 #[cfg(test)]
 mod tests;
 mod tracker;
