@@ -25,6 +25,7 @@ A definition says what is meant where the book and OpenCV differ:
   saturation     255 - 255 min / I                                255 (max - min) / max
   intensity      (R + G + B) / 3                                  max
   hue_match      255-hue circle of the book's Program 11.9        180-hue circle
+  hough_prob...  pixels vote in an order drawn by --seed          OpenCV's order, and its rule of votes taken back
 With --smooth, --min-saturation and --min-intensity either can be had with both.
 
 JSON fields:
@@ -34,7 +35,7 @@ JSON fields:
   lines                       hough: [{rho, theta_deg, votes}]; hough_probabilistic: [[x0, y0, x1, y1]]
   blobs                       blobs: [{area, x, y, min, max}]
   columns, rows               projections: the sums
-  descriptor_length, descriptor_digest   hog
+  descriptor_length, descriptor_digest   hog; with --descriptor, its numbers in `descriptor`
   frames                      live: images shown
 Outcomes: filtered, shown, collided, failed."
 )]
@@ -72,7 +73,7 @@ pub(crate) struct Args {
     pub(crate) threshold: Option<u32>,
 
     /// Width of a Gaussian in pixels; without it the fixed weights of its size.
-    #[arg(long, value_name = "F")]
+    #[arg(long, value_name = "F", allow_hyphen_values = true)]
     pub(crate) sigma: Option<f64>,
 
     /// Smooth first by a Gaussian of this size: 0, 3, 5 or 7 [canny by the book: 7, else 0].
@@ -103,7 +104,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N")]
     pub(crate) min_intensity: Option<u8>,
 
-    /// hue: by the book's formulas instead of RoBIOS's whole numbers.
+    /// hue: by the book's formulas instead of RoBIOS's whole numbers, every colour unless a least one is given.
     #[arg(long)]
     pub(crate) exact: bool,
 
@@ -116,7 +117,7 @@ pub(crate) struct Args {
     pub(crate) angles: u16,
 
     /// hough: pixels between two distances.
-    #[arg(long, value_name = "F", default_value_t = 1.0)]
+    #[arg(long, value_name = "F", default_value_t = 1.0, allow_hyphen_values = true)]
     pub(crate) rho: f64,
 
     /// `hough_probabilistic`: pixels that a line reaches at least.
@@ -126,6 +127,10 @@ pub(crate) struct Args {
     /// `hough_probabilistic`: pixels that may be missing in a line.
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub(crate) max_gap: usize,
+
+    /// hog: the whole descriptor among the JSON fields.
+    #[arg(long)]
+    pub(crate) descriptor: bool,
 
     /// blobs: pixels of the smallest.
     #[arg(long, value_name = "N", default_value_t = 20)]
