@@ -2,8 +2,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use image::RgbImage;
 
+use super::scan_memory::ScanMemory;
 use super::steering::{Exempt, Steering, directions, nearest, obstacles};
-use super::surroundings::Surroundings;
+use super::tracker::OBJECT;
 use super::{ColourFinder, ColourObservation, ColourTracker, TrackerParameters};
 use crate::geometry::{Point, Pose, Twist, Vector, angle_difference, direction, math, normalize_angle};
 use crate::io::{self, Camera, Clock, Drive, ErrorKind, Lidar, LidarScan, Resolution};
@@ -43,9 +44,6 @@ impl Default for HomeParameters {
         }
     }
 }
-
-/// Metres around the object's middle within which what the lidar sees is the object.
-const OBJECT: f64 = 0.09;
 
 /// What a [`PushHome`] is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -91,7 +89,7 @@ pub struct PushHome {
     /// Metres from the object's middle to what the lidar meets.
     size: f64,
     lost: f64,
-    surroundings: Surroundings,
+    memory: ScanMemory,
     /// What knows better than odometry where the robot is.
     matcher: ScanMatcher,
     points: Vec<Point>,
@@ -108,7 +106,7 @@ impl PushHome {
             object: home,
             size: 0.03,
             lost: 0.0,
-            surroundings: Surroundings::default(),
+            memory: ScanMemory::default(),
             matcher: ScanMatcher::new(),
             points: Vec::new(),
         }
@@ -135,7 +133,7 @@ impl PushHome {
         }
         self.look(seen);
         let exempt = Exempt { place: self.object, reach: OBJECT };
-        self.surroundings.see(seen.scan, seen.pose, seen.time, exempt);
+        self.memory.see(seen.scan, seen.pose, seen.time, exempt);
         if (self.object - self.home).norm() <= self.parameters.near {
             return Ok(None);
         }
@@ -161,19 +159,17 @@ impl PushHome {
         let place = seen.pose.to_local(self.object);
         let bearing = math::atan2(place.y, place.x);
         let half = math::asin((0.06 / place.coords.norm()).min(1.0));
+        // Noise may put what is touched right into the robot's middle, which is in no direction.
+        let unit = |point: Point| point.coords.try_normalize(f64::MIN_POSITIVE);
         let cluster = |near: Point| {
-            let (mut sum, mut count) = (Vector::zeros(), 0.0);
-            for point in seen.scan.points().filter(|point| (point - near).norm() < 0.05) {
-                // Noise may put what is touched right into the robot's middle, which is in no direction.
-                sum += point.coords.try_normalize(f64::MIN_POSITIVE).unwrap_or_default();
-                count += 1.0;
-            }
-            (count > 0.0).then(|| (near.coords.norm(), sum))
+            let points = seen.scan.points().filter(|point| (point - near).norm() < 0.05);
+            let sum: Vector = points.filter_map(unit).sum();
+            sum.try_normalize(f64::MIN_POSITIVE).map(|towards| (near.coords.norm(), towards))
         };
         let met = nearest(seen.scan, bearing, half.max(0.15)).filter(|met| (met - place).norm() < 0.12);
         match met.and_then(cluster) {
             Some((range, towards)) => {
-                let middle = Point::origin() + towards.normalize() * (range + self.size);
+                let middle = Point::origin() + towards * (range + self.size);
                 self.object = seen.pose.to_world(middle);
                 self.lost = 0.0;
             }
@@ -197,7 +193,7 @@ impl PushHome {
         let straight = math::atan2(way.y, way.x);
         let margin = self.parameters.clearance;
         let steering = Steering { margin, ..self.steering() };
-        self.surroundings.from(self.object, &mut self.points);
+        self.memory.from(self.object, &mut self.points);
         let (ahead, behind) = (way.norm().min(self.parameters.foresight), self.parameters.round);
         let is_free = |angle: f64, reach| steering.free(&self.points, angle, reach) >= reach;
         let mut free =

@@ -4,8 +4,8 @@
 mod finder;
 mod home;
 mod observation;
+mod scan_memory;
 mod steering;
-mod surroundings;
 #[cfg(test)]
 mod tests;
 mod tracker;

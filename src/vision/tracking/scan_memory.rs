@@ -7,7 +7,7 @@ use crate::io::LidarScan;
 /// What the lidar has met of late, also where something hides it now: whoever pushes a thing sees little of what is behind
 /// it.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Surroundings {
+pub(super) struct ScanMemory {
     /// One point a cell, in odometry's frame, and when it was seen last.
     cells: BTreeMap<(i32, i32), (Point, f64)>,
 }
@@ -18,7 +18,7 @@ const FARTHEST: f64 = 2.5;
 /// Seconds for which a point is kept.
 const MEMORY: f64 = 60.0;
 
-impl Surroundings {
+impl ScanMemory {
     /// Takes in a scan, without what is exempt in odometry's frame, and forgets what is old or belongs to that.
     pub(super) fn see(&mut self, scan: &LidarScan, pose: Pose, time: f64, exempt: Exempt) {
         let near = scan.points().filter(|point| point.coords.norm() < FARTHEST);
