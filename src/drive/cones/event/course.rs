@@ -74,22 +74,13 @@ impl EventCourse {
         Self::new(Event::Skidpad, layout, points, timed)
     }
 
-    fn new(
-        event: Event,
-        layout: EventLayout,
-        points: Vec<Point>,
-        timed: Vec<[usize; 2]>,
-    ) -> Option<Self> {
-        let straight = layout.shape.half_width();
+    fn new(event: Event, layout: EventLayout, points: Vec<Point>, timed: Vec<[usize; 2]>) -> Option<Self> {
         let rows = points.iter().map(|point| {
-            let sides = match layout.shape {
-                EventShape::Eight { inner, outer, .. } if point.y != 0.0 => {
-                    let (near, far) = (0.5 * (outer - inner), 0.5 * (outer - inner));
-                    if point.y < 0.0 { [far, near] } else { [near, far] }
-                }
-                _ => [straight; 2],
+            let side = match layout.shape {
+                EventShape::Eight { inner, outer, .. } if point.y != 0.0 => 0.5 * (outer - inner),
+                _ => layout.shape.half_width(),
             };
-            (layout.pose.to_world(*point), sides[0], sides[1])
+            (layout.pose.to_world(*point), side, side)
         });
         let corridor = Corridor::open(&rows.collect::<Vec<_>>()).ok()?;
         Some(Self { event, layout, corridor, timed })

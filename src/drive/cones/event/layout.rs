@@ -89,11 +89,8 @@ impl EventShape {
         let outwards = arm / distance;
         let by_apart = -outwards.y.copysign(outwards.y * place.y);
         let circles = [(inner, [by_apart, -1.0, 0.0]), (outer, [by_apart, 0.0, -1.0])];
-        let circles = circles.map(|(radius, by_shape)| Edge {
-            off: distance - radius,
-            by_place: outwards,
-            by_shape,
-        });
+        let circles =
+            circles.map(|(radius, by_shape)| Edge { off: distance - radius, by_place: outwards, by_shape });
         let nearer = |a: Edge, b: Edge| if b.off.abs() < a.off.abs() { b } else { a };
         let nearest = nearer(circles[0], circles[1]);
         if place.x.abs() > LANES { nearer(nearest, row([-1.0, 1.0, 0.0])) } else { nearest }
@@ -198,9 +195,14 @@ impl EventLayout {
         let fewest = if matches!(self.shape, EventShape::Strip { .. }) { 2 } else { 4 };
         let at_edge = |cone: &&Cone| self.off(cone.position).abs() < AT_EDGE;
         let sides = [1.0, -1.0].map(|side| {
-            cones.iter().filter(at_edge).filter(|cone| side * self.pose.to_local(cone.position).y > 0.0).count()
+            cones
+                .iter()
+                .filter(at_edge)
+                .filter(|cone| side * self.pose.to_local(cone.position).y > 0.0)
+                .count()
         });
-        sides.iter().all(|&count| count >= fewest) && (sides[0] + sides[1]) as f64 >= SHARE * cones.len() as f64
+        sides.iter().all(|&count| count >= fewest)
+            && (sides[0] + sides[1]) as f64 >= SHARE * cones.len() as f64
     }
 
     /// Follows the cones of a map, whose frame drifts.

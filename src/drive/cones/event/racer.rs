@@ -251,7 +251,8 @@ impl EventRacer {
             let local = pose.to_local(cone.position);
             local.y.abs() > self.beside() || !(0.0..outline.nose + 2.0).contains(&local.x)
         });
-        let creeps = self.time >= 2.0 * LOOKS && self.blind == 0.0 && free && self.phase == EventPhase::Looking;
+        let creeps =
+            self.time >= 2.0 * LOOKS && self.blind == 0.0 && free && self.phase == EventPhase::Looking;
         if creeps { Twist::new(CREEP, 0.0) } else { Twist::default() }
     }
 
@@ -261,10 +262,7 @@ impl EventRacer {
     }
 
     /// The line in the frame of a layout, with its speeds.
-    fn plan(
-        &self,
-        shape: EventShape,
-    ) -> Result<(Vec<Point>, SpeedProfile), crate::drive::cones::PlanError> {
+    fn plan(&self, shape: EventShape) -> Result<(Vec<Point>, SpeedProfile), crate::drive::cones::PlanError> {
         let p = &self.parameters;
         // The line is that of a point behind the nose.
         let behind = p.outline.nose - p.outline.ahead;

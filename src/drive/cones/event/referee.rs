@@ -37,9 +37,9 @@ impl EventReferee {
 
     /// Whether all times were taken, and the car is before the end of the lane behind the finish.
     pub fn is_complete(&self) -> bool {
-        let beyond = self.last.is_some_and(|(passed, _)| {
-            passed >= self.course.corridor().stations().len() as f64 - 1.0
-        });
+        let beyond = self
+            .last
+            .is_some_and(|(passed, _)| passed >= self.course.corridor().stations().len() as f64 - 1.0);
         !beyond && self.verdict.lap_times.len() == self.course.timed().len()
     }
 
