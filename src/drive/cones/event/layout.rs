@@ -111,8 +111,9 @@ const AT_EDGE: f64 = 0.4;
 const GATE: f64 = 0.8;
 /// Metres by which cones of an edge stand beside it, and beyond which they count less.
 const PLACED: (f64, f64) = (0.1, 0.3);
-/// The share of all cones, and of those that are on each hand, that stand at edges.
+/// The share of all cones that stands at edges, and how many they are at least.
 const SHARE: f64 = 0.7;
+const FEWEST: usize = 3;
 /// Metres, metres and radians by which a layout may move from look to look in the frame of a map that drifts.
 const MOVES: [f64; 3] = [0.05, 0.05, 0.01];
 
@@ -147,7 +148,7 @@ impl EventLayout {
             let ahead = found.pose.to_local(car.position()).x;
             found.pose = found.pose.compose(&Pose::new(ahead, 0.0, 0.0));
         }
-        found.fits(cones).then_some(found)
+        (found.fits(cones) && found.has_both_hands(cones)).then_some(found)
     }
 
     /// Layouts that a car which stands before the start may have around it.
@@ -190,19 +191,24 @@ impl EventLayout {
         self.shape.edge(self.pose.to_local(place)).off
     }
 
-    /// Whether most cones stand at the edges, and some on each hand.
+    /// Whether most of some cones stand at the edges.
     pub(super) fn fits(&self, cones: &[Cone]) -> bool {
+        let count = self.at_edges(cones).count();
+        count >= FEWEST && count as f64 >= SHARE * cones.len() as f64
+    }
+
+    fn at_edges<'c>(&self, cones: &'c [Cone]) -> impl Iterator<Item = &'c Cone> {
+        let layout = *self;
+        cones.iter().filter(move |cone| layout.off(cone.position).abs() < AT_EDGE)
+    }
+
+    /// Whether there are some of them on each hand: a single row may be the edge of anything.
+    fn has_both_hands(&self, cones: &[Cone]) -> bool {
         let fewest = if matches!(self.shape, EventShape::Strip { .. }) { 2 } else { 4 };
-        let at_edge = |cone: &&Cone| self.off(cone.position).abs() < AT_EDGE;
-        let sides = [1.0, -1.0].map(|side| {
-            cones
-                .iter()
-                .filter(at_edge)
-                .filter(|cone| side * self.pose.to_local(cone.position).y > 0.0)
-                .count()
-        });
-        sides.iter().all(|&count| count >= fewest)
-            && (sides[0] + sides[1]) as f64 >= SHARE * cones.len() as f64
+        let on = |side: f64| {
+            self.at_edges(cones).filter(|cone| side * self.pose.to_local(cone.position).y > 0.0).count()
+        };
+        on(1.0) >= fewest && on(-1.0) >= fewest
     }
 
     /// Follows the cones of a map, whose frame drifts.

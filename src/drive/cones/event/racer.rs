@@ -38,8 +38,9 @@ impl Default for EventParameters {
     fn default() -> Self {
         let RacerParameters { limits, outline, map, tracker, period, .. } = RacerParameters::default();
         Self {
-            limits,
-            outline: CarOutline { room: 0.4, ..outline },
+            // A circle that stays the same asks less of steering and tyres than bends that come and go.
+            limits: CarLimits { grip: 10.6, ..limits },
+            outline: CarOutline { room: 0.3, ..outline },
             map: ConeMapParameters { farthest: 20.0, ..map },
             tracker,
             strip: 75.3,
