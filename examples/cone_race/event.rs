@@ -71,9 +71,10 @@ fn drive<R: RobotIo + ?Sized>(
     })
 }
 
-/// The line that was followed, in the frame of the world.
+/// The line that was followed, from the start on, in the frame of the world.
 fn line(course: &Course, racer: &EventRacer) -> Vec<Point> {
     let Some((layout, line)) = racer.layout().zip(racer.line()) else { return Vec::new() };
     let place = course.start.compose(&layout.pose);
-    line.points().iter().map(|point| place.to_world(*point)).collect()
+    let points = line.points().iter().map(|point| place.to_world(*point));
+    points.skip_while(|point| course.start.to_local(*point).x < 0.0).collect()
 }

@@ -22,8 +22,8 @@ const STRIP: (f64, f64) = (75.0, 25.0);
 const TO_START: f64 = 0.3;
 /// Metres from the nose, ahead and behind, within which the gate of the start stands.
 const GATE: f64 = 8.0;
-/// Metres of a course before the car at its start.
-const BEHIND: f64 = 4.0;
+/// Metres of a course behind the rear axle of a car at its start.
+const BEHIND: f64 = 1.0;
 
 impl EventCourse {
     /// The course among the cones of a track, for a car with an outline. `None` for tracks of laps, and where the cones stand as
@@ -67,8 +67,9 @@ impl EventCourse {
         let along = |place: Point| layout.pose.to_local(place).x;
         let box_end = track.of(ConeColour::Orange).map(along).fold(f64::NEG_INFINITY, f64::max);
         let ends = [along(start.position()) - BEHIND, if box_end > 10.0 { box_end } else { STRIP.1 }];
-        let EventShape::Eight { apart, inner, outer } = layout.shape else { return None };
-        let points = line::eight(apart, 0.5 * (inner + outer), ends);
+        let EventShape::Eight { apart, .. } = layout.shape else { return None };
+        // Circles that meet at the origin.
+        let points = line::eight(apart, apart, ends);
         let lines = crossings(ends);
         let timed = vec![[lines[1], lines[2]], [lines[3], lines[4]]];
         Self::new(Event::Skidpad, layout, points, timed)
@@ -76,11 +77,12 @@ impl EventCourse {
 
     fn new(event: Event, layout: EventLayout, points: Vec<Point>, timed: Vec<[usize; 2]>) -> Option<Self> {
         let rows = points.iter().map(|point| {
-            let side = match layout.shape {
-                EventShape::Eight { inner, outer, .. } if point.y != 0.0 => 0.5 * (outer - inner),
-                _ => layout.shape.half_width(),
+            let sides = match layout.shape {
+                EventShape::Eight { apart, inner, outer } if point.y > 0.0 => [apart - inner, outer - apart],
+                EventShape::Eight { apart, inner, outer } if point.y < 0.0 => [outer - apart, apart - inner],
+                _ => [layout.shape.half_width(); 2],
             };
-            (layout.pose.to_world(*point), side, side)
+            (layout.pose.to_world(*point), sides[0], sides[1])
         });
         let corridor = Corridor::open(&rows.collect::<Vec<_>>()).ok()?;
         Some(Self { event, layout, corridor, timed })

@@ -111,8 +111,8 @@ const AT_EDGE: f64 = 0.4;
 const GATE: f64 = 0.8;
 /// Metres by which cones of an edge stand beside it, and beyond which they count less.
 const PLACED: (f64, f64) = (0.1, 0.3);
-/// The share of all cones that stands at edges, and how many they are at least.
-const SHARE: f64 = 0.7;
+/// The share of all cones that stands at edges where a layout is found, and as long as it is followed; how many they are at least.
+const SHARES: [f64; 2] = [0.6, 0.4];
 const FEWEST: usize = 3;
 /// Metres, metres and radians by which a layout may move from look to look in the frame of a map that drifts.
 const MOVES: [f64; 3] = [0.05, 0.05, 0.01];
@@ -148,7 +148,7 @@ impl EventLayout {
             let ahead = found.pose.to_local(car.position()).x;
             found.pose = found.pose.compose(&Pose::new(ahead, 0.0, 0.0));
         }
-        (found.fits(cones) && found.has_both_hands(cones)).then_some(found)
+        (found.holds(cones, SHARES[0]) && found.has_both_hands(cones)).then_some(found)
     }
 
     /// Layouts that a car which stands before the start may have around it.
@@ -191,10 +191,14 @@ impl EventLayout {
         self.shape.edge(self.pose.to_local(place)).off
     }
 
-    /// Whether most of some cones stand at the edges.
+    /// Whether enough of some cones stand at the edges for a layout that was found.
     pub(super) fn fits(&self, cones: &[Cone]) -> bool {
+        self.holds(cones, SHARES[1])
+    }
+
+    fn holds(&self, cones: &[Cone], share: f64) -> bool {
         let count = self.at_edges(cones).count();
-        count >= FEWEST && count as f64 >= SHARE * cones.len() as f64
+        count >= FEWEST && count as f64 >= share * cones.len() as f64
     }
 
     fn at_edges<'c>(&self, cones: &'c [Cone]) -> impl Iterator<Item = &'c Cone> {
