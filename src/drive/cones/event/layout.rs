@@ -261,6 +261,9 @@ mod tests {
     use proptest::prelude::*;
     use std::f64::consts::TAU;
 
+    /// By which a number is changed to see what that does.
+    const STEP: f64 = 1e-6;
+
     fn eight(apart: f64, inner: f64, outer: f64) -> Vec<Cone> {
         let mut cones = Vec::new();
         for side in [1.0, -1.0] {
@@ -304,7 +307,6 @@ mod tests {
             let place = Point::new(x, y);
             let numbers = EventShape::EIGHT.numbers();
             let edge = EventShape::EIGHT.edge(place);
-            const STEP: f64 = 1e-6;
             for axis in 0..3 {
                 let mut other = numbers;
                 other[axis] += STEP;

@@ -1,6 +1,7 @@
 use super::layout::{EventLayout, EventShape};
 use super::line;
 use crate::drive::cones::cone::{Cone, ConeColour};
+use crate::drive::cones::error::PlanError;
 use crate::drive::cones::map::{ConeMap, ConeMapParameters};
 use crate::drive::cones::profile::{CarLimits, SpeedProfile};
 use crate::drive::cones::racer::RacerParameters;
@@ -263,7 +264,7 @@ impl EventRacer {
     }
 
     /// The line in the frame of a layout, with its speeds.
-    fn plan(&self, shape: EventShape) -> Result<(Vec<Point>, SpeedProfile), crate::drive::cones::PlanError> {
+    fn plan(&self, shape: EventShape) -> Result<(Vec<Point>, SpeedProfile), PlanError> {
         let p = &self.parameters;
         // The line is that of a point behind the nose.
         let behind = p.outline.nose - p.outline.ahead;
