@@ -59,7 +59,7 @@ impl EventCourse {
         let points = straight(-nose - BEHIND, box_end);
         let station = |x: f64| points.partition_point(|point| point.x < x - 1e-9);
         let timed = vec![[station(begin), station(end)]];
-        Self::new(Event::Acceleration, layout, points, timed)
+        Self::new(Event::Acceleration, layout, &points, timed)
     }
 
     fn skidpad(track: &ConeTrack, start: Pose) -> Option<Self> {
@@ -72,10 +72,10 @@ impl EventCourse {
         let points = line::eight(apart, apart, ends);
         let lines = crossings(ends);
         let timed = vec![[lines[1], lines[2]], [lines[3], lines[4]]];
-        Self::new(Event::Skidpad, layout, points, timed)
+        Self::new(Event::Skidpad, layout, &points, timed)
     }
 
-    fn new(event: Event, layout: EventLayout, points: Vec<Point>, timed: Vec<[usize; 2]>) -> Option<Self> {
+    fn new(event: Event, layout: EventLayout, points: &[Point], timed: Vec<[usize; 2]>) -> Option<Self> {
         let rows = points.iter().map(|point| {
             let sides = match layout.shape {
                 EventShape::Eight { apart, inner, outer } if point.y > 0.0 => [apart - inner, outer - apart],

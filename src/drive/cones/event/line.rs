@@ -88,7 +88,7 @@ mod tests {
         let crossings = crossings(ends);
         // In the middle of each lap it is on the far side of its circle.
         for (lap, side) in [(0, -1.0), (1, -1.0), (2, 1.0), (3, 1.0)] {
-            let far = smooth[(crossings[lap] + crossings[lap + 1]) / 2];
+            let far = smooth[usize::midpoint(crossings[lap], crossings[lap + 1])];
             assert!((far - Point::new(0.0, side * (9.125 + 8.8))).norm() < 0.03, "{lap}: {far:?}");
         }
         // To the right first, and forwards.

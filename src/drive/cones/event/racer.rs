@@ -115,17 +115,17 @@ const END: f64 = 2.0;
 impl EventRacer {
     /// A car before the start of an acceleration.
     pub fn acceleration(parameters: EventParameters) -> Self {
-        Self::new(EventShape::STRIP, parameters)
+        Self::new(EventShape::STRIP, &parameters)
     }
 
     /// A car before the start of a skidpad.
     pub fn skidpad(parameters: EventParameters) -> Self {
-        Self::new(EventShape::EIGHT, parameters)
+        Self::new(EventShape::EIGHT, &parameters)
     }
 
-    fn new(event: EventShape, parameters: EventParameters) -> Self {
+    fn new(event: EventShape, parameters: &EventParameters) -> Self {
         Self {
-            parameters,
+            parameters: *parameters,
             event,
             map: ConeMap::new(parameters.map),
             reckoning: Reckoning::default(),
