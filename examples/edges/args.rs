@@ -11,8 +11,8 @@ use crate::common::CommonArgs;
     name = "edges",
     about = "Edges, colours and lines: a kernel on an image file, or live on the robot's display",
     after_help = "\
-With --input, the kernel works on an image file (PNG, PNM or BMP), and --output takes the result (by its ending .png, .pgm
-or .ppm). Without, a robot in its room turns and shows what the kernel makes of its camera's images on its display; --output
+With --input, the kernel works on an image file (PNG, PNM or BMP), and --output takes the result (by its ending .png, .pgm,
+.ppm or .bmp). Without, a robot in its room turns and shows what the kernel makes of its camera's images on its display; --output
 takes the last display.
 
 A definition says what is meant where the book and OpenCV differ:
@@ -61,15 +61,15 @@ pub(crate) struct Args {
     pub(crate) second: Option<PathBuf>,
 
     /// canny, and what works on its edges: gradient that continues an edge.
-    #[arg(long, value_name = "N", default_value_t = 50)]
+    #[arg(long, value_name = "N", default_value_t = 50, allow_hyphen_values = true)]
     pub(crate) low: u16,
 
     /// canny, and what works on its edges: gradient that starts an edge.
-    #[arg(long, value_name = "N", default_value_t = 100)]
+    #[arg(long, value_name = "N", default_value_t = 100, allow_hyphen_values = true)]
     pub(crate) high: u16,
 
     /// threshold: shades above this become white [128]; hough: votes [100, 50 for segments]; overlay: edges [50].
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threshold: Option<u32>,
 
     /// Width of a Gaussian in pixels; without it the fixed weights of its size.
@@ -81,27 +81,27 @@ pub(crate) struct Args {
     pub(crate) smooth: Option<usize>,
 
     /// Hue to look for [that of red].
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) hue: Option<u8>,
 
     /// Hues less than this away from it match.
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = value_parser!(u8).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = value_parser!(u8).range(1..), allow_hyphen_values = true)]
     pub(crate) tolerance: u8,
 
     /// First hue that matches, instead of --hue; it may be larger than the last.
-    #[arg(long, value_name = "N", requires = "hue_high")]
+    #[arg(long, value_name = "N", requires = "hue_high", allow_hyphen_values = true)]
     pub(crate) hue_low: Option<u8>,
 
     /// Last hue that matches.
-    #[arg(long, value_name = "N", requires = "hue_low")]
+    #[arg(long, value_name = "N", requires = "hue_low", allow_hyphen_values = true)]
     pub(crate) hue_high: Option<u8>,
 
     /// Least saturation of a pixel with a hue, 0 to 255 [book: 128, opencv: 0].
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) min_saturation: Option<u8>,
 
     /// Least intensity of a pixel with a hue, 0 to 255 [book: 26, opencv: 0].
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) min_intensity: Option<u8>,
 
     /// hue: by the book's formulas instead of RoBIOS's whole numbers, every colour unless a least one is given.
@@ -113,7 +113,7 @@ pub(crate) struct Args {
     pub(crate) binary: bool,
 
     /// hough: steps of the angle in half a turn.
-    #[arg(long, value_name = "N", default_value_t = 180, value_parser = value_parser!(u16).range(1..=3600))]
+    #[arg(long, value_name = "N", default_value_t = 180, value_parser = value_parser!(u16).range(1..=3600), allow_hyphen_values = true)]
     pub(crate) angles: u16,
 
     /// hough: pixels between two distances.
@@ -121,11 +121,11 @@ pub(crate) struct Args {
     pub(crate) rho: f64,
 
     /// `hough_probabilistic`: pixels that a line reaches at least.
-    #[arg(long, value_name = "N", default_value_t = 30)]
+    #[arg(long, value_name = "N", default_value_t = 30, allow_hyphen_values = true)]
     pub(crate) min_length: usize,
 
     /// `hough_probabilistic`: pixels that may be missing in a line.
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value_t = 5, allow_hyphen_values = true)]
     pub(crate) max_gap: usize,
 
     /// hog: the whole descriptor among the JSON fields.
@@ -133,11 +133,11 @@ pub(crate) struct Args {
     pub(crate) descriptor: bool,
 
     /// blobs: pixels of the smallest.
-    #[arg(long, value_name = "N", default_value_t = 20)]
+    #[arg(long, value_name = "N", default_value_t = 20, allow_hyphen_values = true)]
     pub(crate) min_area: usize,
 
     /// Runs of the kernel, of which the fastest is reported; live: images.
-    #[arg(long, value_name = "N", default_value_t = 20, value_parser = value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = value_parser!(u32).range(1..=100_000), allow_hyphen_values = true)]
     pub(crate) repeat: u32,
 
     #[command(flatten)]

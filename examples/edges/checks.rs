@@ -2,10 +2,10 @@
 
 use roverlab::vision::Error;
 
-use super::{Args, Definition};
+use super::{Args, Definition, Kernel};
 use crate::common::Failure;
 
-/// Fails for options that would mean nothing.
+/// Fails for options that contradict each other.
 pub(crate) fn check(args: &Args) -> Result<(), Failure> {
     let kernel = args.kernel.name();
     if args.kernel.thresholds_shades()
@@ -15,7 +15,10 @@ pub(crate) fn check(args: &Args) -> Result<(), Failure> {
             "--threshold: found {found}; expected 0 to 255 for --kernel {kernel}"
         )));
     }
-    if args.kernel.works_on_colours() && args.smooth.is_some_and(|size| size > 0) {
+    let colours = args.kernel.works_on_colours()
+        || args.kernel == Kernel::Blobs && !args.binary
+        || args.kernel == Kernel::Overlay && args.second.is_some();
+    if colours && args.smooth.is_some_and(|size| size > 0) {
         return Err(Failure::input(format!(
             "--smooth: found --kernel {kernel}, which works on colours; expected one that works on shades of gray"
         )));
@@ -24,6 +27,14 @@ pub(crate) fn check(args: &Args) -> Result<(), Failure> {
         return Err(Failure::input(
             "--exact: found --definition opencv; expected book, whose formulas it asks for",
         ));
+    }
+    if args.input.is_some() {
+        args.common.check_placeless("an image from --input was taken by no robot")?;
+    } else if let Some(picture) = &args.common.picture {
+        let picture = picture.display();
+        return Err(Failure::input(format!(
+            "--picture {picture}: found none of a run; expected --output FILE"
+        )));
     }
     Ok(())
 }
@@ -37,7 +48,7 @@ pub(crate) fn refused(error: &Error) -> Failure {
     };
     match option {
         Some(option) => Failure::input(format!("{option}: {error}")),
-        None => Failure::input(error),
+        None => Failure::input(format!("--kernel: {error}")),
     }
 }
 
@@ -46,9 +57,7 @@ fn option_of(parameter: &str) -> Option<&'static str> {
     Some(match parameter {
         "low threshold" => "--low",
         "step of rho" => "--rho",
-        "angles" => "--angles",
         "hue" => "--hue",
-        "hue threshold" => "--tolerance",
         "low hue" => "--hue-low",
         "high hue" => "--hue-high",
         "Gaussian sigma" => "--sigma",

@@ -24,8 +24,14 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     // What is wrong with the options shows before the robot moves.
     let (width, height) = Resolution::Qvga.dimensions();
     runner.run(&RgbImage::new(width, height), None).map_err(|error| refused(&error))?;
-    let run =
-        conditions.run(&scene, paced(common), |robot, step| show(robot, &mut runner, args.repeat, step))?;
+    let mut frames = 0;
+    let run = conditions.run(&scene, paced(common), |robot, step| {
+        let mut count = || {
+            frames += 1;
+            step();
+        };
+        show(robot, &mut runner, args.repeat, &mut count)
+    })?;
     let mut report = run.report(|_| Outcome::verdict("shown"));
     if let Ok(shown) = &run.ending
         && let Some(output) = &args.output
@@ -39,7 +45,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         .field("width", width)
         .field("height", height)
         .field("output", args.output.clone())
-        .field("frames", args.repeat);
+        .field("frames", frames);
     Ok(report)
 }
 

@@ -1,7 +1,7 @@
 //! Image processing (book, chapter 11): edges, colour, motion, lines and blobs.
 //!
-//! Every kernel has a written definition in its docs, to the bit, and is tested against a naive version of it. Kernels
-//! work on [`View`]s, borrowed 8-bit images of one ([`GrayView`]) or three ([`RgbView`]) bytes a pixel with any
+//! Every kernel has a written definition in its docs and is tested against a naive version of it, to the bit; line segments
+//! by [`SegmentDefinition::OpenCv`] against OpenCV's. Kernels work on [`View`]s, borrowed 8-bit images of one ([`GrayView`]) or three ([`RgbView`]) bytes a pixel with any
 //! distance between rows, so that a part of an image is as good as a whole one:
 //!
 //! ```

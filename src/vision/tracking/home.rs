@@ -128,10 +128,14 @@ impl PushHome {
         if self.phase == HomePhase::Finding {
             let twist = self.tracker.step(seen)?;
             let Some(target) = self.tracker.target().filter(|_| twist.is_none()) else { return Ok(twist) };
-            self.object = target;
+            (self.object, self.lost) = (target, 0.0);
             self.phase = HomePhase::Rounding;
         }
-        self.look(seen);
+        if !self.look(seen) {
+            self.phase = HomePhase::Finding;
+            self.tracker = self.tracker.anew();
+            return Ok(Some(Twist::STOP));
+        }
         let exempt = Exempt { place: self.object, reach: OBJECT };
         self.memory.see(seen.scan, seen.pose, seen.time, exempt);
         if (self.object - self.home).norm() <= self.parameters.near {
@@ -154,8 +158,8 @@ impl PushHome {
         pose
     }
 
-    /// Looks by lidar where the object is now.
-    fn look(&mut self, seen: &ColourObservation<'_>) {
+    /// Looks by lidar where the object is now. `false` when it has not been there for a second.
+    fn look(&mut self, seen: &ColourObservation<'_>) -> bool {
         let place = seen.pose.to_local(self.object);
         let bearing = math::atan2(place.y, place.x);
         let half = math::asin((0.06 / place.coords.norm()).min(1.0));
@@ -175,11 +179,7 @@ impl PushHome {
             }
             None => self.lost += self.parameters.tracker.period,
         }
-        if self.lost > 1.0 {
-            self.lost = 0.0;
-            self.phase = HomePhase::Finding;
-            self.tracker = self.tracker.anew();
-        }
+        self.lost <= 1.0
     }
 
     fn steering(&self) -> Steering {

@@ -99,6 +99,9 @@ fn wrong_images_are_refused_by_name() {
         (vec!["--hue-low", "200", "--hue-high", "10", "--definition", "opencv"], "--hue-low"),
         (vec!["--kernel", "canny", "--low", "200"], "--low"),
         (vec!["--kernel", "hough", "--rho", "-1"], "--rho"),
+        (vec!["--low", "-5"], "--low"),
+        (vec!["--picture", "edges.svg"], "--output"),
+        (vec!["--input", "some.png", "--world", "some.sim"], "--world"),
     ] {
         let (status, _, err) = run("edges", edges::work, &options);
         assert!(status == 2 && err.contains(message) && err.lines().count() == 1, "{err}");
@@ -176,6 +179,24 @@ fn a_few_scenes_of_the_colour_campaign() {
     let ended = run("color_tracking", color_tracking::work, &["--campaign", "--scenes", "6"]);
     assert_outcome(&ended, "passed");
     assert_eq!((ended.1["scenes"].as_u64(), ended.1["reached"].as_u64()), (Some(6), Some(6)));
+}
+
+#[test]
+fn campaigns_refuse_what_they_have_no_use_for() {
+    for option in
+        [&["--world", "none.sim"][..], &["--start", "1,2,3"], &["--picture", "a.svg"], &["--fault", "lost@1"]]
+    {
+        let options = [&["--campaign"], option].concat();
+        for (status, _, err) in
+            [run("color_tracking", color_tracking::work, &options), run("motion", motion::work, &options)]
+        {
+            assert!(status == 2 && err.contains(option[0]) && err.lines().count() == 1, "{err}");
+        }
+    }
+    let (status, _, err) = run("color_tracking", color_tracking::work, &["--campaign", "--light", "1"]);
+    assert!(status == 2 && err.contains("--light"), "{err}");
+    let (status, _, err) = run("color_tracking", color_tracking::work, &["--light", "0"]);
+    assert!(status == 2 && err.contains("--light"), "{err}");
 }
 
 #[test]
