@@ -88,7 +88,7 @@ pub(crate) struct Args {
     pub(crate) animation: Option<PathBuf>,
 
     /// Race on so many tracks of our own, from --seed on, and print a table.
-    #[arg(long, value_name = "TRACKS", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "TRACKS", conflicts_with = "track", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) campaign: Option<u32>,
 
     #[command(flatten)]
