@@ -1,7 +1,10 @@
 //! Loops over whole blocks of pixels, which vectorise without a rest.
 
-/// Pixels of a block: enough to fill the widest registers.
-pub(super) const BLOCK: usize = 64;
+/// Items of a block: as many as fill the widest register.
+#[inline(always)]
+pub(super) const fn block_of<T>(_: &[T]) -> usize {
+    64 / size_of::<T>()
+}
 
 /// `in_blocks!(out; a in first, b in second => expression)` writes the expression for each place of `out`, where `a` and
 /// `b` stand for the items at that place of rows that are at least as long. There may be several outputs of one length
@@ -11,21 +14,21 @@ pub(super) const BLOCK: usize = 64;
 /// which overlaps the one before; only where there is no room for one block do items come singly.
 macro_rules! in_blocks {
     ($first:ident $(, $more:ident)*; $($item:ident in $row:expr),+ => $point:expr) => {{
-        use $crate::vision::blocks::BLOCK;
+        let block = $crate::vision::blocks::block_of($first);
         let n = $first.len();
         $(let $item = &$row[..n];)+
-        if n < BLOCK {
+        if n < block {
             for x in 0..n {
                 $(let $item = $item[x];)+
                 ($first[x] $(, $more[x])*) = $point;
             }
         } else {
-            for start in (0..n).step_by(BLOCK) {
-                let start = start.min(n - BLOCK);
-                let $first = &mut $first[start..][..BLOCK];
-                $(let $more = &mut $more[start..][..BLOCK];)*
-                $(let $item = &$item[start..][..BLOCK];)+
-                for i in 0..BLOCK {
+            for start in (0..n).step_by(block) {
+                let start = start.min(n - block);
+                let $first = &mut $first[start..][..block];
+                $(let $more = &mut $more[start..][..block];)*
+                $(let $item = &$item[start..][..block];)+
+                for i in 0..block {
                     $(let $item = $item[i];)+
                     ($first[i] $(, $more[i])*) = $point;
                 }

@@ -1,5 +1,5 @@
 use super::blocks::in_blocks;
-use super::border::mirrored;
+use super::border::{Border, mirrored, stencil};
 use super::dispatch::vectorised;
 use super::{Error, GrayView, GrayViewMut};
 use crate::geometry::math;
@@ -81,13 +81,19 @@ type Sums = [u16; STRIP + 6];
 pub(super) fn smooth_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>, kernel: GaussianKernel) {
     match kernel {
         // Small whole weights keep the sums within 16 bits.
-        GaussianKernel::THREE => filter::<1, true>(input, output, [2, 1, 0, 0]),
+        GaussianKernel::THREE => stencil(input, output, Border::Mirror, binomial),
         GaussianKernel::FIVE => filter::<2, true>(input, output, [6, 4, 1, 0]),
         GaussianKernel::SEVEN => filter::<3, true>(input, output, [18, 14, 7, 2]),
         GaussianKernel { weights, size: 3 } => filter::<1, false>(input, output, weights),
         GaussianKernel { weights, size: 5 } => filter::<2, false>(input, output, weights),
         GaussianKernel { weights, .. } => filter::<3, false>(input, output, weights),
     }
+}
+
+/// 3 x 3 pixels with weights of 16ths.
+#[inline(always)]
+fn binomial([[nw, n, ne], [w, c, e], [sw, s, se]]: [[u16; 3]; 3]) -> u16 {
+    (nw + 2 * w + sw + 2 * (n + 2 * c + s) + (ne + 2 * e + se) + 8) >> 4
 }
 
 /// Sums up columns, then rows of those sums, strip by strip. `SMALL` weights are those of the kernels with a name.
@@ -114,7 +120,6 @@ fn filter<const R: usize, const SMALL: bool>(
             let out = &mut output.row_mut(y)[start..end];
             let sums = &sums[..end - start + 2 * R];
             match (SMALL, R) {
-                (true, 1) => across_three(sums, out),
                 (true, 2) => across_five(sums, out),
                 (true, _) => across_seven(sums, out),
                 (false, _) => across_32::<R>(sums, out, weights.map(u32::from)),
@@ -175,11 +180,6 @@ fn mirror_columns<const R: usize>(sums: &mut Sums, start: usize, end: usize, wid
     for x in width..end + R {
         sums[x + R - start] = sums[column(x as isize)];
     }
-}
-
-#[inline(always)]
-fn across_three(sums: &[u16], out: &mut [u8]) {
-    in_blocks!(out; w in sums, c in sums[1..], e in sums[2..] => ((2 * c + w + e + 8) >> 4) as u8);
 }
 
 #[inline(always)]

@@ -24,24 +24,30 @@ pub fn laplace_saturated_into(
 
 /// Four times the centre, and the sum of the neighbours.
 #[inline(always)]
-fn terms([[_, n, _], [w, c, e], [_, s, _]]: [[u8; 3]; 3]) -> (u16, u16) {
-    (4 * u16::from(c), u16::from(n) + u16::from(s) + u16::from(w) + u16::from(e))
+fn terms([[_, n, _], [w, c, e], [_, s, _]]: [[u16; 3]; 3]) -> (u16, u16) {
+    (4 * c, n + s + w + e)
+}
+
+#[inline(always)]
+fn magnitude(pixels: [[u16; 3]; 3]) -> u16 {
+    let (centre, neighbours) = terms(pixels);
+    centre.abs_diff(neighbours).min(255)
+}
+
+#[inline(always)]
+fn excess(pixels: [[u16; 3]; 3]) -> u16 {
+    let (centre, neighbours) = terms(pixels);
+    neighbours.saturating_sub(centre).min(255)
 }
 
 #[inline(always)]
 pub(super) fn absolute_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>, border: Border) {
-    stencil(input, output, border, |pixels| {
-        let (centre, neighbours) = terms(pixels);
-        centre.abs_diff(neighbours).min(255) as u8
-    });
+    stencil(input, output, border, magnitude);
 }
 
 #[inline(always)]
 pub(super) fn saturated_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>, border: Border) {
-    stencil(input, output, border, |pixels| {
-        let (centre, neighbours) = terms(pixels);
-        neighbours.saturating_sub(centre).min(255) as u8
-    });
+    stencil(input, output, border, excess);
 }
 
 vectorised! {

@@ -39,28 +39,53 @@ pub fn sobel_l2_into(
     Ok(())
 }
 
+/// Half the sum and half the difference of `dx` and `dy`, each of which takes fewer steps than `dx` or `dy` does.
+///
+/// `|dx| + |dy|` is the larger of `|dx + dy|` and `|dx - dy|`, and `dx² + dy²` is half the sum of their squares.
 #[inline(always)]
-fn gradient([[nw, n, ne], [w, _, e], [sw, s, se]]: [[u8; 3]; 3]) -> (i16, i16) {
-    let (nw, n, ne) = (i16::from(nw), i16::from(n), i16::from(ne));
-    let (sw, s, se) = (i16::from(sw), i16::from(s), i16::from(se));
-    let (w, e) = (i16::from(w), i16::from(e));
-    ((ne - nw) + 2 * (e - w) + (se - sw), (sw - nw) + 2 * (s - n) + (se - ne))
+fn diagonals(pixels: [[u16; 3]; 3]) -> (i16, i16) {
+    let [[nw, n, ne], [w, _, e], [sw, s, se]] = pixels;
+    let (nw, n, ne) = (nw.cast_signed(), n.cast_signed(), ne.cast_signed());
+    let (sw, s, se) = (sw.cast_signed(), s.cast_signed(), se.cast_signed());
+    let (w, e) = (w.cast_signed(), e.cast_signed());
+    let (across, down) = (e - w, s - n);
+    ((se - nw) + (across + down), (ne - sw) + (across - down))
 }
 
 #[inline(always)]
-fn sum(pixels: [[u8; 3]; 3]) -> u16 {
-    let (dx, dy) = gradient(pixels);
-    dx.unsigned_abs() + dy.unsigned_abs()
+fn sum(pixels: [[u16; 3]; 3]) -> u16 {
+    let (a, b) = diagonals(pixels);
+    2 * a.unsigned_abs().max(b.unsigned_abs())
 }
 
 #[inline(always)]
-fn root(pixels: [[u8; 3]; 3], largest: i32, scale: f32) -> u8 {
-    let (dx, dy) = gradient(pixels);
-    let (dx, dy) = (i32::from(dx), i32::from(dy));
-    let length = ((dx * dx + dy * dy).min(largest * largest) as f32).sqrt() * scale;
+fn sum_in_full(pixels: [[u16; 3]; 3]) -> u16 {
+    sum(pixels).min(255)
+}
+
+#[inline(always)]
+fn third_of_sum(pixels: [[u16; 3]; 3]) -> u16 {
+    (sum(pixels) / 3).min(255)
+}
+
+#[inline(always)]
+fn root(pixels: [[u16; 3]; 3], largest: i32, scale: f32) -> u16 {
+    let (a, b) = diagonals(pixels);
+    let (a, b) = (i32::from(a), i32::from(b));
+    let length = ((2 * (a * a + b * b)).min(largest * largest) as f32).sqrt() * scale;
     // From 2^23 on, floats are whole numbers: adding that much rounds to the nearest and puts it in the lowest bits.
     // The root of a whole number, or a third of it, never lies halfway between two.
-    (length + 8_388_608.0).to_bits() as u8
+    (length + 8_388_608.0).to_bits() as u16
+}
+
+#[inline(always)]
+fn root_in_full(pixels: [[u16; 3]; 3]) -> u16 {
+    root(pixels, 255, 1.0)
+}
+
+#[inline(always)]
+fn third_of_root(pixels: [[u16; 3]; 3]) -> u16 {
+    root(pixels, 765, 1.0 / 3.0)
 }
 
 #[inline(always)]
@@ -71,8 +96,8 @@ pub(super) fn sums_portable(
     border: Border,
 ) {
     match scale {
-        SobelScale::Full => stencil(input, output, border, |pixels| sum(pixels).min(255) as u8),
-        SobelScale::Third => stencil(input, output, border, |pixels| (sum(pixels) / 3).min(255) as u8),
+        SobelScale::Full => stencil(input, output, border, sum_in_full),
+        SobelScale::Third => stencil(input, output, border, third_of_sum),
     }
 }
 
@@ -84,8 +109,8 @@ pub(super) fn euclidean_portable(
     border: Border,
 ) {
     match scale {
-        SobelScale::Full => stencil(input, output, border, |pixels| root(pixels, 255, 1.0)),
-        SobelScale::Third => stencil(input, output, border, |pixels| root(pixels, 765, 1.0 / 3.0)),
+        SobelScale::Full => stencil(input, output, border, root_in_full),
+        SobelScale::Third => stencil(input, output, border, third_of_root),
     }
 }
 
