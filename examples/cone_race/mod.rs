@@ -3,6 +3,7 @@
 mod campaign;
 mod drawing;
 mod event;
+mod log;
 mod race;
 
 use std::path::{Path, PathBuf};
@@ -31,8 +32,11 @@ An acceleration strip or a skidpad, which the file's cones stand for, is driven 
 sees. An acceleration has one time, from line to line; it ends standing in the lane behind the finish. A skidpad has two,
 of the second lap to the right and of the second one to the left. The car's nose starts and stops the clock.
 
+A log of a drive (JSON, as of ft-fsd-path-planning) holds what a car's own map was from moment to moment. Nothing is raced: in
+each of its frames the lane is looked for, and compared with where the car then drove. With --sensors lidar without colours.
+
 JSON fields:
-  event                                                laps, acceleration or skidpad
+  event                                                laps, acceleration, skidpad, or log
   laps, cones_hit, off_course, lap_times_s, total_s    of the race; the total is with penalties, the laps of an event are
                                                        its complete runs
   track_length_m, cones                                of the track
@@ -45,10 +49,13 @@ JSON fields:
                                                        layout was found
   other_cones_hit, touched                             with a second car
   tracks, clean, clean_share, mean_lap_over_optimum    of a campaign
+  frames, planned, wrong_side                          of a log: with a lane; and with one that has a cone of a colour on the
+                                                       wrong side
+  from_driven_rms_m, from_driven_most_m                of a log: distance of the lane from the next 8 m that were driven
   picture, animation
 Outcomes: finished, penalised, timed_out, failed, impassable (the car does not fit between the cones, which is told before
 the race), lost (no cones that fit the event), missed (an event's car stands, but not in the lane behind its finish), raced (a
-campaign)."
+campaign), planned (a log)."
 )]
 pub(crate) struct Args {
     /// Track to race on [default: one of our own].
@@ -148,7 +155,10 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     let published = args.line.as_ref().map(|file| published(common, file)).transpose()?;
     let mut course = match &args.track {
-        Some(path) => Course::for_its_event(common, path)?,
+        Some(path) => match Course::read(common, path)? {
+            TrackFile::Log(frames) => return log::follow(args, &frames),
+            file => Course::for_its_event(file, path)?,
+        },
         None => Course::generated(common.seed)?,
     };
     if course.event.is_some() {

@@ -68,8 +68,7 @@ impl Course {
     }
 
     /// The track of a file, for the event that its cones stand for.
-    pub(crate) fn for_its_event(common: &CommonArgs, path: &Path) -> Result<Self, Failure> {
-        let file = Self::read(common, path)?;
+    pub(crate) fn for_its_event(file: TrackFile, path: &Path) -> Result<Self, Failure> {
         if let TrackFile::Cones(track) = &file
             && let Some(start) = track.start_pose()
             && let Some(event) = EventCourse::of(track, &Self::outline())
@@ -80,7 +79,8 @@ impl Course {
         Self::of_laps(file, path)
     }
 
-    fn read(common: &CommonArgs, path: &Path) -> Result<TrackFile, Failure> {
+    /// What a track file holds.
+    pub(crate) fn read(common: &CommonArgs, path: &Path) -> Result<TrackFile, Failure> {
         let bytes = common.read("track", path).map_err(Failure::input)?;
         let text = String::from_utf8_lossy(&bytes);
         parse_track(&text, &path.display().to_string()).map_err(Failure::input)
@@ -97,6 +97,10 @@ impl Course {
             }
             TrackFile::Line(_) => Err(Failure::input(format!(
                 "--track {}: found a line without widths; expected a track",
+                path.display()
+            ))),
+            TrackFile::Log(_) => Err(Failure::input(format!(
+                "--track {}: found a log of a drive; expected a track",
                 path.display()
             ))),
         }

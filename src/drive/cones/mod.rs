@@ -1,7 +1,8 @@
 //! Racing between cones (book, section 14.5).
 //!
 //! - [`parse_track`]: reads tracks of FSSIM, EUFS and the TUM race track database; [`write_fssim`], [`write_eufs`] and
-//!   [`write_tum`] write them;
+//!   [`write_tum`] write them; [`parse_cone_log`] reads what a car knew of its cones from moment to moment, for which a
+//!   [`LaneFinder`] finds the lane;
 //! - [`generate`]: legal tracks by the rules of Formula Student, from a seed;
 //! - [`CentreLine`]: the way between cones, by a triangulation, with or without colours;
 //! - [`GapDriver`]: the book's driver, which steers for the nearest gap in one scan;
@@ -20,6 +21,7 @@ mod corridor;
 mod error;
 mod event;
 mod files;
+mod finder;
 mod gap;
 mod generate;
 mod lane;
@@ -51,9 +53,10 @@ pub use event::{
     EventCourse, EventLayout, EventParameters, EventPhase, EventRacer, EventReferee, EventShape,
 };
 pub use files::{
-    TrackFile, parse_eufs, parse_fssim, parse_line, parse_track, parse_tum, write_eufs, write_fssim,
-    write_tum,
+    ConeFrame, TrackFile, parse_cone_log, parse_eufs, parse_fssim, parse_line, parse_track, parse_tum,
+    write_eufs, write_fssim, write_tum,
 };
+pub use finder::LaneFinder;
 pub use gap::GapDriver;
 pub use generate::{GeneratedTrack, TrackOptions, generate, lined};
 pub use lane::{Lane, LaneParameters, lane};

@@ -20,11 +20,18 @@ impl<'a> YamlEvents<'a> {
 
     /// Goes to the first key of the file.
     pub(crate) fn enter(&mut self) -> Result<(), FormatError> {
+        match self.first()? {
+            (Event::MappingStart(..), _) => Ok(()),
+            (event, at) => Err(self.unexpected(&event, at, self.content)),
+        }
+    }
+
+    /// The first event of what is in the file.
+    pub(crate) fn first(&mut self) -> Result<(Event<'a>, Location), FormatError> {
         loop {
             match self.next()? {
-                (Event::MappingStart(..), _) => return Ok(()),
                 (Event::StreamStart | Event::DocumentStart(_), _) => {}
-                (event, at) => return Err(self.unexpected(&event, at, self.content)),
+                found => return Ok(found),
             }
         }
     }

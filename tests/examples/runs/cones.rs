@@ -182,6 +182,19 @@ fn pictures_of_events_are_named_after_them() {
 }
 
 #[test]
+fn lanes_of_a_log_are_where_the_car_drove() {
+    for sensors in ["lidar", "both"] {
+        let (status, report, err) = race(&["--track", "tests/data/cones/log.json", "--sensors", sensors]);
+        assert_eq!((status, err.as_str()), (0, ""), "{report}");
+        assert_eq!((&report["outcome"], &report["event"]), (&"planned".into(), &"log".into()));
+        assert!(report["frames"] == report["planned"] && report["wrong_side"] == 0, "{report}");
+        assert!(report["from_driven_most_m"].as_f64().unwrap() < 1.0, "{report}");
+    }
+    let (status, _, err) = race(&["--track", "tests/data/cones/log.json", "--other"]);
+    assert!(status == 2 && err.contains("found the log of a drive"), "{err}");
+}
+
+#[test]
 fn wrong_files_are_told_where() {
     let (status, _, err) = race(&["--track", "tests/data/cones/broken.csv"]);
     let expected = "tests/data/cones/broken.csv:3:12: found `oops`; expected a number of metres\n";

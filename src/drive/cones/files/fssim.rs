@@ -2,7 +2,7 @@ use std::fmt::Write as _;
 
 use saphyr_parser::Event;
 
-use super::{FARTHEST, MOST};
+use super::lists::{list_of, number, points};
 use crate::drive::cones::{Cone, ConeColour, ConeTrack};
 use crate::geometry::{Point, Pose};
 use crate::world::formats::{FormatError, Location, YamlEvents, shown};
@@ -91,40 +91,4 @@ fn list(text: &mut String, key: &str, points: impl Iterator<Item = Point>) {
     for point in points {
         let _ = writeln!(text, "- - {:?}\n  - {:?}", point.x, point.y);
     }
-}
-
-/// A list of what `item` makes of its events.
-fn list_of<'a, T>(
-    events: &mut YamlEvents<'a>,
-    item: impl FnMut(&mut YamlEvents<'a>, Event<'a>, Location) -> Result<T, FormatError>,
-) -> Result<Vec<T>, FormatError> {
-    match events.next()? {
-        (Event::SequenceStart(..), _) => events.items((MOST, " item"), item),
-        (event, at) => Err(events.unexpected(&event, at, "a list")),
-    }
-}
-
-fn points(events: &mut YamlEvents<'_>) -> Result<Vec<Point>, FormatError> {
-    list_of(events, |events, event, at| {
-        if !matches!(event, Event::SequenceStart(..)) {
-            return Err(events.unexpected(&event, at, "a list of x and y"));
-        }
-        let mut coordinates = [0.0; 2];
-        for coordinate in &mut coordinates {
-            let (event, at) = events.next()?;
-            *coordinate = number(events, &event, at)?;
-        }
-        match events.next()? {
-            (Event::SequenceEnd, _) => Ok(Point::new(coordinates[0], coordinates[1])),
-            (event, at) => Err(events.unexpected(&event, at, "the end of the list")),
-        }
-    })
-}
-
-fn number(events: &YamlEvents<'_>, event: &Event<'_>, at: Location) -> Result<f64, FormatError> {
-    let value = match event {
-        Event::Scalar(text, ..) => text.parse::<f64>().ok().filter(|value| value.abs() <= FARTHEST),
-        _ => None,
-    };
-    value.ok_or_else(|| events.unexpected(event, at, "a number of metres or radians"))
 }

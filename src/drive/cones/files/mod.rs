@@ -1,14 +1,18 @@
-//! Readers and writers of track files: FSSIM's YAML, the CSV of EUFS, and the CSV of the TUM race track database.
+//! Readers and writers of track files: FSSIM's YAML, the CSV of EUFS, and the CSV of the TUM race track database; and a reader
+//! of logs of drives between cones.
 //!
 //! All are in metres and radians.
 
 mod csv;
 mod eufs;
 mod fssim;
+mod lists;
+mod log;
 mod tum;
 
 pub use eufs::{parse_eufs, write_eufs};
 pub use fssim::{parse_fssim, write_fssim};
+pub use log::{ConeFrame, parse_cone_log};
 pub use tum::{parse_line, parse_tum, write_tum};
 
 use super::{ConeTrack, Corridor};
@@ -29,6 +33,8 @@ pub enum TrackFile {
     Corridor(Corridor),
     /// A line without widths, as the race lines of TUM.
     Line(Vec<Point>),
+    /// What a car knew from moment to moment (JSON).
+    Log(Vec<ConeFrame>),
 }
 
 /// Reads a track file of any of the kinds, told apart by what they begin with. `file` is how messages call it.
@@ -44,6 +50,9 @@ pub enum TrackFile {
 pub fn parse_track(text: &str, file: &str) -> Result<TrackFile, FormatError> {
     let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or("");
     let first = first.trim_start_matches('\u{feff}').trim_start();
+    if first.starts_with('[') {
+        return parse_cone_log(text, file).map(TrackFile::Log);
+    }
     if first.starts_with("tag") {
         return parse_eufs(text, file).map(TrackFile::Cones);
     }
