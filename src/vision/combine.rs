@@ -1,4 +1,4 @@
-use super::dispatch::vectorised;
+use super::dispatch::{vectorised, vectorised_filter};
 use super::view::{flatten, require_size};
 use super::{Error, GrayView, GrayViewMut, RgbView, RgbViewMut};
 use crate::world::Colour;
@@ -68,7 +68,7 @@ pub(super) fn cover_portable(base: RgbView<'_>, top: RgbView<'_>, output: &mut R
     }
 }
 
-vectorised! {
+vectorised_filter! {
     fn above(input: GrayView<'_>, output: &mut GrayViewMut<'_>, threshold: u8) {
         above_portable(input, output, threshold);
     }

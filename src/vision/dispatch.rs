@@ -13,4 +13,29 @@ macro_rules! vectorised {
     };
 }
 
-pub(super) use vectorised;
+/// A vectorised function that fills an image from another one, of which it sees the bytes as slices of its own: of views, which
+/// hold slices, the compiler does not know that they do not overlap, and checks that over and over.
+macro_rules! vectorised_filter {
+    (fn $name:ident($input:ident: $from:ty, $output:ident: &mut $to:ty $(, $argument:ident: $kind:ty)* $(,)?) $body:block) => {
+        fn $name($input: $from, $output: &mut $to $(, $argument: $kind)*) {
+            $crate::vision::dispatch::vectorised! {
+                fn on_slices(
+                    source: &[u8],
+                    source_shape: $crate::vision::view::Shape,
+                    target: &mut [u8],
+                    target_shape: $crate::vision::view::Shape
+                    $(, $argument: $kind)*
+                ) {
+                    let $input = <$from>::of(source, source_shape);
+                    let $output = &mut <$to>::of(target, target_shape);
+                    $body
+                }
+            }
+            let (source, source_shape) = $input.parts();
+            let (target, target_shape) = $output.parts();
+            on_slices(source, source_shape, target, target_shape $(, $argument)*);
+        }
+    };
+}
+
+pub(super) use {vectorised, vectorised_filter};

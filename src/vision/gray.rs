@@ -1,4 +1,4 @@
-use super::dispatch::vectorised;
+use super::dispatch::vectorised_filter;
 use super::view::flatten;
 use super::{Error, GrayView, GrayViewMut, RgbView, RgbViewMut, planes};
 
@@ -80,13 +80,13 @@ fn pixels_to_line(out: &[u8]) -> usize {
     out.as_ptr().align_offset(LINE).wrapping_mul(THIRD) % LINE
 }
 
-vectorised! {
+vectorised_filter! {
     fn gray(input: RgbView<'_>, output: &mut GrayViewMut<'_>, weights: GrayWeights) {
         gray_portable(input, output, weights);
     }
 }
 
-vectorised! {
+vectorised_filter! {
     fn triple(input: GrayView<'_>, output: &mut RgbViewMut<'_>) {
         triple_portable(input, output);
     }

@@ -1,4 +1,4 @@
-use super::dispatch::vectorised;
+use super::dispatch::vectorised_filter;
 use super::hue::{fixed_point, opencv};
 use super::planes::{PIECE, merge, split};
 use super::view::flatten;
@@ -85,7 +85,7 @@ pub(super) fn convert_portable(input: RgbView<'_>, output: &mut RgbViewMut<'_>) 
     }
 }
 
-vectorised! {
+vectorised_filter! {
     fn convert(input: RgbView<'_>, output: &mut RgbViewMut<'_>) {
         convert_portable(input, output);
     }

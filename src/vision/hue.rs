@@ -1,4 +1,4 @@
-use super::dispatch::vectorised;
+use super::dispatch::vectorised_filter;
 use super::view::flatten;
 use super::{Error, GrayViewMut, RgbView, planes};
 
@@ -136,7 +136,7 @@ pub(super) fn hues_portable(
     }
 }
 
-vectorised! {
+vectorised_filter! {
     fn hues(input: RgbView<'_>, output: &mut GrayViewMut<'_>, scale: HueScale, limits: HueLimits) {
         match scale {
             HueScale::Robios => hues_portable(input, output, HueScale::Robios, limits),

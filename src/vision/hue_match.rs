@@ -1,4 +1,4 @@
-use super::dispatch::vectorised;
+use super::dispatch::vectorised_filter;
 use super::hue::hue;
 use super::view::flatten;
 use super::{Error, GrayView, GrayViewMut, HueLimits, HueScale, NO_HUE, RgbView, planes};
@@ -184,19 +184,19 @@ pub(super) fn matches_hues_portable(input: GrayView<'_>, output: &mut GrayViewMu
     }
 }
 
-vectorised! {
+vectorised_filter! {
     fn matches(input: RgbView<'_>, output: &mut GrayViewMut<'_>, sectors: &Sectors) {
         matches_portable(input, output, sectors);
     }
 }
 
-vectorised! {
+vectorised_filter! {
     fn matches_opencv(input: RgbView<'_>, output: &mut GrayViewMut<'_>, range: HueRange, limits: HueLimits) {
         matches_opencv_portable(input, output, range, limits);
     }
 }
 
-vectorised! {
+vectorised_filter! {
     fn matches_hues(input: GrayView<'_>, output: &mut GrayViewMut<'_>, range: HueRange) {
         matches_hues_portable(input, output, range);
     }

@@ -1,5 +1,5 @@
 use super::border::stencil;
-use super::dispatch::vectorised;
+use super::dispatch::vectorised_filter;
 use super::{Border, Error, GrayView, GrayViewMut};
 
 /// The Laplace operator's absolute value (book, Program 11.3): `min(255, |4 c - n - s - e - w|)` of a pixel and its
@@ -50,13 +50,13 @@ pub(super) fn saturated_portable(input: GrayView<'_>, output: &mut GrayViewMut<'
     stencil(input, output, border, excess);
 }
 
-vectorised! {
+vectorised_filter! {
     fn absolute(input: GrayView<'_>, output: &mut GrayViewMut<'_>, border: Border) {
         absolute_portable(input, output, border);
     }
 }
 
-vectorised! {
+vectorised_filter! {
     fn saturated(input: GrayView<'_>, output: &mut GrayViewMut<'_>, border: Border) {
         saturated_portable(input, output, border);
     }

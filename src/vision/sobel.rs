@@ -1,5 +1,5 @@
 use super::border::stencil;
-use super::dispatch::vectorised;
+use super::dispatch::vectorised_filter;
 use super::{Border, Error, GrayView, GrayViewMut};
 
 /// How the magnitude of a gradient becomes a byte.
@@ -22,7 +22,10 @@ pub fn sobel_l1_into(
     border: Border,
 ) -> Result<(), Error> {
     output.require_size(input.size())?;
-    sums(input, &mut output, scale, border);
+    match scale {
+        SobelScale::Full => sums_in_full(input, &mut output, border),
+        SobelScale::Third => thirds_of_sums(input, &mut output, border),
+    }
     Ok(())
 }
 
@@ -35,7 +38,10 @@ pub fn sobel_l2_into(
     border: Border,
 ) -> Result<(), Error> {
     output.require_size(input.size())?;
-    euclidean(input, &mut output, scale, border);
+    match scale {
+        SobelScale::Full => roots_in_full(input, &mut output, border),
+        SobelScale::Third => thirds_of_roots(input, &mut output, border),
+    }
     Ok(())
 }
 
@@ -88,40 +94,58 @@ fn third_of_root(pixels: [[u16; 3]; 3]) -> u16 {
     root(pixels, 765, 1.0 / 3.0)
 }
 
-#[inline(always)]
-pub(super) fn sums_portable(
-    input: GrayView<'_>,
-    output: &mut GrayViewMut<'_>,
-    scale: SobelScale,
-    border: Border,
-) {
-    match scale {
-        SobelScale::Full => stencil(input, output, border, sum_in_full),
-        SobelScale::Third => stencil(input, output, border, third_of_sum),
+// Each has its own: of several loops in one function, the compiler keeps the pointers in memory.
+
+vectorised_filter! {
+    fn sums_in_full(input: GrayView<'_>, output: &mut GrayViewMut<'_>, border: Border) {
+        stencil(input, output, border, sum_in_full);
     }
 }
 
-#[inline(always)]
-pub(super) fn euclidean_portable(
-    input: GrayView<'_>,
-    output: &mut GrayViewMut<'_>,
-    scale: SobelScale,
-    border: Border,
-) {
-    match scale {
-        SobelScale::Full => stencil(input, output, border, root_in_full),
-        SobelScale::Third => stencil(input, output, border, third_of_root),
+vectorised_filter! {
+    fn thirds_of_sums(input: GrayView<'_>, output: &mut GrayViewMut<'_>, border: Border) {
+        stencil(input, output, border, third_of_sum);
     }
 }
 
-vectorised! {
-    fn sums(input: GrayView<'_>, output: &mut GrayViewMut<'_>, scale: SobelScale, border: Border) {
-        sums_portable(input, output, scale, border);
+vectorised_filter! {
+    fn roots_in_full(input: GrayView<'_>, output: &mut GrayViewMut<'_>, border: Border) {
+        stencil(input, output, border, root_in_full);
     }
 }
 
-vectorised! {
-    fn euclidean(input: GrayView<'_>, output: &mut GrayViewMut<'_>, scale: SobelScale, border: Border) {
-        euclidean_portable(input, output, scale, border);
+vectorised_filter! {
+    fn thirds_of_roots(input: GrayView<'_>, output: &mut GrayViewMut<'_>, border: Border) {
+        stencil(input, output, border, third_of_root);
+    }
+}
+
+/// The same as compiled for any processor.
+#[cfg(test)]
+pub(super) mod portable {
+    use super::*;
+
+    pub(in crate::vision) fn sums(
+        input: GrayView<'_>,
+        output: &mut GrayViewMut<'_>,
+        scale: SobelScale,
+        border: Border,
+    ) {
+        match scale {
+            SobelScale::Full => stencil(input, output, border, sum_in_full),
+            SobelScale::Third => stencil(input, output, border, third_of_sum),
+        }
+    }
+
+    pub(in crate::vision) fn roots(
+        input: GrayView<'_>,
+        output: &mut GrayViewMut<'_>,
+        scale: SobelScale,
+        border: Border,
+    ) {
+        match scale {
+            SobelScale::Full => stencil(input, output, border, root_in_full),
+            SobelScale::Third => stencil(input, output, border, third_of_root),
+        }
     }
 }

@@ -26,7 +26,7 @@ pub type GrayViewMut<'a> = ViewMut<'a, 1>;
 pub type RgbViewMut<'a> = ViewMut<'a, 3>;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Shape {
+pub(super) struct Shape {
     width: usize,
     height: usize,
     /// Bytes from one row to the next.
@@ -131,6 +131,16 @@ impl<'a, const C: usize> View<'a, C> {
         Self { shape: self.shape.flat(C), ..self }
     }
 
+    /// The bytes and their shape, which [`of`](Self::of) puts together again.
+    pub(super) fn parts(self) -> (&'a [u8], Shape) {
+        (self.data, self.shape)
+    }
+
+    #[inline(always)]
+    pub(super) fn of(data: &'a [u8], shape: Shape) -> Self {
+        Self { data, shape }
+    }
+
     /// Whether rows follow each other without a gap.
     pub(super) fn is_flat(&self) -> bool {
         self.shape.stride == self.shape.width * C
@@ -192,6 +202,16 @@ impl<'a, const C: usize> ViewMut<'a, C> {
     #[inline]
     pub(super) fn flat(self) -> Self {
         Self { shape: self.shape.flat(C), ..self }
+    }
+
+    /// The bytes and their shape, which [`of`](Self::of) puts together again.
+    pub(super) fn parts(&mut self) -> (&mut [u8], Shape) {
+        (&mut *self.data, self.shape)
+    }
+
+    #[inline(always)]
+    pub(super) fn of(data: &'a mut [u8], shape: Shape) -> Self {
+        Self { data, shape }
     }
 
     pub(super) fn is_flat(&self) -> bool {

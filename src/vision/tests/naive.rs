@@ -59,7 +59,7 @@ proptest! {
         });
         let found = image.output(|out| sobel_l1_into(image.view(), out, scale, border).unwrap());
         prop_assert_eq!(found, &expected[..]);
-        let portable = image.output(|mut out| sobel::sums_portable(image.view(), &mut out, scale, border));
+        let portable = image.output(|mut out| sobel::portable::sums(image.view(), &mut out, scale, border));
         prop_assert_eq!(portable, expected);
 
         let expected = stencil(&image, border, |at| {
@@ -68,7 +68,7 @@ proptest! {
         });
         let found = image.output(|out| sobel_l2_into(image.view(), out, scale, border).unwrap());
         prop_assert_eq!(found, &expected[..]);
-        let portable = image.output(|mut out| sobel::euclidean_portable(image.view(), &mut out, scale, border));
+        let portable = image.output(|mut out| sobel::portable::roots(image.view(), &mut out, scale, border));
         prop_assert_eq!(portable, expected);
     }
 
@@ -96,7 +96,11 @@ proptest! {
             [((sum + (1 << 15)) >> 16) as u8]
         });
         prop_assert_eq!(image.output(|out| gaussian_into(image.view(), out, kernel).unwrap()), &expected[..]);
-        let portable = image.output(|mut out| gaussian::smooth_portable(image.view(), &mut out, kernel));
+        let portable = image.output(|mut out| match kernel {
+            GaussianKernel::THREE => gaussian::three_portable(image.view(), &mut out),
+            GaussianKernel::FIVE => gaussian::five_portable(image.view(), &mut out),
+            kernel => gaussian::smooth_portable(image.view(), &mut out, kernel),
+        });
         prop_assert_eq!(portable, expected);
     }
 
