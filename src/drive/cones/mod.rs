@@ -19,6 +19,7 @@ mod error;
 mod files;
 mod gap;
 mod generate;
+mod hold;
 mod lane;
 mod lap;
 mod map;
@@ -49,6 +50,7 @@ pub use files::{
 };
 pub use gap::GapDriver;
 pub use generate::{GeneratedTrack, TrackOptions, generate, lined};
+pub use hold::Hold;
 pub use lane::{Lane, LaneParameters, lane};
 pub use map::{ConeMap, ConeMapParameters};
 pub use profile::{CarLimits, SpeedProfile};

@@ -3,6 +3,7 @@ use super::centre_line::{CentreLine, CentreLineParameters};
 use super::cone::Cone;
 use super::corridor::{Corridor, Station};
 use super::error::PlanError;
+use super::hold::Hold;
 use super::lane::{Lane, LaneParameters, lane};
 use super::lap::around_lap;
 use super::map::{ConeMap, ConeMapParameters};
@@ -10,7 +11,7 @@ use super::profile::{CarLimits, SpeedProfile};
 use super::racing_line::{CarOutline, LineSolver, RacingLineParameters};
 use super::sight::{Sighting, sightings};
 use super::tracker::{LineTracker, TrackerParameters};
-use super::tyres::SLIPS;
+use super::tyres::{SLIPS, Tyres};
 use crate::geometry::{Point, Pose, Twist, math};
 use crate::io::{self, Clock, Drive, Lidar, LidarScan};
 
@@ -42,16 +43,18 @@ impl Default for RacerParameters {
         Self {
             laps: 10,
             limits: CarLimits {
-                grip: 9.9,
-                turned: 0.5,
-                traction: 10.5,
+                // A twentieth of the grip is left for what the controller is wrong by.
+                hold: Hold::Balance(Tyres { grip: 11.4, ..Tyres::default() }),
                 drive: 8.0,
-                brake: 10.0,
+                brake: 9.0,
                 top_speed: 30.0,
                 turning: 1.2,
             },
             // What is seen late is driven slowly: tight bends, in which a car answers late as well.
-            first_lap: CarLimits { turned: 1.0, ..CarLimits::circle(5.0, 3.0, 5.0, 6.0) },
+            first_lap: CarLimits {
+                hold: Hold::Ellipse { across: 5.0, turned: 1.0, along: 5.0 },
+                ..CarLimits::circle(5.0, 3.0, 5.0, 6.0)
+            },
             outline: CarOutline { half_width: 0.7, nose: 2.15, ahead: 0.9, room: 0.5 },
             centre_line: CentreLineParameters::default(),
             map: ConeMapParameters::default(),
@@ -106,6 +109,8 @@ pub struct Racer {
     patience: u32,
     /// The lane ahead in the first lap.
     lane: Lane,
+    /// Decisions until it drives off: before that, it looks about and turns its wheels.
+    looks: u32,
 }
 
 /// Metres around the car within which cones are planned with in the first lap.
@@ -125,6 +130,10 @@ const SHORTEST: f64 = 12.0;
 /// Metres from the line within which another car is in the way, metres ahead at which it begins to matter, and metres, from the
 /// middle of a car to the end of another one, that are kept.
 const OTHERS: (f64, f64, f64) = (1.5, 24.0, 4.5);
+/// Decisions at the start at which it only looks: a cone is one after some sightings, and wheels turn a third of a second to the stop.
+const LOOKS: u32 = 10;
+/// Metres per second that are next to none: a curvature is kept by them as well.
+const NEXT_TO_NONE: f64 = 1e-3;
 /// Metres per second at which it feels its way where nothing is known.
 const CRAWL: f64 = 1.5;
 
@@ -147,6 +156,7 @@ impl Racer {
             plan_again: false,
             patience: 0,
             lane: Lane::unknown(parameters.lane.usual),
+            looks: LOOKS,
         }
     }
 
@@ -189,6 +199,10 @@ impl Racer {
         self.map.update(self.reckoned, seen);
         self.count();
         let command = self.command(speed);
+        if self.looks > 0 {
+            self.looks -= 1;
+            return Twist::new(NEXT_TO_NONE, NEXT_TO_NONE * curvature_of(command));
+        }
         self.behind_others(command, seen)
     }
 
@@ -203,8 +217,7 @@ impl Racer {
         if command.linear <= fastest {
             return command;
         }
-        // A curvature is kept by next to no speed as well.
-        let slower = fastest.max(1e-3);
+        let slower = fastest.max(NEXT_TO_NONE);
         Twist::new(slower, slower * curvature_of(command))
     }
 

@@ -50,9 +50,16 @@ impl Tyres {
 
     /// That of an axle whose tyres have a share of grip and stiffness.
     fn slip(&self, share: f64, across: f64, along: f64) -> f64 {
-        let circle = (self.grip * self.grip - along * along).max(1.0).sqrt();
-        let strained = (across / (share * circle)).clamp(-MOST, MOST);
+        let circle = self.circle(along);
+        // The axle that gives up first is the bound of both.
+        let most = MOST * self.front.min(1.0) / share;
+        let strained = (across / (share * circle)).clamp(-most, most);
         strained * circle / (self.stiffness * (1.0 - strained * strained).sqrt())
+    }
+
+    /// What is left across beside an acceleration along the way.
+    fn circle(&self, along: f64) -> f64 {
+        (self.grip * self.grip - along * along).max(1.0).sqrt()
     }
 
     /// What is left along the way beside an acceleration across, both in m/s²: at least a tenth of the grip, so that a car that
@@ -64,14 +71,87 @@ impl Tyres {
 
     /// The curvature for which wheels that only roll would be steered as these are for that one at that acceleration.
     pub fn steering(&self, curvature: f64, across: f64, along: f64) -> f64 {
-        let rear = self.slip(1.0, across, along);
-        let rolling = math::atan(self.wheelbase * curvature - math::tan(rear));
+        math::tan(self.steered(curvature, across, along).clamp(-1.2, 1.2)) / self.wheelbase
+    }
+
+    /// The steering angle for that.
+    fn steered(&self, curvature: f64, across: f64, along: f64) -> f64 {
+        let rolling = self.rolling(curvature, across, along);
         let mut steering = rolling;
         for _ in 0..TURNS {
             // What turned wheels push, they push less across the car.
             steering = rolling + self.slip(self.front, across / math::cos(steering), along);
         }
-        math::tan(steering.clamp(-1.2, 1.2)) / self.wheelbase
+        steering
+    }
+
+    /// The steering angle for front wheels that do not slip.
+    fn rolling(&self, curvature: f64, across: f64, along: f64) -> f64 {
+        math::atan(self.wheelbase * curvature - math::tan(self.slip(1.0, across, along)))
+    }
+}
+
+/// Brakes or motors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Push {
+    Back,
+    On,
+}
+
+impl Tyres {
+    /// The greatest acceleration along the way at a curvature and an acceleration across, by motors that give so much; negative
+    /// where the front tyres need more than that to be pulled around the bend. `None` where no push lets the car turn so.
+    pub(super) fn forwards(&self, curvature: f64, across: f64, drive: f64) -> Option<f64> {
+        let push = self.most(curvature, across, Push::On)?.min(drive);
+        Some(self.along(curvature, across, push))
+    }
+
+    /// The greatest deceleration, by brakes that give so much.
+    pub(super) fn backwards(&self, curvature: f64, across: f64, brake: f64) -> Option<f64> {
+        let push = self.most(curvature, across, Push::Back)?.max(-brake);
+        Some(-self.along(curvature, across, push))
+    }
+
+    /// The deceleration of a car that rolls around a bend: what its tyres push across is not all across the way.
+    pub(super) fn drag(&self, curvature: f64, across: f64) -> f64 {
+        -self.along(curvature.abs(), across.abs(), 0.0)
+    }
+
+    /// The greatest push of brakes or motors beside which both axles give an acceleration across, in m/s².
+    ///
+    /// Turned front wheels push across as well, so what is asked of them is (across - push · sin) / cos of the steering angle, and
+    /// there is share · √(grip² - push²): a quadratic equation for the push, once that angle is known.
+    fn most(&self, curvature: f64, across: f64, push: Push) -> Option<f64> {
+        let sign = if push == Push::On { 1.0 } else { -1.0 };
+        let rear = self.grip * self.grip - (across / MOST) * (across / MOST);
+        if rear < 0.0 {
+            return None;
+        }
+        let mut found = 0.0;
+        for _ in 0..TURNS {
+            let circle = self.circle(found);
+            let slip = circle * MOST / (self.stiffness * (1.0 - MOST * MOST).sqrt());
+            let (sin, cos) = math::sin_cos(self.rolling(curvature, across, found) + slip);
+            let share = cos * MOST * self.front;
+            let (square, half) = (sin * sin + share * share, across * sin);
+            let free = half * half - square * (across * across - share * share * self.grip * self.grip);
+            if free < 0.0 {
+                return None;
+            }
+            found = (half + sign * free.sqrt()) / square;
+        }
+        Some(found.clamp(-rear.sqrt(), rear.sqrt()))
+    }
+
+    /// The acceleration along the way that is left of a push: what is across the wheels is not all across the way.
+    fn along(&self, curvature: f64, across: f64, push: f64) -> f64 {
+        let steering = self.steered(curvature, across, push);
+        let (sin, cos) = math::sin_cos(steering);
+        let aside = (across - push * sin) / cos;
+        // Along the car, each axle with half its weight; the middle of the car moves aslant to it.
+        let along = 0.5 * (push * (1.0 + cos) - aside * sin);
+        let aslant = math::atan(0.5 * self.wheelbase * curvature - math::tan(self.slip(1.0, across, push)));
+        along + across * math::sin(aslant)
     }
 }
 
