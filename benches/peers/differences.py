@@ -42,6 +42,7 @@ def references(rgb):
         "hue": hsv[..., 0],
         "saturation": hsv[..., 1],
         "intensity": hsv[..., 2],
+        "hsi_to_rgb": cv2.cvtColor(rgb, cv2.COLOR_HSV2RGB),
         "hue_match": np.where(near, 255, 0).astype(np.uint8),
         "canny": cv2.Canny(gray, 50, 100),
     }
@@ -64,6 +65,14 @@ def hough_agreement(program, file, rgb):
     return share(mine, theirs), share(theirs, mine), len(theirs)
 
 
+def equal_segments(program, file, rgb):
+    """Whether both find the same segments in the same order, and their number."""
+    gray = cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY)
+    found = cv2.HoughLinesP(cv2.Canny(gray, 50, 100), 1, math.pi / 180, 50, minLineLength=30, maxLineGap=5)
+    theirs = [] if found is None else found.reshape(-1, 4).tolist()
+    return edges(program, "--input", file, "--kernel", "hough_probabilistic")["lines"] == theirs, len(theirs)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=pathlib.Path)
@@ -75,7 +84,7 @@ def main():
         ).stdout
     )["target_directory"]
     program = pathlib.Path(target) / "release" / "examples" / "edges"
-    worst, unequal, agreement, lines = {}, {}, {}, []
+    worst, unequal, agreement, lines, segments = {}, {}, {}, [], []
     images = 0
     with tempfile.TemporaryDirectory() as name:
         output = pathlib.Path(name) / "out.png"
@@ -84,19 +93,22 @@ def main():
                 continue
             bgr = cv2.imread(str(file), cv2.IMREAD_COLOR)
             alpha = cv2.imread(str(file), cv2.IMREAD_UNCHANGED)
-            if bgr is None or alpha.dtype != np.uint8 or (alpha.ndim == 3 and alpha.shape[2] == 4):
+            if bgr is None or (alpha.ndim == 3 and alpha.shape[2] == 4):
                 continue
             images += 1
             rgb = cv2.cvtColor(bgr, cv2.COLOR_BGR2RGB)
             for kernel, expected in references(rgb).items():
                 edges(program, "--input", file, "--kernel", kernel, "--output", output)
-                found = cv2.imread(str(output), cv2.IMREAD_GRAYSCALE)
+                found = cv2.imread(str(output), cv2.IMREAD_COLOR if expected.ndim == 3 else cv2.IMREAD_GRAYSCALE)
+                if expected.ndim == 3:
+                    found = cv2.cvtColor(found, cv2.COLOR_BGR2RGB)
                 difference = np.abs(found.astype(int) - expected.astype(int))
                 if kernel == "canny":
                     agreement.setdefault(kernel, []).append(float((difference == 0).mean()))
                 worst[kernel] = max(worst.get(kernel, 0), int(difference.max()))
                 unequal[kernel] = unequal.get(kernel, 0) + int((difference > 0).sum())
             lines.append(hough_agreement(program, file, rgb))
+            segments.append(equal_segments(program, file, rgb))
     print(f"{images} images\n\n| kernel | largest difference | pixels that differ |\n|---|---|---|")
     for kernel, level in worst.items():
         print(f"| {kernel} | {level} | {unequal[kernel]} |")
@@ -105,6 +117,9 @@ def main():
     mine, theirs, count = (sum(column) for column in zip(*lines))
     if lines:
         print(f"hough: {100 * mine / len(lines):.2f} % of our lines are OpenCV's, {100 * theirs / len(lines):.2f} % of OpenCV's are ours ({count} lines)")
+        equal = sum(same for same, _ in segments)
+        count = sum(number for _, number in segments)
+        print(f"hough_probabilistic: equal in {equal} of {len(segments)} images ({count} segments)")
     return 0
 
 

@@ -10,19 +10,21 @@ use crate::common::CommonArgs;
     after_help = "\
 Without --world, the scene is drawn by --seed: a room of 4 m x 4 m with a red can and things of other hues in it. The robot
 is taught the colour of a red card that is held before its camera when the first soft key is pressed; --hue takes a hue
-instead. In a world from a file, the object is the first one of the taught hue.
+instead. In a world from a file, the object is the one of the taught
+hue that the robot finds; distances are to the nearest that has it.
 
 With --job home, the robot drives round the object and pushes it to where it started (section 11.6).
 With --campaign, many scenes: another place of everything, light of 30 to 150 %, noise as --noise says.
 
 JSON fields:
   job, method, light
-  hue                         taught or given, on RoBIOS's scale; null if nothing was taught
+  hue                         taught or given, on RoBIOS's scale
   distance_mm                 true distance from the robot's middle to the object's at the end
   home_mm                     home: true distance of the object from home at the end
   time_limit_s, picture
   scenes, reached, wrong      campaign: how many, and the seeds of those not reached
-Outcomes: reached, home, blocked, timed_out, collided, failed; with --campaign: passed, wrong."
+Outcomes: reached, home, missed (if the true distance is above 200 mm), blocked, timed_out, collided, failed; with
+--campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// What the robot does.
@@ -41,9 +43,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u8).range(1..))]
     pub(crate) tolerance: u8,
 
-    /// Brightness of the light; 1 is a well lit room.
-    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = parse_light, allow_hyphen_values = true)]
-    pub(crate) light: f64,
+    /// Brightness of the light; 1 is a well lit room [default: 1].
+    #[arg(long, value_name = "F", value_parser = parse_light, allow_hyphen_values = true)]
+    pub(crate) light: Option<f64>,
 
     /// Drive in many scenes and print how many went well.
     #[arg(long)]

@@ -1,7 +1,6 @@
 use roverlab::random::Stream;
 
-use super::drive::{Ended, nearest};
-use super::job::{one, wanted};
+use super::job::{Truth, one, wanted};
 use super::{Args, Job, scene};
 use crate::common::{Failure, Outcome, Report};
 use crate::driving::Conditions;
@@ -15,12 +14,14 @@ pub(crate) struct Tally {
     pub(crate) wrong: Vec<u64>,
 }
 
-/// Metres between the middles of robot and object that count as reached, and from home that count as home.
-const REACHED: f64 = 0.2;
-const HOME: f64 = 0.2;
-
 /// Drives in many scenes.
 pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
+    args.common.check_placeless("the scenes of a campaign are drawn")?;
+    if let Some(light) = args.light {
+        return Err(Failure::input(format!(
+            "--light: found {light}; expected none, as each scene of a campaign has its own"
+        )));
+    }
     let tally = tally(args)?;
     let share = tally.reached as f64 / tally.scenes.max(1) as f64;
     let outcome = if share >= 0.99 { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
@@ -34,7 +35,7 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
 
 pub(crate) fn tally(args: &Args) -> Result<Tally, Failure> {
     let mut tally = Tally { scenes: args.scenes, ..Tally::default() };
-    for seed in args.common.seed..args.common.seed.saturating_add(args.scenes) {
+    for seed in (0..args.scenes).map(|scene| args.common.seed.wrapping_add(scene)) {
         if good(args, seed)? { tally.reached += 1 } else { tally.wrong.push(seed) }
     }
     Ok(tally)
@@ -47,14 +48,8 @@ fn good(args: &Args, seed: u64) -> Result<bool, Failure> {
     let home = args.job == Job::Home;
     let conditions =
         Conditions { seed, light, pushing: home, common: None, ..Conditions::new(&args.common, 300.0)? };
-    let run = one(args, &scene, &conditions, &mut |_| {})?;
-    let Ok((Some(hue), ended)) = run.ending else { return Ok(false) };
-    let objects = wanted(&scene, hue, args.tolerance)?;
-    let places = || objects.iter().filter_map(|&index| run.objects.get(index).copied());
-    let (goal, near, distance) = if home {
-        (Ended::Home, HOME, nearest(places(), scene.robots[0].pose.position()))
-    } else {
-        (Ended::Reached, REACHED, nearest(places(), run.truth.pose.position()))
-    };
-    Ok(ended == goal && run.truth.contacts == 0 && distance.is_some_and(|distance| distance <= near))
+    let (hue, run) = one(args, &scene, &conditions, &mut |_| {})?;
+    let Ok(ended) = run.ending else { return Ok(false) };
+    let truth = Truth::new(&wanted(&scene, hue, args.tolerance)?, &scene, &run);
+    Ok(run.truth.contacts == 0 && !truth.verdict(ended).is_failure())
 }

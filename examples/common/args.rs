@@ -126,14 +126,22 @@ impl CommonArgs {
             ("--start", self.start.is_some()),
             ("--goal", self.goal.is_some()),
         ];
-        options.into_iter().find(|(_, given)| *given).map_or(Ok(()), |(name, _)| {
-            let says = if name == "--robot" {
-                "the robot is that for mazes"
-            } else {
-                "the maze's file says where it is"
-            };
-            Err(Failure::input(format!("{name}: found one; expected none, as {says}")))
+        refuse(&options, |name| {
+            if name == "--robot" { "the robot is that for mazes" } else { "the maze's file says where it is" }
         })
+    }
+
+    /// Fails if the options say where and how one robot drives, for runs that are about something else.
+    pub(crate) fn check_placeless(&self, says: &str) -> Result<(), Failure> {
+        let options = [
+            ("--world", self.world.is_some()),
+            ("--robot", self.robot.is_some()),
+            ("--start", self.start.is_some()),
+            ("--goal", self.goal.is_some()),
+            ("--picture", self.picture.is_some()),
+            ("--fault", !self.fault.is_empty()),
+        ];
+        refuse(&options, |_| says)
     }
 
     /// Tells a person what happens during a run. Silent with `--json`.
@@ -190,4 +198,11 @@ pub(crate) fn check_writable(option: &str, file: &Path) -> Result<(), Failure> {
         Ok(()) => Ok(()),
         Err(error) => refused(format!("folder {} ({error})", folder.display()), "one that can be written to"),
     }
+}
+
+/// Fails for the first of some options that is given, with the reason why it should not be.
+fn refuse<'a>(options: &[(&'a str, bool)], says: impl Fn(&'a str) -> &'a str) -> Result<(), Failure> {
+    options.iter().find(|(_, given)| *given).map_or(Ok(()), |(name, _)| {
+        Err(Failure::input(format!("{name}: found one; expected none, as {}", says(name))))
+    })
 }

@@ -19,6 +19,11 @@ impl Outcome {
     pub(crate) fn failure(word: impl Into<String>) -> Self {
         Self { word: word.into(), failed: true }
     }
+
+    /// Whether the behaviour did not do its job.
+    pub(crate) fn is_failure(&self) -> bool {
+        self.failed
+    }
 }
 
 /// What an example says about its run: in JSON, or in words.

@@ -42,7 +42,7 @@ pub(crate) struct Args {
     pub(crate) speed: f64,
 
     /// Drive on so many tracks of our own, from --seed on.
-    #[arg(long, value_name = "TRACKS", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "TRACKS", conflicts_with = "track", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) campaign: Option<u32>,
 
     #[command(flatten)]
@@ -169,8 +169,8 @@ fn lost(course: &Course, pose: Pose) -> bool {
 
 fn campaign(args: &Args, tracks: u32) -> Result<Report, Failure> {
     let (mut clean, mut laps, mut cones, mut off, mut metres) = (0_u32, 0, 0, 0, 0.0);
-    let first = args.common.seed;
-    for seed in first..first + u64::from(tracks) {
+    args.common.check_placeless("the tracks of a campaign are drawn")?;
+    for seed in (0..u64::from(tracks)).map(|track| args.common.seed.wrapping_add(track)) {
         let course = Course::generated(seed)?;
         let stage = Stage::race(world(&course, args, seed).map_err(Failure::run)?, args.common.faults()?);
         let driven = drive(&course, args, &stage)?;

@@ -8,9 +8,10 @@ use crate::cones::{Course, Spoils};
 /// Races on so many tracks of our own, from the seed on, and tells of those that were not clean.
 pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Failure> {
     let common = &args.common;
+    common.check_placeless("the tracks of a campaign are drawn")?;
     let (mut clean, mut finished, mut cones, mut off) = (0_u32, 0_u32, 0, 0);
     let (mut times, mut ratios) = (Vec::new(), Vec::new());
-    for seed in common.seed..common.seed + u64::from(tracks) {
+    for seed in (0..u64::from(tracks)).map(|track| common.seed.wrapping_add(track)) {
         let mut course = Course::generated(seed)?;
         course.spoil(spoils, seed);
         let settings = args.settings(seed);

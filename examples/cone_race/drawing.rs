@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use roverlab::drive::cones::Cone;
+use roverlab::drive::cones::{Cone, Event, EventCourse};
 use roverlab::geometry::{Point, Pose, units};
 use roverlab::picture::{Picture, Style};
 use roverlab::world::Colour;
@@ -15,11 +15,15 @@ use crate::cones::{Course, colour};
 /// The track, the cones, the racing line, and the driven line coloured by speed.
 pub(crate) fn picture(course: &Course, outcome: &Outcome) -> Picture {
     let mut picture = Picture::new(&course.ground());
-    picture.title("Cone race");
+    picture.title(match course.event.as_ref().map(EventCourse::event) {
+        Some(Event::Acceleration) => "Acceleration",
+        Some(Event::Skidpad) => "Skidpad",
+        _ => "Cone race",
+    });
     let fallen = |index: usize| !outcome.standing.get(index).copied().unwrap_or(true);
     for left in [true, false] {
         let mut edge = course.corridor.edge(left);
-        edge.extend(edge.first().copied());
+        close(&mut edge, course);
         picture.line(edge, Style::aid().width(1.0).opacity(0.4));
     }
     for (index, Cone { position, colour: paint }) in course.cones.iter().enumerate() {
@@ -32,7 +36,7 @@ pub(crate) fn picture(course: &Course, outcome: &Outcome) -> Picture {
         picture.disc(*position, radius, style.filled(1.0));
     }
     let mut line = outcome.line.clone();
-    line.extend(line.first().copied());
+    close(&mut line, course);
     picture.line(line, Style::plan().width(1.0).labelled("racing line"));
     // The last laps, which are all on the racing line, and the first one, which is slow.
     let points = outcome.trail.iter().map(|(pose, speed)| (pose.to_world(Point::new(0.8, 0.0)), *speed));
@@ -45,6 +49,13 @@ pub(crate) fn picture(course: &Course, outcome: &Outcome) -> Picture {
         outcome.verdict.off_course
     ));
     picture
+}
+
+/// Joins the end of a line to its beginning where the course is a loop.
+fn close(line: &mut Vec<Point>, course: &Course) {
+    if course.corridor.is_closed() {
+        line.extend(line.first().copied());
+    }
 }
 
 /// The car driving, in real time, again and again.
@@ -78,7 +89,7 @@ fn document(course: &Course, outcome: &Outcome) -> Document {
         .set("height", size.y.ceil())
         .set("style", "background:#f4f4f2");
     let mut line = outcome.line.clone();
-    line.extend(line.first().copied());
+    close(&mut line, course);
     document = document.add(
         Polyline::new()
             .set("points", chain(&line))

@@ -2,17 +2,19 @@
 
 mod campaign;
 mod drawing;
+mod event;
 mod race;
 
 use std::path::{Path, PathBuf};
 
-use roverlab::drive::cones::{ClosedSpline, RacePhase, TrackFile, parse_track};
+use roverlab::drive::cones::Event;
+use roverlab::drive::cones::{ClosedSpline, EventCourse, TrackFile, parse_track};
 use roverlab::geometry::{Point, Segment};
 use roverlab::io::sim::race::RaceCarSpec;
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
 use crate::cones::{Course, Spoils};
-use race::Settings;
+use race::{Ending, Settings};
 
 /// The command line of the example `cone_race`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -24,25 +26,36 @@ The first lap is driven between the cones that the lidar sees, and makes the map
 the friction circle. The referee adds 2 s for a cone and 10 s for leaving the course with all wheels. Tracks: FSSIM yaml,
 EUFS csv, TUM csv (lined with cones), or one of our own by the seed.
 
+An acceleration strip or a skidpad, which the file's cones stand for, is driven as the event that it is: one run, whatever
+--laps says. The car knows which event it is at and what the rules say of its layout, and fits that to the cones that it
+sees. An acceleration has one time, from line to line; it ends standing in the lane behind the finish. A skidpad has two,
+of the second lap to the right and of the second one to the left. The car's nose starts and stops the clock.
+
 JSON fields:
-  laps, cones_hit, off_course, lap_times_s, total_s    of the race; the total is with penalties
+  event                                                laps, acceleration or skidpad
+  laps, cones_hit, off_course, lap_times_s, total_s    of the race; the total is with penalties, the laps of an event are
+                                                       its complete runs
   track_length_m, cones                                of the track
   racing_line_rms_m                                    distance of the racing line from that of --line
   lap_over_optimum                                     of each flying lap: its time over the quasi-steady optimum for the same
-                                                       car on the same line
-  mapped                                               whether the whole track was planned after the first lap
+                                                       car on the same line; of an event's times: over that of the car from
+                                                       standing, able to stop in the lane behind the finish, or around the
+                                                       inner cones as near as its width lets it
+  mapped                                               whether the whole track was planned after the first lap, or an event's
+                                                       layout was found
   other_cones_hit, touched                             with a second car
   tracks, clean, clean_share, mean_lap_over_optimum    of a campaign
   picture, animation
 Outcomes: finished, penalised, timed_out, failed, impassable (the car does not fit between the cones, which is told before
-the race), raced (a campaign)."
+the race), lost (no cones that fit the event), missed (an event's car stands, but not in the lane behind its finish), raced (a
+campaign)."
 )]
 pub(crate) struct Args {
     /// Track to race on [default: one of our own].
     #[arg(long, value_name = "FILE")]
     pub(crate) track: Option<PathBuf>,
 
-    /// Laps to drive, the first one for the map.
+    /// Laps to drive, the first one for the map. An acceleration or a skidpad is driven once.
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=100))]
     pub(crate) laps: u16,
 
@@ -75,7 +88,7 @@ pub(crate) struct Args {
     pub(crate) animation: Option<PathBuf>,
 
     /// Race on so many tracks of our own, from --seed on, and print a table.
-    #[arg(long, value_name = "TRACKS", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "TRACKS", conflicts_with = "track", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) campaign: Option<u32>,
 
     #[command(flatten)]
@@ -135,9 +148,12 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     let published = args.line.as_ref().map(|file| published(common, file)).transpose()?;
     let mut course = match &args.track {
-        Some(path) => Course::from_file(common, path)?,
+        Some(path) => Course::for_its_event(common, path)?,
         None => Course::generated(common.seed)?,
     };
+    if course.event.is_some() {
+        check_event(args)?;
+    }
     if let Some(reason) = course.impassable(&RaceCarSpec::default()) {
         return Ok(impassable(&course, reason));
     }
@@ -157,6 +173,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 /// What is told about a track on which no race begins.
 fn impassable(course: &Course, reason: String) -> Report {
     let report = Report::new(Outcome::failure("impassable"))
+        .field("event", event_name(course))
         .field("laps", 0)
         .field("cones_hit", 0)
         .field("off_course", 0)
@@ -166,18 +183,46 @@ fn impassable(course: &Course, reason: String) -> Report {
     Report { error: Some(reason), ..report }
 }
 
+/// The event of a course, as it is told.
+fn event_name(course: &Course) -> &'static str {
+    match course.event.as_ref().map(EventCourse::event) {
+        None | Some(Event::Laps) => "laps",
+        Some(Event::Acceleration) => "acceleration",
+        Some(Event::Skidpad) => "skidpad",
+    }
+}
+
+/// Where and why a car at an event stood.
+fn lost(course: &Course, outcome: &race::Outcome) -> String {
+    let place = outcome.truth.pose;
+    format!(
+        "at ({:.1}, {:.1}) m the car found no cones that fit its event, and stopped; expected those of the {}",
+        place.x,
+        place.y,
+        event_name(course)
+    )
+}
+
 /// What is told about a race.
 fn report(course: &Course, outcome: &race::Outcome) -> Report {
     let verdict = &outcome.verdict;
-    let word = match &outcome.ending {
-        Err(_) => Outcome::failure("failed"),
-        Ok(RacePhase::Finished) if outcome.is_clean() => Outcome::verdict("finished"),
-        Ok(RacePhase::Finished) => Outcome::failure("penalised"),
-        Ok(_) => Outcome::failure("timed_out"),
+    let (word, lacking) = match &outcome.ending {
+        Err(error) => (Outcome::failure("failed"), Some(error.clone())),
+        Ok(Ending::Finished) if outcome.is_clean() => (Outcome::verdict("finished"), None),
+        Ok(Ending::Finished) => (Outcome::failure("penalised"), None),
+        Ok(Ending::TimedOut) => (Outcome::failure("timed_out"), None),
+        Ok(Ending::Lost) => (Outcome::failure("lost"), Some(lost(course, outcome))),
+        Ok(Ending::Missed) => (Outcome::failure("missed"), None),
     };
     let times: Vec<f64> = verdict.lap_times.iter().map(|time| rounded(*time)).collect();
+    let laps = if course.event.is_some() {
+        usize::from(matches!(outcome.ending, Ok(Ending::Finished)))
+    } else {
+        times.len()
+    };
     let report = Report::new(word)
-        .field("laps", times.len())
+        .field("event", event_name(course))
+        .field("laps", laps)
         .field("cones_hit", verdict.cones_hit)
         .field("off_course", verdict.off_course)
         .field("lap_times_s", times)
@@ -197,7 +242,7 @@ fn report(course: &Course, outcome: &race::Outcome) -> Report {
         path_length: Some(outcome.truth.path_length),
         pose: Some(outcome.truth.pose),
         odometry: Some(course.start.compose(&outcome.truth.odometry)),
-        error: outcome.ending.clone().err(),
+        error: lacking,
         ..report
     }
 }
@@ -237,6 +282,17 @@ fn check(common: &CommonArgs) -> Result<(), Failure> {
     ];
     let refused = |option: &str| {
         Failure::input(format!("{option}: has no meaning for a race; expected a command line without it"))
+    };
+    given.iter().find(|(_, given)| *given).map_or(Ok(()), |(option, _)| Err(refused(option)))
+}
+
+/// Fails when an option has no meaning for an acceleration or a skidpad.
+fn check_event(args: &Args) -> Result<(), Failure> {
+    let given = [("--other", args.other), ("--line", args.line.is_some())];
+    let refused = |option: &str| {
+        Failure::input(format!(
+            "{option}: found a track of an acceleration or a skidpad; expected one of laps, or a command line without it"
+        ))
     };
     given.iter().find(|(_, given)| *given).map_or(Ok(()), |(option, _)| Err(refused(option)))
 }

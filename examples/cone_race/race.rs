@@ -11,6 +11,7 @@ use roverlab::io::sim::{NoiseModel, RobotTruth};
 use roverlab::io::{self, LidarScan, LidarSettings, Resolution, RobotIo};
 
 use super::Sensors;
+use super::event;
 use crate::common::{Driven, Failure, Stage};
 use crate::cones::{Course, Judge, pass};
 
@@ -77,12 +78,25 @@ impl Other {
     }
 }
 
+/// How a race ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Ending {
+    /// All laps were driven, or the event.
+    Finished,
+    /// Time was over.
+    TimedOut,
+    /// The car stood without cones that fit its event.
+    Lost,
+    /// The car stood, but not behind the finish and before the end of the lane there.
+    Missed,
+}
+
 /// What came out of a race.
 #[derive(Debug, Clone)]
 pub(crate) struct Outcome {
     pub(crate) verdict: Verdict,
     /// How far it came, or what failed.
-    pub(crate) ending: Result<RacePhase, String>,
+    pub(crate) ending: Result<Ending, String>,
     pub(crate) truth: RobotTruth,
     pub(crate) time: f64,
     /// Where the car was, and how fast, at every decision.
@@ -99,7 +113,7 @@ pub(crate) struct Outcome {
 impl Outcome {
     /// Whether all laps were driven.
     pub(crate) fn is_finished(&self) -> bool {
-        self.ending == Ok(RacePhase::Finished)
+        self.ending == Ok(Ending::Finished)
     }
 
     /// Whether all laps were driven without a penalty.
@@ -110,7 +124,7 @@ impl Outcome {
 }
 
 /// What a car sees cones with.
-struct Eyes {
+pub(super) struct Eyes {
     sensors: Sensors,
     camera: CameraSight,
     scan: LidarScan,
@@ -118,13 +132,13 @@ struct Eyes {
 }
 
 impl Eyes {
-    fn new(sensors: Sensors) -> Self {
+    pub(super) fn new(sensors: Sensors) -> Self {
         let camera = CameraSight::new(CameraMount::default());
         Self { sensors, camera, scan: LidarScan::default(), image: RgbImage::default() }
     }
 
     /// The cones around a car.
-    fn look<R: RobotIo + ?Sized>(&mut self, car: &mut R) -> io::Result<Vec<Sighting>> {
+    pub(super) fn look<R: RobotIo + ?Sized>(&mut self, car: &mut R) -> io::Result<Vec<Sighting>> {
         let mut seen = Vec::new();
         if self.sensors != Sensors::Camera {
             car.scan_into(&mut self.scan)?;
@@ -172,7 +186,7 @@ impl Plans {
 }
 
 /// What a car can do at most, in balance: what the optimum is for.
-fn limits(spec: &RaceCarSpec) -> CarLimits {
+pub(super) fn limits(spec: &RaceCarSpec) -> CarLimits {
     CarLimits {
         hold: Hold::Balance(Tyres {
             grip: spec.grip,
@@ -189,6 +203,9 @@ fn limits(spec: &RaceCarSpec) -> CarLimits {
 
 /// Races on a course.
 pub(crate) fn race(course: &Course, settings: &Settings, stage: &Stage) -> Result<Outcome, Failure> {
+    if let Some(event) = &course.event {
+        return event::race(course, event, settings, stage);
+    }
     let mut judge = Judge::new(course, stage.truth(0)?, 0).map_err(Failure::run)?;
     let mut car = stage.robot(0)?;
     let mut other = settings.other.then(|| Other::new(course, stage)).transpose()?;
@@ -215,7 +232,7 @@ fn drive<R: RobotIo + ?Sized>(
     car: &mut R,
     (judge, mut other): (&mut Judge, Option<&mut Other>),
     plans: &mut Plans,
-) -> io::Result<RacePhase> {
+) -> io::Result<Ending> {
     let parameters = course.parameters(settings.laps);
     let mut racer = Racer::new(parameters);
     let mut eyes = Eyes::new(settings.sensors);
@@ -241,5 +258,5 @@ fn drive<R: RobotIo + ?Sized>(
             break;
         }
     }
-    Ok(racer.phase())
+    Ok(if racer.phase() == RacePhase::Finished { Ending::Finished } else { Ending::TimedOut })
 }

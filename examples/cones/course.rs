@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use roverlab::drive::cones::{
-    CentreLine, CentreLineParameters, Cone, ConeColour, ConeTrack, Corridor, GeneratedTrack, LaneParameters,
-    RacerParameters, TrackFile, TrackOptions, generate, lined, parse_track,
+    CarOutline, CentreLine, CentreLineParameters, Cone, ConeColour, ConeTrack, Corridor, EventCourse,
+    GeneratedTrack, LaneParameters, RacerParameters, TrackFile, TrackOptions, generate, lined, parse_track,
 };
 use roverlab::geometry::{Aabb, Point, Pose, math};
 use roverlab::io::sim::race::{RaceCarSpec, RaceCone};
@@ -22,6 +22,8 @@ pub(crate) struct Course {
     pub(crate) start: Pose,
     /// Whether it is much wider than a track of Formula Student.
     pub(crate) wide: bool,
+    /// That of an acceleration or a skidpad, if it is none of laps.
+    pub(crate) event: Option<EventCourse>,
 }
 
 /// Metres of ground around the cones.
@@ -57,20 +59,41 @@ impl Course {
         let GeneratedTrack { track, corridor } =
             generate(seed, &TrackOptions::drawn(seed)).map_err(Failure::input)?;
         let start = track.start_pose().ok_or_else(|| Failure::input("the track has no start"))?;
-        Ok(Self { cones: track.cones, corridor, start, wide: false })
+        Ok(Self { cones: track.cones, corridor, start, wide: false, event: None })
     }
 
-    /// The track of a file.
+    /// The track of a file, for laps.
     pub(crate) fn from_file(common: &CommonArgs, path: &Path) -> Result<Self, Failure> {
+        Self::of_laps(Self::read(common, path)?, path)
+    }
+
+    /// The track of a file, for the event that its cones stand for.
+    pub(crate) fn for_its_event(common: &CommonArgs, path: &Path) -> Result<Self, Failure> {
+        let file = Self::read(common, path)?;
+        if let TrackFile::Cones(track) = &file
+            && let Some(start) = track.start_pose()
+            && let Some(event) = EventCourse::of(track, &Self::outline())
+        {
+            let (cones, corridor) = (track.cones.clone(), event.corridor().clone());
+            return Ok(Self { cones, corridor, start, wide: false, event: Some(event) });
+        }
+        Self::of_laps(file, path)
+    }
+
+    fn read(common: &CommonArgs, path: &Path) -> Result<TrackFile, Failure> {
         let bytes = common.read("track", path).map_err(Failure::input)?;
         let text = String::from_utf8_lossy(&bytes);
-        match parse_track(&text, &path.display().to_string()).map_err(Failure::input)? {
+        parse_track(&text, &path.display().to_string()).map_err(Failure::input)
+    }
+
+    fn of_laps(file: TrackFile, path: &Path) -> Result<Self, Failure> {
+        match file {
             TrackFile::Cones(track) => Self::between(&track, path),
             TrackFile::Corridor(corridor) => {
                 let fine = corridor.resampled(1.0).map_err(Failure::input)?;
                 let GeneratedTrack { track, corridor } = lined(fine, 4.8);
                 let start = track.start_pose().ok_or_else(|| Failure::input("the track has no start"))?;
-                Ok(Self { cones: track.cones, corridor, start, wide: true })
+                Ok(Self { cones: track.cones, corridor, start, wide: true, event: None })
             }
             TrackFile::Line(_) => Err(Failure::input(format!(
                 "--track {}: found a line without widths; expected a track",
@@ -95,7 +118,7 @@ impl Course {
             return Err(refused(format!("a way of {:.0} m that does not close", line.corridor.length())));
         }
         let corridor = line.corridor.beginning_near(line_of(track, start));
-        Ok(Self { cones: track.cones.clone(), corridor, start, wide: false })
+        Ok(Self { cones: track.cones.clone(), corridor, start, wide: false, event: None })
     }
 
     /// Takes cones away and adds others.
@@ -210,6 +233,11 @@ impl Course {
             };
         }
         parameters
+    }
+
+    /// The outline of the car.
+    pub(crate) fn outline() -> CarOutline {
+        RacerParameters::default().outline
     }
 
     /// The referee's wheels in the frame of the car.

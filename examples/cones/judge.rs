@@ -1,6 +1,6 @@
 //! Who watches a car: the referee, with what is true about it.
 
-use roverlab::drive::cones::{Referee, Verdict};
+use roverlab::drive::cones::{EventReferee, Referee, Verdict};
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::{RobotTruth, TICK};
 use roverlab::io::{self, Clock};
@@ -8,11 +8,41 @@ use roverlab::io::{self, Clock};
 use super::course::Course;
 use crate::common::StageTruth;
 
+/// The referee of laps, or of another event.
+enum Whistle {
+    Laps(Referee),
+    Event(EventReferee),
+}
+
+impl Whistle {
+    fn new(course: &Course) -> Self {
+        let Some(event) = &course.event else {
+            return Self::Laps(Referee::new(course.corridor.clone(), Course::wheels()));
+        };
+        let nose = Point::new(Course::outline().nose, 0.0);
+        Self::Event(EventReferee::new(event.clone(), Course::wheels(), nose))
+    }
+
+    fn verdict(&self) -> &Verdict {
+        match self {
+            Self::Laps(referee) => referee.verdict(),
+            Self::Event(referee) => referee.verdict(),
+        }
+    }
+
+    fn see(&mut self, time: f64, pose: Pose, cones_hit: usize) {
+        match self {
+            Self::Laps(referee) => referee.see(time, pose, cones_hit),
+            Self::Event(referee) => referee.see(time, pose, cones_hit),
+        }
+    }
+}
+
 /// Watches one car.
 pub(crate) struct Judge {
     truth: StageTruth,
     index: usize,
-    referee: Referee,
+    referee: Whistle,
     cones: Vec<Point>,
     /// What was true when it looked last, and when that was.
     last: RobotTruth,
@@ -30,7 +60,7 @@ impl Judge {
         Ok(Self {
             truth,
             index,
-            referee: Referee::new(course.corridor.clone(), Course::wheels()),
+            referee: Whistle::new(course),
             cones: course.cones.iter().map(|cone| cone.position).collect(),
             last,
             time: 0.0,
@@ -42,6 +72,14 @@ impl Judge {
     /// What the referee has seen.
     pub(crate) fn verdict(&self) -> &Verdict {
         self.referee.verdict()
+    }
+
+    /// Whether all times of an event were taken and the car is within its lane still; always for laps.
+    pub(crate) fn is_complete(&self) -> bool {
+        match &self.referee {
+            Whistle::Laps(_) => true,
+            Whistle::Event(referee) => referee.is_complete(),
+        }
     }
 
     /// Seconds since the beginning.

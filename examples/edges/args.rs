@@ -11,8 +11,8 @@ use crate::common::CommonArgs;
     name = "edges",
     about = "Edges, colours and lines: a kernel on an image file, or live on the robot's display",
     after_help = "\
-With --input, the kernel works on an image file (PNG, PNM or BMP), and --output takes the result (by its ending .png, .pgm
-or .ppm). Without, a robot in its room turns and shows what the kernel makes of its camera's images on its display; --output
+With --input, the kernel works on an image file (PNG, PNM or BMP), and --output takes the result (by its ending .png, .pgm,
+.ppm or .bmp). Without, a robot in its room turns and shows what the kernel makes of its camera's images on its display; --output
 takes the last display.
 
 A definition says what is meant where the book and OpenCV differ:
@@ -25,6 +25,7 @@ A definition says what is meant where the book and OpenCV differ:
   saturation     255 - 255 min / I                                255 (max - min) / max
   intensity      (R + G + B) / 3                                  max
   hue_match      255-hue circle of the book's Program 11.9        180-hue circle
+  hough_prob...  pixels vote in an order drawn by --seed          OpenCV's order, and its rule of votes taken back
 With --smooth, --min-saturation and --min-intensity either can be had with both.
 
 JSON fields:
@@ -34,7 +35,7 @@ JSON fields:
   lines                       hough: [{rho, theta_deg, votes}]; hough_probabilistic: [[x0, y0, x1, y1]]
   blobs                       blobs: [{area, x, y, min, max}]
   columns, rows               projections: the sums
-  descriptor_length, descriptor_digest   hog
+  descriptor_length, descriptor_digest   hog; with --descriptor, its numbers in `descriptor`
   frames                      live: images shown
 Outcomes: filtered, shown, collided, failed."
 )]
@@ -60,19 +61,19 @@ pub(crate) struct Args {
     pub(crate) second: Option<PathBuf>,
 
     /// canny, and what works on its edges: gradient that continues an edge.
-    #[arg(long, value_name = "N", default_value_t = 50)]
+    #[arg(long, value_name = "N", default_value_t = 50, allow_hyphen_values = true)]
     pub(crate) low: u16,
 
     /// canny, and what works on its edges: gradient that starts an edge.
-    #[arg(long, value_name = "N", default_value_t = 100)]
+    #[arg(long, value_name = "N", default_value_t = 100, allow_hyphen_values = true)]
     pub(crate) high: u16,
 
     /// threshold: shades above this become white [128]; hough: votes [100, 50 for segments]; overlay: edges [50].
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) threshold: Option<u32>,
 
     /// Width of a Gaussian in pixels; without it the fixed weights of its size.
-    #[arg(long, value_name = "F")]
+    #[arg(long, value_name = "F", allow_hyphen_values = true)]
     pub(crate) sigma: Option<f64>,
 
     /// Smooth first by a Gaussian of this size: 0, 3, 5 or 7 [canny by the book: 7, else 0].
@@ -80,30 +81,30 @@ pub(crate) struct Args {
     pub(crate) smooth: Option<usize>,
 
     /// Hue to look for [that of red].
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) hue: Option<u8>,
 
     /// Hues less than this away from it match.
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = value_parser!(u8).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = value_parser!(u8).range(1..), allow_hyphen_values = true)]
     pub(crate) tolerance: u8,
 
     /// First hue that matches, instead of --hue; it may be larger than the last.
-    #[arg(long, value_name = "N", requires = "hue_high")]
+    #[arg(long, value_name = "N", requires = "hue_high", allow_hyphen_values = true)]
     pub(crate) hue_low: Option<u8>,
 
     /// Last hue that matches.
-    #[arg(long, value_name = "N", requires = "hue_low")]
+    #[arg(long, value_name = "N", requires = "hue_low", allow_hyphen_values = true)]
     pub(crate) hue_high: Option<u8>,
 
     /// Least saturation of a pixel with a hue, 0 to 255 [book: 128, opencv: 0].
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) min_saturation: Option<u8>,
 
     /// Least intensity of a pixel with a hue, 0 to 255 [book: 26, opencv: 0].
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) min_intensity: Option<u8>,
 
-    /// hue: by the book's formulas instead of RoBIOS's whole numbers.
+    /// hue: by the book's formulas instead of RoBIOS's whole numbers, every colour unless a least one is given.
     #[arg(long)]
     pub(crate) exact: bool,
 
@@ -112,27 +113,31 @@ pub(crate) struct Args {
     pub(crate) binary: bool,
 
     /// hough: steps of the angle in half a turn.
-    #[arg(long, value_name = "N", default_value_t = 180, value_parser = value_parser!(u16).range(1..=3600))]
+    #[arg(long, value_name = "N", default_value_t = 180, value_parser = value_parser!(u16).range(1..=3600), allow_hyphen_values = true)]
     pub(crate) angles: u16,
 
     /// hough: pixels between two distances.
-    #[arg(long, value_name = "F", default_value_t = 1.0)]
+    #[arg(long, value_name = "F", default_value_t = 1.0, allow_hyphen_values = true)]
     pub(crate) rho: f64,
 
     /// `hough_probabilistic`: pixels that a line reaches at least.
-    #[arg(long, value_name = "N", default_value_t = 30)]
+    #[arg(long, value_name = "N", default_value_t = 30, allow_hyphen_values = true)]
     pub(crate) min_length: usize,
 
     /// `hough_probabilistic`: pixels that may be missing in a line.
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value_t = 5, allow_hyphen_values = true)]
     pub(crate) max_gap: usize,
 
+    /// hog: the whole descriptor among the JSON fields.
+    #[arg(long)]
+    pub(crate) descriptor: bool,
+
     /// blobs: pixels of the smallest.
-    #[arg(long, value_name = "N", default_value_t = 20)]
+    #[arg(long, value_name = "N", default_value_t = 20, allow_hyphen_values = true)]
     pub(crate) min_area: usize,
 
     /// Runs of the kernel, of which the fastest is reported; live: images.
-    #[arg(long, value_name = "N", default_value_t = 20, value_parser = value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = value_parser!(u32).range(1..=100_000), allow_hyphen_values = true)]
     pub(crate) repeat: u32,
 
     #[command(flatten)]

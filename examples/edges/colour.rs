@@ -1,7 +1,10 @@
 //! Kernels on colours.
 
 use image::{GrayImage, RgbImage};
-use roverlab::vision::{Error, HueScale, hsi_into, hsv_into, hue_into, hue_match_into};
+use roverlab::vision::{
+    Error, HueScale, NO_HUE, hsi_into, hsi_to_rgb_into, hsv_into, hsv_to_rgb_into, hue as hue_of, hue_into,
+    hue_match_into,
+};
 
 use super::parameters::Parameters;
 
@@ -15,6 +18,16 @@ pub(crate) fn hsi(input: &RgbImage, p: &Parameters) -> Result<RgbImage, Error> {
     Ok(output)
 }
 
+/// The other way round.
+pub(crate) fn hsi_to_rgb(input: &RgbImage, p: &Parameters) -> Result<RgbImage, Error> {
+    let mut output = RgbImage::new(input.width(), input.height());
+    match p.scale {
+        HueScale::Robios => hsi_to_rgb_into(input.try_into()?, (&mut output).try_into()?)?,
+        HueScale::OpenCv => hsv_to_rgb_into(input.try_into()?, (&mut output).try_into()?)?,
+    }
+    Ok(output)
+}
+
 /// One of the three.
 pub(crate) fn channel(input: &RgbImage, p: &Parameters, channel: usize) -> Result<GrayImage, Error> {
     let whole = hsi(input, p)?;
@@ -22,10 +35,18 @@ pub(crate) fn channel(input: &RgbImage, p: &Parameters, channel: usize) -> Resul
     Ok(GrayImage::from_raw(input.width(), input.height(), bytes).unwrap_or_default())
 }
 
-pub(crate) fn hue(input: &RgbImage, p: &Parameters, exact: bool) -> Result<GrayImage, Error> {
-    if exact {
-        return channel(input, p, 0);
+/// Hues by the book's formulas, none where a pixel has too little colour or light.
+pub(crate) fn exact_hue(input: &RgbImage, p: &Parameters) -> Result<GrayImage, Error> {
+    let mut output = channel(input, p, 0)?;
+    for (out, pixel) in output.iter_mut().zip(input.pixels()) {
+        if hue_of(pixel.0, p.scale, p.exact_limits) == NO_HUE {
+            *out = NO_HUE;
+        }
     }
+    Ok(output)
+}
+
+pub(crate) fn hue(input: &RgbImage, p: &Parameters) -> Result<GrayImage, Error> {
     let mut output = GrayImage::new(input.width(), input.height());
     hue_into(input.try_into()?, (&mut output).try_into()?, p.scale, p.limits)?;
     Ok(output)

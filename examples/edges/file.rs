@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use image::RgbImage;
+use image::{DynamicImage, RgbImage};
 
+use super::checks::refused;
 use super::kernel::Runner;
 use super::{Args, Processed};
 use crate::common::{Failure, Outcome, Report, Stopwatch, rounded, write_image};
@@ -15,11 +16,11 @@ pub(crate) fn work(args: &Args, input: &Path) -> Result<Report, Failure> {
         let kernel = args.kernel.name();
         return Err(Failure::input(format!("--kernel {kernel}: found one image; expected --second FILE")));
     }
-    let mut runner = Runner::new(args).map_err(Failure::input)?;
+    let mut runner = Runner::new(args).map_err(|error| refused(&error))?;
     let (mut result, mut fastest) = (None, f64::INFINITY);
     for _ in 0..args.repeat {
         let stopwatch = Stopwatch::start();
-        let processed = runner.run(&image, second.as_ref()).map_err(Failure::input)?;
+        let processed = runner.run(&image, second.as_ref()).map_err(|error| refused(&error))?;
         fastest = fastest.min(stopwatch.seconds());
         result = Some(processed);
     }
@@ -50,15 +51,33 @@ fn load(option: &str, file: &Path) -> Result<RgbImage, Failure> {
     };
     let reader = image::ImageReader::open(file).map_err(|error| wrong(&error))?;
     let reader = reader.with_guessed_format().map_err(|error| wrong(&error))?;
-    let image = reader.decode().map_err(|error| wrong(&error))?.into_rgb8();
+    let image = eight_bits(reader.decode().map_err(|error| wrong(&error))?);
     if image.width() == 0 || image.height() == 0 {
         return Err(wrong(&"the image has no pixels"));
     }
     Ok(image)
 }
 
+/// Red, green and blue of eight bits each: the upper ones where a file has sixteen, as OpenCV reads such files.
+fn eight_bits(image: DynamicImage) -> RgbImage {
+    let deep = matches!(
+        image,
+        DynamicImage::ImageLuma16(_)
+            | DynamicImage::ImageLumaA16(_)
+            | DynamicImage::ImageRgb16(_)
+            | DynamicImage::ImageRgba16(_)
+    );
+    if !deep {
+        return image.into_rgb8();
+    }
+    let deep = image.into_rgb16();
+    RgbImage::from_fn(deep.width(), deep.height(), |x, y| {
+        image::Rgb(deep.get_pixel(x, y).0.map(|sample| (sample >> 8) as u8))
+    })
+}
+
 /// Writes an image in the format that its name asks for.
-pub(crate) fn save(image: &image::DynamicImage, file: &Path) -> Result<(), Failure> {
+pub(crate) fn save(image: &DynamicImage, file: &Path) -> Result<(), Failure> {
     write_image(image, file).map_err(|error| {
         Failure::input(format!(
             "--output {}: {error}; expected a file ending in .png, .pgm, .ppm or .bmp that can be written",

@@ -1,13 +1,14 @@
 use image::{DynamicImage, GrayImage, RgbImage};
 use roverlab::vision::{
-    Canny, Error, Hog, HogParameters, HoughLines, HoughSegments, SegmentParameters, absolute_difference_into,
-    gaussian_into, gray_into, gray_to_rgb_into, laplace_into, laplace_saturated_into, overlay_gray_into,
-    overlay_into, projections_into, sobel_l1_into, sobel_l2_into, threshold_into,
+    Canny, Error, Hog, HogParameters, HoughLines, HoughSegments, SegmentDefinition, SegmentParameters,
+    absolute_difference_into, gaussian_into, gray_into, gray_to_rgb_into, laplace_into,
+    laplace_saturated_into, overlay_gray_into, overlay_into, projections_into, sobel_l1_into, sobel_l2_into,
+    threshold_into,
 };
 use serde_json::{Value, json};
 
 use super::parameters::{Parameters, gaussian};
-use super::{Args, colour, marks};
+use super::{Args, Definition, colour, marks};
 
 /// A kernel by its name on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -45,6 +46,8 @@ pub(crate) enum Kernel {
     Intensity,
     /// Hue, saturation and intensity (or value) in the place of red, green and blue.
     Hsi,
+    /// Back to red, green and blue, of an image with hue, saturation and intensity (or value) in their place.
+    HsiToRgb,
     /// White where the hue is right.
     HueMatch,
     /// Sums of the columns and rows of the hue match.
@@ -70,6 +73,17 @@ impl Kernel {
 
     pub(crate) fn uses_canny(self) -> bool {
         matches!(self, Self::Canny | Self::Hough | Self::HoughProbabilistic)
+    }
+
+    /// Whether it works on colours, not on shades of gray.
+    pub(crate) fn works_on_colours(self) -> bool {
+        use Kernel::{Hsi, HsiToRgb, Hue, HueMatch, Intensity, Projections, Saturation};
+        matches!(self, Hue | Saturation | Intensity | Hsi | HsiToRgb | HueMatch | Projections)
+    }
+
+    /// Whether `--threshold` is a shade of gray for it.
+    pub(crate) fn thresholds_shades(self) -> bool {
+        matches!(self, Self::Threshold | Self::Overlay)
     }
 
     pub(crate) fn needs_second(self) -> bool {
@@ -133,14 +147,16 @@ impl Runner {
             Kernel::Gaussian5 => self.gaussian(input, 5)?.into(),
             Kernel::Gaussian7 => self.gaussian(input, 7)?.into(),
             Kernel::Threshold => {
-                let threshold = self.threshold(128).min(255) as u8;
+                let threshold = self.threshold(128) as u8;
                 self.on_gray(input, |a, b| threshold_into(a, b, threshold))?.into()
             }
             Kernel::Overlay => self.overlay(input, second)?.into(),
-            Kernel::Hue => colour::hue(input, &p, self.args.exact)?.into(),
+            Kernel::Hue if self.args.exact => colour::exact_hue(input, &p)?.into(),
+            Kernel::Hue => colour::hue(input, &p)?.into(),
             Kernel::Saturation => colour::channel(input, &p, 1)?.into(),
             Kernel::Intensity => colour::channel(input, &p, 2)?.into(),
             Kernel::Hsi => colour::hsi(input, &p)?.into(),
+            Kernel::HsiToRgb => colour::hsi_to_rgb(input, &p)?.into(),
             Kernel::HueMatch => colour::matches(input, &p)?.into(),
             Kernel::Projections => projections(colour::matches(input, &p)?)?,
             Kernel::Difference => self.difference(input, second)?.into(),
@@ -160,16 +176,23 @@ impl Runner {
                     threshold: self.threshold(50),
                     min_length: self.args.min_length,
                     max_gap: self.args.max_gap,
-                    seed: self.args.common.seed,
+                    definition: match self.args.definition {
+                        Definition::Book => SegmentDefinition::Voted { seed: self.args.common.seed },
+                        Definition::OpenCv => SegmentDefinition::OpenCv,
+                    },
                 };
                 let found =
                     HoughSegments::new(self.args.angles.into())?.find((&edges).try_into()?, parameters);
                 marks::segments(&edges, &found)
             }
-            Kernel::Hog => marks::hog(&self.gray(input)?, &mut Hog::new(HogParameters::default())?)?,
+            Kernel::Hog => {
+                let mut hog = Hog::new(HogParameters::default())?;
+                marks::hog(&self.gray(input)?, &mut hog, self.args.descriptor)?
+            }
         })
     }
 
+    /// Options that are out of range for a kernel have been refused.
     fn threshold(&self, default: u32) -> u32 {
         self.args.threshold.unwrap_or(default)
     }
@@ -224,7 +247,7 @@ impl Runner {
         let border = self.parameters.border;
         let laplace = self.on_gray(input, |a, b| laplace_into(a, b, border))?;
         let mut edges = GrayImage::new(input.width(), input.height());
-        let threshold = self.threshold(50).min(255) as u8;
+        let threshold = self.threshold(50) as u8;
         threshold_into((&laplace).try_into()?, (&mut edges).try_into()?, threshold)?;
         let gray = self.gray(input)?;
         let red = roverlab::world::Colour::RED;

@@ -4,6 +4,7 @@ use image::{DynamicImage, RgbImage};
 use roverlab::geometry::Twist;
 use roverlab::io::{self, Camera, Clock, Display, Drive, Picture, Resolution, Viewport};
 
+use super::checks::refused;
 use super::kernel::{Kernel, Runner};
 use super::{Args, file};
 use crate::common::{Failure, Outcome, Report};
@@ -19,9 +20,18 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     let scene = common.placed(crate::room::scene)?;
     let conditions = Conditions::new(common, f64::from(args.repeat) * PERIOD + 1.0)?;
-    let mut runner = Runner::new(args).map_err(Failure::input)?;
-    let run =
-        conditions.run(&scene, paced(common), |robot, step| show(robot, &mut runner, args.repeat, step))?;
+    let mut runner = Runner::new(args).map_err(|error| refused(&error))?;
+    // What is wrong with the options shows before the robot moves.
+    let (width, height) = Resolution::Qvga.dimensions();
+    runner.run(&RgbImage::new(width, height), None).map_err(|error| refused(&error))?;
+    let mut frames = 0;
+    let run = conditions.run(&scene, paced(common), |robot, step| {
+        let mut count = || {
+            frames += 1;
+            step();
+        };
+        show(robot, &mut runner, args.repeat, &mut count)
+    })?;
     let mut report = run.report(|_| Outcome::verdict("shown"));
     if let Ok(shown) = &run.ending
         && let Some(output) = &args.output
@@ -35,7 +45,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         .field("width", width)
         .field("height", height)
         .field("output", args.output.clone())
-        .field("frames", args.repeat);
+        .field("frames", frames);
     Ok(report)
 }
 

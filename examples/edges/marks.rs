@@ -99,8 +99,8 @@ pub(crate) fn blobs(input: &RgbImage, mask: &GrayImage, min_area: usize) -> Resu
     Ok(Processed { image: image.into(), fields: vec![("blobs", found.into())] })
 }
 
-/// The descriptor's length and digest; the picture shows how strong each cell's strongest direction is.
-pub(crate) fn hog(gray: &GrayImage, hog: &mut Hog) -> Result<Processed, Error> {
+/// The descriptor's length and digest, and the whole of it if asked for; the picture shows how strong each cell's strongest direction is.
+pub(crate) fn hog(gray: &GrayImage, hog: &mut Hog, whole: bool) -> Result<Processed, Error> {
     let view: roverlab::vision::GrayView<'_> = gray.try_into()?;
     let (across, down) = hog.blocks(view.size());
     let descriptor = hog.describe(view)?;
@@ -117,9 +117,12 @@ pub(crate) fn hog(gray: &GrayImage, hog: &mut Hog) -> Result<Processed, Error> {
         .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
         });
-    let fields = vec![
+    let mut fields = vec![
         ("descriptor_length", json!(descriptor.len())),
         ("descriptor_digest", json!(format!("{digest:016x}"))),
     ];
+    if whole {
+        fields.push(("descriptor", json!(descriptor)));
+    }
     Ok(Processed { image: picture.into(), fields })
 }

@@ -1,6 +1,7 @@
 //! The example `edges`, in parts that the tests run too.
 
 mod args;
+mod checks;
 mod colour;
 mod file;
 mod kernel;
@@ -15,6 +16,7 @@ use crate::common::{Failure, Report};
 
 /// The work of the example.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    checks::check(args)?;
     match &args.input {
         Some(input) => file::work(args, input),
         None => live::work(args),

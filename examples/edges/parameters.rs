@@ -16,6 +16,8 @@ pub(crate) struct Parameters {
     pub(crate) scale: HueScale,
     pub(crate) range: HueRange,
     pub(crate) limits: HueLimits,
+    /// The same for hues by the book's formulas, which have none of their own.
+    pub(crate) exact_limits: HueLimits,
 }
 
 impl Parameters {
@@ -23,6 +25,10 @@ impl Parameters {
         let book = args.definition == Definition::Book;
         let scale = if book { HueScale::Robios } else { HueScale::OpenCv };
         let limits = if book { HueLimits::default() } else { HueLimits::NONE };
+        let asked = |limits: HueLimits| HueLimits {
+            min_saturation: args.min_saturation.unwrap_or(limits.min_saturation),
+            min_intensity: args.min_intensity.unwrap_or(limits.min_intensity),
+        };
         let red = if book { 42 } else { 0 };
         Ok(Self {
             weights: if book { GrayWeights::Robios } else { GrayWeights::Rec601 },
@@ -32,13 +38,11 @@ impl Parameters {
             smooth: smoothing(args, book)?,
             scale,
             range: match (args.hue_low, args.hue_high) {
-                (Some(low), Some(high)) => HueRange { low, high },
+                (Some(low), Some(high)) => HueRange::new(low, high, scale)?,
                 _ => HueRange::around(args.hue.unwrap_or(red), args.tolerance, scale)?,
             },
-            limits: HueLimits {
-                min_saturation: args.min_saturation.unwrap_or(limits.min_saturation),
-                min_intensity: args.min_intensity.unwrap_or(limits.min_intensity),
-            },
+            limits: asked(limits),
+            exact_limits: asked(HueLimits::NONE),
         })
     }
 }

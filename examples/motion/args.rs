@@ -38,7 +38,7 @@ pub(crate) struct Args {
     pub(crate) campaign: bool,
 
     /// Pairs of each kind in a campaign.
-    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) pairs: u64,
 
     #[command(flatten)]

@@ -23,6 +23,12 @@ struct Seen {
 /// The work of the example.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if args.campaign {
+        args.common.check_placeless("the pairs of a campaign are drawn")?;
+        if args.still {
+            return Err(Failure::input(
+                "--still: found --campaign, which has both kinds of pairs; expected one of them",
+            ));
+        }
         return campaign(args);
     }
     let common = &args.common;

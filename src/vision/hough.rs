@@ -45,13 +45,14 @@ impl HoughLines {
             let found = angles as f64;
             return Err(Error::Parameter { parameter: "angles", found, expected: "1 to 3600" });
         }
-        // Angles in single precision, each the one before and a step: those are the votes of OpenCV.
+        // Angles in single precision, each the one before and a step, and so the step's inverse: those are the votes of OpenCV.
         let step = (PI / angles as f64) as f32;
         let mut angle = 0.0_f32;
+        let inverse = f64::from(1.0 / rho_step as f32);
         let direction = |_| {
             let (sin, cos) = math::sin_cos(f64::from(angle));
             angle += step;
-            [(cos / rho_step) as f32, (sin / rho_step) as f32]
+            [(cos * inverse) as f32, (sin * inverse) as f32]
         };
         let directions = (0..angles).map(direction).collect();
         Ok(Self {

@@ -1,9 +1,9 @@
 use std::f64::consts::PI;
 
 use super::dispatch::vectorised;
-use super::{Error, GrayView};
+use super::segment_order::Draw;
+use super::{Error, GrayView, SegmentDefinition};
 use crate::geometry::math;
-use crate::random::Stream;
 
 /// A straight line between two pixels, both included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -23,13 +23,13 @@ pub struct SegmentParameters {
     pub min_length: usize,
     /// Pixels that may be missing between two of a line.
     pub max_gap: usize,
-    /// The seed of the order in which pixels vote.
-    pub seed: u64,
+    /// In which order pixels vote, and which votes a line takes with it.
+    pub definition: SegmentDefinition,
 }
 
 impl Default for SegmentParameters {
     fn default() -> Self {
-        Self { threshold: 50, min_length: 30, max_gap: 5, seed: 1 }
+        Self { threshold: 50, min_length: 30, max_gap: 5, definition: SegmentDefinition::default() }
     }
 }
 
@@ -39,13 +39,14 @@ impl Default for SegmentParameters {
 ///
 /// One pixel after the other, drawn at random, votes for the lines through it. When the line with most of its votes
 /// has enough, pixels are followed along it to both sides from the one that voted last, over gaps that are not too
-/// wide, and leave the vote; if they reach far enough, they are a line, and their votes are taken back.
+/// wide, and leave the vote; if they reach far enough, they are a line, and their votes are taken back. What differs in
+/// OpenCV is a [`SegmentDefinition`]; with it, lines are OpenCV's, one by one, at a distance step of one pixel.
 #[derive(Debug, Clone)]
 pub struct HoughSegments {
     directions: Vec<[f32; 2]>,
-    /// As many as 16 bits hold: no line has more pixels but in an image with a diagonal of 46,000 pixels. Half the memory is
-    /// looked up much faster.
-    votes: Vec<u16>,
+    /// As many as 16 bits hold: no line has more pixels but in an image with a diagonal of 23,000 pixels. Half the memory is
+    /// looked up much faster. Negative where lines took more than was given.
+    votes: Vec<i16>,
     /// The edges that are left, and which of them have voted.
     mask: Vec<u8>,
     points: Vec<(u32, u32)>,
@@ -68,8 +69,10 @@ impl HoughSegments {
             let found = angles as f64;
             return Err(Error::Parameter { parameter: "angles", found, expected: "1 to 3600" });
         }
+        // Multiples of a step in single precision: those are the votes of OpenCV.
+        let step = f64::from((PI / angles as f64) as f32);
         let direction = |angle: usize| {
-            let (sin, cos) = math::sin_cos(PI * angle as f64 / angles as f64);
+            let (sin, cos) = math::sin_cos(step * angle as f64);
             [cos as f32, sin as f32]
         };
         Ok(Self {
@@ -85,10 +88,10 @@ impl HoughSegments {
     /// The lines of an image of edges, all pixels that are not 0, in the order in which they are found.
     pub fn find(&mut self, edges: GrayView<'_>, parameters: SegmentParameters) -> Vec<LineSegment> {
         self.gather(edges);
-        let mut stream = Stream::new(parameters.seed);
+        let mut draw = Draw::new(parameters.definition);
         let mut lines = Vec::new();
         for left in (1..=self.points.len()).rev() {
-            let drawn = stream.below(left);
+            let drawn = draw.below(left);
             self.points.swap(drawn, left - 1);
             let (x, y) = self.points[left - 1];
             let (x, y) = (x as usize, y as usize);
@@ -96,10 +99,9 @@ impl HoughSegments {
                 continue;
             }
             let (count, angle) = self.vote(x, y);
-            if count < parameters.threshold {
-                continue;
+            if count >= parameters.threshold.max(1) {
+                lines.extend(self.follow((x, y), angle, parameters));
             }
-            lines.extend(self.follow((x, y), angle, parameters));
         }
         lines
     }
@@ -140,7 +142,7 @@ impl HoughSegments {
     fn vote(&mut self, x: usize, y: usize) -> (u32, usize) {
         self.mask[y * self.size.0 + x] = VOTED;
         self.reckon(x, y);
-        let (mut most, mut best) = (0, 0);
+        let (mut most, mut best) = (0_i16, 0);
         for (angle, &place) in self.places.iter().enumerate() {
             let count = &mut self.votes[place as usize];
             *count = count.saturating_add(1);
@@ -148,7 +150,7 @@ impl HoughSegments {
                 (most, best) = (*count, angle);
             }
         }
-        (most.into(), best)
+        (most as u32, best)
     }
 
     fn take_back(&mut self, x: usize, y: usize) {
@@ -172,7 +174,7 @@ impl HoughSegments {
         angle: usize,
         parameters: SegmentParameters,
     ) -> Option<LineSegment> {
-        let [cos, sin] = self.directions[angle].map(f64::from);
+        let [cos, sin] = self.directions[angle];
         let walk = Walk::new(start, (-sin, cos));
         let ends = [1, -1].map(|side| self.last_on(&walk, side, parameters.max_gap));
         let [from, to] = ends.map(|steps| walk.pixel(steps));
@@ -182,9 +184,13 @@ impl HoughSegments {
             let (x, y) = walk.pixel(step);
             let (x, y) = (x as usize, y as usize);
             let place = y * self.size.0 + x;
-            match std::mem::replace(&mut self.mask[place], NO_EDGE) {
-                VOTED if is_long => self.take_back(x, y),
-                _ => {}
+            let taken = match std::mem::replace(&mut self.mask[place], NO_EDGE) {
+                VOTED => true,
+                EDGE => parameters.definition == SegmentDefinition::OpenCv,
+                _ => false,
+            };
+            if taken && is_long {
+                self.take_back(x, y);
             }
         }
         let pixel = |(x, y): (i64, i64)| (x as usize, y as usize);
@@ -222,10 +228,10 @@ struct Walk {
 }
 
 impl Walk {
-    fn new((x, y): (usize, usize), direction: (f64, f64)) -> Self {
-        let one = f64::from(1_u32 << FRACTION);
+    fn new((x, y): (usize, usize), direction: (f32, f32)) -> Self {
+        let one = (1_u32 << FRACTION) as f32;
         let longer = direction.0.abs().max(direction.1.abs());
-        let step = |part: f64| (part / longer * one).round() as i64;
+        let step = |part: f32| (part * one / longer).round_ties_even() as i64;
         let half = 1_i64 << (FRACTION - 1);
         let middle = |place: usize| ((place as i64) << FRACTION) + half;
         Self { x: middle(x), y: middle(y), dx: step(direction.0), dy: step(direction.1) }

@@ -7,7 +7,8 @@ use crate::geometry::math;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Hsi {
     /// The angle `acos(((R - G) + (R - B)) / 2 / sqrt((R - G)² + (R - B)(G - B)))`, taken from a full turn if blue
-    /// exceeds green, in 255ths of a turn, rounded to the nearest: red 0, green 85, blue 170. [`NO_HUE`] for grays.
+    /// exceeds green, in 255ths of a turn, rounded to the nearest, halves up: red 0, green 85, blue 170, and between them
+    /// yellow 43, cyan 128, magenta 213. [`NO_HUE`] for grays.
     pub hue: u8,
     /// `255 - 255 min(R, G, B) / I` with the intensity `I` before rounding, rounded to the nearest; 0 for black.
     pub saturation: u8,
@@ -24,6 +25,9 @@ pub fn rgb_to_hsi(pixel: [u8; 3]) -> Hsi {
     Hsi { hue: exact_hue(pixel), saturation: saturation as u8, intensity: ((2 * sum + 3) / 6) as u8 }
 }
 
+/// More than the angle's error, and less than the 1e-4 that any other colour stays away from the middle of two hues.
+const TIE: f64 = 1e-7;
+
 fn exact_hue(pixel: [u8; 3]) -> u8 {
     let [red, green, blue] = pixel.map(f64::from);
     if red == green && green == blue {
@@ -33,8 +37,10 @@ fn exact_hue(pixel: [u8; 3]) -> u8 {
     let length = ((red - green) * (red - green) + (red - blue) * (green - blue)).sqrt();
     let angle = math::acos((along / length).clamp(-1.0, 1.0));
     let turn = if blue > green { TAU - angle } else { angle };
+    // Yellow, cyan and magenta are right in the middle of two hues.
+    let part = turn * (255.0 / TAU) + TIE;
     // A full turn is red again.
-    ((turn * (255.0 / TAU)).round() as u32 % 255) as u8
+    (part.round() as u32 % 255) as u8
 }
 
 /// Hue, saturation and intensity back to red, green and blue, each rounded to the nearest and at most 255; a pixel
@@ -66,6 +72,18 @@ pub fn hsi_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), Er
         for (out, &pixel) in out.iter_mut().zip(input.row(y).as_chunks::<3>().0) {
             let Hsi { hue, saturation, intensity } = rgb_to_hsi(pixel);
             *out = [hue, saturation, intensity];
+        }
+    }
+    Ok(())
+}
+
+/// Red, green and blue of an image that has hue, saturation and intensity in their place; see [`hsi_to_rgb`].
+pub fn hsi_to_rgb_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), Error> {
+    output.require_size(input.size())?;
+    for y in 0..input.height() {
+        let out = output.row_mut(y).as_chunks_mut::<3>().0;
+        for (out, &[hue, saturation, intensity]) in out.iter_mut().zip(input.row(y).as_chunks::<3>().0) {
+            *out = hsi_to_rgb(Hsi { hue, saturation, intensity });
         }
     }
     Ok(())

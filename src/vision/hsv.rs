@@ -33,6 +33,42 @@ pub fn hsv_into(input: RgbView<'_>, output: RgbViewMut<'_>) -> Result<(), Error>
     Ok(())
 }
 
+/// Hue, saturation and value back to red, green and blue, as OpenCV does it in single precision.
+///
+/// In the sixth of the circle that begins after `k` of them, with `f` the part of it that is behind the hue, the channels are
+/// `V`, `V (1 - S)` and `V (1 - S f)` or `V (1 - S (1 - f))`, rounded down. A product that is taken from 1 is rounded together
+/// with the difference. (The few pixels at the end of a row that do not fill a register OpenCV rounds to the nearest.)
+pub fn hsv_to_rgb(Hsv { hue, saturation, value }: Hsv) -> [u8; 3] {
+    let (saturation, value) = (f32::from(saturation) * (1.0 / 255.0), f32::from(value) * (1.0 / 255.0));
+    let sixths = f32::from(hue) * (6.0 / 180.0);
+    let sector = sixths.floor();
+    let within = sixths - sector;
+    // The product of two floats is exact in double precision.
+    let without = |part: f32| value * (1.0 - f64::from(saturation) * f64::from(part)) as f32;
+    let (least, falling, rising) = (without(1.0), without(within), without(1.0 - within));
+    let colour = match sector as u8 % 6 {
+        0 => [value, rising, least],
+        1 => [falling, value, least],
+        2 => [least, value, rising],
+        3 => [least, falling, value],
+        4 => [rising, least, value],
+        _ => [value, least, falling],
+    };
+    colour.map(|channel| (channel * 255.0) as u8)
+}
+
+/// The same for an image that has hue, saturation and value in the place of red, green and blue.
+pub fn hsv_to_rgb_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), Error> {
+    output.require_size(input.size())?;
+    for y in 0..input.height() {
+        let out = output.row_mut(y).as_chunks_mut::<3>().0;
+        for (out, &[hue, saturation, value]) in out.iter_mut().zip(input.row(y).as_chunks::<3>().0) {
+            *out = hsv_to_rgb(Hsv { hue, saturation, value });
+        }
+    }
+    Ok(())
+}
+
 #[inline(always)]
 pub(super) fn convert_portable(input: RgbView<'_>, output: &mut RgbViewMut<'_>) {
     let (mut red, mut green, mut blue) = ([0; PIECE], [0; PIECE], [0; PIECE]);

@@ -13,18 +13,21 @@ pub struct HueRange {
 }
 
 impl HueRange {
+    /// The hues from `low` to `high`, round the end of the circle if `low` is larger. Fails for a number that is no hue:
+    /// 255, or 180 and above on OpenCV's scale.
+    pub fn new(low: u8, high: u8, scale: HueScale) -> Result<Self, Error> {
+        for (parameter, hue) in [("low hue", low), ("high hue", high)] {
+            require_hue(parameter, hue, scale)?;
+        }
+        Ok(Self { low, high })
+    }
+
     /// The hues less than `threshold` away from one, on a circle of 255 as the book's Program 11.9 reckons, or of 180
     /// on OpenCV's scale.
     pub fn around(hue: u8, threshold: u8, scale: HueScale) -> Result<Self, Error> {
-        let circle = match scale {
-            HueScale::Robios => 255,
-            HueScale::OpenCv => 180,
-        };
+        require_hue("hue", hue, scale)?;
+        let circle = circle(scale);
         let (middle, reach) = (i32::from(hue), i32::from(threshold) - 1);
-        if middle >= circle {
-            let expected = "below 255, or 180 on OpenCV's scale";
-            return Err(Error::Parameter { parameter: "hue", found: f64::from(hue), expected });
-        }
         if reach < 0 {
             return Err(Error::Parameter { parameter: "hue threshold", found: 0.0, expected: "at least 1" });
         }
@@ -41,6 +44,25 @@ impl HueRange {
         let (from, to) = (hue >= self.low, hue <= self.high);
         (hue != NO_HUE) & if self.low <= self.high { from & to } else { from | to }
     }
+}
+
+/// Hues on a circle, as ranges wrap round it.
+fn circle(scale: HueScale) -> i32 {
+    match scale {
+        HueScale::Robios => 255,
+        HueScale::OpenCv => 180,
+    }
+}
+
+fn require_hue(parameter: &'static str, hue: u8, scale: HueScale) -> Result<(), Error> {
+    if i32::from(hue) < circle(scale) {
+        return Ok(());
+    }
+    Err(Error::Parameter {
+        parameter,
+        found: f64::from(hue),
+        expected: "below 255, or 180 on OpenCV's scale",
+    })
 }
 
 /// 255 where a pixel's hue belongs to the range, 0 elsewhere (book, section 11.4), straight from the colours.

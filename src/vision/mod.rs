@@ -1,7 +1,7 @@
 //! Image processing (book, chapter 11): edges, colour, motion, lines and blobs.
 //!
-//! Every kernel has a written definition in its docs, to the bit, and is tested against a naive version of it. Kernels
-//! work on [`View`]s, borrowed 8-bit images of one ([`GrayView`]) or three ([`RgbView`]) bytes a pixel with any
+//! Every kernel has a written definition in its docs and is tested against a naive version of it, to the bit; line segments
+//! by [`SegmentDefinition::OpenCv`] against OpenCV's. Kernels work on [`View`]s, borrowed 8-bit images of one ([`GrayView`]) or three ([`RgbView`]) bytes a pixel with any
 //! distance between rows, so that a part of an image is as good as a whole one:
 //!
 //! ```
@@ -53,6 +53,7 @@ pub mod motion;
 mod parallel;
 mod planes;
 mod projection;
+mod segment_order;
 mod sobel;
 #[cfg(test)]
 mod tests;
@@ -71,13 +72,14 @@ pub use gray::{GrayWeights, gray_into, gray_to_rgb_into};
 pub use hog::{Hog, HogParameters};
 pub use hough::{HoughLine, HoughLines};
 pub use hough_segments::{HoughSegments, LineSegment, SegmentParameters};
-pub use hsi::{Hsi, hsi_into, hsi_to_rgb, rgb_to_hsi};
-pub use hsv::{Hsv, hsv_into, rgb_to_hsv};
+pub use hsi::{Hsi, hsi_into, hsi_to_rgb, hsi_to_rgb_into, rgb_to_hsi};
+pub use hsv::{Hsv, hsv_into, hsv_to_rgb, hsv_to_rgb_into, rgb_to_hsv};
 pub use hue::{HueLimits, HueScale, NO_HUE, hue, hue_into};
 pub use hue_match::{HueRange, hue_match_into, match_hue_image_into};
 pub use laplace::{laplace_into, laplace_saturated_into};
 #[cfg(feature = "rayon")]
 pub use parallel::in_bands;
 pub use projection::{maximum, projections_into};
+pub use segment_order::SegmentDefinition;
 pub use sobel::{SobelScale, sobel_l1_into, sobel_l2_into};
 pub use view::{GrayView, GrayViewMut, RgbView, RgbViewMut, View, ViewMut};

@@ -7,6 +7,8 @@
 //! - [`GapDriver`]: the book's driver, which steers for the nearest gap in one scan;
 //! - [`Racer`]: finds cones in scans ([`sightings`]), makes a map of them in the first lap ([`ConeMap`]), then races; a
 //!   [`LineTracker`] keeps the car on its line; a [`Referee`] takes the time and counts penalties;
+//! - [`EventRacer`]: drives an acceleration or a skidpad, whose layouts are known, by the cones that it sees; an
+//!   [`EventReferee`] takes their times;
 //! - [`minimum_curvature`]: the racing line within a [`Corridor`], and [`SpeedProfile`]: how fast a car goes along it.
 
 mod banded;
@@ -16,6 +18,7 @@ mod centre_line;
 mod cone;
 mod corridor;
 mod error;
+mod event;
 mod files;
 mod gap;
 mod generate;
@@ -28,6 +31,7 @@ mod racer;
 #[cfg(test)]
 mod racer_tests;
 mod racing_line;
+mod reckoning;
 mod referee;
 mod registration;
 mod rows;
@@ -44,6 +48,9 @@ pub use centre_line::{CentreLine, CentreLineParameters};
 pub use cone::{Cone, ConeColour, ConeTrack, Event};
 pub use corridor::{Corridor, Station};
 pub use error::PlanError;
+pub use event::{
+    EventCourse, EventLayout, EventParameters, EventPhase, EventRacer, EventReferee, EventShape,
+};
 pub use files::{
     TrackFile, parse_eufs, parse_fssim, parse_line, parse_track, parse_tum, write_eufs, write_fssim,
     write_tum,

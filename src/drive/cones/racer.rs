@@ -9,10 +9,11 @@ use super::lap::around_lap;
 use super::map::{ConeMap, ConeMapParameters};
 use super::profile::{CarLimits, SpeedProfile};
 use super::racing_line::{CarOutline, LineSolver, RacingLineParameters};
+use super::reckoning::Reckoning;
 use super::sight::{Sighting, sightings};
 use super::tracker::{LineTracker, TrackerParameters};
-use super::tyres::{SLIPS, Tyres};
-use crate::geometry::{Point, Pose, Twist, math};
+use super::tyres::Tyres;
+use crate::geometry::{Point, Pose, Twist};
 use crate::io::{self, Clock, Drive, Lidar, LidarScan};
 
 /// How a track is raced.
@@ -96,9 +97,7 @@ pub struct Racer {
     line: Option<Pose>,
     /// Whether it was in front of the line since it counted a lap.
     in_front: bool,
-    last: Option<Pose>,
-    /// Where the car is by odometry and by how its tyres slip.
-    reckoned: Pose,
+    reckoning: Reckoning,
     tracker: Option<LineTracker>,
     solver: LineSolver,
     /// Decisions since the way was planned.
@@ -148,8 +147,7 @@ impl Racer {
             since_line: 0.0,
             line: None,
             in_front: false,
-            last: None,
-            reckoned: Pose::default(),
+            reckoning: Reckoning::default(),
             tracker: None,
             solver: LineSolver::default(),
             stale: 0,
@@ -187,16 +185,8 @@ impl Racer {
 
     /// The same for what was found already.
     pub fn decide(&mut self, odometry: Pose, speed: Twist, seen: &[Sighting]) -> Twist {
-        let step =
-            self.last.replace(odometry).map_or(Pose::default(), |last| last.inverse().compose(&odometry));
-        self.since_line += step.position().coords.norm();
-        // Odometry knows of no tyres that slip.
-        let across = speed.linear * speed.angular;
-        let slip =
-            if speed.linear > SLIPS { self.parameters.tracker.tyres.slips(across, 0.0)[1] } else { 0.0 };
-        let aside = Pose::new(0.0, -step.x * math::tan(slip), 0.0);
-        self.reckoned = self.reckoned.compose(&aside.compose(&step));
-        self.map.update(self.reckoned, seen);
+        self.since_line += self.reckoning.step(odometry, speed, &self.parameters.tracker.tyres);
+        self.map.update(self.reckoning.pose(), seen);
         self.count();
         let command = self.command(speed);
         if self.looks > 0 {

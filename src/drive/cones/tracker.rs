@@ -96,6 +96,17 @@ impl LineTracker {
         Self { parameters, points, profile, closed, nearest: 0, started: false, reached: !closed }
     }
 
+    /// Takes another line of as many points, which is a little beside the first one, and goes on at the same point of it.
+    pub(super) fn shift(&mut self, points: Vec<Point>, profile: SpeedProfile) {
+        debug_assert_eq!(points.len(), self.points.len(), "a line of as many points");
+        (self.points, self.profile) = (points, profile);
+    }
+
+    /// The number of the point before the car.
+    pub(super) fn passed(&self) -> usize {
+        self.nearest
+    }
+
     /// Whether the line is a loop.
     pub fn is_closed(&self) -> bool {
         self.closed

@@ -69,4 +69,8 @@ fn parameters_out_of_range() {
     assert!(HueRange::around(255, 5, HueScale::Robios).is_err());
     assert!(HueRange::around(180, 5, HueScale::OpenCv).is_err());
     assert!(HueRange::around(10, 0, HueScale::Robios).is_err());
+    let message = HueRange::new(200, 10, HueScale::OpenCv).unwrap_err().to_string();
+    assert_eq!(message, "low hue is 200; expected below 255, or 180 on OpenCV's scale");
+    assert!(HueRange::new(200, 255, HueScale::Robios).is_err());
+    assert!(HueRange::new(200, 10, HueScale::Robios).unwrap().contains(0));
 }

@@ -1,12 +1,17 @@
 //! Kernels on colours.
 
+use std::f64::consts::TAU;
+
 use proptest::prelude::*;
 
 use super::images;
+use crate::geometry::math;
+use crate::random::Stream;
 use crate::vision::{
-    GrayWeights, HueLimits, HueRange, HueScale, NO_HUE, combine, fused, gray, gray_into, gray_to_rgb_into,
-    hsi_into, hsi_to_rgb, hsv, hsv_into, hue, hue_histogram_into, hue_into, hue_match, hue_match_into,
-    match_hue_image_into, overlay_gray_into, overlay_into, rgb_to_hsi,
+    GrayWeights, Hsi, Hsv, HueLimits, HueRange, HueScale, NO_HUE, RgbView, combine, fused, gray, gray_into,
+    gray_to_rgb_into, hsi_into, hsi_to_rgb, hsi_to_rgb_into, hsv, hsv_into, hsv_to_rgb, hsv_to_rgb_into, hue,
+    hue_histogram_into, hue_into, hue_match, hue_match_into, match_hue_image_into, overlay_gray_into,
+    overlay_into, rgb_to_hsi, rgb_to_hsv,
 };
 use crate::world::Colour;
 
@@ -39,6 +44,14 @@ fn naive_hue([red, green, blue]: [u8; 3], scale: HueScale, limits: HueLimits) ->
             (n * t + 2048).div_euclid(4096).rem_euclid(180) as u8
         }
     }
+}
+
+fn hsi_of([hue, saturation, intensity]: [u8; 3]) -> [u8; 3] {
+    hsi_to_rgb(Hsi { hue, saturation, intensity })
+}
+
+fn hsv_of([hue, saturation, value]: [u8; 3]) -> [u8; 3] {
+    hsv_to_rgb(Hsv { hue, saturation, value })
 }
 
 fn scales() -> impl Strategy<Value = HueScale> {
@@ -194,12 +207,15 @@ proptest! {
             [hsi.hue, hsi.saturation, hsi.intensity]
         });
         prop_assert_eq!(image.output(|out| hsi_into(image.view(), out).unwrap()), expected);
+        let [rgb, by_value] = [hsi_of, hsv_of].map(|back| image.map(|x, y| back(image.at(x, y))));
+        prop_assert_eq!(image.output(|out| hsi_to_rgb_into(image.view(), out).unwrap()), rgb);
+        prop_assert_eq!(image.output(|out| hsv_to_rgb_into(image.view(), out).unwrap()), by_value);
     }
 
     #[test]
     fn overlays_are_their_definitions(image in images::<3>(), marks in images::<1>(), seed in any::<u64>()) {
         let mut top = image.clone();
-        crate::random::Stream::new(seed).shuffle(&mut top.data);
+        Stream::new(seed).shuffle(&mut top.data);
         let expected = image.map(|x, y| if top.at(x, y) == [0; 3] { image.at(x, y) } else { top.at(x, y) });
         let found = image.output(|out| overlay_into(image.view(), top.view(), out).unwrap());
         prop_assert_eq!(found, &expected[..]);
@@ -207,7 +223,7 @@ proptest! {
         prop_assert_eq!(portable, expected);
 
         let mut base = marks.clone();
-        crate::random::Stream::new(seed).shuffle(&mut base.data);
+        Stream::new(seed).shuffle(&mut base.data);
         let colour = Colour::new(200, 100, 50);
         let expected = base.map(|x, y| if marks.at(x, y)[0] > 0 { [200, 100, 50] } else { [base.at(x, y)[0]; 3] });
         let found = base.output(|out| overlay_gray_into(base.view(), marks.view(), colour, out).unwrap());
@@ -216,6 +232,72 @@ proptest! {
             combine::mark_portable(base.view(), marks.view(), [200, 100, 50], &mut out);
         });
         prop_assert_eq!(portable, expected);
+    }
+}
+
+#[test]
+fn exact_hues_are_the_angles_of_colours() {
+    // By another formula for the same angle.
+    let angle = |[r, g, b]: [f64; 3]| math::atan2(3.0_f64.sqrt() * (g - b), 2.0 * r - g - b).rem_euclid(TAU);
+    let mut stream = Stream::new(7);
+    for _ in 0..50_000 {
+        let pixel = [(); 3].map(|()| stream.bits() as u8);
+        let [r, g, b] = pixel;
+        let expected = if r == g && g == b {
+            NO_HUE
+        } else {
+            let part = angle(pixel.map(f64::from)) * 255.0 / TAU;
+            ((part + 1e-6).round() as u32 % 255) as u8
+        };
+        assert_eq!(rgb_to_hsi(pixel).hue, expected, "{pixel:?}");
+    }
+    for light in 1..=255 {
+        let pixels = [[light, light, 0], [0, light, light], [light, 0, light]];
+        assert_eq!(pixels.map(|pixel| rgb_to_hsi(pixel).hue), [43, 128, 213]);
+        let pale = pixels.map(|pixel| pixel.map(|channel| channel.max(light / 2)));
+        if light > 1 {
+            assert_eq!(pale.map(|pixel| rgb_to_hsi(pixel).hue), [43, 128, 213]);
+        }
+    }
+}
+
+#[test]
+fn values_come_back_to_their_colours() {
+    // What OpenCV makes of them where they fill its registers.
+    for (hsv, pixel) in [
+        ([0, 1, 1], [1, 0, 0]),
+        ([1, 135, 170], [170, 83, 79]),
+        ([6, 100, 255], [255, 175, 154]),
+        ([60, 255, 200], [0, 200, 0]),
+        ([179, 90, 85], [85, 55, 55]),
+        ([90, 0, 77], [77, 77, 77]),
+    ] {
+        let [hue, saturation, value] = hsv;
+        assert_eq!(hsv_to_rgb(Hsv { hue, saturation, value }), pixel, "{hsv:?}");
+    }
+    let mut stream = Stream::new(3);
+    for _ in 0..20_000 {
+        let pixel = [(); 3].map(|()| stream.bits() as u8);
+        let back = hsv_to_rgb(rgb_to_hsv(pixel));
+        // Half a hue is up to 255 / 60 levels of a channel; saturation and the channel itself are rounded too.
+        assert!(back.iter().zip(pixel).all(|(a, b)| a.abs_diff(b) <= 6), "{pixel:?} {back:?}");
+    }
+}
+
+#[test]
+fn counts_of_wide_and_of_tall_images() {
+    // Wider than a strip, and taller than counts of 16 bits.
+    let (range, limits) = (HueRange::around(42, 10, HueScale::Robios).unwrap(), HueLimits::default());
+    for (width, height) in [(1_300, 3), (2, 70_001)] {
+        let is_red = |x: usize, y: usize| height > 100 || (x * 7 + y * 3).is_multiple_of(5);
+        let place = |i: usize| (i % width, i / width);
+        let red = |i: usize| if is_red(place(i).0, place(i).1) { [200, 0, 0] } else { [0, 0, 200] };
+        let data: Vec<u8> = (0..width * height).flat_map(red).collect();
+        let mut columns = vec![0; width];
+        let view = RgbView::new(&data, width, height).unwrap();
+        hue_histogram_into(view, &mut columns, range, limits).unwrap();
+        let expected = (0..width).map(|x| (0..height).filter(|&y| is_red(x, y)).count() as u32);
+        assert_eq!(columns, expected.collect::<Vec<u32>>());
     }
 }
 

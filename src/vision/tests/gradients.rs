@@ -8,7 +8,8 @@ use super::{Image, images};
 use crate::geometry::math;
 use crate::random::Stream;
 use crate::vision::{
-    Error, GrayView, Hog, HogParameters, HoughSegments, LineSegment, SegmentParameters, hog,
+    Error, GrayView, Hog, HogParameters, HoughSegments, LineSegment, SegmentDefinition, SegmentParameters,
+    hog,
 };
 
 /// The histograms of all whole cells, by angles.
@@ -119,12 +120,39 @@ fn find(data: &[u8], width: usize, parameters: SegmentParameters) -> Vec<LineSeg
 }
 
 #[test]
+fn segments_by_opencvs_definition_are_its_own() {
+    let (width, height) = (64, 48);
+    let is_edge = |x: i32, y: i32| {
+        x - y == 8 || (2 * y + x - 70).abs() < 2 || y == 30 || (x * x * 7 + y * 13 + x * y * 3) % 19 == 0
+    };
+    let pixel = |i: i32| u8::from(is_edge(i % width, i / width));
+    let data: Vec<u8> = (0..width * height).map(pixel).collect();
+    let lines = |threshold, min_length, max_gap| {
+        let definition = SegmentDefinition::OpenCv;
+        let found = find(&data, 64, SegmentParameters { threshold, min_length, max_gap, definition });
+        found.iter().map(|s| [s.from.0, s.from.1, s.to.0, s.to.1]).collect::<Vec<_>>()
+    };
+    // Of `HoughLinesP` with the same parameters.
+    assert_eq!(lines(14, 12, 2), [[1, 34, 63, 4], [11, 30, 63, 30], [8, 0, 55, 47], [0, 35, 27, 22]]);
+    let shorter = [[4, 32, 63, 4], [10, 30, 63, 30], [8, 0, 55, 47], [42, 13, 62, 4], [12, 29, 27, 22]];
+    assert_eq!(lines(10, 8, 1), shorter);
+}
+
+#[test]
 fn lines_at_one_of_the_angles_are_found() {
     for ends in [((10, 10), (90, 10)), ((10, 5), (10, 80)), ((10, 10), (80, 80))] {
         let mut data = vec![0; 120 * 90];
         draw(&mut data, 120, ends);
-        let found =
-            find(&data, 120, SegmentParameters { threshold: 25, min_length: 40, max_gap: 3, seed: 1 });
+        let found = find(
+            &data,
+            120,
+            SegmentParameters {
+                threshold: 25,
+                min_length: 40,
+                max_gap: 3,
+                definition: SegmentDefinition::default(),
+            },
+        );
         assert!(!found.is_empty(), "{ends:?}");
     }
 }
@@ -137,9 +165,13 @@ proptest! {
         prop_assume!(reach(ends.0, ends.1) >= 40);
         let mut data = vec![0; 120 * 90];
         draw(&mut data, 120, ends);
-        let found = find(&data, 120, SegmentParameters { threshold: 12, min_length: 10, max_gap: 3, seed });
+        let drawn = data.iter().filter(|&&pixel| pixel > 0).count();
+        let found = find(&data, 120, SegmentParameters { threshold: 12, min_length: 10, max_gap: 3, definition: SegmentDefinition::Voted { seed } });
         let pixel = |(x, y): (usize, usize)| (x as i32, y as i32);
-        // A line between two of the angles may, rarely, be too short in both of them.
+        // Between two of the angles a line falls into parts, of which the shortest are no lines.
+        let length = |line: &LineSegment| reach(pixel(line.from), pixel(line.to)) as usize + 1;
+        let covered: usize = found.iter().map(length).sum();
+        prop_assert!(2 * covered >= drawn, "{} of {}", covered, drawn);
         for line in &found {
             prop_assert!(reach(pixel(line.from), pixel(line.to)) >= 10);
             for end in [line.from, line.to] {
@@ -151,10 +183,12 @@ proptest! {
     #[test]
     fn segments_reach_from_edge_to_edge_and_keep_to_their_limits(
         density in 0.0..0.3f64, threshold in 3_u32..12, min_length in 0_usize..12, max_gap in 0_usize..5, seed: u64,
+        opencv: bool,
     ) {
         let mut stream = Stream::new(seed);
         let data: Vec<u8> = (0..50 * 40).map(|_| u8::from(stream.chance(density))).collect();
-        let parameters = SegmentParameters { threshold, min_length, max_gap, seed };
+        let definition = if opencv { SegmentDefinition::OpenCv } else { SegmentDefinition::Voted { seed } };
+        let parameters = SegmentParameters { threshold, min_length, max_gap, definition };
         let found = find(&data, 50, parameters);
         prop_assert_eq!(&found, &find(&data, 50, parameters));
         for line in found {
@@ -172,7 +206,12 @@ fn two_crossing_segments_and_a_gap() {
     let mut data = vec![0; 100 * 100];
     draw(&mut data, 100, ((10, 50), (90, 50)));
     draw(&mut data, 100, ((50, 10), (50, 90)));
-    let parameters = SegmentParameters { threshold: 30, min_length: 40, max_gap: 2, seed: 1 };
+    let parameters = SegmentParameters {
+        threshold: 30,
+        min_length: 40,
+        max_gap: 2,
+        definition: SegmentDefinition::default(),
+    };
     let found = find(&data, 100, parameters);
     assert_eq!(found.len(), 2, "{found:?}");
     // A gap that is too wide parts a line.

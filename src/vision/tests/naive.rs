@@ -260,3 +260,14 @@ fn strips_of_wide_images_are_smoothed_alike() {
         }
     }
 }
+
+#[test]
+fn differences_of_long_rows() {
+    // More in a row than sums of 16 bits hold.
+    for width in [65_791, 65_792, 65_793, 140_000] {
+        let (white, black) = (vec![255; 2 * width], vec![0; 2 * width]);
+        let rows = |data| GrayView::new(data, width, 2).unwrap();
+        assert_eq!(mean_difference(rows(&white), rows(&black)).unwrap(), 255.0);
+        assert_eq!(sector_differences::<1>(rows(&black), rows(&white)).unwrap(), [255.0]);
+    }
+}

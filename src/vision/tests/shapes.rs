@@ -1,10 +1,14 @@
 //! Lines and blobs.
 
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
 use proptest::prelude::*;
 
 use super::{Image, images};
 use crate::geometry::math;
-use crate::vision::{Blob, Components, GrayView, HoughLines, maximum};
+use crate::vision::{Blob, Components, GrayView, HoughLine, HoughLines, maximum};
 
 /// Blobs by flooding from each pixel in turn.
 fn naive_blobs(image: &Image<1>, min_area: usize) -> Vec<Blob> {
@@ -55,7 +59,7 @@ proptest! {
 
     #[test]
     fn a_line_is_found_where_it_was_drawn(angle in 0_usize..180, rho in -30_i32..60) {
-        let (theta, rho) = (std::f64::consts::PI * angle as f64 / 180.0, f64::from(rho));
+        let (theta, rho) = (PI * angle as f64 / 180.0, f64::from(rho));
         let (sin, cos) = math::sin_cos(theta);
         let (width, height) = (80, 60);
         let near = |x: usize, y: usize| (x as f64 * cos + y as f64 * sin - rho).abs() < 0.5;
@@ -65,26 +69,58 @@ proptest! {
         let found = lines[0];
         // The same line has a second form: from the other side, half a turn away.
         let turn = (found.theta - theta).abs();
-        let (turn, side) = if turn > 1.5 { (std::f64::consts::PI - turn, -found.rho) } else { (turn, found.rho) };
+        let (turn, side) = if turn > 1.5 { (PI - turn, -found.rho) } else { (turn, found.rho) };
         prop_assert!(turn < 0.07 && (side - rho).abs() <= 3.0, "{:?} for {} {}", found, theta, rho);
         prop_assert!(lines.windows(2).all(|pair| pair[0].votes >= pair[1].votes));
     }
+}
 
+/// All peaks of the votes, counted pixel by pixel, angle by angle.
+fn naive_lines(edges: &Image<1>, rho: f64, angles: usize, threshold: u32) -> Vec<HoughLine> {
+    let votes = |angle: usize| -> BTreeMap<i32, u32> {
+        let mut votes = BTreeMap::new();
+        // Steps are added up in single precision.
+        let step = (PI / angles as f64) as f32;
+        let (sin, cos) = math::sin_cos(f64::from((0..angle).fold(0.0_f32, |sum, _| sum + step)));
+        let [cos, sin] = [cos, sin].map(|part| (part * f64::from(1.0 / rho as f32)) as f32);
+        for (x, y) in (0..edges.height).flat_map(|y| (0..edges.width).map(move |x| (x, y))) {
+            if edges.at(x, y)[0] > 0 {
+                let place = (x as f32 * cos + y as f32 * sin).round_ties_even() as i32;
+                *votes.entry(place).or_insert(0) += 1;
+            }
+        }
+        votes
+    };
+    let mut lines = Vec::new();
+    let none = BTreeMap::new();
+    let all: Vec<BTreeMap<i32, u32>> = (0..angles).map(votes).collect();
+    for angle in 0..angles {
+        let row = |angle: Option<usize>| angle.and_then(|angle| all.get(angle)).unwrap_or(&none);
+        let at = |votes: &BTreeMap<i32, u32>, place: i32| votes.get(&place).copied().unwrap_or(0);
+        let (before, after) = (row(angle.checked_sub(1)), row(Some(angle + 1)));
+        for (&place, &votes) in &all[angle] {
+            let larger = votes > at(&all[angle], place - 1) && votes > at(before, place);
+            let as_large = votes >= at(&all[angle], place + 1) && votes >= at(after, place);
+            if votes > threshold && larger && as_large {
+                let theta = PI * angle as f64 / angles as f64;
+                lines.push(HoughLine { rho: f64::from(place) * rho, theta, votes });
+            }
+        }
+    }
+    lines.sort_by_key(|line| Reverse(line.votes));
+    lines
+}
+
+proptest! {
     #[test]
-    fn votes_are_counts(image in images::<1>(), density in 128_u8..255, threshold in 0_u32..4) {
+    fn lines_are_the_peaks_of_all_votes(
+        image in images::<1>(), density in 100_u8..255, threshold in 0_u32..6, angles in 1_usize..40,
+        rho in prop_oneof![Just(1.0), Just(0.5), Just(0.7), Just(2.5)],
+    ) {
         let mut edges = image;
         edges.data.iter_mut().for_each(|byte| *byte = u8::from(*byte > density));
-        for line in HoughLines::new(1.0, 36).unwrap().find(edges.view(), threshold) {
-            let (sin, cos) = math::sin_cos(line.theta);
-            // Pixels right between two lines may count for either.
-            let within = |reach: f64| {
-                let near = |x: usize, y: usize| (x as f64 * cos + y as f64 * sin - line.rho).abs() < reach;
-                let on = |y: usize| (0..edges.width).filter(|&x| edges.at(x, y)[0] > 0 && near(x, y)).count();
-                (0..edges.height).map(on).sum::<usize>()
-            };
-            prop_assert!((within(0.4999)..=within(0.5001)).contains(&(line.votes as usize)));
-            prop_assert!(line.votes > threshold);
-        }
+        let found = HoughLines::new(rho, angles).unwrap().find(edges.view(), threshold);
+        prop_assert_eq!(found, naive_lines(&edges, rho, angles, threshold));
     }
 }
 

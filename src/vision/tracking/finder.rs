@@ -90,8 +90,17 @@ impl ColourFinder {
         let left = peak - self.columns[..peak].iter().rev().take_while(full).count();
         let right = peak + self.columns[peak + 1..].iter().take_while(full).count();
         let column = 0.5 * (left + right) as f64;
-        let at_the_bottom = 2 * most >= image.height();
-        Ok(Some(self.sighting(image, (left, right), column, most, None, at_the_bottom)))
+        let foot = self.lowest(image, peak);
+        Ok(Some(self.sighting(image, (left, right), (column, foot), most)))
+    }
+
+    /// The last row of a column that matches.
+    fn lowest(&self, image: &RgbImage, column: usize) -> usize {
+        let matches = |row: &u32| {
+            let pixel = image.get_pixel(column as u32, *row).0;
+            self.range.contains(hue(pixel, HueScale::Robios, self.limits))
+        };
+        (0..image.height()).rev().find(matches).unwrap_or(0) as usize
     }
 
     fn by_blob(&mut self, image: &RgbImage) -> Result<Option<Sighting>, Error> {
@@ -102,24 +111,21 @@ impl ColourFinder {
         hue_match_into(image.try_into()?, mask, self.range, HueScale::Robios, self.limits)?;
         let largest = self.components.largest((&self.mask).try_into()?, self.min_pixels as usize);
         let Some(blob) = largest else { return Ok(None) };
-        let column = blob.centroid.0;
-        let at_the_bottom = blob.max.1 + 3 >= image.height() as usize;
-        let foot = (!at_the_bottom)
-            .then(|| self.camera.floor(column, blob.max.1 as f64 + 0.5, image.dimensions()))
-            .flatten();
         let columns = (blob.min.0, blob.max.0);
-        Ok(Some(self.sighting(image, columns, column, blob.area as u32, foot, at_the_bottom)))
+        Ok(Some(self.sighting(image, columns, (blob.centroid.0, blob.max.1), blob.area as u32)))
     }
 
+    /// What is seen of something in some columns, from its middle column and the last row where it is.
     fn sighting(
         &self,
         image: &RgbImage,
         columns: (usize, usize),
-        column: f64,
+        (column, foot): (f64, usize),
         pixels: u32,
-        place: Option<Point>,
-        at_the_bottom: bool,
     ) -> Sighting {
+        let at_the_bottom = foot + 3 >= image.height() as usize;
+        let on_the_floor = || self.camera.floor(column, foot as f64 + 0.5, image.dimensions());
+        let place = if at_the_bottom { None } else { on_the_floor() };
         let bearing = self.camera.bearing(column, image.width());
         Sighting { column, columns, pixels, bearing, place, at_the_bottom }
     }

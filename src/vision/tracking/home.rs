@@ -2,10 +2,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use image::RgbImage;
 
-use super::steering::{Steering, nearest, obstacles};
+use super::scan_memory::ScanMemory;
+use super::steering::{Exempt, Steering, directions, nearest, obstacles};
+use super::tracker::OBJECT;
 use super::{ColourFinder, ColourObservation, ColourTracker, TrackerParameters};
-use crate::geometry::{Point, Twist, Vector, angle_difference, direction, math, normalize_angle};
+use crate::geometry::{Point, Pose, Twist, Vector, angle_difference, direction, math, normalize_angle};
 use crate::io::{self, Camera, Clock, Drive, ErrorKind, Lidar, LidarScan, Resolution};
+use crate::nav::ScanMatcher;
 
 /// How a [`PushHome`] drives.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,13 +23,25 @@ pub struct HomeParameters {
     pub correction: f64,
     /// The object is home when its middle is so near, in metres.
     pub near: f64,
+    /// Metres that are kept free beside robot and object while it pushes.
+    pub clearance: f64,
+    /// Metres ahead of the object that are looked at for what is in the way.
+    pub foresight: f64,
 }
 
 impl Default for HomeParameters {
     fn default() -> Self {
         // Farther from the object than for reaching it alone: there has to be room to go round.
         let tracker = TrackerParameters { gap: 0.14, ..TrackerParameters::default() };
-        Self { tracker, round: 0.24, push_speed: 0.10, correction: 1.0, near: 0.08 }
+        Self {
+            tracker,
+            round: 0.24,
+            push_speed: 0.10,
+            correction: 1.0,
+            near: 0.08,
+            clearance: 0.05,
+            foresight: 0.5,
+        }
     }
 }
 
@@ -60,17 +75,23 @@ pub enum PushOutcome {
 /// keeps the thing where the push needs it: with `r` metres from the robot's middle to the thing's and the heading `e`
 /// to the left of the line between them, that line turns by `-v sin(e) / r` radians a second, so a wrong direction
 /// `d` falls as `-k d` where `sin(e) = r k d / v`.
+///
+/// What stands in the way is passed, also while the thing hides it: what the lidar has met is remembered. Where home is, is
+/// told by matching scans, since odometry is lost on a robot that turns and pushes so much.
 #[derive(Debug, Clone)]
 pub struct PushHome {
     parameters: HomeParameters,
     tracker: ColourTracker,
     home: Point,
     phase: HomePhase,
-    /// Where the object is, in odometry's frame.
+    /// Where the object is, in odometry's frame of the beginning.
     object: Point,
     /// Metres from the object's middle to what the lidar meets.
     size: f64,
     lost: f64,
+    memory: ScanMemory,
+    /// What knows better than odometry where the robot is.
+    matcher: ScanMatcher,
     points: Vec<Point>,
 }
 
@@ -85,6 +106,8 @@ impl PushHome {
             object: home,
             size: 0.03,
             lost: 0.0,
+            memory: ScanMemory::default(),
+            matcher: ScanMatcher::new(),
             points: Vec::new(),
         }
     }
@@ -94,20 +117,27 @@ impl PushHome {
         self.phase
     }
 
-    /// Where it takes the object to be, in odometry's frame, once it has found it.
+    /// Where it takes the object to be, in the frame that odometry began with, once it has found it.
     pub fn object(&self) -> Option<Point> {
         (self.phase != HomePhase::Finding).then_some(self.object)
     }
 
     /// The speed for an observation; `None` when the object is home.
     pub fn step(&mut self, seen: &ColourObservation<'_>) -> Result<Option<Twist>, crate::vision::Error> {
+        let seen = &ColourObservation { pose: self.localise(seen), ..*seen };
         if self.phase == HomePhase::Finding {
             let twist = self.tracker.step(seen)?;
             let Some(target) = self.tracker.target().filter(|_| twist.is_none()) else { return Ok(twist) };
-            self.object = target;
+            (self.object, self.lost) = (target, 0.0);
             self.phase = HomePhase::Rounding;
         }
-        self.look(seen);
+        if !self.look(seen) {
+            self.phase = HomePhase::Finding;
+            self.tracker = self.tracker.anew();
+            return Ok(Some(Twist::STOP));
+        }
+        let exempt = Exempt { place: self.object, reach: OBJECT };
+        self.memory.see(seen.scan, seen.pose, seen.time, exempt);
         if (self.object - self.home).norm() <= self.parameters.near {
             return Ok(None);
         }
@@ -118,33 +148,38 @@ impl PushHome {
         }))
     }
 
-    /// Looks by lidar where the object is now.
-    fn look(&mut self, seen: &ColourObservation<'_>) {
+    /// Where the robot is by odometry and by what stands still around it.
+    fn localise(&mut self, seen: &ColourObservation<'_>) -> Pose {
+        let place = self.matcher.corrected(seen.pose).to_local(self.object);
+        let moves = (self.phase != HomePhase::Finding).then_some(Exempt { place, reach: OBJECT });
+        obstacles(seen.scan, moves, &mut self.points);
+        let pose = self.matcher.update(seen.pose, &self.points);
+        self.matcher.learn(&self.points);
+        pose
+    }
+
+    /// Looks by lidar where the object is now. `false` when it has not been there for a second.
+    fn look(&mut self, seen: &ColourObservation<'_>) -> bool {
         let place = seen.pose.to_local(self.object);
         let bearing = math::atan2(place.y, place.x);
         let half = math::asin((0.06 / place.coords.norm()).min(1.0));
+        // Noise may put what is touched right into the robot's middle, which is in no direction.
+        let unit = |point: Point| point.coords.try_normalize(f64::MIN_POSITIVE);
         let cluster = |near: Point| {
-            let (mut sum, mut count) = (Vector::zeros(), 0.0);
-            for point in seen.scan.points().filter(|point| (point - near).norm() < 0.05) {
-                sum += point.coords.normalize();
-                count += 1.0;
-            }
-            (count > 0.0).then(|| (near.coords.norm(), sum))
+            let points = seen.scan.points().filter(|point| (point - near).norm() < 0.05);
+            let sum: Vector = points.filter_map(unit).sum();
+            sum.try_normalize(f64::MIN_POSITIVE).map(|towards| (near.coords.norm(), towards))
         };
         let met = nearest(seen.scan, bearing, half.max(0.15)).filter(|met| (met - place).norm() < 0.12);
         match met.and_then(cluster) {
             Some((range, towards)) => {
-                let middle = Point::origin() + towards.normalize() * (range + self.size);
+                let middle = Point::origin() + towards * (range + self.size);
                 self.object = seen.pose.to_world(middle);
                 self.lost = 0.0;
             }
             None => self.lost += self.parameters.tracker.period,
         }
-        if self.lost > 1.0 {
-            self.lost = 0.0;
-            self.phase = HomePhase::Finding;
-            self.tracker = self.tracker.anew();
-        }
+        self.lost <= 1.0
     }
 
     fn steering(&self) -> Steering {
@@ -152,10 +187,23 @@ impl PushHome {
         Steering { radius, margin, speed, turn_speed }
     }
 
-    /// Goes round the object to the side that is away from home.
+    /// Where the object is to go next: home, or past what is in the way, and so that there is room for the robot behind it.
+    fn direction_home(&mut self) -> f64 {
+        let way = self.home - self.object;
+        let straight = math::atan2(way.y, way.x);
+        let margin = self.parameters.clearance;
+        let steering = Steering { margin, ..self.steering() };
+        self.memory.from(self.object, &mut self.points);
+        let (ahead, behind) = (way.norm().min(self.parameters.foresight), self.parameters.round);
+        let is_free = |angle: f64, reach| steering.free(&self.points, angle, reach) >= reach;
+        let mut free =
+            directions(straight).filter(|&angle| is_free(angle, ahead) && is_free(angle + PI, behind));
+        free.next().unwrap_or(straight)
+    }
+
+    /// Goes round the object to the side that is away from where it is to go.
     fn round(&mut self, seen: &ColourObservation<'_>) -> Twist {
-        let from_home = self.object - self.home;
-        let wanted = math::atan2(from_home.y, from_home.x);
+        let wanted = normalize_angle(self.direction_home() + PI);
         let mine = seen.pose.position() - self.object;
         let present = math::atan2(mine.y, mine.x);
         let left = angle_difference(wanted, present);
@@ -190,8 +238,7 @@ impl PushHome {
         let place = seen.pose.to_local(self.object);
         let (distance, bearing) = (place.coords.norm(), math::atan2(place.y, place.x));
         let line = normalize_angle(seen.pose.heading + bearing);
-        let home = self.home - self.object;
-        let wrong = angle_difference(line, math::atan2(home.y, home.x));
+        let wrong = angle_difference(line, self.direction_home());
         if wrong.abs() > 0.9 || bearing.abs() > FRAC_PI_2 {
             self.phase = HomePhase::Rounding;
             return Twist::new(-push_speed, 0.0);

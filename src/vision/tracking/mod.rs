@@ -4,6 +4,7 @@
 mod finder;
 mod home;
 mod observation;
+mod scan_memory;
 mod steering;
 #[cfg(test)]
 mod tests;

@@ -16,11 +16,17 @@ pub(super) struct Steering {
     pub(super) turn_speed: f64,
 }
 
-/// What may be touched: all within some metres of a place in the robot's frame.
+/// What may be touched: all within some metres of a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Exempt {
     pub(super) place: Point,
     pub(super) reach: f64,
+}
+
+impl Exempt {
+    pub(super) fn contains(&self, point: &Point) -> bool {
+        (point - self.place).norm() <= self.reach
+    }
 }
 
 impl Steering {
@@ -41,12 +47,7 @@ impl Steering {
 
     /// The direction nearest to a wished one in which the robot can drive so far; `None` if it cannot anywhere.
     pub(super) fn way(&self, points: &[Point], wished: f64, reach: f64) -> Option<f64> {
-        const STEP: f64 = PI / 36.0;
-        let directions = (0..=36).flat_map(|i| {
-            let turn = STEP * f64::from(i);
-            [wished + turn, wished - turn]
-        });
-        directions.map(normalize_angle).find(|&angle| self.free(points, angle, reach) >= reach)
+        directions(wished).find(|&angle| self.free(points, angle, reach) >= reach)
     }
 
     /// The speed towards a direction: turning on the spot where it is far aside.
@@ -57,10 +58,16 @@ impl Steering {
     }
 }
 
+/// All directions in steps of 5 degrees, the nearest to a wished one first.
+pub(super) fn directions(wished: f64) -> impl Iterator<Item = f64> {
+    let turns = (0..=36).map(|i| f64::from(i) * (PI / 36.0));
+    turns.flat_map(move |turn| [wished + turn, wished - turn]).map(normalize_angle)
+}
+
 /// What a scan shows, in the robot's frame, without what is exempt.
 pub(super) fn obstacles(scan: &LidarScan, exempt: Option<Exempt>, points: &mut Vec<Point>) {
     points.clear();
-    let belongs = |point: &Point| exempt.is_some_and(|exempt| (point - exempt.place).norm() <= exempt.reach);
+    let belongs = |point: &Point| exempt.is_some_and(|exempt| exempt.contains(point));
     points.extend(scan.points().filter(|point| !belongs(point)));
 }
 

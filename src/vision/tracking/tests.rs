@@ -4,8 +4,9 @@ use image::{Rgb, RgbImage};
 use proptest::prelude::*;
 
 use super::*;
-use crate::geometry::{Point, Pose, math};
+use crate::geometry::{Point, Pose, Twist, math};
 use crate::io::sim::{SimOptions, Simulation};
+use crate::io::{Drive, LidarScan};
 use crate::vision::HueLimits;
 use crate::world::{CameraSpec, Colour, Object, ObjectKind, RobotSpec, Scene, Shape, World};
 
@@ -128,6 +129,32 @@ fn the_can_is_pushed_home() {
         assert!(home < 0.16, "{x} {y}: {home}");
         assert_eq!(truth.robot(0).unwrap().contacts, 0);
     }
+}
+
+#[test]
+fn what_is_gone_is_searched_for() {
+    let mut world = World::walled(3.0, 3.0);
+    world.objects.push(can(Colour::RED, 1.2, 1.2));
+    let scene = Scene::with_robot(world, RobotSpec::s4(), Pose::new(0.5, 0.5, 0.8));
+    let simulation = Simulation::new(&scene, SimOptions { pushing: true, ..SimOptions::ideal() }).unwrap();
+    let mut robot = simulation.robot(0).unwrap();
+    let mut behaviour = PushHome::new(finder(FindMethod::Blob), Point::origin(), HomeParameters::default());
+    for _ in 0..20 {
+        if behaviour.phase() == HomePhase::Finding {
+            behaviour.run(&mut robot, 2.0, |_, _, _| Ok(())).unwrap();
+        }
+    }
+    assert_ne!(behaviour.phase(), HomePhase::Finding);
+    // Nothing is there any more, for the lidar and for the camera.
+    let (image, scan) = (RgbImage::from_pixel(160, 120, Rgb([90; 3])), LidarScan::default());
+    let pose = robot.pose().unwrap();
+    let mut step = |i: u32| {
+        let time = 100.0 + 0.1 * f64::from(i);
+        behaviour.step(&ColourObservation { time, image: &image, scan: &scan, pose }).unwrap().unwrap()
+    };
+    let twists: Vec<Twist> = (0..15).map(&mut step).collect();
+    assert!(twists[14].linear == 0.0 && twists[14].angular > 0.1, "{twists:?}");
+    assert_eq!((behaviour.phase(), behaviour.object()), (HomePhase::Finding, None));
 }
 
 #[test]

@@ -89,7 +89,7 @@ pub struct ColourTracker {
 }
 
 /// Metres around an object's place within which what the lidar sees is the object.
-const OBJECT: f64 = 0.09;
+pub(super) const OBJECT: f64 = 0.09;
 
 impl ColourTracker {
     /// A tracker that begins with a search.

@@ -1,9 +1,13 @@
 //! The examples `cone_race` and `cone_drive` as wholes.
 
+use std::f64::consts::TAU;
 use std::ffi::OsString;
 use std::fs;
+use std::path::PathBuf;
 
 use crate::{common, cone_drive, cone_race};
+use roverlab::drive::cones::{Cone, ConeColour, ConeTrack, write_eufs, write_fssim};
+use roverlab::geometry::{Point, Pose, direction};
 use serde_json::Value;
 
 /// Runs the example with `--json`. Returns its status and its report, and what it said on standard error.
@@ -79,6 +83,101 @@ fn pictures_are_drawn() {
     assert_eq!(err, "", "{report}");
     assert!(fs::read_to_string(&still).unwrap().contains("racing line"));
     assert!(fs::read_to_string(&moving).unwrap().contains("animateTransform"));
+    fs::remove_dir_all(folder).unwrap();
+}
+
+/// A strip of 75 m between two lines of large cones, and a lane of 25 m behind it.
+fn strip() -> ConeTrack {
+    let mut cones = Vec::new();
+    for x in 0..=20_u8 {
+        let colours = match x {
+            0 | 15 => [ConeColour::BigOrange; 2],
+            1..15 => [ConeColour::Blue, ConeColour::Yellow],
+            _ => [ConeColour::Orange; 2],
+        };
+        for (y, colour) in [1.6, -1.6].into_iter().zip(colours) {
+            cones.push(Cone::new(Point::new(5.0 * f64::from(x), y), colour));
+        }
+    }
+    cones.push(Cone::new(Point::new(100.0, 0.0), ConeColour::Orange));
+    ConeTrack { cones, start: Some(Pose::new(-2.45, 0.0, 0.0)), ..ConeTrack::default() }
+}
+
+/// The skidpad of the rules.
+fn skidpad() -> ConeTrack {
+    let mut cones = Vec::new();
+    for (side, inner, outer) in
+        [(1.0, ConeColour::Blue, ConeColour::Yellow), (-1.0, ConeColour::Yellow, ConeColour::Blue)]
+    {
+        let centre = Point::new(0.0, 9.125 * side);
+        for k in 0..16_u8 {
+            let arm = direction(TAU * f64::from(k) / 16.0);
+            cones.push(Cone::new(centre + arm * 7.625, inner));
+            let place = centre + arm * 10.625;
+            cones.extend((place.y * side > 1.0).then(|| Cone::new(place, outer)));
+        }
+        let lane = [-15.0, -11.0, 11.0, 16.0, 21.0];
+        cones.extend(lane.map(|x| Cone::new(Point::new(x, 1.5 * side), ConeColour::Orange)));
+    }
+    ConeTrack { cones, start: Some(Pose::new(-17.15, 0.0, 0.0)), ..ConeTrack::default() }
+}
+
+/// A folder of its own with the files of both events.
+fn events(test: &str) -> (PathBuf, [String; 2]) {
+    let folder = std::env::temp_dir().join(format!("roverlab-{test}-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    let files = ["strip.csv", "skidpad.yaml"].map(|name| folder.join(name).display().to_string());
+    fs::write(&files[0], write_eufs(&strip())).unwrap();
+    fs::write(&files[1], write_fssim(&skidpad())).unwrap();
+    (folder, files)
+}
+
+#[test]
+fn acceleration_and_skidpad_are_driven_as_what_they_are() {
+    let (folder, files) = events("events");
+    for (file, event, times) in [(&files[0], "acceleration", 1), (&files[1], "skidpad", 2)] {
+        for sensors in ["lidar", "both"] {
+            let (status, report, err) =
+                race(&["--track", file, "--laps", "7", "--sensors", sensors, "--seed", "6"]);
+            assert_eq!((status, err.as_str()), (0, ""), "{report}");
+            assert_eq!(report["outcome"], "finished", "{report}");
+            assert!(report["event"] == event && report["laps"] == 1, "{report}");
+            assert!(report["cones_hit"] == 0 && report["off_course"] == 0, "{report}");
+            let ratios = report["lap_over_optimum"].as_array().unwrap();
+            assert!(report["lap_times_s"].as_array().unwrap().len() == times && ratios.len() == times);
+            assert!(ratios.iter().all(|ratio| (1.0..1.08).contains(&ratio.as_f64().unwrap())), "{report}");
+        }
+    }
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn events_without_cones_or_time_are_not_finished() {
+    let (folder, files) = events("unfinished");
+    for file in &files {
+        let (status, report, err) = race(&["--track", file, "--fault", "lost@3"]);
+        assert_eq!(report["laps"], 0, "{report}");
+        assert!(status != 0 && report["outcome"] != "finished", "{report} {err}");
+        let (status, report, err) = race(&["--track", file, "--time-limit", "2"]);
+        assert_eq!((status, report["outcome"].as_str()), (1, Some("timed_out")), "{report} {err}");
+        let (_, report, err) = race(&["--track", file, "--missing", "0.9"]);
+        assert!(report["laps"] == 0 && report["outcome"] == "lost", "{report}");
+        assert!(err.contains("found no cones that fit its event"), "{err}");
+        let (status, _, err) = race(&["--track", file, "--other"]);
+        assert!(status == 2 && err.contains("expected one of laps"), "{err}");
+    }
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn pictures_of_events_are_named_after_them() {
+    let (folder, files) = events("event-pictures");
+    for (file, title) in files.iter().zip(["Acceleration", "Skidpad"]) {
+        let picture = format!("{file}.svg");
+        let (_, report, err) = race(&["--track", file, "--picture", &picture]);
+        assert_eq!(err, "", "{report}");
+        assert!(fs::read_to_string(&picture).unwrap().contains(title));
+    }
     fs::remove_dir_all(folder).unwrap();
 }
 

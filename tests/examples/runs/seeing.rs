@@ -93,6 +93,15 @@ fn wrong_images_are_refused_by_name() {
         (vec!["--input", text(&file), "--kernel", "nose"], "nose"),
         (vec!["--kernel", "difference"], "--second"),
         (vec!["--smooth", "4"], "0, 3, 5 or 7"),
+        (vec!["--kernel", "saturation", "--smooth", "5"], "--smooth"),
+        (vec!["--kernel", "threshold", "--threshold", "300"], "--threshold"),
+        (vec!["--kernel", "hue", "--exact", "--definition", "opencv"], "--exact"),
+        (vec!["--hue-low", "200", "--hue-high", "10", "--definition", "opencv"], "--hue-low"),
+        (vec!["--kernel", "canny", "--low", "200"], "--low"),
+        (vec!["--kernel", "hough", "--rho", "-1"], "--rho"),
+        (vec!["--low", "-5"], "--low"),
+        (vec!["--picture", "edges.svg"], "--output"),
+        (vec!["--input", "some.png", "--world", "some.sim"], "--world"),
     ] {
         let (status, _, err) = run("edges", edges::work, &options);
         assert!(status == 2 && err.contains(message) && err.lines().count() == 1, "{err}");
@@ -101,6 +110,23 @@ fn wrong_images_are_refused_by_name() {
     std::fs::write(&truncated, b"P6\n10 10\n255\nabc").unwrap();
     let (status, _, err) = run("edges", edges::work, &["--input", text(&truncated)]);
     assert!(status == 2 && err.contains("truncated.ppm"), "{err}");
+}
+
+#[test]
+fn deep_images_keep_their_upper_bytes() {
+    let (input, output) = (temporary("deep.png"), temporary("shallow.png"));
+    let deep = image::ImageBuffer::<image::Luma<u16>, _>::from_fn(256, 2, |x, y| {
+        image::Luma([(x * 256 + 255 * y) as u16])
+    });
+    deep.save(&input).unwrap();
+    let options = ["--input", text(&input), "--kernel", "gray_to_rgb", "--output", text(&output)];
+    assert_outcome(&run("edges", edges::work, &options), "filtered");
+    let shallow = image::open(&output).unwrap().into_rgb8();
+    // RoBIOS's gray of three equal channels loses up to a level.
+    let near = |x: u32, pixel: &image::Rgb<u8>| x.abs_diff(u32::from(pixel.0[0])) <= 1;
+    assert!(shallow.enumerate_pixels().all(|(x, _, pixel)| near(x, pixel)));
+    let row = |y: u32| (0..256).map(|x| *shallow.get_pixel(x, y)).collect::<Vec<_>>();
+    assert_eq!(row(0), row(1));
 }
 
 #[test]
@@ -153,6 +179,24 @@ fn a_few_scenes_of_the_colour_campaign() {
     let ended = run("color_tracking", color_tracking::work, &["--campaign", "--scenes", "6"]);
     assert_outcome(&ended, "passed");
     assert_eq!((ended.1["scenes"].as_u64(), ended.1["reached"].as_u64()), (Some(6), Some(6)));
+}
+
+#[test]
+fn campaigns_refuse_what_they_have_no_use_for() {
+    for option in
+        [&["--world", "none.sim"][..], &["--start", "1,2,3"], &["--picture", "a.svg"], &["--fault", "lost@1"]]
+    {
+        let options = [&["--campaign"], option].concat();
+        for (status, _, err) in
+            [run("color_tracking", color_tracking::work, &options), run("motion", motion::work, &options)]
+        {
+            assert!(status == 2 && err.contains(option[0]) && err.lines().count() == 1, "{err}");
+        }
+    }
+    let (status, _, err) = run("color_tracking", color_tracking::work, &["--campaign", "--light", "1"]);
+    assert!(status == 2 && err.contains("--light"), "{err}");
+    let (status, _, err) = run("color_tracking", color_tracking::work, &["--light", "0"]);
+    assert!(status == 2 && err.contains("--light"), "{err}");
 }
 
 #[test]

@@ -1,0 +1,80 @@
+//! One run of an acceleration or a skidpad.
+
+use roverlab::drive::cones::{EventCourse, EventParameters, EventPhase, EventRacer, EventShape};
+use roverlab::geometry::Point;
+use roverlab::io::sim::race::RaceCarSpec;
+use roverlab::io::{self, Resolution, RobotIo};
+
+use super::Sensors;
+use super::race::{Ending, Eyes, Outcome, Settings, limits};
+use crate::common::{Failure, Stage};
+use crate::cones::{Course, Judge, pass};
+
+/// Seconds that a run takes at most, where no limit is given.
+const LIMIT: f64 = 90.0;
+
+/// Drives the event of a course. The car knows which one it is, and nothing of the course.
+pub(crate) fn race(
+    course: &Course,
+    event: &EventCourse,
+    settings: &Settings,
+    stage: &Stage,
+) -> Result<Outcome, Failure> {
+    let mut judge = Judge::new(course, stage.truth(0)?, 0).map_err(Failure::run)?;
+    let mut car = stage.robot(0)?;
+    let mut racer = match event.layout().shape {
+        EventShape::Strip { .. } => EventRacer::acceleration(EventParameters::default()),
+        EventShape::Eight { .. } => EventRacer::skidpad(EventParameters::default()),
+    };
+    let driven = drive(settings, car.as_mut(), &mut judge, &mut racer);
+    drop(car);
+    let optima = event.optima(&limits(&RaceCarSpec::default()), &Course::outline());
+    let verdict = judge.verdict().clone();
+    Ok(Outcome {
+        over_optimum: verdict.lap_times.iter().zip(optima).map(|(time, optimum)| time / optimum).collect(),
+        verdict,
+        ending: driven.map_err(|error| Failure::from(error).to_string()),
+        truth: judge.truth().clone(),
+        time: judge.time(),
+        trail: judge.trail().to_vec(),
+        line: line(course, &racer),
+        standing: judge.standing(),
+        other: None,
+    })
+}
+
+fn drive<R: RobotIo + ?Sized>(
+    settings: &Settings,
+    car: &mut R,
+    judge: &mut Judge,
+    racer: &mut EventRacer,
+) -> io::Result<Ending> {
+    let mut eyes = Eyes::new(settings.sensors);
+    if settings.sensors != Sensors::Lidar {
+        car.set_resolution(Resolution::Vga)?;
+    }
+    let period = EventParameters::default().period;
+    while judge.time() < settings.limit.unwrap_or(LIMIT) {
+        let seen = eyes.look(car)?;
+        let (pose, speed) = (car.pose()?, car.speed()?);
+        car.set_speed(racer.decide(pose, speed, &seen))?;
+        pass(car, &mut [&mut *judge], period)?;
+        if racer.is_done(car.speed()?) {
+            break;
+        }
+    }
+    Ok(match racer.phase() {
+        EventPhase::Finished if judge.is_complete() => Ending::Finished,
+        EventPhase::Finished => Ending::Missed,
+        EventPhase::Lost => Ending::Lost,
+        EventPhase::Looking | EventPhase::Driving => Ending::TimedOut,
+    })
+}
+
+/// The line that was followed, from the start on, in the frame of the world.
+fn line(course: &Course, racer: &EventRacer) -> Vec<Point> {
+    let Some((layout, line)) = racer.layout().zip(racer.line()) else { return Vec::new() };
+    let place = course.start.compose(&layout.pose);
+    let points = line.points().iter().map(|point| place.to_world(*point));
+    points.skip_while(|point| course.start.to_local(*point).x < 0.0).collect()
+}

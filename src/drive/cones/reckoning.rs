@@ -1,0 +1,29 @@
+//! Where a car is by its odometry and by how its tyres slip.
+
+use super::tyres::{SLIPS, Tyres};
+use crate::geometry::{Pose, Twist, math};
+
+/// Adds up odometry, and what odometry does not know of: that the rear axle slides in bends.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Reckoning {
+    last: Option<Pose>,
+    pose: Pose,
+}
+
+impl Reckoning {
+    /// Where the car is.
+    pub(super) fn pose(&self) -> Pose {
+        self.pose
+    }
+
+    /// Takes in what odometry says now. Returns the metres that the car went by it.
+    pub(super) fn step(&mut self, odometry: Pose, speed: Twist, tyres: &Tyres) -> f64 {
+        let step =
+            self.last.replace(odometry).map_or(Pose::default(), |last| last.inverse().compose(&odometry));
+        let across = speed.linear * speed.angular;
+        let slip = if speed.linear > SLIPS { tyres.slips(across, 0.0)[1] } else { 0.0 };
+        let aside = Pose::new(0.0, -step.x * math::tan(slip), 0.0);
+        self.pose = self.pose.compose(&aside.compose(&step));
+        step.position().coords.norm()
+    }
+}
