@@ -193,6 +193,7 @@ pub(super) fn limits(spec: &RaceCarSpec) -> CarLimits {
             stiffness: spec.stiffness * 9.81,
             front: spec.balance,
             wheelbase: spec.wheelbase(),
+            lock: spec.max_steering,
         }),
         drive: spec.drive,
         brake: spec.brake,

@@ -43,14 +43,17 @@ impl Hold {
             // Never less than a fifth: so tightly no car turns.
             Self::Ellipse { across, turned, .. } => across * (1.0 - turned * curvature.abs()).max(0.2),
             Self::Balance(tyres) => {
-                let keeps =
-                    |across| tyres.forwards(curvature, across, drive).is_some_and(|along| along >= 0.0);
+                let keeps = |across| {
+                    tyres.turns(curvature, across)
+                        && tyres.forwards(curvature, across, drive).is_some_and(|along| along >= 0.0)
+                };
                 let (mut least, mut most) = (0.0, tyres.grip);
                 for _ in 0..HALVINGS {
                     let middle = 0.5 * (least + most);
                     if keeps(middle) { least = middle } else { most = middle }
                 }
-                least
+                // Where the wheels do not turn far enough, a car crawls at best.
+                least.max(CRAWLS * tyres.grip)
             }
         }
     }
@@ -78,5 +81,74 @@ impl Hold {
     }
 }
 
+/// The share of the grip that is left for bends that are too tight.
+const CRAWLS: f64 = 0.05;
 /// Halvings of the range in which an acceleration is looked for.
 const HALVINGS: usize = 14;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::math;
+    use proptest::prelude::*;
+
+    const DRIVE: f64 = 8.0;
+
+    fn balance() -> Hold {
+        Hold::Balance(Tyres::default())
+    }
+
+    proptest! {
+        #[test]
+        fn tighter_bends_are_slower(curvature in 0.005..0.38f64, tighter in 1.02..1.5f64) {
+            for hold in [balance(), Hold::Ellipse { across: 10.0, turned: 0.5, along: 10.0 }] {
+                let fast = |bend: f64| (hold.across(bend, DRIVE) / bend).sqrt();
+                prop_assert!(fast(curvature * tighter) < fast(curvature), "{hold:?}");
+                prop_assert_eq!(hold.across(-curvature, DRIVE), hold.across(curvature, DRIVE));
+            }
+        }
+
+        #[test]
+        fn no_balance_exceeds_the_tyres(curvature in 0.0..0.3f64, share in 0.0..1.0f64) {
+            let (hold, grip) = (balance(), Tyres::default().grip);
+            let most = hold.across(curvature, DRIVE);
+            // The front axle gives up first.
+            prop_assert!(most < 0.9 * grip);
+            let across = share * most;
+            for along in [hold.forwards(curvature, across, DRIVE), hold.backwards(curvature, across, 11.0)] {
+                prop_assert!(along >= 0.0 && math::hypot(along, across) < grip, "{along} {across}");
+            }
+            prop_assert!(hold.forwards(curvature, across, DRIVE) <= DRIVE);
+        }
+
+        #[test]
+        fn the_more_is_asked_across_the_less_is_left_along(
+            curvature in 0.0..0.25f64, share in 0.0..0.95f64,
+        ) {
+            let hold = balance();
+            let most = hold.across(curvature, DRIVE);
+            let [less, more] = [share, share + 0.05].map(|share| hold.forwards(curvature, share * most, DRIVE));
+            prop_assert!(more <= less + 1e-6, "{more} {less}");
+        }
+    }
+
+    #[test]
+    fn where_the_wheels_do_not_turn_far_enough_a_car_crawls() {
+        // 0.6 rad are a curvature of 0.44 for wheels that do not slip.
+        let speed = |bend: f64| (balance().across(bend, DRIVE) / bend).sqrt();
+        assert!((0.5..2.0).contains(&speed(0.5)) && speed(0.4) > 3.0, "{} {}", speed(0.5), speed(0.4));
+    }
+
+    #[test]
+    fn what_is_no_hold() {
+        let told = |hold: Hold| hold.check().unwrap_err().to_string();
+        assert_eq!(
+            told(Hold::Ellipse { across: 9.0, turned: 2.0, along: 9.0 }),
+            "grip lost by turned wheels is 2; expected 0 to 1"
+        );
+        assert_eq!(
+            told(Hold::Balance(Tyres { grip: -1.0, ..Tyres::default() })),
+            "grip is -1; expected a positive, finite number"
+        );
+    }
+}

@@ -228,6 +228,17 @@ mod tests {
     }
 
     #[test]
+    fn tighter_circles_are_slower_in_the_balance() {
+        use crate::drive::cones::{Hold, Tyres};
+        let limits = CarLimits { hold: Hold::Balance(Tyres::default()), ..LIMITS };
+        let speeds = [5.0, 9.0, 20.0, 40.0]
+            .map(|radius| SpeedProfile::closed(&ellipse(120, radius, radius), &limits).unwrap().speeds[60]);
+        assert!(speeds.windows(2).all(|pair| pair[0] < pair[1]), "{speeds:?}");
+        // Less than tyres without an axle that gives up first would.
+        assert!(speeds[1] < 0.96 * (12.0 * 9.0_f64).sqrt() && speeds[1] > 0.85 * (12.0 * 9.0_f64).sqrt());
+    }
+
+    #[test]
     fn the_steering_keeps_up_with_the_bends() {
         // A straight way that becomes a circle at once.
         let mut points: Vec<Point> = (0..40).map(|i| Point::new(0.5 * f64::from(i), 0.0)).collect();

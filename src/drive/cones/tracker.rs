@@ -16,7 +16,7 @@ pub struct TrackerParameters {
     /// Seconds by which the speed lags behind.
     pub speed_lag: f64,
     /// Seconds of the acceleration that the tyres have left by which more speed is asked for than there is. The inverse of the gain of
-    /// the car's own controller is what spins no wheel; with more, a car that only slides a little is not slowed down.
+    /// the car's own controller is what spins no wheel; with twice of that, a car that only slides a little is not slowed down.
     pub speed_time: f64,
     /// Seconds of the deceleration by tyres that push across by which more speed is asked for: the inverse of that gain.
     pub drag_time: f64,
@@ -38,7 +38,7 @@ impl Default for TrackerParameters {
             length_by_speed: 0.16,
             steering_lag: 0.11,
             speed_lag: 0.12,
-            speed_time: 0.4,
+            speed_time: 0.16,
             drag_time: 0.083,
             tyres: Tyres::default(),
             yaw: 1.0,
@@ -168,15 +168,24 @@ impl LineTracker {
         let late = if speed > SLIPS { p.yaw * (wanted - moving.angular / speed) } else { 0.0 };
         let curvature = (wanted / inside + tyres + late).clamp(-p.curvature, p.curvature);
         let planned = self.at(&self.profile.speeds, i, share, (speed.max(0.0) + 0.5) * p.speed_lag);
-        // Motors take no more than the tyres have left beside what they give across; brakes do, as there is no other way to be slower.
-        let left = if speed > SLIPS { p.tyres.left_along(speed * moving.angular) } else { p.tyres.grip };
-        let most = left * p.speed_time;
+        let most = self.left_along(wanted, moving) * p.speed_time;
         let planned = planned + p.drag_time * p.tyres.drag(curvature_here, speed * speed * curvature_here);
         self.reached |= aside.abs() < ON_LINE;
         // Beside its line, it gains no speed: there may be no room for that.
         let planned = if self.reached { planned } else { planned.min(speed.max(SLOW)) };
         let speed = planned.min(speed.max(0.0) + most);
         Some((Twist::new(speed, speed * curvature), aside))
+    }
+
+    /// What the tyres have left along the way beside what the car gives across and what it should: motors take no more, so that a car
+    /// that has to come back to its line can. Brakes do, as there is no other way to be slower.
+    fn left_along(&self, wanted: f64, moving: Twist) -> f64 {
+        let (tyres, speed) = (&self.parameters.tyres, moving.linear);
+        if speed <= SLIPS {
+            return tyres.grip;
+        }
+        let across = (speed * moving.angular).abs().max(speed * speed * wanted.abs());
+        tyres.left_along(wanted, across)
     }
 
     /// How much faster than the line the car turns on it, in 1/m: the more its tyres have to slip, the more its nose points into the

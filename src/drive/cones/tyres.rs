@@ -15,17 +15,20 @@ pub struct Tyres {
     pub front: f64,
     /// Metres between the axles.
     pub wheelbase: f64,
+    /// The largest steering angle, in radians.
+    pub lock: f64,
 }
 
 impl Default for Tyres {
     fn default() -> Self {
-        Self { grip: 12.0, stiffness: 216.0, front: 0.9, wheelbase: 1.55 }
+        Self { grip: 12.0, stiffness: 216.0, front: 0.9, wheelbase: 1.55, lock: 0.6 }
     }
 }
 
 impl Tyres {
     /// Tyres that roll and do not slip, as those of slow cars as good as do.
-    pub const ROLLING: Self = Self { grip: 12.0, stiffness: f64::INFINITY, front: 1.0, wheelbase: 1.55 };
+    pub const ROLLING: Self =
+        Self { grip: 12.0, stiffness: f64::INFINITY, front: 1.0, wheelbase: 1.55, lock: 0.6 };
 }
 
 /// Metres per second above which tyres slip. Below, wheels roll, and turn the car at once.
@@ -62,11 +65,11 @@ impl Tyres {
         (self.grip * self.grip - along * along).max(1.0).sqrt()
     }
 
-    /// What is left along the way beside an acceleration across, both in m/s²: at least a tenth of the grip, so that a car that
-    /// slides is not left without motors.
-    pub fn left_along(&self, across: f64) -> f64 {
-        let strained = across / (MOST * self.front.min(1.0) * self.grip);
-        self.grip * (1.0 - strained * strained).max(0.01).sqrt()
+    /// What motors may push at a curvature beside an acceleration across, both in m/s²: at least a tenth of the grip, so that a car
+    /// that slides is not left without motors.
+    pub fn left_along(&self, curvature: f64, across: f64) -> f64 {
+        let most = self.most(curvature.abs(), across.abs(), Push::On);
+        most.unwrap_or(0.0).max(0.1 * self.grip)
     }
 
     /// The curvature for which wheels that only roll would be steered as these are for that one at that acceleration.
@@ -104,6 +107,11 @@ impl Tyres {
     pub(super) fn forwards(&self, curvature: f64, across: f64, drive: f64) -> Option<f64> {
         let push = self.most(curvature, across, Push::On)?.min(drive);
         Some(self.along(curvature, across, push))
+    }
+
+    /// Whether the front wheels turn far enough for an acceleration across, at a steady speed.
+    pub(super) fn turns(&self, curvature: f64, across: f64) -> bool {
+        self.steered(curvature.abs(), across, 0.0) <= self.lock
     }
 
     /// The greatest deceleration, by brakes that give so much.
@@ -209,11 +217,41 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_more_is_left_than_the_friction_circle(across in -14.0..14.0f64) {
+        fn no_more_is_left_than_the_friction_circle(across in -14.0..14.0f64, curvature in -0.3..0.3f64) {
             let tyres = Tyres::default();
-            let left = tyres.left_along(across);
-            prop_assert!(left <= tyres.left_along(0.9 * across) && left >= 1.19);
+            let left = tyres.left_along(curvature, across);
+            prop_assert!(left <= tyres.left_along(curvature, 0.9 * across) + 1e-9 && left >= 1.19);
             prop_assert!(left < 1.21 || across * across + left * left <= 144.0);
+            prop_assert_eq!(left, tyres.left_along(-curvature, -across));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_steering_is_that_of_axles_that_slip(
+            curvature in -0.25..0.25f64, across in 0.0..9.0f64, along in -5.0..5.0f64,
+        ) {
+            let (tyres, across) = (Tyres::default(), across.copysign(curvature));
+            let steered = tyres.steered(curvature, across, along);
+            // Back from the angle to the curvature: what rolls beside the slip of both axles.
+            let front = tyres.slip(tyres.front, across / math::cos(steered), along);
+            let rear = math::tan(tyres.slip(1.0, across, along));
+            let back = (math::tan(steered - front) + rear) / tyres.wheelbase;
+            prop_assert!((back - curvature).abs() < 5e-3, "{back} {curvature}");
+            prop_assert!((tyres.steered(-curvature, -across, along) + steered).abs() < 1e-12);
+        }
+
+        #[test]
+        fn what_is_pushed_at_most_both_axles_give(curvature in 0.0..0.25f64, across in 0.0..9.0f64) {
+            let tyres = Tyres::default();
+            for push in [Push::On, Push::Back] {
+                let Some(most) = tyres.most(curvature, across, push) else { continue };
+                let circle = (tyres.grip * tyres.grip - most * most).sqrt();
+                let (sin, cos) = math::sin_cos(tyres.steered(curvature, across, most));
+                prop_assert!(across <= MOST * circle + 1e-9);
+                let front = (across - most * sin) / cos;
+                prop_assert!(front <= 1.02 * MOST * tyres.front * circle + 1e-9, "{front} of {circle}");
+            }
         }
     }
 
