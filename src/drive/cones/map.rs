@@ -225,6 +225,13 @@ impl ConeMap {
         self.trail.iter().map(|(pose, _)| *pose)
     }
 
+    /// Where the car was in the first lap, but for the last metres, as far as that is within some metres of where it is now.
+    pub(super) fn earlier(&self, near: f64) -> impl Iterator<Item = Pose> + '_ {
+        let place = self.pose.position();
+        let old = self.trail.iter().filter(|(_, way)| self.way - way > FRESH).map(|(pose, _)| *pose);
+        old.filter(move |pose| (pose.position() - place).norm_squared() < near * near)
+    }
+
     /// Metres by which the pose may be wrong that is compared with that of the start.
     pub fn tolerance(&self) -> f64 {
         if self.closed { WRONG.0 } else { WRONG.0 + WRONG.1 * self.way }

@@ -9,7 +9,8 @@
 //!   [`LineTracker`] keeps the car on its line; a [`Referee`] takes the time and counts penalties;
 //! - [`EventRacer`]: drives an acceleration or a skidpad, whose layouts are known, by the cones that it sees; an
 //!   [`EventReferee`] takes their times;
-//! - [`minimum_curvature`]: the racing line within a [`Corridor`], and [`SpeedProfile`]: how fast a car goes along it.
+//! - [`minimum_curvature`]: the racing line within a [`Corridor`], and [`SpeedProfile`]: how fast a car goes along it,
+//!   within what its tyres [`Hold`].
 
 mod banded;
 mod box_qp;

@@ -4,7 +4,7 @@ use super::cone::Cone;
 use super::corridor::{Corridor, Station};
 use super::error::PlanError;
 use super::hold::Hold;
-use super::lane::{Lane, LaneParameters, lane};
+use super::lane::{Lane, LaneParameters, Way, lane_where};
 use super::lap::around_lap;
 use super::map::{ConeMap, ConeMapParameters};
 use super::profile::{CarLimits, SpeedProfile};
@@ -356,7 +356,9 @@ impl Racer {
         let behind = trail.iter().rev().take(BEHIND_POSES).rev().map(|pose| pose.compose(&middle));
         let own = pose.compose(&middle);
         let behind: Vec<Pose> = behind.filter(|pose| own.to_local(pose.position()).x < -0.5).collect();
-        let found = lane(near, &behind, own, &self.lane, &self.parameters.lane).ok_or(PlanError::NoWay)?;
+        let earlier: Vec<Pose> = self.map.earlier(NEAR).map(|pose| pose.compose(&middle)).collect();
+        let way = Way { behind: &behind, car: own, earlier: &earlier };
+        let found = lane_where(near, &way, &self.lane, &self.parameters.lane).ok_or(PlanError::NoWay)?;
         for (edge, side) in found.edges.iter().zip([1, -1]) {
             let places = edge.iter().map(|&cone| near[cone].position);
             self.map.vote_side(places.filter(|place| (place - own.position()).norm() < VOTES), side);
