@@ -300,7 +300,9 @@ impl Racer {
         let (pose, wrong) = (self.map.pose(), self.map.tolerance());
         let place = line.to_local(pose.position());
         let ahead = pose.forward().dot(&line.forward());
-        (0.0..BEHIND + wrong).contains(&place.x) && place.y.abs() < wrong && ahead > 0.3
+        // A wide track is raced far beside the middle, where the line was crossed first.
+        let aside = wrong.max(self.parameters.lane.half_width[1] + 1.0);
+        (0.0..BEHIND + wrong).contains(&place.x) && place.y.abs() < aside && ahead > 0.3
     }
 
     fn follow(&mut self, speed: Twist) -> Twist {
