@@ -315,7 +315,7 @@ mod tests {
         assert!(track.cones.iter().all(|cone| !is_on_track(cone.position, &corridor)));
         // The four edges stop before the crossing, and nowhere else.
         assert!(
-            track.cones.len() + 4 < all && track.cones.len() + 20 > all,
+            track.cones.len() + 4 < all && track.cones.len() + 40 > all,
             "{} of {all}",
             track.cones.len()
         );

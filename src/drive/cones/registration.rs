@@ -201,8 +201,20 @@ mod tests {
         let shifted = |aside: f64| row[4..14].iter().map(|p| p + Vector::new(aside, 0.0)).collect::<Vec<_>>();
         assert_eq!(register(&shifted(1.5), &row, LOST), None);
         assert_eq!(register(&[], &row, LOST), None);
-        // A little beside cones, it is plain which ones they are.
+    }
+
+    #[test]
+    fn rows_that_are_nearly_even_are_found_near_where_the_car_believes_to_be() {
+        let row: Vec<Point> = (0..20)
+            .map(|k| {
+                let off = 0.05 * f64::from(7 * k % 5 - 2);
+                Point::new(3.0 * f64::from(k / 2) + off, 3.0 * f64::from(k % 2))
+            })
+            .collect();
+        let shifted = |aside: f64| row[4..14].iter().map(|p| p + Vector::new(aside, 0.0)).collect::<Vec<_>>();
         let found = register(&shifted(0.2), &row, LOST).unwrap();
         assert!((found.x + 0.2).abs() < 1e-6 && found.y.abs() < 1e-6, "{found:?}");
+        // Three metres off, cones that fit as well are as near.
+        assert_eq!(register(&shifted(3.0), &row, LOST), None);
     }
 }
