@@ -24,7 +24,7 @@ use race::{Ending, Settings};
     about = "Races on a track of cones that the car does not know: a map in the first lap, then the racing line",
     after_help = "\
 The first lap is driven between the cones that the lidar sees, and makes the map; all others are on the racing line within
-the friction circle. The referee adds 2 s for a cone and 10 s for leaving the course with all wheels. Tracks: FSSIM yaml,
+what both axles hold. The referee adds 2 s for a cone and 10 s for leaving the course with all wheels. Tracks: FSSIM yaml,
 EUFS csv, TUM csv (lined with cones), or one of our own by the seed.
 
 An acceleration strip or a skidpad, which the file's cones stand for, is driven as the event that it is: one run, whatever

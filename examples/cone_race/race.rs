@@ -2,8 +2,8 @@
 
 use image::RgbImage;
 use roverlab::drive::cones::{
-    CameraMount, CameraSight, CarLimits, GapDriver, LineTracker, RacePhase, Racer, Sighting, SpeedProfile,
-    Verdict, fuse, sightings,
+    CameraMount, CameraSight, CarLimits, GapDriver, Hold, LineTracker, RacePhase, Racer, Sighting,
+    SpeedProfile, Tyres, Verdict, fuse, sightings,
 };
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
@@ -170,10 +170,11 @@ impl Plans {
         if self.first.is_empty() {
             self.first = points.map(<[Point]>::to_vec).unwrap_or_default();
         }
+        let optimum = |points: &[Point]| SpeedProfile::closed(points, &limits(&RaceCarSpec::default())).ok();
         if racer.laps() < self.optima.len() {
             return;
         }
-        let optimum = |points: &[Point]| SpeedProfile::closed(points, &limits(&RaceCarSpec::default())).ok();
+
         self.optima.resize(racer.laps(), None);
         self.optima.push(points.filter(|_| flying).and_then(optimum).map(|profile| profile.lap_time));
     }
@@ -187,9 +188,13 @@ impl Plans {
 /// What a car can do at most, in balance: what the optimum is for.
 pub(super) fn limits(spec: &RaceCarSpec) -> CarLimits {
     CarLimits {
-        grip: spec.cornering(),
-        turned: 0.0,
-        traction: spec.grip,
+        hold: Hold::Balance(Tyres {
+            grip: spec.grip,
+            stiffness: spec.stiffness * 9.81,
+            front: spec.balance,
+            wheelbase: spec.wheelbase(),
+            lock: spec.max_steering,
+        }),
         drive: spec.drive,
         brake: spec.brake,
         top_speed: spec.top_speed,

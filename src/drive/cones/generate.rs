@@ -4,7 +4,7 @@ use super::corridor::Corridor;
 use super::error::PlanError;
 use super::racing_line::curvature;
 use super::{ClosedSpline, Cone, ConeColour, ConeTrack};
-use crate::geometry::{Point, Pose, Vector, direction, math};
+use crate::geometry::{Point, Pose, Vector, cross, direction, math};
 use crate::random::Stream;
 
 /// What a generated track looks like. The defaults are within the rules of Formula Student: laps of 200 to 500 m, at least
@@ -103,11 +103,26 @@ pub fn generate(seed: u64, options: &TrackOptions) -> Result<GeneratedTrack, Pla
     })
 }
 
-/// Puts cones along both edges of a closed corridor with stations about every metre, at most so many metres apart.
+/// Puts cones along both edges of a closed corridor with stations about every metre, at most so many metres apart; none where one
+/// part of the course crosses another.
 pub fn lined(corridor: Corridor, spacing: f64) -> GeneratedTrack {
     let options = TrackOptions { spacing: [0.6 * spacing, spacing], ..TrackOptions::default() };
-    let track = place_cones(&mut Stream::new(0), &corridor, &options);
+    let mut track = place_cones(&mut Stream::new(0), &corridor, &options);
+    track.cones.retain(|cone| !is_on_track(cone.position, &corridor));
     GeneratedTrack { track, corridor }
+}
+
+/// Metres within an edge at which a place is on the track for certain.
+const WITHIN: f64 = 0.5;
+
+/// Whether a place is between the edges anywhere, as those of one part of a course that crosses itself are for the other.
+fn is_on_track(place: Point, corridor: &Corridor) -> bool {
+    corridor.stations().iter().any(|station| {
+        let away = place - station.position;
+        let left = away.dot(&station.normal);
+        cross(away, station.normal).abs() < 1.0
+            && (WITHIN - station.right..station.left - WITHIN).contains(&left)
+    })
 }
 
 fn attempt_track(random: &mut Stream, options: &TrackOptions, hairpins: usize) -> Option<GeneratedTrack> {
@@ -287,6 +302,24 @@ fn place_cones(random: &mut Stream, corridor: &Corridor, options: &TrackOptions)
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_course_that_crosses_itself_is_free_where_it_does() {
+        let eight = (0..500).map(|i| {
+            let angle = TAU * f64::from(i) / 500.0;
+            (Point::new(80.0 * math::sin(angle), 30.0 * math::sin(2.0 * angle)), 4.0, 4.0)
+        });
+        let corridor = Corridor::closed(&eight.collect::<Vec<_>>()).unwrap().resampled(1.0).unwrap();
+        let all = place_cones(&mut Stream::new(0), &corridor, &TrackOptions::default()).cones.len();
+        let GeneratedTrack { track, corridor } = lined(corridor, 5.0);
+        assert!(track.cones.iter().all(|cone| !is_on_track(cone.position, &corridor)));
+        // The four edges stop before the crossing, and nowhere else.
+        assert!(
+            track.cones.len() + 4 < all && track.cones.len() + 40 > all,
+            "{} of {all}",
+            track.cones.len()
+        );
+    }
 
     #[test]
     fn drawn_tracks_are_legal() {

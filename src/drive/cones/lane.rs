@@ -2,7 +2,7 @@
 //! stand about.
 
 use super::cone::Cone;
-use super::rows::{RowParameters, Rows, passes, rows};
+use super::rows::{RowParameters, Rows, leads_back, passes, rows};
 use crate::geometry::{Point, Pose, Vector, direction, math};
 
 /// What a lane is looked for with.
@@ -66,6 +66,8 @@ const THROUGH: f64 = 10.0;
 const KEEP: f64 = 0.35;
 const BEND: f64 = 4.0;
 const STEER: f64 = 16.0;
+/// What driving back costs where the car came from.
+const BACK: f64 = 12.0;
 /// How much farther outside a cone may stand than inside: tracks are wider here and there.
 const WIDER: f64 = 1.6;
 /// Metres along the lane over which a cone speaks for its edge.
@@ -74,6 +76,16 @@ pub(super) const SPEAKS: f64 = 6.5;
 const NEXT_TO: f64 = 1.6;
 /// Different curvatures to one side.
 const BENDS: i32 = 5;
+
+/// Where a car was, is, and has been earlier.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Way<'w> {
+    /// Where it was just now, oldest first.
+    pub(super) behind: &'w [Pose],
+    pub(super) car: Pose,
+    /// Where it has been so long ago that it may come by again: where a circuit crosses itself, it goes straight on.
+    pub(super) earlier: &'w [Pose],
+}
 
 /// A piece of a way.
 #[derive(Debug, Clone, Copy)]
@@ -112,11 +124,22 @@ pub fn lane(
     before: &Lane,
     parameters: &LaneParameters,
 ) -> Option<Lane> {
+    lane_where(cones, &Way { behind, car, earlier: &[] }, before, parameters)
+}
+
+/// The same for a car of which it is known where else it has been.
+pub(super) fn lane_where(
+    cones: &[Cone],
+    way: &Way,
+    before: &Lane,
+    parameters: &LaneParameters,
+) -> Option<Lane> {
+    let car = way.car;
     let reach = parameters.piece * parameters.pieces as f64 + parameters.spacing;
     let near: Vec<usize> =
         (0..cones.len()).filter(|&cone| (cones[cone].position - car.position()).norm() < reach).collect();
     let cones: Vec<Cone> = near.iter().map(|&cone| cones[cone]).collect();
-    let mut found = lane_between(&cones, behind, car, before, parameters)?;
+    let mut found = lane_between(&cones, way, before, parameters)?;
     for cone in found.edges.iter_mut().flatten() {
         *cone = near[*cone];
     }
@@ -124,29 +147,23 @@ pub fn lane(
 }
 
 /// The same between cones that are all near.
-fn lane_between(
-    cones: &[Cone],
-    behind: &[Pose],
-    car: Pose,
-    before: &Lane,
-    parameters: &LaneParameters,
-) -> Option<Lane> {
+fn lane_between(cones: &[Cone], way: &Way, before: &Lane, parameters: &LaneParameters) -> Option<Lane> {
     let half_width = before.half_width;
-    let mut stations = behind.to_vec();
-    stations.push(car);
+    let mut stations = way.behind.to_vec();
+    stations.push(way.car);
     let p = parameters;
     let narrowest = p.half_width[0];
     let along_rows =
         RowParameters { reach: p.spacing, half_width, narrowest, loose: p.loose, sharpest: p.sharpest };
-    let rows = rows(cones, &stations, &along_rows);
-    let way = search(cones, &rows, car, before, p)?;
-    stations.extend(way);
+    let rows = rows(cones, &stations, way.earlier, &along_rows);
+    stations.extend(search(cones, &rows, way, before, p)?);
     let sides = rows.sides(cones.len());
     let found = settled((cones, &sides), &stations, half_width, parameters);
     found.edges.iter().any(|edge| !edge.is_empty()).then_some(found)
 }
 
-fn search(cones: &[Cone], rows: &Rows, car: Pose, before: &Lane, p: &LaneParameters) -> Option<Vec<Pose>> {
+fn search(cones: &[Cone], rows: &Rows, way: &Way, before: &Lane, p: &LaneParameters) -> Option<Vec<Pose>> {
+    let (car, earlier) = (way.car, way.earlier);
     let (legs, sides) = (rows.legs(cones), rows.sides(cones.len()));
     let start = Piece { middle: car, end: car, bend: 0, cost: 0.0, parent: None };
     let mut pieces = vec![start];
@@ -164,6 +181,9 @@ fn search(cones: &[Cone], rows: &Rows, car: Pose, before: &Lane, p: &LaneParamet
                     let way = [pieces[parent].end.position(), piece.end.position()];
                     let through = legs.iter().filter(|leg| passes(way, **leg)).count();
                     piece.cost += THROUGH * through as f64;
+                    if leads_back(piece.middle, earlier, before.half_width) {
+                        piece.cost += BACK;
+                    }
                     next.push(piece);
                 }
             }

@@ -148,6 +148,9 @@ const FRESH: f64 = 25.0;
 const STRIDE: f64 = 2.0;
 /// Metres of the way in which the first cones were seen, at most.
 const BEGINNING: f64 = 30.0;
+/// Metres that a lap takes at least, and metres from a place within which a lap has led back to it.
+const SHORTEST: f64 = 12.0;
+const AROUND: f64 = 2.5;
 /// Metres of the way in which the last cones were seen.
 const END: f64 = 8.0;
 /// Metres between two cones that are the same one, after a loop was closed.
@@ -222,6 +225,13 @@ impl ConeMap {
         self.trail.iter().map(|(pose, _)| *pose)
     }
 
+    /// Where the car was in the first lap, but for the last metres, as far as that is within some metres of where it is now.
+    pub(super) fn earlier(&self, near: f64) -> impl Iterator<Item = Pose> + '_ {
+        let place = self.pose.position();
+        let old = self.trail.iter().filter(|(_, way)| self.way - way > FRESH).map(|(pose, _)| *pose);
+        old.filter(move |pose| (pose.position() - place).norm_squared() < near * near)
+    }
+
     /// Metres by which the pose may be wrong that is compared with that of the start.
     pub fn tolerance(&self) -> f64 {
         if self.closed { WRONG.0 } else { WRONG.0 + WRONG.1 * self.way }
@@ -277,6 +287,7 @@ impl ConeMap {
         if self.confirmed().all(|landmark| self.is_fresh(landmark)) {
             // A short lap has led back to cones that it went by just now: pose and map are good without.
             self.closed = true;
+            self.drop_earlier_laps();
             return true;
         }
         let beginning = self.beginning();
@@ -314,6 +325,23 @@ impl ConeMap {
         let begin = self.trail[0].0.x;
         while self.trail.len() > 2 && self.trail.last().is_some_and(|(pose, _)| pose.x > begin - STRIDE) {
             self.trail.pop();
+        }
+    }
+
+    /// Leaves one lap of the trail, the last one: a short lap is driven more than once before the line is crossed again.
+    fn drop_earlier_laps(&mut self) {
+        let (pose, way) = (self.pose, self.way);
+        let away = |at: &Pose| (at.position() - pose.position()).norm();
+        let around = self.trail.iter().enumerate().filter(|(_, (at, then))| {
+            way - then > SHORTEST && away(at) < AROUND && at.forward().dot(&pose.forward()) > ATHWART
+        });
+        // Of all times that it came by here, the last one; there, the place that is nearest.
+        let Some((last, _)) = around.clone().next_back() else { return };
+        let once = around.filter(|(_, (_, then))| self.trail[last].1 - then < 2.0 * AROUND);
+        let nearest = once.min_by(|(_, (a, _)), (_, (b, _))| away(a).total_cmp(&away(b)));
+        self.trail.drain(..=nearest.map_or(last, |(at, _)| at));
+        if self.trail.last().is_some_and(|(_, then)| way - then > 0.5 * STRIDE) {
+            self.trail.push((pose, way));
         }
     }
 

@@ -10,7 +10,8 @@
 //!   [`LineTracker`] keeps the car on its line; a [`Referee`] takes the time and counts penalties;
 //! - [`EventRacer`]: drives an acceleration or a skidpad, whose layouts are known, by the cones that it sees; an
 //!   [`EventReferee`] takes their times;
-//! - [`minimum_curvature`]: the racing line within a [`Corridor`], and [`SpeedProfile`]: how fast a car goes along it.
+//! - [`minimum_curvature`]: the racing line within a [`Corridor`], and [`SpeedProfile`]: how fast a car goes along it,
+//!   within what its tyres [`Hold`].
 
 mod banded;
 mod box_qp;
@@ -24,6 +25,7 @@ mod files;
 mod finder;
 mod gap;
 mod generate;
+mod hold;
 mod lane;
 mod lap;
 mod map;
@@ -59,6 +61,7 @@ pub use files::{
 pub use finder::LaneFinder;
 pub use gap::GapDriver;
 pub use generate::{GeneratedTrack, TrackOptions, generate, lined};
+pub use hold::Hold;
 pub use lane::{Lane, LaneParameters, lane};
 pub use map::{ConeMap, ConeMapParameters};
 pub use profile::{CarLimits, SpeedProfile};

@@ -1,16 +1,13 @@
 use super::error::{PlanError, positive};
+use super::hold::Hold;
 use super::racing_line::curvature;
 use crate::geometry::Point;
 
 /// What a car's tyres and motors do.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarLimits {
-    /// The greatest acceleration of the tyres across, straight on, in m/s²: one radius of the friction ellipse.
-    pub grip: f64,
-    /// The share of it that is lost for a curvature of 1/m: wheels that are turned push backwards as well.
-    pub turned: f64,
-    /// The greatest acceleration of the tyres along the way, in m/s²: the other radius of the friction ellipse.
-    pub traction: f64,
+    /// What its tyres give at most.
+    pub hold: Hold,
     /// The greatest acceleration of the motors, in m/s².
     pub drive: f64,
     /// The greatest deceleration of the brakes, in m/s².
@@ -24,19 +21,12 @@ pub struct CarLimits {
 impl CarLimits {
     /// A car whose tyres hold as well in all directions: those of a friction circle.
     pub const fn circle(grip: f64, drive: f64, brake: f64, top_speed: f64) -> Self {
-        Self { grip, turned: 0.0, traction: grip, drive, brake, top_speed, turning: f64::INFINITY }
+        let hold = Hold::Ellipse { across: grip, turned: 0.0, along: grip };
+        Self { hold, drive, brake, top_speed, turning: f64::INFINITY }
     }
 
     fn check(&self) -> Result<(), PlanError> {
-        positive("grip", self.grip)?;
-        positive("traction", self.traction)?;
-        if !(0.0..=1.0).contains(&self.turned) {
-            return Err(PlanError::Parameter {
-                name: "grip lost by turned wheels",
-                value: self.turned,
-                expected: "0 to 1",
-            });
-        }
+        self.hold.check()?;
         if self.turning.is_nan() || self.turning <= 0.0 {
             return Err(PlanError::Parameter {
                 name: "change of curvature",
@@ -47,18 +37,6 @@ impl CarLimits {
         positive("drive", self.drive)?;
         positive("brake", self.brake)?;
         positive("top speed", self.top_speed)
-    }
-
-    /// The greatest acceleration across at a curvature.
-    pub fn across(&self, curvature: f64) -> f64 {
-        // Never less than a fifth: so tightly no car turns.
-        self.grip * (1.0 - self.turned * curvature.abs()).max(0.2)
-    }
-
-    /// What is left of the friction ellipse along the way at a speed and a curvature.
-    fn along(&self, squared_speed: f64, curvature: f64) -> f64 {
-        let share = squared_speed * curvature / self.across(curvature);
-        self.traction * (1.0 - share * share).max(0.0).sqrt()
     }
 }
 
@@ -140,7 +118,8 @@ impl SpeedProfile {
             };
             let change = (curvatures[around[1]] - curvatures[around[0]]).abs();
             let turns = limits.turning * (lengths[around[0]] + lengths[i]) / change.max(1e-9);
-            let holds = (limits.across(curvatures[i]) / curvatures[i].abs().max(1e-9)).sqrt();
+            let holds =
+                (limits.hold.across(curvatures[i], limits.drive) / curvatures[i].abs().max(1e-9)).sqrt();
             holds.min(turns).min(limits.top_speed)
         };
         let speeds = (0..n).map(speed).collect();
@@ -151,15 +130,17 @@ impl SpeedProfile {
 
     fn limit(&mut self, limits: &CarLimits, closed: bool) {
         let n = self.speeds.len();
+        let forwards = |bend, across| limits.hold.forwards(bend, across, limits.drive);
+        let backwards = |bend, across| limits.hold.backwards(bend, across, limits.brake);
         // Twice around, so that the beginning knows of the end.
         let steps = if closed { 2 * n } else { n - 1 };
         for k in 0..steps {
             let i = k % n;
-            self.pass(limits, limits.drive, i, (i + 1) % n, i);
+            self.pass(forwards, i, (i + 1) % n, i);
         }
         for k in 0..steps {
             let i = steps - 1 - k;
-            self.pass(limits, limits.brake, (i + 1) % n, i % n, i % n);
+            self.pass(backwards, (i + 1) % n, i % n, i % n);
         }
         let count = if closed { n } else { n - 1 };
         self.lap_time = (0..count)
@@ -173,13 +154,15 @@ impl SpeedProfile {
         (after * after - before * before) / (2.0 * self.lengths[from].max(1e-9))
     }
 
-    /// Limits the speed at `to` by an acceleration from `from` over a length, with Heun's rule.
-    fn pass(&mut self, limits: &CarLimits, most: f64, from: usize, to: usize, length: usize) {
+    /// Limits the speed at `to` by an acceleration from `from` over a length, with Heun's rule: what there is at most for a curvature
+    /// and an acceleration across.
+    fn pass(&mut self, most: impl Fn(f64, f64) -> f64, from: usize, to: usize, length: usize) {
         let length = self.lengths[length];
+        let bends = [from, to].map(|i| self.curvatures[i].abs());
         let squared = self.speeds[from] * self.speeds[from];
-        let begin = limits.along(squared, self.curvatures[from]).min(most);
+        let begin = most(bends[0], squared * bends[0]);
         let guess = (squared + 2.0 * length * begin).min(self.speeds[to] * self.speeds[to]);
-        let end = limits.along(guess, self.curvatures[to]).min(most);
+        let end = most(bends[1], guess * bends[1]);
         let reached = (squared + length * (begin + end)).sqrt();
         self.speeds[to] = self.speeds[to].min(reached);
     }
@@ -245,6 +228,17 @@ mod tests {
     }
 
     #[test]
+    fn tighter_circles_are_slower_in_the_balance() {
+        use crate::drive::cones::{Hold, Tyres};
+        let limits = CarLimits { hold: Hold::Balance(Tyres::default()), ..LIMITS };
+        let speeds = [5.0, 9.0, 20.0, 40.0]
+            .map(|radius| SpeedProfile::closed(&ellipse(120, radius, radius), &limits).unwrap().speeds[60]);
+        assert!(speeds.windows(2).all(|pair| pair[0] < pair[1]), "{speeds:?}");
+        // Less than tyres without an axle that gives up first would.
+        assert!(speeds[1] < 0.96 * (12.0 * 9.0_f64).sqrt() && speeds[1] > 0.85 * (12.0 * 9.0_f64).sqrt());
+    }
+
+    #[test]
     fn the_steering_keeps_up_with_the_bends() {
         // A straight way that becomes a circle at once.
         let mut points: Vec<Point> = (0..40).map(|i| Point::new(0.5 * f64::from(i), 0.0)).collect();
@@ -263,8 +257,8 @@ mod tests {
     #[test]
     fn what_is_no_car() {
         let points = ellipse(20, 9.0, 9.0);
-        let limits = CarLimits { grip: f64::NAN, ..LIMITS };
+        let limits = CarLimits::circle(f64::NAN, 6.0, 11.0, 25.0);
         let error = SpeedProfile::closed(&points, &limits).unwrap_err();
-        assert_eq!(error.to_string(), "grip is NaN; expected a positive, finite number");
+        assert_eq!(error.to_string(), "grip across is NaN; expected a positive, finite number");
     }
 }

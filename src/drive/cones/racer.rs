@@ -3,7 +3,8 @@ use super::centre_line::{CentreLine, CentreLineParameters};
 use super::cone::Cone;
 use super::corridor::{Corridor, Station};
 use super::error::PlanError;
-use super::lane::{Lane, LaneParameters, lane};
+use super::hold::Hold;
+use super::lane::{Lane, LaneParameters, Way, lane_where};
 use super::lap::around_lap;
 use super::map::{ConeMap, ConeMapParameters};
 use super::profile::{CarLimits, SpeedProfile};
@@ -11,6 +12,7 @@ use super::racing_line::{CarOutline, LineSolver, RacingLineParameters};
 use super::reckoning::Reckoning;
 use super::sight::{Sighting, sightings};
 use super::tracker::{LineTracker, TrackerParameters};
+use super::tyres::Tyres;
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::{self, Clock, Drive, Lidar, LidarScan};
 
@@ -42,16 +44,18 @@ impl Default for RacerParameters {
         Self {
             laps: 10,
             limits: CarLimits {
-                grip: 9.9,
-                turned: 0.5,
-                traction: 10.5,
+                // A thirtieth of the grip and a fifteenth of the steering are left for what the controller is wrong by.
+                hold: Hold::Balance(Tyres { grip: 11.6, lock: 0.58, ..Tyres::default() }),
                 drive: 8.0,
-                brake: 10.0,
+                brake: 9.5,
                 top_speed: 30.0,
                 turning: 1.2,
             },
             // What is seen late is driven slowly: tight bends, in which a car answers late as well.
-            first_lap: CarLimits { turned: 1.0, ..CarLimits::circle(5.0, 3.0, 5.0, 6.0) },
+            first_lap: CarLimits {
+                hold: Hold::Ellipse { across: 5.0, turned: 1.0, along: 5.0 },
+                ..CarLimits::circle(5.0, 3.0, 5.0, 6.0)
+            },
             outline: CarOutline { half_width: 0.7, nose: 2.15, ahead: 0.9, room: 0.5 },
             centre_line: CentreLineParameters::default(),
             map: ConeMapParameters::default(),
@@ -104,6 +108,8 @@ pub struct Racer {
     patience: u32,
     /// The lane ahead in the first lap.
     lane: Lane,
+    /// Decisions until it drives off: before that, it looks about and turns its wheels.
+    looks: u32,
 }
 
 /// Metres around the car within which cones are planned with in the first lap.
@@ -123,6 +129,12 @@ const SHORTEST: f64 = 12.0;
 /// Metres from the line within which another car is in the way, metres ahead at which it begins to matter, and metres, from the
 /// middle of a car to the end of another one, that are kept.
 const OTHERS: (f64, f64, f64) = (1.5, 24.0, 4.5);
+/// Decisions at the start at which it only looks: a cone is one after some sightings, and wheels turn a third of a second to the stop.
+const LOOKS: u32 = 10;
+/// Metres per second that are next to none: a curvature is kept by them as well.
+const NEXT_TO_NONE: f64 = 1e-3;
+/// Rounds in which kinks are taken out of a line.
+const ROUNDS: usize = 4;
 /// Metres per second at which it feels its way where nothing is known.
 const CRAWL: f64 = 1.5;
 
@@ -144,6 +156,7 @@ impl Racer {
             plan_again: false,
             patience: 0,
             lane: Lane::unknown(parameters.lane.usual),
+            looks: LOOKS,
         }
     }
 
@@ -178,6 +191,10 @@ impl Racer {
         self.map.update(self.reckoning.pose(), seen);
         self.count();
         let command = self.command(speed);
+        if self.looks > 0 {
+            self.looks -= 1;
+            return Twist::new(NEXT_TO_NONE, NEXT_TO_NONE * curvature_of(command));
+        }
         self.behind_others(command, seen)
     }
 
@@ -192,8 +209,7 @@ impl Racer {
         if command.linear <= fastest {
             return command;
         }
-        // A curvature is kept by next to no speed as well.
-        let slower = fastest.max(1e-3);
+        let slower = fastest.max(NEXT_TO_NONE);
         Twist::new(slower, slower * curvature_of(command))
     }
 
@@ -284,7 +300,9 @@ impl Racer {
         let (pose, wrong) = (self.map.pose(), self.map.tolerance());
         let place = line.to_local(pose.position());
         let ahead = pose.forward().dot(&line.forward());
-        (0.0..BEHIND + wrong).contains(&place.x) && place.y.abs() < wrong && ahead > 0.3
+        // A wide track is raced far beside the middle, where the line was crossed first.
+        let aside = wrong.max(self.parameters.lane.half_width[1] + 1.0);
+        (0.0..BEHIND + wrong).contains(&place.x) && place.y.abs() < aside && ahead > 0.3
     }
 
     fn follow(&mut self, speed: Twist) -> Twist {
@@ -340,7 +358,9 @@ impl Racer {
         let behind = trail.iter().rev().take(BEHIND_POSES).rev().map(|pose| pose.compose(&middle));
         let own = pose.compose(&middle);
         let behind: Vec<Pose> = behind.filter(|pose| own.to_local(pose.position()).x < -0.5).collect();
-        let found = lane(near, &behind, own, &self.lane, &self.parameters.lane).ok_or(PlanError::NoWay)?;
+        let earlier: Vec<Pose> = self.map.earlier(NEAR).map(|pose| pose.compose(&middle)).collect();
+        let way = Way { behind: &behind, car: own, earlier: &earlier };
+        let found = lane_where(near, &way, &self.lane, &self.parameters.lane).ok_or(PlanError::NoWay)?;
         for (edge, side) in found.edges.iter().zip([1, -1]) {
             let places = edge.iter().map(|&cone| near[cone].position);
             self.map.vote_side(places.filter(|place| (place - own.position()).norm() < VOTES), side);
@@ -369,7 +389,8 @@ impl Racer {
         let p = &self.parameters;
         let found = self.solver.solve_for(&corridor, &p.outline, &RacingLineParameters::default())?;
         let spline = ClosedSpline::through(&found.points)?;
-        let points: Vec<Point> = spline.resample(0.5).iter().map(|place| place.position).collect();
+        let mut points: Vec<Point> = spline.resample(0.5).iter().map(|place| place.position).collect();
+        without_kinks(&mut points);
         let profile = SpeedProfile::closed(&points, &p.limits)?;
         // What the steering cannot follow comes of cones on the wrong side.
         if profile.curvatures.iter().any(|bend| bend.abs() > p.tracker.curvature) {
@@ -392,6 +413,19 @@ fn holds(corridor: &Corridor, lap: &[Point]) -> bool {
         && corridor.length() > SHORTEST
         && lap.iter().all(inside)
         && stations.iter().all(driven)
+}
+
+/// Takes kinks out of a loop, where narrow places bend it at a point: no car turns its wheels so fast, and centimetres are enough.
+fn without_kinks(points: &mut [Point]) {
+    let n = points.len();
+    // Towards the middle of the neighbours, and then as much outwards again, as bends would shrink.
+    for share in [0.5, -0.51].repeat(ROUNDS) {
+        let old = points.to_vec();
+        for (i, point) in points.iter_mut().enumerate() {
+            let middle = nalgebra::center(&old[(i + n - 1) % n], &old[(i + 1) % n]);
+            *point += (middle - old[i]) * share;
+        }
+    }
 }
 
 fn curvature_of(twist: Twist) -> f64 {

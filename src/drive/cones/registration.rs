@@ -19,6 +19,8 @@ const FEWEST: usize = 6;
 const SHARE: f64 = 0.6;
 /// How many times better the best motion has to be than any other one: rows of cones look alike a few metres farther on.
 const LEAD: f64 = 1.2;
+/// The deviation of errors as a share of the largest one.
+const LIKELY: f64 = 0.4;
 /// Metres between two cones that tell a direction.
 const ARM: std::ops::Range<f64> = 4.0..20.0;
 /// Metres by which that distance may differ from sight to sight.
@@ -32,10 +34,23 @@ pub(super) fn register(points: &[Point], onto: &[Point], expected: Expected) -> 
     let best = refined(points, onto, found.first()?.1);
     let apart =
         |motion: &Pose| (motion.to_world(expected.place) - best.to_world(expected.place)).norm() > 2.0 * GATE;
-    let rival = found.iter().find(|(_, motion)| apart(motion)).map_or(0.0, |(score, _)| *score);
+    let rivals = || found.iter().filter(|(_, motion)| apart(motion));
+    let rival = rivals().next().map_or(0.0, |(score, _)| *score);
+    // Of two that fit alike, the one by which the car is as good as where it believes to be.
+    let far = rivals().map(|(score, motion)| score * expected.likely(motion)).fold(0.0, f64::max);
     let again = pairs(points, onto, best).count();
     let enough = again >= FEWEST && again as f64 >= SHARE * points.len() as f64;
-    (enough && score(points, onto, best) >= LEAD * rival).then_some(best)
+    let good = score(points, onto, best);
+    let plain = good >= LEAD * rival || good * expected.likely(&best) >= LEAD * far;
+    (enough && plain).then_some(best)
+}
+
+impl Expected {
+    /// How likely a motion is before anything is seen, as a share of that of none.
+    fn likely(&self, motion: &Pose) -> f64 {
+        let way = (motion.to_world(self.place) - self.place).norm() / (LIKELY * self.wrong.0);
+        math::exp(-0.5 * way * way)
+    }
 }
 
 /// Motions that bring two points onto two others which are as far apart.
@@ -180,10 +195,26 @@ mod tests {
 
     #[test]
     fn even_rows_are_not_found() {
-        // Which cone is which, nothing tells.
+        // Which cone is which, nothing tells, for a car that believes to be half way between.
         let row: Vec<Point> =
             (0..20).map(|k| Point::new(3.0 * f64::from(k / 2), 3.0 * f64::from(k % 2))).collect();
-        assert_eq!(register(&row[4..14], &row, LOST), None);
+        let shifted = |aside: f64| row[4..14].iter().map(|p| p + Vector::new(aside, 0.0)).collect::<Vec<_>>();
+        assert_eq!(register(&shifted(1.5), &row, LOST), None);
         assert_eq!(register(&[], &row, LOST), None);
+    }
+
+    #[test]
+    fn rows_that_are_nearly_even_are_found_near_where_the_car_believes_to_be() {
+        let row: Vec<Point> = (0..20)
+            .map(|k| {
+                let off = 0.05 * f64::from(7 * k % 5 - 2);
+                Point::new(3.0 * f64::from(k / 2) + off, 3.0 * f64::from(k % 2))
+            })
+            .collect();
+        let shifted = |aside: f64| row[4..14].iter().map(|p| p + Vector::new(aside, 0.0)).collect::<Vec<_>>();
+        let found = register(&shifted(0.2), &row, LOST).unwrap();
+        assert!((found.x + 0.2).abs() < 1e-6 && found.y.abs() < 1e-6, "{found:?}");
+        // Three metres off, cones that fit as well are as near.
+        assert_eq!(register(&shifted(3.0), &row, LOST), None);
     }
 }

@@ -103,10 +103,10 @@ impl Rows {
 
 /// The rows on the left and on the right of a lane.
 ///
-/// `places` is where the car was and is, oldest first. A row ends where no cone goes on with it. Takes O(n²) for n cones.
-pub(super) fn rows(cones: &[Cone], places: &[Pose], p: &RowParameters) -> Rows {
+/// `places` is where the car was and is, oldest first, and `earlier` where it has been long ago. A row ends where no cone goes on with it. Takes O(n²) for n cones.
+pub(super) fn rows(cones: &[Cone], places: &[Pose], earlier: &[Pose], p: &RowParameters) -> Rows {
     let Some(car) = places.last() else { return Rows::default() };
-    let mut search = Search { cones, nearest: nearest(cones, p.reach), p, pairs: Vec::new() };
+    let mut search = Search { cones, nearest: nearest(cones, p.reach), earlier, p, pairs: Vec::new() };
     search.begin(places, *car);
     let mut beam: Vec<usize> = (0..search.pairs.len()).collect();
     for _ in 0..LONGEST {
@@ -146,6 +146,7 @@ impl Pair {
 struct Search<'c> {
     cones: &'c [Cone],
     nearest: Vec<Vec<usize>>,
+    earlier: &'c [Pose],
     p: &'c RowParameters,
     pairs: Vec<Pair>,
 }
@@ -227,6 +228,12 @@ impl Search<'_> {
         }
         let width = self.distance_to_row(parent, 1 - side, position);
         if width < 1.5 * p.narrowest || self.crosses(parent, 1 - side, [own.place, position]) {
+            return None;
+        }
+        // The middle of the lane is to the right of its left row.
+        let inwards = Vector::new(leg.y, -leg.x) * (sign * p.half_width / length);
+        let middle = own.place + leg * 0.5 + inwards;
+        if leads_back(Pose::new(middle.x, middle.y, math::atan2(leg.y, leg.x)), self.earlier, p.half_width) {
             return None;
         }
         // Half of the reach is as far as cones stand apart where none is missing.
@@ -343,6 +350,19 @@ pub(super) fn passes([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
     side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b)
 }
 
+/// The cosine of the angle between two ways beyond which one leads back along the other.
+const BACK: f64 = -0.8;
+
+/// Half widths between the middles of a lane and of what is no lane, as it is partly the same: less than two lie between two lanes.
+const OVERLAPS: f64 = 1.8;
+
+/// Whether a lane with its middle at a place is the one by which the car came there earlier, or overlaps it, the wrong way round.
+pub(super) fn leads_back(middle: Pose, earlier: &[Pose], half_width: f64) -> bool {
+    let overlap = OVERLAPS * half_width;
+    let near = |pose: &&Pose| (pose.position() - middle.position()).norm_squared() < overlap * overlap;
+    earlier.iter().filter(near).any(|pose| pose.forward().dot(&middle.forward()) < BACK)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -351,7 +371,7 @@ mod tests {
         RowParameters { reach: 10.5, half_width: 1.8, narrowest: 1.4, loose: 0.8, sharpest: 1.9 };
 
     fn legs(cones: &[Cone], places: &[Pose], p: &RowParameters) -> Vec<[Point; 2]> {
-        rows(cones, places, p).legs(cones)
+        rows(cones, places, &[], p).legs(cones)
     }
 
     fn at(places: &[(f64, f64)]) -> Vec<Cone> {
@@ -403,7 +423,7 @@ mod tests {
             (3.5, -9.8),
             (0.0, -9.8),
         ];
-        let found = rows(&at(&[&outer[..], &inner[..]].concat()), &[Pose::default()], &P);
+        let found = rows(&at(&[&outer[..], &inner[..]].concat()), &[Pose::default()], &[], &P);
         assert_eq!(found.edges, [(0..9).collect::<Vec<_>>(), (9..14).collect()]);
     }
 
@@ -423,7 +443,7 @@ mod tests {
             (13.2, 1.5),
         ];
         let cones = at(&[&left[..], &right[..], &other[..]].concat());
-        let found = rows(&cones, &[Pose::new(-3.0, 0.0, 0.0), Pose::default()], &P);
+        let found = rows(&cones, &[Pose::new(-3.0, 0.0, 0.0), Pose::default()], &[], &P);
         // Where they end, they may err.
         assert!(found.edges[0].starts_with(&[0, 1, 2, 3, 4]), "{found:?}");
         assert!(found.edges[1].starts_with(&[5, 6, 7, 8, 9, 10]), "{found:?}");
@@ -436,5 +456,26 @@ mod tests {
         assert!(passes([Point::origin(), Point::new(4.0, 0.5)], leg));
         assert!(!passes([Point::origin(), Point::new(1.5, 0.0)], leg));
         assert!(!passes([Point::origin(), Point::new(4.0, -3.0)], leg));
+    }
+
+    #[test]
+    fn no_row_leads_back_by_the_way_the_car_came_earlier() {
+        // A lane ahead that ends where another one comes from the right.
+        let before = [(0.0, 1.8), (4.0, 1.8), (8.0, 1.8), (0.0, -1.8), (4.0, -1.8)];
+        let aside = [(6.2, -4.0), (6.2, -8.0), (9.8, -1.0), (9.8, -4.0), (9.8, -8.0)];
+        let cones = at(&[&before[..], &aside[..]].concat());
+        // The car came up there.
+        let earlier: Vec<Pose> =
+            (0..7).map(|k| Pose::new(8.0, f64::from(k) * 2.0 - 12.0, 0.5 * std::f64::consts::PI)).collect();
+        let last = |earlier: &[Pose]| {
+            let found = rows(&cones, &[Pose::default()], earlier, &P);
+            found.edges.iter().flatten().map(|&cone| cones[cone].position.y).fold(0.0, f64::min)
+        };
+        assert!(last(&[]) < -7.0 && last(&earlier) > -5.0, "{} {}", last(&[]), last(&earlier));
+        assert!(leads_back(Pose::new(8.5, -5.0, -1.6), &earlier, 1.8));
+        // Neither the same way again, nor across it, nor beside it.
+        for pose in [Pose::new(8.5, -5.0, 1.6), Pose::new(8.0, -5.0, 0.0), Pose::new(11.4, -5.0, -1.6)] {
+            assert!(!leads_back(pose, &earlier, 1.8), "{pose:?}");
+        }
     }
 }

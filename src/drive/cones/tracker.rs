@@ -16,12 +16,16 @@ pub struct TrackerParameters {
     /// Seconds by which the speed lags behind.
     pub speed_lag: f64,
     /// Seconds of the acceleration that the tyres have left by which more speed is asked for than there is. The inverse of the gain of
-    /// the car's own controller is what spins no wheel; with more, a car that only slides a little is not slowed down.
+    /// the car's own controller is what spins no wheel; with twice of that, a car that only slides a little is not slowed down.
     pub speed_time: f64,
+    /// Seconds of the deceleration by tyres that push across by which more speed is asked for: the inverse of that gain.
+    pub drag_time: f64,
     /// How the car answers to its steering when it is fast.
     pub tyres: Tyres,
     /// How much more it is steered for a rate of turn that it does not have yet: curvature for curvature.
     pub yaw: f64,
+    /// The share of the turn by which tyres that begin to slip let the nose point into a bend that is steered before it shows.
+    pub swing: f64,
     /// The greatest curvature that is asked for, in 1/m.
     pub curvature: f64,
 }
@@ -30,13 +34,15 @@ impl Default for TrackerParameters {
     fn default() -> Self {
         Self {
             ahead: 0.9,
-            length: 2.0,
-            length_by_speed: 0.08,
-            steering_lag: 0.14,
-            speed_lag: 0.13,
-            speed_time: 0.15,
+            length: 1.7,
+            length_by_speed: 0.16,
+            steering_lag: 0.11,
+            speed_lag: 0.12,
+            speed_time: 0.16,
+            drag_time: 0.083,
             tyres: Tyres::default(),
-            yaw: 2.5,
+            yaw: 1.0,
+            swing: 0.5,
             curvature: 0.42,
         }
     }
@@ -46,11 +52,15 @@ impl TrackerParameters {
     /// For a car whose tyres do not slip.
     pub fn rolling() -> Self {
         Self {
+            length: 2.0,
             length_by_speed: 0.22,
             steering_lag: 0.1,
             speed_lag: 0.08,
+            speed_time: 0.15,
+            drag_time: 0.0,
             tyres: Tyres::ROLLING,
             yaw: 0.0,
+            swing: 0.0,
             ..Self::default()
         }
     }
@@ -65,7 +75,15 @@ pub struct LineTracker {
     closed: bool,
     nearest: usize,
     started: bool,
+    /// Whether the car has come to it. Without an end, a line may begin beside the car.
+    reached: bool,
 }
+
+/// Metres from a line within which a car is on it, and metres per second at which it comes to it if it stands.
+const ON_LINE: f64 = 0.3;
+const SLOW: f64 = 2.0;
+/// Metres before and beyond a place between which the turn of the nose is taken.
+const SWINGS: f64 = 1.0;
 
 impl LineTracker {
     /// A line from points, and a profile for the same ones.
@@ -75,7 +93,7 @@ impl LineTracker {
         closed: bool,
         parameters: TrackerParameters,
     ) -> Self {
-        Self { parameters, points, profile, closed, nearest: 0, started: false }
+        Self { parameters, points, profile, closed, nearest: 0, started: false, reached: !closed }
     }
 
     /// Takes another line of as many points, which is a little beside the first one, and goes on at the same point of it.
@@ -140,7 +158,8 @@ impl LineTracker {
         let beyond = speed.max(0.0) * p.steering_lag - p.ahead;
         let curvature = self.at(&self.profile.curvatures, i, share, beyond);
         let length = p.length + p.length_by_speed * speed.abs();
-        let wanted = curvature - aside / (length * length) - 1.6 * math::sin(turned) / length;
+        let swing = if speed > SLIPS { p.swing * self.swing(i, share, beyond, push) } else { 0.0 };
+        let wanted = curvature + swing - aside / (length * length) - 1.6 * math::sin(turned) / length;
         // The rear axle drives a tighter bend than the point ahead of it.
         let inside = (1.0 - (p.ahead * wanted) * (p.ahead * wanted)).max(0.5).sqrt();
         // Near the limit, tyres answer the less the more is asked, to what brings the car back as well.
@@ -149,11 +168,35 @@ impl LineTracker {
         let late = if speed > SLIPS { p.yaw * (wanted - moving.angular / speed) } else { 0.0 };
         let curvature = (wanted / inside + tyres + late).clamp(-p.curvature, p.curvature);
         let planned = self.at(&self.profile.speeds, i, share, (speed.max(0.0) + 0.5) * p.speed_lag);
-        // Motors take no more than the tyres have left beside what they give across; brakes do, as there is no other way to be slower.
-        let left = if speed > SLIPS { p.tyres.left_along(speed * moving.angular) } else { p.tyres.grip };
-        let most = left * p.speed_time;
+        let most = self.left_along(wanted, moving) * p.speed_time;
+        let planned = planned + p.drag_time * p.tyres.drag(curvature_here, speed * speed * curvature_here);
+        self.reached |= aside.abs() < ON_LINE;
+        // Beside its line, it gains no speed: there may be no room for that.
+        let planned = if self.reached { planned } else { planned.min(speed.max(SLOW)) };
         let speed = planned.min(speed.max(0.0) + most);
         Some((Twist::new(speed, speed * curvature), aside))
+    }
+
+    /// What the tyres have left along the way beside what the car gives across and what it should: motors take no more, so that a car
+    /// that has to come back to its line can. Brakes do, as there is no other way to be slower.
+    fn left_along(&self, wanted: f64, moving: Twist) -> f64 {
+        let (tyres, speed) = (&self.parameters.tyres, moving.linear);
+        if speed <= SLIPS {
+            return tyres.grip;
+        }
+        let across = (speed * moving.angular).abs().max(speed * speed * wanted.abs());
+        tyres.left_along(wanted, across)
+    }
+
+    /// How much faster than the line the car turns on it, in 1/m: the more its tyres have to slip, the more its nose points into the
+    /// bend.
+    fn swing(&self, piece: usize, share: f64, beyond: f64, push: f64) -> f64 {
+        let inwards = |beyond: f64| {
+            let [bend, speed] = [&self.profile.curvatures, &self.profile.speeds]
+                .map(|values| self.at(values, piece, share, beyond));
+            self.parameters.tyres.slips(speed * speed * bend, push)[1]
+        };
+        (inwards(beyond + SWINGS) - inwards(beyond - SWINGS)) / (2.0 * SWINGS)
     }
 
     /// Metres along the line, from where the car is, to a thing that stands on it or nearer to it than `aside`. `None` where it does

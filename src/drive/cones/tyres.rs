@@ -15,17 +15,20 @@ pub struct Tyres {
     pub front: f64,
     /// Metres between the axles.
     pub wheelbase: f64,
+    /// The largest steering angle, in radians.
+    pub lock: f64,
 }
 
 impl Default for Tyres {
     fn default() -> Self {
-        Self { grip: 12.0, stiffness: 216.0, front: 0.9, wheelbase: 1.55 }
+        Self { grip: 12.0, stiffness: 216.0, front: 0.9, wheelbase: 1.55, lock: 0.6 }
     }
 }
 
 impl Tyres {
     /// Tyres that roll and do not slip, as those of slow cars as good as do.
-    pub const ROLLING: Self = Self { grip: 12.0, stiffness: f64::INFINITY, front: 1.0, wheelbase: 1.55 };
+    pub const ROLLING: Self =
+        Self { grip: 12.0, stiffness: f64::INFINITY, front: 1.0, wheelbase: 1.55, lock: 0.6 };
 }
 
 /// Metres per second above which tyres slip. Below, wheels roll, and turn the car at once.
@@ -50,28 +53,113 @@ impl Tyres {
 
     /// That of an axle whose tyres have a share of grip and stiffness.
     fn slip(&self, share: f64, across: f64, along: f64) -> f64 {
-        let circle = (self.grip * self.grip - along * along).max(1.0).sqrt();
-        let strained = (across / (share * circle)).clamp(-MOST, MOST);
+        let circle = self.circle(along);
+        // The axle that gives up first is the bound of both.
+        let most = MOST * self.front.min(1.0) / share;
+        let strained = (across / (share * circle)).clamp(-most, most);
         strained * circle / (self.stiffness * (1.0 - strained * strained).sqrt())
     }
 
-    /// What is left along the way beside an acceleration across, both in m/s²: at least a tenth of the grip, so that a car that
-    /// slides is not left without motors.
-    pub fn left_along(&self, across: f64) -> f64 {
-        let strained = across / (MOST * self.front.min(1.0) * self.grip);
-        self.grip * (1.0 - strained * strained).max(0.01).sqrt()
+    /// What is left across beside an acceleration along the way.
+    fn circle(&self, along: f64) -> f64 {
+        (self.grip * self.grip - along * along).max(1.0).sqrt()
+    }
+
+    /// What motors may push at a curvature beside an acceleration across, both in m/s²: at least a tenth of the grip, so that a car
+    /// that slides is not left without motors.
+    pub fn left_along(&self, curvature: f64, across: f64) -> f64 {
+        let most = self.most(curvature.abs(), across.abs(), Push::On);
+        most.unwrap_or(0.0).max(0.1 * self.grip)
     }
 
     /// The curvature for which wheels that only roll would be steered as these are for that one at that acceleration.
     pub fn steering(&self, curvature: f64, across: f64, along: f64) -> f64 {
-        let rear = self.slip(1.0, across, along);
-        let rolling = math::atan(self.wheelbase * curvature - math::tan(rear));
+        math::tan(self.steered(curvature, across, along).clamp(-1.2, 1.2)) / self.wheelbase
+    }
+
+    /// The steering angle for that.
+    fn steered(&self, curvature: f64, across: f64, along: f64) -> f64 {
+        let rolling = self.rolling(curvature, across, along);
         let mut steering = rolling;
         for _ in 0..TURNS {
             // What turned wheels push, they push less across the car.
             steering = rolling + self.slip(self.front, across / math::cos(steering), along);
         }
-        math::tan(steering.clamp(-1.2, 1.2)) / self.wheelbase
+        steering
+    }
+
+    /// The steering angle for front wheels that do not slip.
+    fn rolling(&self, curvature: f64, across: f64, along: f64) -> f64 {
+        math::atan(self.wheelbase * curvature - math::tan(self.slip(1.0, across, along)))
+    }
+}
+
+/// Brakes or motors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Push {
+    Back,
+    On,
+}
+
+impl Tyres {
+    /// The greatest acceleration along the way at a curvature and an acceleration across, by motors that give so much; negative
+    /// where the front tyres need more than that to be pulled around the bend. `None` where no push lets the car turn so.
+    pub(super) fn forwards(&self, curvature: f64, across: f64, drive: f64) -> Option<f64> {
+        let push = self.most(curvature, across, Push::On)?.min(drive);
+        Some(self.along(curvature, across, push))
+    }
+
+    /// Whether the front wheels turn far enough for an acceleration across, at a steady speed.
+    pub(super) fn turns(&self, curvature: f64, across: f64) -> bool {
+        self.steered(curvature.abs(), across, 0.0) <= self.lock
+    }
+
+    /// The greatest deceleration, by brakes that give so much.
+    pub(super) fn backwards(&self, curvature: f64, across: f64, brake: f64) -> Option<f64> {
+        let push = self.most(curvature, across, Push::Back)?.max(-brake);
+        Some(-self.along(curvature, across, push))
+    }
+
+    /// The deceleration of a car that rolls around a bend: what its tyres push across is not all across the way.
+    pub(super) fn drag(&self, curvature: f64, across: f64) -> f64 {
+        -self.along(curvature.abs(), across.abs(), 0.0)
+    }
+
+    /// The greatest push of brakes or motors beside which both axles give an acceleration across, in m/s².
+    ///
+    /// Turned front wheels push across as well, so what is asked of them is (across - push · sin) / cos of the steering angle, and
+    /// there is share · √(grip² - push²): a quadratic equation for the push, once that angle is known.
+    fn most(&self, curvature: f64, across: f64, push: Push) -> Option<f64> {
+        let sign = if push == Push::On { 1.0 } else { -1.0 };
+        let rear = self.grip * self.grip - (across / MOST) * (across / MOST);
+        if rear < 0.0 {
+            return None;
+        }
+        let mut found = 0.0;
+        for _ in 0..TURNS {
+            let circle = self.circle(found);
+            let slip = circle * MOST / (self.stiffness * (1.0 - MOST * MOST).sqrt());
+            let (sin, cos) = math::sin_cos(self.rolling(curvature, across, found) + slip);
+            let share = cos * MOST * self.front;
+            let (square, half) = (sin * sin + share * share, across * sin);
+            let free = half * half - square * (across * across - share * share * self.grip * self.grip);
+            if free < 0.0 {
+                return None;
+            }
+            found = (half + sign * free.sqrt()) / square;
+        }
+        Some(found.clamp(-rear.sqrt(), rear.sqrt()))
+    }
+
+    /// The acceleration along the way that is left of a push: what is across the wheels is not all across the way.
+    fn along(&self, curvature: f64, across: f64, push: f64) -> f64 {
+        let steering = self.steered(curvature, across, push);
+        let (sin, cos) = math::sin_cos(steering);
+        let aside = (across - push * sin) / cos;
+        // Along the car, each axle with half its weight; the middle of the car moves aslant to it.
+        let along = 0.5 * (push * (1.0 + cos) - aside * sin);
+        let aslant = math::atan(0.5 * self.wheelbase * curvature - math::tan(self.slip(1.0, across, push)));
+        along + across * math::sin(aslant)
     }
 }
 
@@ -128,12 +216,43 @@ mod tests {
     }
 
     proptest! {
+        // With less across, what turned wheels push is more than they need.
         #[test]
-        fn no_more_is_left_than_the_friction_circle(across in -14.0..14.0f64) {
+        fn no_more_is_left_than_the_friction_circle(across in 6.0..14.0f64, curvature in -0.3..0.3f64) {
             let tyres = Tyres::default();
-            let left = tyres.left_along(across);
-            prop_assert!(left <= tyres.left_along(0.9 * across) && left >= 1.19);
+            let left = tyres.left_along(curvature, across);
+            prop_assert!(left <= tyres.left_along(curvature, 0.9 * across) + 1e-9 && left >= 1.19);
             prop_assert!(left < 1.21 || across * across + left * left <= 144.0);
+            prop_assert_eq!(left, tyres.left_along(-curvature, -across));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_steering_is_that_of_axles_that_slip(
+            curvature in -0.25..0.25f64, across in 0.0..9.0f64, along in -5.0..5.0f64,
+        ) {
+            let (tyres, across) = (Tyres::default(), across.copysign(curvature));
+            let steered = tyres.steered(curvature, across, along);
+            // Back from the angle to the curvature: what rolls beside the slip of both axles.
+            let front = tyres.slip(tyres.front, across / math::cos(steered), along);
+            let rear = math::tan(tyres.slip(1.0, across, along));
+            let back = (math::tan(steered - front) + rear) / tyres.wheelbase;
+            prop_assert!((back - curvature).abs() < 5e-3, "{back} {curvature}");
+            prop_assert!((tyres.steered(-curvature, -across, along) + steered).abs() < 1e-12);
+        }
+
+        #[test]
+        fn what_is_pushed_at_most_both_axles_give(curvature in 0.0..0.25f64, across in 0.0..9.0f64) {
+            let tyres = Tyres::default();
+            for push in [Push::On, Push::Back] {
+                let Some(most) = tyres.most(curvature, across, push) else { continue };
+                let circle = (tyres.grip * tyres.grip - most * most).sqrt();
+                let (sin, cos) = math::sin_cos(tyres.steered(curvature, across, most));
+                prop_assert!(across <= MOST * circle + 1e-9);
+                let front = (across - most * sin) / cos;
+                prop_assert!(front <= 1.02 * MOST * tyres.front * circle + 1e-9, "{front} of {circle}");
+            }
         }
     }
 

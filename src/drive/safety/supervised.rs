@@ -36,7 +36,8 @@ pub struct StopRecord {
 /// It is a robot like the one inside, but a program's commands reach the wheels in the state [`SafetyState::Auto`] alone, and
 /// whenever time passes, every control period, it looks at the buttons, the heartbeat of the base station, the fence, the
 /// pedals, the program and the sensors. When something is wrong, it brakes, and keeps the curvature that was being driven
-/// until the vehicle stands; then it stands until somebody arms it again.
+/// until the vehicle stands; then it stands until somebody arms it again. While it brakes gently for want of a heartbeat, or of a
+/// program that has come back, the program's commands still steer, as long as all sensors are well; its speeds count for nothing.
 ///
 /// A program that hangs does so between two calls, or in a [`wait`](Clock::wait) that is longer than the watchdog allows.
 ///
@@ -281,6 +282,18 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
     pub(super) fn may_drive(&mut self) -> bool {
         self.alive();
         self.core.state().lets_drive()
+    }
+
+    /// While it brakes because nobody is heard, or nobody was, a program that lives and sees goes on steering: nobody else keeps the
+    /// vehicle on its way. How fast it is the program has no say in.
+    pub(super) fn steer_on(&mut self, twist: Twist) {
+        let blind = Causes::HEARTBEAT_LOST.with(Causes::WATCHDOG);
+        let why = self.stop.map_or(Causes::NONE, |stop| stop.causes).with(self.causes);
+        let alone = self.core.state() == SafetyState::SafeStop && why.without(blind).is_empty();
+        let wanted = twist.angular / twist.linear;
+        if alone && twist.linear * self.speed > 0.0 && twist.linear.abs() > 1e-3 && wanted.is_finite() {
+            self.curvature = wanted;
+        }
     }
 
     pub(super) fn note<T>(&mut self, answer: Result<T>) -> Result<T> {

@@ -50,6 +50,7 @@ impl<R: Clock + Drive, S: Station> Clock for Supervised<R, S> {
 impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
     fn set_speed(&mut self, twist: Twist) -> Result<()> {
         if !self.may_drive() {
+            self.steer_on(twist);
             return Ok(());
         }
         if twist.linear.abs() > 1e-3 {

@@ -118,6 +118,29 @@ fn a_program_that_hangs_is_stopped() {
 }
 
 #[test]
+fn a_program_that_lives_steers_while_it_brakes_but_never_drives() {
+    let silent: fn(f64, &mut Panel) = |now, panel| panel.heartbeat = panel.heartbeat.filter(|_| now < 1.0);
+    let ordered: fn(f64, &mut Panel) = |now, panel| panel.remote_stop = now > 1.0;
+    for (change, steers) in [(silent, true), (ordered, false)] {
+        let parameters = SupervisorParameters::default();
+        let mut car = Supervised::new(mock(), station(change), parameters.clone()).unwrap();
+        let mut from = Pose::default();
+        for _ in 0..200 {
+            if car.last_stop().is_none() {
+                from = car.pose().unwrap();
+            }
+            let turn = if car.last_stop().is_some() { 2.0 } else { 0.0 };
+            car.set_speed(Twist::new(0.5, turn)).unwrap();
+            car.wait(0.02).unwrap();
+        }
+        let pose = car.pose().unwrap();
+        assert_eq!(pose.heading > 0.01, steers, "{pose:?}");
+        let bound = parameters.stopping(0.0, f64::INFINITY).distance(0.5);
+        assert!((pose.position() - from.position()).norm() < bound && car.speed().unwrap() == Twist::STOP);
+    }
+}
+
+#[test]
 fn the_base_station_hears_and_is_heard() {
     let mut base = BaseStation::new(0.5);
     base.panel.requests.arm = true;

@@ -2,6 +2,7 @@ use super::layout::{EventLayout, EventShape};
 use super::line;
 use crate::drive::cones::cone::{Cone, ConeColour};
 use crate::drive::cones::error::PlanError;
+use crate::drive::cones::hold::Hold;
 use crate::drive::cones::map::{ConeMap, ConeMapParameters};
 use crate::drive::cones::profile::{CarLimits, SpeedProfile};
 use crate::drive::cones::racer::RacerParameters;
@@ -9,6 +10,7 @@ use crate::drive::cones::racing_line::CarOutline;
 use crate::drive::cones::reckoning::Reckoning;
 use crate::drive::cones::sight::{Sighting, sightings};
 use crate::drive::cones::tracker::{LineTracker, TrackerParameters};
+use crate::drive::cones::tyres::Tyres;
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::{self, Clock, Drive, Lidar, LidarScan};
 
@@ -40,7 +42,11 @@ impl Default for EventParameters {
         let RacerParameters { limits, outline, map, tracker, period, .. } = RacerParameters::default();
         Self {
             // A circle that stays the same asks less of steering and tyres than bends that come and go.
-            limits: CarLimits { grip: 10.6, ..limits },
+            limits: CarLimits {
+                hold: Hold::Balance(Tyres { grip: 11.7, ..Tyres::default() }),
+                brake: 10.0,
+                ..limits
+            },
             outline: CarOutline { room: 0.3, ..outline },
             map: ConeMapParameters { farthest: 20.0, ..map },
             tracker,

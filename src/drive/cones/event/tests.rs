@@ -121,8 +121,7 @@ fn assert_clean(track: &ConeTrack, seed: u64, camera: bool, over: f64) {
     let course = EventCourse::of(track, &OUTLINE).unwrap();
     let spec = RaceCarSpec::default();
     let limits = crate::drive::cones::CarLimits {
-        grip: spec.cornering(),
-        turned: 0.0,
+        hold: crate::drive::cones::Hold::Balance(crate::drive::cones::Tyres::default()),
         drive: spec.drive,
         brake: spec.brake,
         ..RacerParameters::default().limits

@@ -59,3 +59,24 @@ fn a_short_lap_closes_of_itself() {
     seen(&mut map, Pose::default(), 10, &[(6.0, 1.5), (6.0, -1.5)]);
     assert!(map.close() && map.is_closed() && map.cones().count() == 2);
 }
+
+#[test]
+fn of_a_short_lap_that_was_driven_again_one_is_left() {
+    for laps in [1.3, 1.7, 2.4] {
+        let mut map = ConeMap::new(ConeMapParameters::default());
+        let at = |angle: f64| Pose::new(3.0 * math::sin(angle), 3.0 - 3.0 * math::cos(angle), angle);
+        let cone = Point::new(0.0, 7.7);
+        for step in 0..=(laps * 80.0) as u32 {
+            let pose = at(f64::from(step) * std::f64::consts::TAU / 80.0);
+            let local = pose.to_local(cone);
+            map.update(pose, &[sighting(local.x, local.y)]);
+        }
+        assert!(map.close(), "{laps}");
+        let trail: Vec<Point> = map.trail().map(|pose| pose.position()).collect();
+        let n = trail.len();
+        let legs: Vec<f64> = (0..n).map(|i| (trail[(i + 1) % n] - trail[i]).norm()).collect();
+        assert!(legs.iter().all(|leg| (0.5..2.5 * STRIDE).contains(leg)), "{laps}: {legs:?}");
+        // A little shorter than the circle, as chords are.
+        assert!((15.0..18.9).contains(&legs.iter().sum::<f64>()), "{laps}: {legs:?}");
+    }
+}

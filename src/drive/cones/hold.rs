@@ -1,0 +1,160 @@
+use super::error::{PlanError, positive};
+use super::tyres::Tyres;
+
+/// What the tyres of a car give at most.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Hold {
+    /// A friction ellipse, whatever the car.
+    Ellipse {
+        /// The greatest acceleration across, straight on, in m/s².
+        across: f64,
+        /// The share of it that is lost for a curvature of 1/m: wheels that are turned push backwards as well.
+        turned: f64,
+        /// The greatest acceleration along the way, in m/s².
+        along: f64,
+    },
+    /// That of the bicycle model in balance.
+    Balance(Tyres),
+}
+
+impl Hold {
+    pub(super) fn check(&self) -> Result<(), PlanError> {
+        match *self {
+            Self::Ellipse { across, turned, along } => {
+                positive("grip across", across)?;
+                positive("grip along", along)?;
+                if (0.0..=1.0).contains(&turned) {
+                    return Ok(());
+                }
+                let expected = "0 to 1";
+                Err(PlanError::Parameter { name: "grip lost by turned wheels", value: turned, expected })
+            }
+            Self::Balance(tyres) => {
+                positive("grip", tyres.grip)?;
+                positive("grip of the front tyres", tyres.front)?;
+                if tyres.stiffness > 0.0 { Ok(()) } else { positive("stiffness", tyres.stiffness) }
+            }
+        }
+    }
+
+    /// The greatest acceleration across at a curvature, in m/s², at which a car with such motors keeps its speed.
+    pub fn across(&self, curvature: f64, drive: f64) -> f64 {
+        let curvature = curvature.abs();
+        match *self {
+            // Never less than a fifth: so tightly no car turns.
+            Self::Ellipse { across, turned, .. } => across * (1.0 - turned * curvature).max(0.2),
+            Self::Balance(tyres) => {
+                let keeps = |across| {
+                    tyres.turns(curvature, across)
+                        && tyres.forwards(curvature, across, drive).is_some_and(|along| along >= 0.0)
+                };
+                let (mut least, mut most) = (0.0, tyres.grip);
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (least + most);
+                    if keeps(middle) { least = middle } else { most = middle }
+                }
+                // Where the wheels do not turn far enough, a car crawls at best.
+                least.max(CRAWLS * tyres.grip)
+            }
+        }
+    }
+
+    /// The greatest acceleration along the way, in m/s², at a curvature and an acceleration across, by motors that give so much.
+    pub fn forwards(&self, curvature: f64, across: f64, drive: f64) -> f64 {
+        match self {
+            Self::Ellipse { .. } => self.left_along(curvature, across).min(drive),
+            Self::Balance(tyres) => {
+                tyres.forwards(curvature.abs(), across.abs(), drive).unwrap_or(0.0).max(0.0)
+            }
+        }
+    }
+
+    /// The greatest deceleration, by brakes that give so much.
+    pub fn backwards(&self, curvature: f64, across: f64, brake: f64) -> f64 {
+        match self {
+            Self::Ellipse { .. } => self.left_along(curvature, across).min(brake),
+            Self::Balance(tyres) => {
+                tyres.backwards(curvature.abs(), across.abs(), brake).unwrap_or(0.0).max(0.0)
+            }
+        }
+    }
+
+    fn left_along(&self, curvature: f64, across: f64) -> f64 {
+        let Self::Ellipse { along, .. } = self else { return 0.0 };
+        let share = across / self.across(curvature, 0.0);
+        along * (1.0 - share * share).max(0.0).sqrt()
+    }
+}
+
+/// The share of the grip that is left for bends that are too tight.
+const CRAWLS: f64 = 0.05;
+/// Halvings of the range in which an acceleration is looked for.
+const HALVINGS: usize = 14;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::math;
+    use proptest::prelude::*;
+
+    const DRIVE: f64 = 8.0;
+
+    fn balance() -> Hold {
+        Hold::Balance(Tyres::default())
+    }
+
+    proptest! {
+        #[test]
+        fn tighter_bends_are_slower(curvature in 0.005..0.38f64, tighter in 1.02..1.5f64) {
+            for hold in [balance(), Hold::Ellipse { across: 10.0, turned: 0.5, along: 10.0 }] {
+                let fast = |bend: f64| (hold.across(bend, DRIVE) / bend).sqrt();
+                prop_assert!(fast(curvature * tighter) < fast(curvature), "{hold:?}");
+                prop_assert_eq!(hold.across(-curvature, DRIVE), hold.across(curvature, DRIVE));
+            }
+        }
+
+        #[test]
+        fn no_balance_exceeds_the_tyres(curvature in 0.0..0.3f64, share in 0.0..1.0f64) {
+            let (hold, grip) = (balance(), Tyres::default().grip);
+            let most = hold.across(curvature, DRIVE);
+            // The front axle gives up first, but turned wheels that drive pull the car around as well.
+            prop_assert!(most < if curvature < 0.05 { 0.9 } else { 0.971 } * grip, "{most}");
+            let across = share * most;
+            for along in [hold.forwards(curvature, across, DRIVE), hold.backwards(curvature, across, 11.0)] {
+                prop_assert!(along >= 0.0 && math::hypot(along, across) < grip, "{along} {across}");
+            }
+            // Wheels that are turned push against what keeps them from sliding.
+            prop_assert!(hold.forwards(curvature, across, DRIVE) <= 1.1 * DRIVE);
+        }
+
+        #[test]
+        fn the_more_is_asked_across_the_less_is_left_along(
+            curvature in 0.0..0.25f64, share in 0.5..0.95f64,
+        ) {
+            let hold = balance();
+            let most = hold.across(curvature, DRIVE);
+            let [less, more] = [share, share + 0.05].map(|share| hold.forwards(curvature, share * most, DRIVE));
+            prop_assert!(more <= less + 1e-6, "{more} {less}");
+        }
+    }
+
+    #[test]
+    fn where_the_wheels_do_not_turn_far_enough_a_car_crawls() {
+        // 0.6 rad are a curvature of 0.44 for wheels that do not slip.
+        let speed = |bend: f64| (balance().across(bend, DRIVE) / bend).sqrt();
+        assert!((0.5..2.0).contains(&speed(0.5)) && speed(0.4) > 3.0, "{} {}", speed(0.5), speed(0.4));
+    }
+
+    #[test]
+    fn what_is_no_hold() {
+        let told = |hold: Hold| hold.check().unwrap_err().to_string();
+        assert_eq!(
+            told(Hold::Ellipse { across: 9.0, turned: 2.0, along: 9.0 }),
+            "grip lost by turned wheels is 2; expected 0 to 1"
+        );
+        assert_eq!(
+            told(Hold::Balance(Tyres { grip: -1.0, ..Tyres::default() })),
+            "grip is -1; expected a positive, finite number"
+        );
+    }
+}
