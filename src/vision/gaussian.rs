@@ -110,7 +110,7 @@ pub(super) fn smooth_portable(input: GrayView<'_>, output: &mut GrayViewMut<'_>,
 fn binomial([[nw, n, ne], [w, c, e], [sw, s, se]]: [[u16; 3]; 3]) -> u16 {
     let (west, middle, east) = (nw + 2 * w + sw, n + 2 * c + s, ne + 2 * e + se);
     // The sum of two columns is that of the next pixel as well.
-    ((west + middle) + (middle + east) + 8) >> 4
+    ((west + middle + 8) + (middle + east)) >> 4
 }
 
 /// Sums up columns, then rows of those sums, strip by strip. `SMALL` weights are those of the kernels with a name.
