@@ -110,6 +110,8 @@ pub struct Racer {
     lane: Lane,
     /// Decisions until it drives off: before that, it looks about and turns its wheels.
     looks: u32,
+    /// Metres per second that are left of its speed after the last lap.
+    stopping: Option<f64>,
 }
 
 /// Metres around the car within which cones are planned with in the first lap.
@@ -135,6 +137,8 @@ const LOOKS: u32 = 10;
 const NEXT_TO_NONE: f64 = 1e-3;
 /// Rounds in which kinks are taken out of a line.
 const ROUNDS: usize = 4;
+/// Metres per second squared by which it stops after the last lap.
+const STOPS: f64 = 4.0;
 /// Metres per second at which it feels its way where nothing is known.
 const CRAWL: f64 = 1.5;
 
@@ -157,6 +161,7 @@ impl Racer {
             patience: 0,
             lane: Lane::unknown(parameters.lane.usual),
             looks: LOOKS,
+            stopping: None,
         }
     }
 
@@ -220,8 +225,11 @@ impl Racer {
                     self.look_ahead();
                 }
                 let command = self.follow(speed);
-                // Straight on would lead off the track: it brakes along the line.
-                let slower = (speed.linear - 0.3).min(command.linear).max(0.0);
+                // Straight on would lead off the track: it brakes along the line. Its own speed tells it nothing of how far it has
+                // come with that: what is measured is some percent of it wrong.
+                let stopping = self.stopping.unwrap_or(speed.linear) - STOPS * self.parameters.period;
+                self.stopping = Some(stopping);
+                let slower = stopping.min(command.linear).max(0.0);
                 Twist::new(slower, if speed.linear > 0.1 { slower * curvature_of(command) } else { 0.0 })
             }
             RacePhase::Racing => {
@@ -430,4 +438,26 @@ fn without_kinks(points: &mut [Point]) {
 
 fn curvature_of(twist: Twist) -> f64 {
     if twist.linear.abs() < 1e-6 { 0.0 } else { twist.angular / twist.linear }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_car_that_measures_its_speed_too_high_stops_all_the_same() {
+        let parameters = RacerParameters::default();
+        let points: Vec<Point> = (0..400).map(|k| Point::new(f64::from(k), 0.0)).collect();
+        let profile = SpeedProfile::open(&points, &parameters.limits, 30.0, 30.0).unwrap();
+        let mut racer = Racer::new(parameters);
+        racer.tracker = Some(LineTracker::new(points, profile, false, parameters.tracker));
+        (racer.phase, racer.looks) = (RacePhase::Finished, 0);
+        let (mut place, mut speed) = (0.0, 28.0);
+        for _ in 0..200 {
+            let measured = Twist::new(1.02 * speed, 0.0);
+            speed = racer.decide(Pose::new(place, 0.0, 0.0), measured, &[]).linear;
+            place += parameters.period * speed;
+        }
+        assert!(speed < 0.05 && place < 150.0, "{speed} m/s after {place} m");
+    }
 }

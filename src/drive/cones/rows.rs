@@ -52,6 +52,10 @@ const ALONE: f64 = 0.3;
 const WIDTH: f64 = 1.0;
 const BETWEEN: f64 = 1.5;
 const LESS: f64 = 0.85;
+/// What it costs that the cone goes on with the other row, and the share of its leg's length and the radians within which it does.
+const TAKEN: f64 = 1.0;
+const NEARER: f64 = 0.7;
+const STRAIGHT: f64 = 0.45;
 /// What a cone may cost that is followed all the same.
 const DEAREST: f64 = 2.4;
 
@@ -247,6 +251,9 @@ impl Search<'_> {
         if f64::from(colour.side()) * sign < 0.0 {
             cost += OTHER_EDGE;
         }
+        if goes_on_with(other, position, length) {
+            cost += TAKEN;
+        }
         let apart = (position - other.place).norm();
         if apart < FARTHER * usual {
             let narrow = (1.0 - width / (2.0 * p.narrowest)).max(0.0);
@@ -339,6 +346,12 @@ impl Search<'_> {
     }
 }
 
+/// Whether a cone goes on with a row far better than with another one, to which its leg would be of some length.
+fn goes_on_with(end: &End, cone: Point, length: f64) -> bool {
+    let leg = cone - end.place;
+    end.cone.is_some() && leg.norm() < NEARER * length && angle(end.heading, leg).abs() < STRAIGHT
+}
+
 /// The angle from one vector to another, positive to the left.
 fn angle(from: Vector, to: Vector) -> f64 {
     math::atan2(cross(from, to), from.dot(&to))
@@ -392,6 +405,22 @@ mod tests {
             "{found:?}"
         );
         assert_eq!(found.len(), 5);
+    }
+
+    #[test]
+    fn a_cone_goes_on_with_the_row_behind_it_and_not_with_the_one_beside_it() {
+        let end = |y: f64| End {
+            cone: Some(0),
+            place: Point::new(0.0, y),
+            heading: Vector::new(1.0, 0.0),
+            turn: 0.0,
+            share: 1.0,
+        };
+        let next = Point::new(4.0, -1.8);
+        let length = (next - Point::new(-4.0, 1.8)).norm();
+        assert!(goes_on_with(&end(-1.8), next, length));
+        assert!(!goes_on_with(&end(1.8), next, 4.0));
+        assert!(!goes_on_with(&End { cone: None, ..end(-1.8) }, next, length));
     }
 
     #[test]
