@@ -5,7 +5,7 @@ use roverlab::geometry::{Aabb, Point, Segment};
 use roverlab::picture::{Picture, Style};
 use roverlab::world::World;
 
-use super::{Args, Sensors};
+use super::{Args, Sensors, refuse};
 use crate::common::{Failure, Outcome, Report, rounded};
 use crate::cones::colour;
 
@@ -63,12 +63,7 @@ fn check(args: &Args) -> Result<(), Failure> {
         ("--gap", args.gap > 0.0),
         ("--fault", !args.common.fault.is_empty()),
     ];
-    let refused = |option: &str| {
-        Failure::input(format!(
-            "{option}: found the log of a drive; expected a track, or a command line without it"
-        ))
-    };
-    given.iter().find(|(_, given)| *given).map_or(Ok(()), |(option, _)| Err(refused(option)))
+    refuse(&given, "found the log of a drive; expected a track, or a command line without it")
 }
 
 /// The cones of a frame as the sensors tell of them.

@@ -290,21 +290,22 @@ fn check(common: &CommonArgs) -> Result<(), Failure> {
         ("--start", common.start.is_some()),
         ("--goal", common.goal.is_some()),
     ];
-    let refused = |option: &str| {
-        Failure::input(format!("{option}: has no meaning for a race; expected a command line without it"))
-    };
-    given.iter().find(|(_, given)| *given).map_or(Ok(()), |(option, _)| Err(refused(option)))
+    refuse(&given, "has no meaning for a race; expected a command line without it")
 }
 
 /// Fails when an option has no meaning for an acceleration or a skidpad.
 fn check_event(args: &Args) -> Result<(), Failure> {
     let given = [("--other", args.other), ("--line", args.line.is_some())];
-    let refused = |option: &str| {
-        Failure::input(format!(
-            "{option}: found a track of an acceleration or a skidpad; expected one of laps, or a command line without it"
-        ))
-    };
-    given.iter().find(|(_, given)| *given).map_or(Ok(()), |(option, _)| Err(refused(option)))
+    refuse(
+        &given,
+        "found a track of an acceleration or a skidpad; expected one of laps, or a command line without it",
+    )
+}
+
+/// Fails for the first of some options that is given, with what is wrong with it.
+fn refuse(options: &[(&str, bool)], wrong: &str) -> Result<(), Failure> {
+    let given = options.iter().find(|(_, given)| *given);
+    given.map_or(Ok(()), |(option, _)| Err(Failure::input(format!("{option}: {wrong}"))))
 }
 
 /// Saves the pictures: where the options say, and in the present folder if a person looks on.

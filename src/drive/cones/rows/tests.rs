@@ -1,0 +1,129 @@
+use super::*;
+
+const P: RowParameters =
+    RowParameters { reach: 10.5, half_width: 1.8, narrowest: 1.4, loose: 0.8, sharpest: 1.9 };
+
+fn legs(cones: &[Cone], places: &[Pose], p: &RowParameters) -> Vec<[Point; 2]> {
+    rows(cones, places, &[], p).legs(cones)
+}
+
+fn at(places: &[(f64, f64)]) -> Vec<Cone> {
+    places.iter().map(|&(x, y)| Cone::unknown(Point::new(x, y))).collect()
+}
+
+fn is_leg(legs: &[[Point; 2]], a: (f64, f64), b: (f64, f64)) -> bool {
+    legs.contains(&[Point::new(a.0, a.1), Point::new(b.0, b.1)])
+}
+
+#[test]
+fn rows_go_on_where_a_cone_is_missing() {
+    let cones =
+        at(&[(0.0, 1.8), (4.0, 1.8), (12.0, 2.0), (0.0, -1.8), (4.0, -1.8), (8.0, -1.8), (12.0, -1.6)]);
+    let found = legs(&cones, &[Pose::default()], &P);
+    assert!(
+        is_leg(&found, (4.0, 1.8), (12.0, 2.0)) && is_leg(&found, (8.0, -1.8), (12.0, -1.6)),
+        "{found:?}"
+    );
+    assert_eq!(found.len(), 5);
+}
+
+#[test]
+fn a_cone_goes_on_with_the_row_behind_it_and_not_with_the_one_beside_it() {
+    let end = |y: f64| End {
+        cone: Some(0),
+        place: Point::new(0.0, y),
+        heading: Vector::new(1.0, 0.0),
+        turn: 0.0,
+        share: 1.0,
+    };
+    let next = Point::new(4.0, -1.8);
+    let length = (next - Point::new(-4.0, 1.8)).norm();
+    assert!(goes_on_with(&end(-1.8), next, length));
+    assert!(!goes_on_with(&end(1.8), next, 4.0));
+    assert!(!goes_on_with(&End { cone: None, ..end(-1.8) }, next, length));
+}
+
+#[test]
+fn a_row_that_ends_does_not_go_over_to_the_other_one() {
+    // The left one ends; the right one goes on across its way, in a bend to the left.
+    let right: Vec<(f64, f64)> = (0..8)
+        .map(|k| 0.22 * f64::from(k))
+        .map(|a| (13.0 * math::sin(a), 11.2 - 13.0 * math::cos(a)))
+        .collect();
+    let left = [(-2.8, 1.8), (0.0, 1.8), (2.7, 2.2)];
+    let cones = at(&[&left[..], &right[..]].concat());
+    let found = legs(&cones, &[Pose::new(-2.8, 0.0, 0.0), Pose::default()], &P);
+    let crosses = |[a, b]: &[Point; 2]| left.contains(&(a.x, a.y)) && right.contains(&(b.x, b.y));
+    assert!(found.len() >= 8 && !found.iter().any(crosses), "{found:?}");
+}
+
+#[test]
+fn an_inner_row_turns_on_one_cone() {
+    // A hairpin to the right: four cones inside, one of them at its tip, and nine around them.
+    let inner = [(0.0, -1.8), (3.0, -2.0), (5.2, -4.0), (3.0, -6.0), (0.0, -6.2)];
+    let outer = [
+        (0.0, 1.8),
+        (3.5, 1.8),
+        (6.8, 1.0),
+        (9.0, -1.2),
+        (9.6, -4.0),
+        (9.0, -6.8),
+        (6.8, -9.0),
+        (3.5, -9.8),
+        (0.0, -9.8),
+    ];
+    let found = rows(&at(&[&outer[..], &inner[..]].concat()), &[Pose::default()], &[], &P);
+    assert_eq!(found.edges, [(0..9).collect::<Vec<_>>(), (9..14).collect()]);
+}
+
+#[test]
+fn a_row_does_not_go_over_to_another_lane() {
+    // A bend to the left by a right angle; beyond its outer row, another lane goes by across the car's way.
+    let left = [(-3.0, 1.8), (0.0, 1.8), (2.0, 3.4), (2.2, 6.5), (2.2, 9.5)];
+    let right = [(-3.0, -1.8), (0.0, -1.8), (3.0, -1.2), (5.4, 1.2), (6.0, 4.2), (6.0, 7.2), (6.0, 10.2)];
+    let other = [
+        (9.0, -9.0),
+        (9.0, -5.5),
+        (9.2, -2.0),
+        (9.5, 1.5),
+        (9.5, 5.0),
+        (13.0, -5.5),
+        (13.0, -2.0),
+        (13.2, 1.5),
+    ];
+    let cones = at(&[&left[..], &right[..], &other[..]].concat());
+    let found = rows(&cones, &[Pose::new(-3.0, 0.0, 0.0), Pose::default()], &[], &P);
+    // Where they end, they may err.
+    assert!(found.edges[0].starts_with(&[0, 1, 2, 3, 4]), "{found:?}");
+    assert!(found.edges[1].starts_with(&[5, 6, 7, 8, 9, 10]), "{found:?}");
+    assert_eq!(found.sides(cones.len())[..10], [1, 1, 1, 1, 1, -1, -1, -1, -1, -1]);
+}
+
+#[test]
+fn ways_pass_through_legs() {
+    let leg = [Point::new(2.0, -1.0), Point::new(2.0, 3.0)];
+    assert!(passes([Point::origin(), Point::new(4.0, 0.5)], leg));
+    assert!(!passes([Point::origin(), Point::new(1.5, 0.0)], leg));
+    assert!(!passes([Point::origin(), Point::new(4.0, -3.0)], leg));
+}
+
+#[test]
+fn no_row_leads_back_by_the_way_the_car_came_earlier() {
+    // A lane ahead that ends where another one comes from the right.
+    let before = [(0.0, 1.8), (4.0, 1.8), (8.0, 1.8), (0.0, -1.8), (4.0, -1.8)];
+    let aside = [(6.2, -4.0), (6.2, -8.0), (9.8, -1.0), (9.8, -4.0), (9.8, -8.0)];
+    let cones = at(&[&before[..], &aside[..]].concat());
+    // The car came up there.
+    let earlier: Vec<Pose> =
+        (0..7).map(|k| Pose::new(8.0, f64::from(k) * 2.0 - 12.0, 0.5 * std::f64::consts::PI)).collect();
+    let last = |earlier: &[Pose]| {
+        let found = rows(&cones, &[Pose::default()], earlier, &P);
+        found.edges.iter().flatten().map(|&cone| cones[cone].position.y).fold(0.0, f64::min)
+    };
+    assert!(last(&[]) < -7.0 && last(&earlier) > -5.0, "{} {}", last(&[]), last(&earlier));
+    assert!(leads_back(Pose::new(8.5, -5.0, -1.6), &earlier, 1.8));
+    // Neither the same way again, nor across it, nor beside it.
+    for pose in [Pose::new(8.5, -5.0, 1.6), Pose::new(8.0, -5.0, 0.0), Pose::new(11.4, -5.0, -1.6)] {
+        assert!(!leads_back(pose, &earlier, 1.8), "{pose:?}");
+    }
+}
