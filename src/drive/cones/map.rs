@@ -144,6 +144,8 @@ const VIEW: (f64, f64) = (9.0, 0.8);
 const SHADOW: f64 = 0.3;
 /// Metres that the car goes while a cone is fresh: so far, odometry and sightings are good.
 const FRESH: f64 = 25.0;
+/// Metres of the way that lie just behind the car: no lane turns back within so many.
+const BEHIND: f64 = 7.0;
 /// Metres from place to place of the trail.
 const STRIDE: f64 = 2.0;
 /// Metres of the way in which the first cones were seen, at most.
@@ -225,10 +227,10 @@ impl ConeMap {
         self.trail.iter().map(|(pose, _)| *pose)
     }
 
-    /// Where the car was in the first lap, but for the last metres, as far as that is within some metres of where it is now.
+    /// The way by which the car came in the first lap, but for the last metres, as far as that is within some metres of it now.
     pub(super) fn earlier(&self, near: f64) -> impl Iterator<Item = Pose> + '_ {
         let place = self.pose.position();
-        let old = self.trail.iter().filter(|(_, way)| self.way - way > FRESH).map(|(pose, _)| *pose);
+        let old = self.trail.iter().filter(|(_, way)| self.way - way > BEHIND).map(|(pose, _)| *pose);
         old.filter(move |pose| (pose.position() - place).norm_squared() < near * near)
     }
 

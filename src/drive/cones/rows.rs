@@ -27,7 +27,7 @@ pub(super) struct RowParameters {
 }
 
 /// Pairs that are followed at a time.
-const BEAM: usize = 16;
+const BEAM: usize = 24;
 /// Cones of both rows at most.
 const LONGEST: usize = 24;
 /// Cones beside the car with which a row may begin.
@@ -38,15 +38,13 @@ const NEXT: usize = 10;
 const BESIDE: f64 = 2.0;
 /// Metres between two cones of a row at least.
 const NEAREST: f64 = 0.3;
-/// Radians by which a leg of a row is aslant to the lane at most.
-const ASLANT: f64 = 1.2;
 /// How much farther apart than usual the cones of a pair are at most: where they are farther, one row is missing.
 const FARTHER: f64 = 1.7;
 /// What it costs that a leg is aslant to the lane, for a radian squared, that it is long, for a metre, that a cone is missing on it,
 /// that it turns otherwise than the last one, for a radian squared, that the known edge of a cone is the other one, that the other
 /// row is missing, that a pair is narrower or wider than usual, in the square of its share, and that a cone stands between the
 /// rows. One more cone is worth 1, and each of a row less than the one before by a share: of what is farther off, less is seen.
-const SLANT: f64 = 0.5;
+const SLANT: f64 = 0.35;
 const FAR: f64 = 0.07;
 const MISSING: f64 = 0.5;
 const CHANGE: f64 = 0.3;
@@ -55,12 +53,14 @@ const ALONE: f64 = 0.3;
 const WIDTH: f64 = 1.0;
 const BETWEEN: f64 = 1.5;
 const LESS: f64 = 0.85;
-/// What it costs that the cone goes on with the other row, and the share of its leg's length and the radians within which it does.
+/// What it costs that the cone goes on far better with the other row, and by how much a leg of that has to cost less, from where
+/// that begins to count to where it counts fully.
 const TAKEN: f64 = 1.0;
-const NEARER: f64 = 0.7;
-const STRAIGHT: f64 = 0.45;
+const BETTER: [f64; 2] = [0.1, 0.43];
 /// What a cone may cost that is followed all the same.
 const DEAREST: f64 = 2.4;
+/// Rows that are told of at most, where cones may be those of one edge or of the other.
+const READINGS: usize = 4;
 
 /// The end of a row.
 #[derive(Debug, Clone, Copy)]
@@ -87,6 +87,8 @@ struct Pair {
 pub(super) struct Rows {
     /// The left and the right one: their cones, by their indices, in their order along the lane.
     pub(super) edges: [Vec<usize>; 2],
+    /// How much they look like the edges of a lane, about a cone's worth for each of theirs.
+    pub(super) worth: f64,
 }
 
 impl Rows {
@@ -108,11 +110,13 @@ impl Rows {
     }
 }
 
-/// The rows on the left and on the right of a lane.
+/// The rows on the left and on the right of a lane, in up to four ways in which cones can be read, the best first: each two of them
+/// have some cone at different edges.
 ///
-/// `places` is where the car was and is, oldest first, and `earlier` where it has been long ago. A row ends where no cone goes on with it. Takes O(n²) for n cones.
-pub(super) fn rows(cones: &[Cone], places: &[Pose], earlier: &[Pose], p: &RowParameters) -> Rows {
-    let Some(car) = places.last() else { return Rows::default() };
+/// `places` is where the car was and is, oldest first, and `earlier` the way by which it came. A row ends where no cone goes on with
+/// it. Takes O(n²) for n cones.
+pub(super) fn rows(cones: &[Cone], places: &[Pose], earlier: &[Pose], p: &RowParameters) -> Vec<Rows> {
+    let Some(car) = places.last() else { return vec![Rows::default()] };
     let mut search = Search { cones, nearest: nearest(cones, p.reach), earlier, p, pairs: Vec::new() };
     search.begin(places, *car);
     let mut beam: Vec<usize> = (0..search.pairs.len()).collect();
@@ -128,7 +132,7 @@ pub(super) fn rows(cones: &[Cone], places: &[Pose], earlier: &[Pose], p: &RowPar
             }
         }
     }
-    search.best()
+    search.readings()
 }
 
 /// For each cone the others within reach, the nearest ones first.
@@ -224,15 +228,13 @@ impl Search<'_> {
             return None;
         }
         let turn = angle(own.heading, leg);
-        // The lane's direction is across the pair, as long as there is a pair.
-        let across = (own.place - other.place) * sign;
-        let usual = 2.0 * p.half_width;
-        let paired = across.norm() < FARTHER * usual;
-        let lane = if paired { Vector::new(across.y, -across.x) } else { own.heading };
-        let slant = turn.abs().min(angle(lane, leg).abs());
-        if turn.abs() > p.sharpest || slant > ASLANT || lane.dot(&leg) < 0.0 {
+        if turn.abs() > p.sharpest {
             return None;
         }
+        // Where there is a pair, a row may turn sharply to where the other one goes already.
+        let usual = 2.0 * p.half_width;
+        let paired = (own.place - other.place).norm() < FARTHER * usual;
+        let slant = if paired { turn.abs().min(angle(other.heading, leg).abs()) } else { turn.abs() };
         let width = self.distance_to_row(parent, 1 - side, position);
         if width < 1.5 * p.narrowest || self.crosses(parent, 1 - side, [own.place, position]) {
             return None;
@@ -245,7 +247,7 @@ impl Search<'_> {
         }
         // Half of the reach is as far as cones stand apart where none is missing.
         let missing = (3.0 * (length / (0.5 * p.reach) - 1.0)).clamp(0.0, 1.0);
-        let mut cost = SLANT * slant * slant + FAR * length + MISSING * missing * missing;
+        let mut cost = leg_cost(slant, length) + MISSING * missing * missing;
         let change = turn - own.turn;
         // The first leg may be aslant: the car is.
         if own.share < 1.0 {
@@ -254,9 +256,7 @@ impl Search<'_> {
         if f64::from(colour.side()) * sign < 0.0 {
             cost += OTHER_EDGE;
         }
-        if goes_on_with(other, position, length) {
-            cost += TAKEN;
-        }
+        cost += TAKEN * self.taken(parent, 1 - side, position, leg_cost(turn, length));
         let apart = (position - other.place).norm();
         if apart < FARTHER * usual {
             let narrow = (1.0 - width / (2.0 * p.narrowest)).max(0.0);
@@ -312,6 +312,13 @@ impl Search<'_> {
         self.legs(pair, side).any(|other| passes(leg, other))
     }
 
+    /// How far a cone, to which a leg would cost so much, goes on better with one of the rows of a pair, 0 to 1.
+    fn taken(&self, pair: usize, side: usize, cone: Point, own: f64) -> f64 {
+        let ends = self.back(pair).map(|pair| &pair.ends[side]);
+        let better = ends.filter_map(|end| Some(own - end.cost_to(cone, self.p.reach)?)).fold(0.0, f64::max);
+        ((better - BETTER[0]) / (BETTER[1] - BETTER[0])).clamp(0.0, 1.0)
+    }
+
     /// How many cones stand within a triangle.
     fn between(&self, [a, b, c]: [Point; 3]) -> usize {
         let inside = |cone: &&Cone| {
@@ -333,26 +340,58 @@ impl Search<'_> {
         self.cones.iter().filter(inside).count()
     }
 
-    /// The rows that are worth most.
-    fn best(&self) -> Rows {
-        let worth = |pair: usize| self.pairs[pair].worth;
-        let Some(best) = (0..self.pairs.len()).max_by(|&a, &b| worth(a).total_cmp(&worth(b))) else {
-            return Rows::default();
-        };
+    /// The rows that are worth most, and those that read some of their cones otherwise.
+    fn readings(&self) -> Vec<Rows> {
+        let mut order: Vec<usize> = (0..self.pairs.len()).collect();
+        order.sort_by(|&a, &b| self.pairs[b].worth.total_cmp(&self.pairs[a].worth));
+        let mut found: Vec<(usize, Vec<i8>)> = Vec::new();
+        for pair in order {
+            let sides = self.sides_to(pair);
+            let contradicts = |(_, other): &(usize, Vec<i8>)| sides.iter().zip(other).any(|(a, b)| a * b < 0);
+            if found.iter().all(contradicts) {
+                found.push((pair, sides));
+            }
+            if found.len() == READINGS {
+                break;
+            }
+        }
+        found.into_iter().map(|(pair, _)| self.rows_to(pair)).collect()
+    }
+
+    /// On which side of the lane each cone is, by the rows that end with a pair.
+    fn sides_to(&self, pair: usize) -> Vec<i8> {
+        let mut sides = vec![0; self.cones.len()];
+        for [left, right] in self.back(pair).map(Pair::cones) {
+            left.into_iter().for_each(|cone| sides[cone] = 1);
+            right.into_iter().for_each(|cone| sides[cone] = -1);
+        }
+        sides
+    }
+
+    /// The rows that end with a pair.
+    fn rows_to(&self, pair: usize) -> Rows {
         let edges = [0, 1].map(|side| {
-            let mut edge: Vec<usize> = self.back(best).filter_map(|pair| pair.ends[side].cone).collect();
+            let mut edge: Vec<usize> = self.back(pair).filter_map(|pair| pair.ends[side].cone).collect();
             edge.dedup();
             edge.reverse();
             edge
         });
-        Rows { edges }
+        Rows { edges, worth: self.pairs[pair].worth }
     }
 }
 
-/// Whether a cone goes on with a row far better than with another one, to which its leg would be of some length.
-fn goes_on_with(end: &End, cone: Point, length: f64) -> bool {
-    let leg = cone - end.place;
-    end.cone.is_some() && leg.norm() < NEARER * length && angle(end.heading, leg).abs() < STRAIGHT
+impl End {
+    /// What a leg from here to a cone costs. `None` where nothing is known of how the row goes here, and beyond reach.
+    fn cost_to(&self, cone: Point, reach: f64) -> Option<f64> {
+        let leg = cone - self.place;
+        let known = self.cone.is_some() && self.share < 1.0 && leg.norm() < reach;
+        known.then(|| leg_cost(angle(self.heading, leg), leg.norm()))
+    }
+}
+
+/// What it costs that a leg turns by some radians, and that it is so long.
+fn leg_cost(turn: f64, length: f64) -> f64 {
+    SLANT * turn * turn + FAR * length
 }
 
 /// The angle from one vector to another, positive to the left.

@@ -3,8 +3,12 @@ use super::*;
 const P: RowParameters =
     RowParameters { reach: 10.5, half_width: 1.8, narrowest: 1.4, loose: 0.8, sharpest: 1.9 };
 
+fn best(cones: &[Cone], places: &[Pose], earlier: &[Pose], p: &RowParameters) -> Rows {
+    rows(cones, places, earlier, p).swap_remove(0)
+}
+
 fn legs(cones: &[Cone], places: &[Pose], p: &RowParameters) -> Vec<[Point; 2]> {
-    rows(cones, places, &[], p).legs(cones)
+    best(cones, places, &[], p).legs(cones)
 }
 
 fn at(places: &[(f64, f64)]) -> Vec<Cone> {
@@ -28,19 +32,68 @@ fn rows_go_on_where_a_cone_is_missing() {
 }
 
 #[test]
-fn a_cone_goes_on_with_the_row_behind_it_and_not_with_the_one_beside_it() {
-    let end = |y: f64| End {
+fn a_leg_costs_more_the_more_it_turns_and_the_longer_it_is() {
+    let end = End {
         cone: Some(0),
-        place: Point::new(0.0, y),
+        place: Point::new(0.0, -1.8),
         heading: Vector::new(1.0, 0.0),
         turn: 0.0,
-        share: 1.0,
+        share: 0.85,
     };
-    let next = Point::new(4.0, -1.8);
-    let length = (next - Point::new(-4.0, 1.8)).norm();
-    assert!(goes_on_with(&end(-1.8), next, length));
-    assert!(!goes_on_with(&end(1.8), next, 4.0));
-    assert!(!goes_on_with(&End { cone: None, ..end(-1.8) }, next, length));
+    let cost = |x: f64, y: f64| end.cost_to(Point::new(x, y), 10.5);
+    assert!(cost(4.0, -1.8) < cost(5.0, -1.8) && cost(4.0, -1.8) < cost(3.0, 0.8));
+    assert_eq!(cost(10.6, -1.8), None);
+    // Of a row that has just begun, it is not known how it goes on.
+    assert_eq!(End { share: 1.0, ..end }.cost_to(Point::new(4.0, -1.8), 10.5), None);
+    assert_eq!(End { cone: None, ..end }.cost_to(Point::new(4.0, -1.8), 10.5), None);
+}
+
+#[test]
+fn a_cone_is_of_the_row_that_goes_on_with_it_when_another_one_ends() {
+    // The left row ends, one cone of the right one is missing, and two false ones stand beside it.
+    let left = [(-4.0, 2.2), (0.0, 2.2), (3.7, 2.2)];
+    let right = [(-4.0, -2.2), (2.2, -2.2), (5.9, -2.2), (13.0, -2.0)];
+    let others = [(2.6, -4.1), (-4.5, -5.0)];
+    let cones = at(&[&left[..], &right[..], &others[..]].concat());
+    let found = best(&cones, &[Pose::new(-4.0, 0.0, 0.0), Pose::default()], &[], &P);
+    let sides = found.sides(cones.len());
+    assert_eq!(sides[..6], [1, 1, 1, -1, -1, -1], "{found:?}");
+    assert!(sides[6] >= 0 || found.edges[1].ends_with(&[6]), "{found:?}");
+}
+
+#[test]
+fn an_edge_turns_by_a_right_angle_where_the_other_one_is_missing() {
+    let left = [(-2.5, 2.2), (0.0, 2.2), (2.5, 2.2)];
+    let right = [(-2.5, -2.2), (2.5, -2.2), (2.7, -4.8), (2.9, -7.4), (3.0, -10.0), (3.0, -12.6)];
+    let cones = at(&[&left[..], &right[..]].concat());
+    let found = best(&cones, &[Pose::new(-2.5, 0.0, 0.0), Pose::default()], &[], &P);
+    assert_eq!(found.edges[1], [3, 4, 5, 6, 7, 8], "{found:?}");
+}
+
+#[test]
+fn readings_contradict_each_other_and_the_best_is_the_first() {
+    let cones = at(&[
+        (0.0, 1.8),
+        (4.0, 1.8),
+        (8.0, 1.8),
+        (0.0, -1.8),
+        (4.0, -1.8),
+        (7.5, -3.0),
+        (9.5, -5.5),
+        (12.0, 0.0),
+        (12.0, 3.0),
+    ]);
+    let found = rows(&cones, &[Pose::default()], &[], &P);
+    assert!((2..=READINGS).contains(&found.len()), "{found:?}");
+    assert!(found.is_sorted_by(|a, b| a.worth >= b.worth));
+    for (at, one) in found.iter().enumerate() {
+        for other in &found[..at] {
+            let sides = [one, other].map(|rows| rows.sides(cones.len()));
+            assert!((0..cones.len()).any(|cone| sides[0][cone] * sides[1][cone] < 0), "{one:?} {other:?}");
+        }
+    }
+    assert_eq!(rows(&[], &[Pose::default()], &[], &P), [Rows { worth: -2.0, ..Rows::default() }]);
+    assert_eq!(rows(&cones, &[], &[], &P), [Rows::default()]);
 }
 
 #[test]
@@ -72,7 +125,7 @@ fn an_inner_row_turns_on_one_cone() {
         (3.5, -9.8),
         (0.0, -9.8),
     ];
-    let found = rows(&at(&[&outer[..], &inner[..]].concat()), &[Pose::default()], &[], &P);
+    let found = best(&at(&[&outer[..], &inner[..]].concat()), &[Pose::default()], &[], &P);
     assert_eq!(found.edges, [(0..9).collect::<Vec<_>>(), (9..14).collect()]);
 }
 
@@ -92,7 +145,7 @@ fn a_row_does_not_go_over_to_another_lane() {
         (13.2, 1.5),
     ];
     let cones = at(&[&left[..], &right[..], &other[..]].concat());
-    let found = rows(&cones, &[Pose::new(-3.0, 0.0, 0.0), Pose::default()], &[], &P);
+    let found = best(&cones, &[Pose::new(-3.0, 0.0, 0.0), Pose::default()], &[], &P);
     // Where they end, they may err.
     assert!(found.edges[0].starts_with(&[0, 1, 2, 3, 4]), "{found:?}");
     assert!(found.edges[1].starts_with(&[5, 6, 7, 8, 9, 10]), "{found:?}");
@@ -117,7 +170,7 @@ fn no_row_leads_back_by_the_way_the_car_came_earlier() {
     let earlier: Vec<Pose> =
         (0..7).map(|k| Pose::new(8.0, f64::from(k) * 2.0 - 12.0, 0.5 * std::f64::consts::PI)).collect();
     let last = |earlier: &[Pose]| {
-        let found = rows(&cones, &[Pose::default()], earlier, &P);
+        let found = best(&cones, &[Pose::default()], earlier, &P);
         found.edges.iter().flatten().map(|&cone| cones[cone].position.y).fold(0.0, f64::min)
     };
     assert!(last(&[]) < -7.0 && last(&earlier) > -5.0, "{} {}", last(&[]), last(&earlier));
