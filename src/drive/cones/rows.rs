@@ -361,9 +361,12 @@ impl Search<'_> {
     /// On which side of the lane each cone is, by the rows that end with a pair.
     fn sides_to(&self, pair: usize) -> Vec<i8> {
         let mut sides = vec![0; self.cones.len()];
-        for [left, right] in self.back(pair).map(Pair::cones) {
-            left.into_iter().for_each(|cone| sides[cone] = 1);
-            right.into_iter().for_each(|cone| sides[cone] = -1);
+        for cones in self.back(pair).map(Pair::cones) {
+            for (cone, side) in cones.into_iter().zip([1, -1]) {
+                if let Some(cone) = cone {
+                    sides[cone] = side;
+                }
+            }
         }
         sides
     }
