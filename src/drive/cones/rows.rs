@@ -27,7 +27,7 @@ pub(super) struct RowParameters {
 }
 
 /// Pairs that are followed at a time.
-const BEAM: usize = 24;
+const BEAM: usize = 16;
 /// Cones of both rows at most.
 const LONGEST: usize = 24;
 /// Cones beside the car with which a row may begin.
@@ -61,6 +61,8 @@ const BETTER: [f64; 2] = [0.1, 0.43];
 const DEAREST: f64 = 2.4;
 /// Rows that are told of at most, where cones may be those of one edge or of the other.
 const READINGS: usize = 4;
+/// How much less than the best rows others are worth at most that are told of.
+const WORSE: f64 = 2.0;
 
 /// The end of a row.
 #[derive(Debug, Clone, Copy)]
@@ -345,7 +347,8 @@ impl Search<'_> {
         let mut order: Vec<usize> = (0..self.pairs.len()).collect();
         order.sort_by(|&a, &b| self.pairs[b].worth.total_cmp(&self.pairs[a].worth));
         let mut found: Vec<(usize, Vec<i8>)> = Vec::new();
-        for pair in order {
+        let least = order.first().map_or(0.0, |&best| self.pairs[best].worth - WORSE);
+        for pair in order.into_iter().take_while(|&pair| self.pairs[pair].worth > least) {
             let sides = self.sides_to(pair);
             let contradicts = |(_, other): &(usize, Vec<i8>)| sides.iter().zip(other).any(|(a, b)| a * b < 0);
             if found.iter().all(contradicts) {
