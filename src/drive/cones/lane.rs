@@ -277,7 +277,7 @@ fn extended(
     Piece { middle, end: arc(p.piece), bend, cost, passed, parent: Some(parent) }
 }
 
-/// The bit of a cone; none beyond the 128th, of which more are never near.
+/// The bit of a cone. Those beyond the 128th have none: they count whenever a way comes by.
 fn bit(cone: usize) -> u128 {
     u32::try_from(cone).ok().and_then(|cone| 1_u128.checked_shl(cone)).unwrap_or(0)
 }
@@ -458,7 +458,9 @@ mod tests {
     fn one_edge_is_enough() {
         let both = [row(1.6, 0..8), row(-1.6, 0..8)].concat();
         let found = known(&both);
-        assert!(found.points.iter().all(|point| point.y.abs() < 0.1), "{found:?}");
+        // Where a way ends, it may turn to have one more cone beside it.
+        let beyond = |point: &Point| point.y.abs() > if point.x < 10.5 { 0.02 } else { 0.1 };
+        assert!(!found.points.iter().any(beyond), "{found:?}");
         assert_eq!((found.edges[0].len(), found.edges[1].len()), (7, 7));
         // The left one ends after six metres; two false cones stand beside the right one.
         let mut cones = [row(1.6, 0..3), row(-1.6, 0..8)].concat();

@@ -346,32 +346,20 @@ impl Search<'_> {
     fn readings(&self) -> Vec<Rows> {
         let mut order: Vec<usize> = (0..self.pairs.len()).collect();
         order.sort_by(|&a, &b| self.pairs[b].worth.total_cmp(&self.pairs[a].worth));
-        let mut found: Vec<(usize, Vec<i8>)> = Vec::new();
         let least = order.first().map_or(0.0, |&best| self.pairs[best].worth - WORSE);
+        let mut found: Vec<(Rows, Vec<i8>)> = Vec::new();
         for pair in order.into_iter().take_while(|&pair| self.pairs[pair].worth > least) {
-            let sides = self.sides_to(pair);
-            let contradicts = |(_, other): &(usize, Vec<i8>)| sides.iter().zip(other).any(|(a, b)| a * b < 0);
+            let rows = self.rows_to(pair);
+            let sides = rows.sides(self.cones.len());
+            let contradicts = |(_, other): &(Rows, Vec<i8>)| sides.iter().zip(other).any(|(a, b)| a * b < 0);
             if found.iter().all(contradicts) {
-                found.push((pair, sides));
+                found.push((rows, sides));
             }
             if found.len() == READINGS {
                 break;
             }
         }
-        found.into_iter().map(|(pair, _)| self.rows_to(pair)).collect()
-    }
-
-    /// On which side of the lane each cone is, by the rows that end with a pair.
-    fn sides_to(&self, pair: usize) -> Vec<i8> {
-        let mut sides = vec![0; self.cones.len()];
-        for cones in self.back(pair).map(Pair::cones) {
-            for (cone, side) in cones.into_iter().zip([1, -1]) {
-                if let Some(cone) = cone {
-                    sides[cone] = side;
-                }
-            }
-        }
-        sides
+        found.into_iter().map(|(rows, _)| rows).collect()
     }
 
     /// The rows that end with a pair.
