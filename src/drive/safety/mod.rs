@@ -24,16 +24,17 @@
 //!
 //! | state | hard cause | soft cause | driver, or disarm | start | arm, standing, no cause |
 //! |---|---|---|---|---|---|
-//! | `Manual` | `EmergencyStop` | `Manual` | `Manual` | `Manual` | `Armed` |
-//! | `Armed` | `EmergencyStop` | `SafeStop` | `Manual` | `Auto` | `Armed` |
-//! | `Auto` | `EmergencyStop` | `SafeStop` | `Manual` | `Auto` | `Auto` |
-//! | `SafeStop` | `EmergencyStop` | `SafeStop` | `SafeStop` | `SafeStop` | `Armed` |
-//! | `EmergencyStop` | `EmergencyStop` | `EmergencyStop` | `EmergencyStop` | `EmergencyStop` | `Armed` |
+//! | `Manual` | `EmergencyStop` | | `Manual` | | `Armed` |
+//! | `Armed` | `EmergencyStop` | `SafeStop` | `Manual` | `Auto` | |
+//! | `Auto` | `EmergencyStop` | `SafeStop` | `Manual` | | |
+//! | `SafeStop` | `EmergencyStop` | `SafeStop` | `SafeStop` | | `Armed` |
+//! | `EmergencyStop` | `EmergencyStop` | `EmergencyStop` | `EmergencyStop` | | `Armed` |
 //!
-//! The column farthest to the left that applies decides. A *hard* cause is an emergency stop, on board or remote; a *soft* one
-//! is a lost heartbeat, a place outside the fence, a program that hangs, or a sensor that is not to be trusted. The worse state
-//! always wins. A stop is left only by arming again: a new request, made while the vehicle stands and no cause is left. What
-//! counts as a request is its beginning, so that a button that is stuck arms nothing.
+//! Of the columns that apply and have an entry, the one farthest to the left decides; without one, the state stays. A *hard*
+//! cause is an emergency stop, on board or remote; a *soft* one is a lost heartbeat, a place outside the fence, a program that
+//! hangs, or a sensor that is not to be trusted. The worse state always wins. A stop is left only by arming again: a new
+//! request, made while the vehicle stands and no cause is left. What counts as a request is its beginning, so that a button that
+//! is stuck arms nothing, even if it was stuck before the power came.
 //!
 //! [`Supervised`] puts any robot under this system: it looks at buttons, heartbeats, fence, pedals, program and sensors in every
 //! control period, and brakes. [`BaseStation`] is its other end.

@@ -12,7 +12,7 @@ pub struct SupervisorParameters {
     pub heartbeat: f64,
     /// Seconds without a call of the driving program that are allowed.
     pub watchdog: f64,
-    /// Corners of the area that must not be left, in the frame of odometry; without three of them there is no fence.
+    /// Corners of the area that must not be left, in the frame of odometry: none, or at least three.
     pub fence: Vec<Point>,
     /// Looks in a row outside before it counts.
     pub fence_debounce: u16,
@@ -58,6 +58,23 @@ impl SupervisorParameters {
             ("gentle deceleration", self.gentle),
         ] {
             crate::io::error::require_positive(name, value)?;
+        }
+        let [linear, angular] = self.standing;
+        for (name, value) in [
+            ("speed of standing", linear),
+            ("turning speed of standing", angular),
+            ("greatest acceleration", self.health.acceleration),
+            ("step of the speed", self.health.speed_step),
+            ("equal readings in a row", f64::from(self.health.repeats)),
+        ] {
+            crate::io::error::require_positive(name, value)?;
+        }
+        if matches!(self.fence.len(), 1 | 2) {
+            return Err(Error::invalid_input(
+                "corners of the fence",
+                self.fence.len(),
+                "none, or at least 3",
+            ));
         }
         if self.fence.iter().any(|corner| !(corner.x.is_finite() && corner.y.is_finite())) {
             return Err(Error::invalid_input("corner of the fence", "no number", "finite coordinates"));

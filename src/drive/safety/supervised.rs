@@ -50,7 +50,7 @@ pub struct StopRecord {
 /// // Armed and started at once; the stop button is pressed after a second.
 /// let station = |now: f64, beat: Beat| Panel {
 ///     heartbeat: Some(beat.count),
-///     requests: Requests { arm: now > 0.0, start: now > 0.05, disarm: false },
+///     requests: Requests { arm: now > 0.01, start: now > 0.05, disarm: false },
 ///     remote_stop: now > 1.0,
 ///     ..Panel::default()
 /// };
@@ -87,6 +87,8 @@ pub struct Supervised<R, S> {
     pub(super) due: f64,
     watchdog: Deadline,
     outside: Debounce,
+    /// The corners of the fence, so that no look has to allocate.
+    fence: Vec<[f64; 2]>,
     pub(super) odometry: OdometryHealth,
     pub(super) scans: ReadingHealth,
     pub(super) images: ReadingHealth,
@@ -96,11 +98,18 @@ pub struct Supervised<R, S> {
     /// The speed measured last, and the curvature driven last.
     speed: f64,
     pub(super) curvature: f64,
+    /// The speed that the program asked for last; infinite if it drives by other means than speeds.
+    pub(super) wanted: f64,
+    /// Whether it turns motors and servos itself, so that the curvature has to be measured.
+    pub(super) direct: bool,
     /// The speed asked for while it brakes.
     braking: Option<f64>,
     causes: Causes,
     stop: Option<StopRecord>,
 }
+
+/// Metres per second above which speeds tell a curvature.
+const ROLLS: f64 = 0.05;
 
 impl<R: Clock + Drive, S: Station> Supervised<R, S> {
     /// A robot in the hands of a person, with somebody at the other end.
@@ -122,6 +131,7 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
             due: 0.0,
             watchdog,
             outside: Debounce::new(parameters.fence_debounce),
+            fence: parameters.fence.iter().map(|corner| [corner.x, corner.y]).collect(),
             odometry: OdometryHealth::new(),
             scans: ReadingHealth::default(),
             images: ReadingHealth::default(),
@@ -130,6 +140,8 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
             pose: Pose::default(),
             speed: 0.0,
             curvature: 0.0,
+            wanted: f64::INFINITY,
+            direct: false,
             braking: None,
             causes: Causes::NONE,
             stop: None,
@@ -226,8 +238,10 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
                 }
                 self.pose = pose;
                 self.speed = speed.linear;
-                let corners: Vec<[f64; 2]> = self.parameters.fence.iter().map(|p| [p.x, p.y]).collect();
-                let outside = corners.len() >= 3 && !is_inside(&corners, [pose.x, pose.y]);
+                if self.direct && self.core.state().lets_drive() && speed.linear.abs() > ROLLS {
+                    self.curvature = speed.angular / speed.linear;
+                }
+                let outside = !self.fence.is_empty() && !is_inside(&self.fence, [pose.x, pose.y]);
                 let outside = self.outside.update(outside);
                 let [linear, angular] = self.parameters.standing;
                 let standing = speed.linear.abs() < linear && speed.angular.abs() < angular;
@@ -266,7 +280,8 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
         }
         let slower = match (state, self.braking) {
             (SafetyState::EmergencyStop, _) => 0.0,
-            (_, None) => self.speed,
+            // Sensors may say more than is true: brakes that the program had on are not let go.
+            (_, None) => self.speed.abs().min(self.wanted).copysign(self.speed),
             (_, Some(speed)) => speed,
         };
         let step = self.parameters.gentle * self.parameters.period;
@@ -276,6 +291,17 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
         let least = if standing { 0.0 } else { 1e-6_f64.copysign(self.speed) };
         let speed = if speed == 0.0 { least } else { speed };
         let _ = self.inner.set_speed(Twist::new(speed, speed * self.curvature));
+    }
+
+    /// Remembers a command that has reached the wheels: to brake, its curvature is kept.
+    pub(super) fn told(&mut self, wanted: f64, curvature: f64) {
+        (self.wanted, self.direct) = (wanted.abs(), false);
+        self.curvature = if curvature.is_finite() { curvature } else { 0.0 };
+    }
+
+    /// The same for one of a motor or a servo.
+    pub(super) fn turned(&mut self) {
+        (self.wanted, self.direct) = (f64::INFINITY, true);
     }
 
     /// Whether the program may drive now; it lives, in any case.

@@ -19,6 +19,7 @@ impl<R: Clock + Drive, S: Station> Clock for Supervised<R, S> {
 
     fn wait(&mut self, seconds: f64) -> Result<()> {
         self.alive();
+        crate::io::error::require_finite("seconds", seconds)?;
         let mut left = seconds;
         let mut answer = Ok(());
         while left > 1e-9 {
@@ -53,12 +54,11 @@ impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
             self.steer_on(twist);
             return Ok(());
         }
-        if twist.linear.abs() > 1e-3 {
-            self.curvature = twist.angular / twist.linear;
-        } else {
-            self.curvature = 0.0;
-        }
         let answer = self.inner.set_speed(twist);
+        if answer.is_ok() {
+            let bends = twist.linear.abs() > 1e-3;
+            self.told(twist.linear, if bends { twist.angular / twist.linear } else { 0.0 });
+        }
         self.note(answer)
     }
 
@@ -84,24 +84,33 @@ impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
         if !self.may_drive() {
             return Ok(());
         }
-        self.curvature = 0.0;
-        self.inner.straight(distance, speed)
+        let answer = self.inner.straight(distance, speed);
+        if answer.is_ok() {
+            self.told(f64::INFINITY, 0.0);
+        }
+        self.note(answer)
     }
 
     fn turn(&mut self, angle: f64, speed: f64) -> Result<()> {
         if !self.may_drive() {
             return Ok(());
         }
-        self.curvature = 0.0;
-        self.inner.turn(angle, speed)
+        let answer = self.inner.turn(angle, speed);
+        if answer.is_ok() {
+            self.told(f64::INFINITY, 0.0);
+        }
+        self.note(answer)
     }
 
     fn curve(&mut self, length: f64, angle: f64, speed: f64) -> Result<()> {
         if !self.may_drive() {
             return Ok(());
         }
-        self.curvature = if length.abs() > 1e-3 { angle / length } else { 0.0 };
-        self.inner.curve(length, angle, speed)
+        let answer = self.inner.curve(length, angle, speed);
+        if answer.is_ok() {
+            self.told(f64::INFINITY, if length.abs() > 1e-3 { angle / length } else { 0.0 });
+        }
+        self.note(answer)
     }
 
     fn remaining(&mut self) -> Result<f64> {
@@ -130,13 +139,27 @@ impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
 
 impl<R: Clock + Drive + Motors, S: Station> Motors for Supervised<R, S> {
     fn set_motor(&mut self, motor: u8, fraction: f64) -> Result<()> {
-        if self.may_drive() { self.inner.set_motor(motor, fraction) } else { Ok(()) }
+        if !self.may_drive() {
+            return Ok(());
+        }
+        let answer = self.inner.set_motor(motor, fraction);
+        if answer.is_ok() {
+            self.turned();
+        }
+        self.note(answer)
     }
 }
 
 impl<R: Clock + Drive + Servos, S: Station> Servos for Supervised<R, S> {
     fn set_servo(&mut self, servo: u8, position: f64) -> Result<()> {
-        if self.may_drive() { self.inner.set_servo(servo, position) } else { Ok(()) }
+        if !self.may_drive() {
+            return Ok(());
+        }
+        let answer = self.inner.set_servo(servo, position);
+        if answer.is_ok() {
+            self.turned();
+        }
+        self.note(answer)
     }
 }
 
