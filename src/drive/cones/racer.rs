@@ -190,8 +190,11 @@ impl Racer {
         self.decide(odometry, speed, &sightings(scan))
     }
 
-    /// The same for what was found already.
+    /// The same for what was found already. Where odometry is no number, the car brakes, and goes on from where it was.
     pub fn decide(&mut self, odometry: Pose, speed: Twist, seen: &[Sighting]) -> Twist {
+        if !(odometry.is_finite() && speed.is_finite()) {
+            return Twist::STOP;
+        }
         self.since_line += self.reckoning.step(odometry, speed, &self.parameters.tracker.tyres);
         self.map.update(self.reckoning.pose(), seen);
         self.count();

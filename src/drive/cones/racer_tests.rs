@@ -1,5 +1,5 @@
 use super::*;
-use crate::geometry::Point;
+use crate::geometry::{Point, Pose, Twist};
 use crate::io::sim::NoiseModel;
 use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions};
 use crate::io::{Drive, Lidar, LidarScan};
@@ -107,4 +107,16 @@ fn missing_and_false_cones_are_borne() {
 fn the_same_seed_gives_the_same_race() {
     let [a, b] = [0, 1].map(|_| race(2, 1).verdict);
     assert_eq!(a, b);
+}
+
+#[test]
+fn odometry_that_is_no_number_stops_a_racer_and_nothing_else() {
+    let mut racer = Racer::new(RacerParameters::default());
+    let before = racer.decide(Pose::default(), Twist::new(2.0, 0.0), &[]);
+    for wrong in [f64::NAN, f64::INFINITY] {
+        assert_eq!(racer.decide(Pose::new(wrong, 0.0, 0.0), Twist::new(2.0, 0.0), &[]), Twist::STOP);
+        assert_eq!(racer.decide(Pose::default(), Twist::new(2.0, wrong), &[]), Twist::STOP);
+    }
+    let after = racer.decide(Pose::default(), Twist::new(2.0, 0.0), &[]);
+    assert!(before.is_finite() && after.is_finite());
 }

@@ -133,8 +133,11 @@ impl LineTracker {
     /// place and heading to nothing within some metres, both as the tyres slip. Also the distance from the line, positive to its
     /// left.
     ///
-    /// `None` beyond the end of an open line.
+    /// `None` beyond the end of an open line, and for what is no number.
     pub fn step(&mut self, rear: Pose, moving: Twist) -> Option<(Twist, f64)> {
+        if !(rear.is_finite() && moving.is_finite()) {
+            return None;
+        }
         let p = self.parameters;
         let speed = moving.linear;
         let place = rear.to_world(Point::new(p.ahead, 0.0));
@@ -272,6 +275,19 @@ impl LineTracker {
 mod tests {
     use super::*;
     use crate::drive::cones::CarLimits;
+
+    #[test]
+    fn what_is_no_number_leads_nowhere() {
+        let points: Vec<Point> = (0..40).map(|k| Point::new(0.5 * f64::from(k), 0.0)).collect();
+        let limits = CarLimits::circle(5.0, 3.0, 5.0, 10.0);
+        let profile = SpeedProfile::open(&points, &limits, 5.0, 2.0).unwrap();
+        let mut tracker = LineTracker::new(points, profile, false, TrackerParameters::rolling());
+        for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert_eq!(tracker.step(Pose::new(1.0, wrong, 0.0), Twist::new(3.0, 0.0)), None);
+            assert_eq!(tracker.step(Pose::new(1.0, 0.0, 0.0), Twist::new(wrong, 0.0)), None);
+        }
+        assert!(tracker.step(Pose::new(1.0, 0.0, 0.0), Twist::new(3.0, 0.0)).is_some());
+    }
 
     #[test]
     fn a_line_far_beside_is_come_to_at_a_slant() {

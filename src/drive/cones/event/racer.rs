@@ -171,8 +171,11 @@ impl EventRacer {
     }
 
     /// The same for what was found already, by a lidar or a camera. It is called once in every
-    /// [`period`](EventParameters::period).
+    /// [`period`](EventParameters::period). Where odometry is no number, the car brakes.
     pub fn decide(&mut self, odometry: Pose, speed: Twist, seen: &[Sighting]) -> Twist {
+        if !(odometry.is_finite() && speed.is_finite()) {
+            return Twist::STOP;
+        }
         self.way += self.reckoning.step(odometry, speed, &self.parameters.tracker.tyres);
         self.map.update(self.reckoning.pose(), seen);
         self.time += self.parameters.period;
