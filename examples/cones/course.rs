@@ -20,7 +20,7 @@ pub(crate) struct Course {
     pub(crate) cones: Vec<Cone>,
     pub(crate) corridor: Corridor,
     pub(crate) start: Pose,
-    /// Whether it is much wider than a track of Formula Student.
+    /// Whether it is much wider than a track of Formula Student, as circuits of TUM are: the racer is told so.
     pub(crate) wide: bool,
     /// That of an acceleration or a skidpad, if it is none of laps.
     pub(crate) event: Option<EventCourse>,
@@ -28,6 +28,8 @@ pub(crate) struct Course {
 
 /// Metres of ground around the cones.
 const MARGIN: f64 = 5.0;
+/// Metres beyond that ground within which a picture shows where a car has left.
+const BEYOND: f64 = 40.0;
 
 /// What is done to the cones before the race.
 #[derive(Debug, Clone, Copy, Default)]
@@ -64,7 +66,16 @@ impl Course {
 
     /// The track of a file, for laps.
     pub(crate) fn from_file(common: &CommonArgs, path: &Path) -> Result<Self, Failure> {
-        Self::of_laps(Self::read(common, path)?, path)
+        let file = Self::read(common, path)?;
+        if let TrackFile::Cones(track) = &file
+            && EventCourse::of(track, &Self::outline()).is_some()
+        {
+            return Err(Failure::input(format!(
+                "--track {}: found a track of an acceleration or a skidpad, which `cone_race` drives; expected one of laps",
+                path.display()
+            )));
+        }
+        Self::of_laps(file, path)
     }
 
     /// The track of a file, for the event that its cones stand for.
@@ -90,8 +101,8 @@ impl Course {
         match file {
             TrackFile::Cones(track) => Self::between(&track, path),
             TrackFile::Corridor(corridor) => {
-                let fine = corridor.resampled(1.0).map_err(Failure::input)?;
-                let GeneratedTrack { track, corridor } = lined(fine, 4.8);
+                let refused = |error| Failure::input(format!("--track {}: {error}", path.display()));
+                let GeneratedTrack { track, corridor } = lined(&corridor, 4.8).map_err(refused)?;
                 let start = track.start_pose().ok_or_else(|| Failure::input("the track has no start"))?;
                 Ok(Self { cones: track.cones, corridor, start, wide: true, event: None })
             }
@@ -109,11 +120,14 @@ impl Course {
     fn between(track: &ConeTrack, path: &Path) -> Result<Self, Failure> {
         let refused = |found: String| {
             Failure::input(format!(
-                "--track {}: found {found}; expected cones around a closed track",
+                "--track {}: found {found}; expected blue and yellow cones around a closed track",
                 path.display()
             ))
         };
-        let start = track.start_pose().ok_or_else(|| refused("no start".into()))?;
+        let start = track.start_pose().ok_or_else(|| {
+            let [blue, yellow] = [ConeColour::Blue, ConeColour::Yellow].map(|paint| track.of(paint).count());
+            refused(format!("no start, {blue} blue and {yellow} yellow cones"))
+        })?;
         // Colours in a file are right.
         let parameters = CentreLineParameters { colour: f64::INFINITY, ..CentreLineParameters::default() };
         let line = CentreLine::from_cones(&track.cones, start, &parameters)
@@ -198,6 +212,17 @@ impl Course {
         let around = Aabb::around(self.cones.iter().map(|cone| cone.position));
         let mut world = World::empty(1.0, 1.0);
         world.floor = around.unwrap_or(world.floor).inflated(MARGIN);
+        world
+    }
+
+    /// The ground around the cones and around what was driven, for pictures; far off the track, a car may leave it.
+    pub(crate) fn frame(&self, trail: &[(Pose, f64)]) -> World {
+        let mut world = self.ground();
+        let most = world.floor.inflated(BEYOND);
+        let driven = trail.iter().map(|(pose, _)| pose.position()).filter(|place| most.contains(*place));
+        if let Some(around) = Aabb::around(driven) {
+            world.floor = world.floor.union(&around.inflated(MARGIN));
+        }
         world
     }
 

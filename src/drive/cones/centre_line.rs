@@ -1,6 +1,7 @@
 use super::cone::Cone;
 use super::corridor::Corridor;
 use super::error::PlanError;
+use super::generate::LONGEST;
 use super::walk::{Mesh, Pair, Walker, Way, sides};
 use crate::geometry::{Point, Pose, Segment, Vector, cross, math};
 
@@ -47,6 +48,8 @@ impl CentreLine {
     ///
     /// The way is closed if it comes back to where it began, else it ends where the cones end or at the horizon. Takes O(n log
     /// n) for n cones.
+    ///
+    /// Fails where no way leads on, where it leads over 50 m without cones, and where it is longer than 50 km.
     ///
     /// ```
     /// use roverlab::drive::cones::{CentreLine, CentreLineParameters, Cone};
@@ -111,6 +114,7 @@ impl CentreLine {
         parameters: &CentreLineParameters,
     ) -> Result<Self, PlanError> {
         let (pairs, chains) = complete(cones, pairs, closed, parameters);
+        check_gaps(&pairs, closed)?;
         let middles = middle(&pairs, closed, parameters.step);
         let rows: Vec<_> = middles
             .iter()
@@ -137,6 +141,33 @@ fn walk(
     parameters: &CentreLineParameters,
 ) -> Option<Way> {
     Walker { cones, parameters, mesh, sides }.walk(from)
+}
+
+/// Metres from pair to pair beyond which cones belong to no track.
+const FARTHEST: f64 = 50.0;
+
+/// Fails where pairs are too far from each other to be those of one track.
+fn check_gaps(pairs: &[Opposite], closed: bool) -> Result<(), PlanError> {
+    let n = pairs.len();
+    let middle = |k: usize| nalgebra::center(&pairs[k % n].points[0], &pairs[k % n].points[1]);
+    let mut length = 0.0;
+    for k in 0..if closed { n } else { n - 1 } {
+        let gap = (middle(k + 1) - middle(k)).norm();
+        if gap > FARTHEST {
+            let expected = "at most 50 m";
+            return Err(PlanError::Parameter {
+                name: "gap from cones to the next ones",
+                value: gap.round(),
+                expected,
+            });
+        }
+        length += gap;
+    }
+    if length > LONGEST {
+        let value = length.round();
+        return Err(PlanError::Parameter { name: "length of the way", value, expected: "at most 50000 m" });
+    }
+    Ok(())
 }
 
 /// Takes what is at some places out of a list.

@@ -15,9 +15,10 @@ pub struct TrackOptions {
     pub length: [f64; 2],
     /// Metres from edge to edge, from least to most.
     pub width: [f64; 2],
-    /// Metres from cone to cone along an edge: in the tightest bends, and on the straight.
+    /// Metres from cone to cone along an edge: in the tightest bends, and on the straight. Cones stand a few centimetres beside
+    /// their places.
     pub spacing: [f64; 2],
-    /// Tight turns that are tried to be built in.
+    /// Tight turns that are tried to be built in, at most 20.
     pub hairpins: usize,
     /// The least radius of the middle in metres.
     pub radius: f64,
@@ -58,9 +59,17 @@ impl TrackOptions {
             0.5 * self.width[1] + 0.5,
             100.0,
             "more than half the width, up to 100 m",
-        )
+        )?;
+        if self.hairpins > MOST_HAIRPINS {
+            let value = self.hairpins as f64;
+            return Err(PlanError::Parameter { name: "hairpins", value, expected: "at most 20" });
+        }
+        Ok(())
     }
 }
+
+/// Tight turns that are tried at most: more than there are corners to bend in.
+const MOST_HAIRPINS: usize = 20;
 
 /// A track of cones, and the corridor that they stand around.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,7 +80,7 @@ pub struct GeneratedTrack {
     pub corridor: Corridor,
 }
 
-/// Metres from the nose's place at the start to the start line.
+/// Metres from the rear axle at the start to the start line.
 const RUN_UP: f64 = 6.0;
 /// Metres between the edges of two parts of a track that pass each other.
 const APART: f64 = 2.5;
@@ -103,14 +112,43 @@ pub fn generate(seed: u64, options: &TrackOptions) -> Result<GeneratedTrack, Pla
     })
 }
 
-/// Puts cones along both edges of a closed corridor with stations about every metre, at most so many metres apart; none where one
-/// part of the course crosses another.
-pub fn lined(corridor: Corridor, spacing: f64) -> GeneratedTrack {
+/// Puts cones along both edges of a closed corridor, at most so many metres apart; none where one part of the course crosses
+/// another. The corridor of the result has stations about every metre.
+///
+/// Fails for a corridor with two ends, for one shorter than 30 m or longer than 50 km, and for a spacing that is not of 0.5 to
+/// 20 m. Takes O(n²) for n metres.
+///
+/// ```
+/// use roverlab::drive::cones::{Corridor, lined};
+/// use roverlab::geometry::{Point, direction};
+/// let ring = |radius: f64| {
+///     let place = |k: u8| (Point::origin() + direction(0.1 * std::f64::consts::TAU * f64::from(k)) * radius, 3.0, 3.0);
+///     Corridor::closed(&(0..10).map(place).collect::<Vec<_>>())
+/// };
+/// assert!(lined(&ring(50.0)?, 5.0)?.track.cones.len() > 2 * 60);
+/// let error = lined(&ring(4.0)?, 5.0).unwrap_err().to_string();
+/// assert!(error.ends_with("expected a closed corridor of 30 to 50000 m"), "{error}");
+/// # Ok::<(), roverlab::drive::cones::PlanError>(())
+/// ```
+pub fn lined(corridor: &Corridor, spacing: f64) -> Result<GeneratedTrack, PlanError> {
+    let length = corridor.length();
+    if !(corridor.is_closed() && (SHORTEST..=LONGEST).contains(&length)) {
+        let expected = "a closed corridor of 30 to 50000 m";
+        return Err(PlanError::Parameter { name: "length of the corridor", value: length, expected });
+    }
+    if !(0.5..=20.0).contains(&spacing) {
+        return Err(PlanError::Parameter { name: "spacing", value: spacing, expected: "0.5 to 20 m" });
+    }
     let options = TrackOptions { spacing: [0.6 * spacing, spacing], ..TrackOptions::default() };
+    let corridor = corridor.resampled(1.0)?;
     let mut track = place_cones(&mut Stream::new(0), &corridor, &options);
     track.cones.retain(|cone| !is_on_track(cone.position, &corridor));
-    GeneratedTrack { track, corridor }
+    Ok(GeneratedTrack { track, corridor })
 }
+
+/// Metres of a corridor that cones are put along, from least to most: no circuit is longer.
+const SHORTEST: f64 = 30.0;
+pub(super) const LONGEST: f64 = 50_000.0;
 
 /// Metres within an edge at which a place is on the track for certain.
 const WITHIN: f64 = 0.5;
@@ -265,30 +303,14 @@ fn place_cones(random: &mut Stream, corridor: &Corridor, options: &TrackOptions)
     let mut track = ConeTrack::default();
     for left in [true, false] {
         let colour = if left { ConeColour::Blue } else { ConeColour::Yellow };
-        let edge = corridor.edge(left);
-        let n = edge.len();
-        let total: f64 = (0..n).map(|i| (edge[(i + 1) % n] - edge[i]).norm()).sum();
-        let tip = |i: usize| edge[i % n];
+        let edge = Edge::new(corridor.edge(left));
         // Two large cones at the line, half a metre from it.
-        for offset in [-0.5, 0.5] {
-            let along = (tip(1) - tip(0)).normalize();
-            track.cones.push(Cone::new(tip(0) + along * offset, ConeColour::BigOrange));
-        }
-        let (mut passed, mut next) = (0.0, 3.0);
-        for i in 0..n {
-            let piece = tip(i + 1) - tip(i);
-            let length = piece.norm();
-            while next < passed + length && next < total - 2.0 {
-                let place = tip(i) + piece * ((next - passed) / length);
-                let jitter = Vector::new(random.between(-0.05, 0.05), random.between(-0.05, 0.05));
-                track.cones.push(Cone::new(place + jitter, colour));
-                let bend = curvature([tip(i + n - 3), tip(i), tip(i + 3)]).abs();
-                let share = (1.0 - 8.0 * bend).clamp(0.0, 1.0);
-                let gap = options.spacing[0] + (options.spacing[1] - options.spacing[0]) * share;
-                next += gap * random.between(0.9, 1.0);
-            }
-            passed += length;
-        }
+        let gate = [-GATE, GATE].map(|offset| edge.points[0] + edge.along() * offset);
+        track.cones.extend(gate.map(|place| Cone::new(place, ConeColour::BigOrange)));
+        let places = edge.places(random, options.spacing);
+        let closing = edge.closing(&places, gate, options.spacing[1]);
+        let all = places.iter().map(|(_, place)| *place).chain(closing);
+        track.cones.extend(all.map(|place| Cone::new(place, colour)));
     }
     let n = corridor.stations().len();
     let behind = corridor.stations()[n - RUN_UP as usize];
@@ -297,6 +319,79 @@ fn place_cones(random: &mut Stream, corridor: &Corridor, options: &TrackOptions)
     let line = corridor.stations()[0];
     track.gates = vec![[line.aside(line.left), line.aside(-line.right)]];
     track
+}
+
+/// Metres from the line to the large cones beside it.
+const GATE: f64 = 0.5;
+/// Metres from the line to the first small cone behind it, and from the last one before it to the line at least.
+const FIRST: f64 = 3.0;
+const LAST: f64 = 2.0;
+
+/// A closed edge along which cones are put.
+struct Edge {
+    points: Vec<Point>,
+    /// Metres around.
+    total: f64,
+}
+
+impl Edge {
+    fn new(points: Vec<Point>) -> Self {
+        let n = points.len();
+        let total = (0..n).map(|i| (points[(i + 1) % n] - points[i]).norm()).sum();
+        Self { points, total }
+    }
+
+    fn tip(&self, i: usize) -> Point {
+        self.points[i % self.points.len()]
+    }
+
+    /// The direction at the line.
+    fn along(&self) -> Vector {
+        (self.tip(1) - self.tip(0)).normalize()
+    }
+
+    /// Where small cones stand, and metres from the line to there: in bends nearer to each other.
+    fn places(&self, random: &mut Stream, [tight, wide]: [f64; 2]) -> Vec<(f64, Point)> {
+        let n = self.points.len();
+        let mut found = Vec::new();
+        let (mut passed, mut next) = (0.0, FIRST.min(GATE + wide));
+        for i in 0..n {
+            let piece = self.tip(i + 1) - self.tip(i);
+            let length = piece.norm();
+            while next < passed + length && next < self.total - LAST {
+                let place = self.tip(i) + piece * ((next - passed) / length);
+                let jitter = Vector::new(random.between(-0.05, 0.05), random.between(-0.05, 0.05));
+                found.push((next, place + jitter));
+                let bend = curvature([self.tip(i + n - 3), self.tip(i), self.tip(i + 3)]).abs();
+                let share = (1.0 - 8.0 * bend).clamp(0.0, 1.0);
+                next += (tight + (wide - tight) * share) * random.between(0.9, 1.0);
+            }
+            passed += length;
+        }
+        found
+    }
+
+    /// Where cones stand between the last one of some and the large one before the line, if these are too far from each other.
+    fn closing(&self, places: &[(f64, Point)], gate: [Point; 2], most: f64) -> Vec<Point> {
+        let (from, last) = places.last().copied().unwrap_or((GATE, gate[1]));
+        let parts = ((gate[0] - last).norm() / most).ceil().max(1.0);
+        let gap = (self.total - GATE - from) / parts;
+        (1..parts as usize).map(|k| self.at(from + gap * k as f64)).collect()
+    }
+
+    /// The place so many metres behind the line.
+    fn at(&self, way: f64) -> Point {
+        let mut passed = 0.0;
+        for i in 0..self.points.len() {
+            let piece = self.tip(i + 1) - self.tip(i);
+            let length = piece.norm();
+            if way < passed + length {
+                return self.tip(i) + piece * ((way - passed) / length);
+            }
+            passed += length;
+        }
+        self.tip(0)
+    }
 }
 
 #[cfg(test)]
@@ -311,7 +406,7 @@ mod tests {
         });
         let corridor = Corridor::closed(&eight.collect::<Vec<_>>()).unwrap().resampled(1.0).unwrap();
         let all = place_cones(&mut Stream::new(0), &corridor, &TrackOptions::default()).cones.len();
-        let GeneratedTrack { track, corridor } = lined(corridor, 5.0);
+        let GeneratedTrack { track, corridor } = lined(&corridor, 5.0).unwrap();
         assert!(track.cones.iter().all(|cone| !is_on_track(cone.position, &corridor)));
         // The four edges stop before the crossing, and nowhere else.
         assert!(
@@ -321,6 +416,25 @@ mod tests {
         );
     }
 
+    /// The cones of an edge in order, from the large one before the line on.
+    fn edge_of(track: &ConeTrack, left: bool) -> Vec<Point> {
+        let colour = if left { ConeColour::Blue } else { ConeColour::Yellow };
+        let gate = track.of(ConeColour::BigOrange).skip(if left { 0 } else { 2 }).take(2);
+        gate.chain(track.of(colour)).collect()
+    }
+
+    /// The greatest distance from a cone to the next one of its edge.
+    fn widest_gap(track: &ConeTrack) -> f64 {
+        let gaps = [true, false].into_iter().flat_map(|left| {
+            let edge = edge_of(track, left);
+            (0..edge.len()).map(move |i| (edge[(i + 1) % edge.len()] - edge[i]).norm())
+        });
+        gaps.fold(0.0, f64::max)
+    }
+
+    /// Metres by which two cones are farther from each other than their places are, at most.
+    const BESIDE: f64 = 0.142;
+
     #[test]
     fn drawn_tracks_are_legal() {
         let tracks = if cfg!(debug_assertions) { 40 } else { 1000 };
@@ -329,28 +443,57 @@ mod tests {
             let GeneratedTrack { track, corridor } = generate(seed, &options).unwrap();
             let length = corridor.length();
             assert!((200.0..=500.0).contains(&length), "{seed}: {length}");
+            let stations = corridor.stations();
+            let n = stations.len();
+            for (i, station) in stations.iter().enumerate() {
+                let width = station.left + station.right;
+                assert!(
+                    width >= options.width[0] - 1e-9 && width <= options.width[1] + 1e-9,
+                    "{seed}: {width}"
+                );
+                let around = [i + n - 1, i, i + 1].map(|k| stations[k % n].position);
+                assert!(curvature(around).abs() <= 1.0 / options.radius, "{seed}: a bend at {i}");
+            }
             let start = track.start.unwrap();
             for left in [true, false] {
                 let edge = corridor.edge(left);
-                let colour = if left { ConeColour::Blue } else { ConeColour::Yellow };
-                for cone in track.of(colour) {
+                for cone in edge_of(&track, left) {
                     let nearest = edge.iter().map(|p| (p - cone).norm()).fold(f64::INFINITY, f64::min);
                     assert!(nearest < 1.0, "{seed}: a cone {nearest} m off its edge");
                     assert!(start.distance_to(cone) > 1.2);
                 }
-                // No cone is farther than 5 m from the next one of its edge.
-                let on_edge: Vec<Point> = track
-                    .cones
-                    .iter()
-                    .filter(|c| c.colour == colour || c.colour == ConeColour::BigOrange)
-                    .map(|c| c.position)
-                    .collect();
-                for cone in &on_edge {
-                    let second = on_edge.iter().filter(|other| *other != cone).map(|o| (o - cone).norm());
-                    assert!(second.fold(f64::INFINITY, f64::min) <= 5.2);
-                }
             }
+            let widest = widest_gap(&track);
+            assert!(widest <= options.spacing[1] + BESIDE, "{seed}: {widest} of {:?}", options.spacing);
         }
+    }
+
+    #[test]
+    fn edges_that_are_lined_have_no_gap() {
+        for (radius, spacing) in (0..40).map(|k| (30.0 + 0.37 * f64::from(k), 0.5 + 0.15 * f64::from(k))) {
+            let ring = (0..60).map(|i| {
+                let arm = direction(TAU * f64::from(i) / 60.0);
+                (Point::origin() + arm * radius, 3.0, 3.0)
+            });
+            let corridor = Corridor::closed(&ring.collect::<Vec<_>>()).unwrap();
+            let widest = widest_gap(&lined(&corridor, spacing).unwrap().track);
+            // The large cones themselves are a metre from each other.
+            assert!(widest <= spacing.max(2.0 * GATE) + BESIDE, "{widest} of {spacing}");
+        }
+    }
+
+    #[test]
+    fn no_corridor_is_lined_that_is_too_short_or_too_long() {
+        for (points, radius) in [(8, 0.75), (500, 90_000.0)] {
+            let ring = (0..points).map(|i| {
+                let arm = direction(TAU * f64::from(i) / f64::from(points));
+                (Point::origin() + arm * radius, 0.5, 0.5)
+            });
+            let error = lined(&Corridor::closed(&ring.collect::<Vec<_>>()).unwrap(), 4.8).unwrap_err();
+            assert!(error.to_string().ends_with("expected a closed corridor of 30 to 50000 m"), "{error}");
+        }
+        let strip: Vec<_> = (0..50).map(|i| (Point::new(f64::from(i), 0.0), 2.0, 2.0)).collect();
+        assert!(lined(&Corridor::open(&strip).unwrap(), 4.8).is_err());
     }
 
     #[test]
@@ -377,5 +520,7 @@ mod tests {
         let options = TrackOptions { width: [6.0, 9.0], ..TrackOptions::default() };
         let error = generate(1, &options).unwrap_err();
         assert_eq!(error.to_string(), "radius is 4; expected more than half the width, up to 100 m");
+        let options = TrackOptions { hairpins: usize::MAX, ..TrackOptions::default() };
+        assert!(generate(1, &options).unwrap_err().to_string().ends_with("expected at most 20"));
     }
 }
