@@ -185,6 +185,10 @@ fn broken_files_are_told_where() {
         ("cones_left: 3\n".into(), "t:1:13: found `3`; expected a list"),
         ("- 3\n".into(), "t:1:1: found a list; expected keys with lists"),
         (
+            "cones_left: [[1, 2]]\ntk_device: [[1, 2], [3, 4], [5, 6]]\n".into(),
+            "t:2:1: found 3 points; expected two for each line",
+        ),
+        (
             "cones_left: []\ncones_left: []\n".into(),
             "t:2:1: found a second `cones_left`; expected each key once",
         ),
@@ -195,6 +199,17 @@ fn broken_files_are_told_where() {
     ] {
         assert_eq!(parse_track(&text, "t").unwrap_err().to_string(), message);
     }
+    let csv = "expected a line that begins with tag,x,y (EUFS), # x_m,y_m,w_tr_right_m,w_tr_left_m (TUM), or # x_m,y_m";
+    for (text, file, found) in [
+        ("", "a.csv", "a.csv:1:1: found an empty file; "),
+        ("1,2,3,4\n", "t", "t:1:1: found `1,2,3,4`; "),
+        ("x_m,y_m\n", "a.CSV", "a.CSV:1:1: found `x_m,y_m`; "),
+    ] {
+        let error = parse_track(text, file).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("{found}{csv}")), "{error}");
+    }
+    // What a file holds says more than its name.
+    assert!(parse_track("cones_left: [[1, 2]]\n", "a.csv").is_ok());
     assert!(parse_track("cones_left: [[[[[[\n", "t").is_err());
     assert!(parse_track("a: &a [1]\nb: *a\n", "t").is_err());
 }

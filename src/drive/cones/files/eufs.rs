@@ -57,7 +57,7 @@ fn is_header(row: &[Field<'_>]) -> bool {
     row.len() >= 3 && row.iter().zip(["tag", "x", "y"]).all(|(field, name)| field.text == name)
 }
 
-/// A cone map as [`parse_eufs`] reads it.
+/// A cone map as [`parse_eufs`] reads it. The lines where time is taken have no place in it and are left out.
 pub fn write_eufs(track: &ConeTrack) -> String {
     let mut text = format!("{HEADER}\n");
     for cone in &track.cones {

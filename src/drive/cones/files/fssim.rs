@@ -53,7 +53,11 @@ fn take(
     if let Some((_, colour)) = KEYS.iter().find(|(name, _)| *name == key) {
         track.cones.extend(points(events)?.into_iter().map(|position| Cone::new(position, *colour)));
     } else if key == "tk_device" {
-        track.gates = points(events)?.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+        let ends = points(events)?;
+        if ends.len() % 2 == 1 {
+            return Err(events.error(at, format!("{} points", ends.len()), "two for each line"));
+        }
+        track.gates = ends.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
     } else {
         let numbers = list_of(events, |events, event, at| number(events, &event, at))?;
         if key == "starting_pose_front_wing" {

@@ -17,7 +17,7 @@ pub use tum::{parse_line, parse_tum, write_tum};
 
 use super::{ConeTrack, Corridor};
 use crate::geometry::Point;
-use crate::world::formats::FormatError;
+use crate::world::formats::{FormatError, Location, shown};
 
 /// Numbers of files beyond this are no tracks.
 const FARTHEST: f64 = 1e5;
@@ -62,5 +62,20 @@ pub fn parse_track(text: &str, file: &str) -> Result<TrackFile, FormatError> {
         }
         return parse_line(text, file).map(TrackFile::Line);
     }
+    if is_csv(first, file) {
+        let found = if first.is_empty() { "an empty file".into() } else { shown(first) };
+        return Err(FormatError::new(file, Location::START, found, CSV));
+    }
     parse_fssim(text, file).map(TrackFile::Cones)
+}
+
+/// How the CSV files begin.
+const CSV: &str = "a line that begins with tag,x,y (EUFS), # x_m,y_m,w_tr_right_m,w_tr_left_m (TUM), or # x_m,y_m (a race line of TUM)";
+
+/// Whether a file is to be one of comma-separated values: by its name, if it does not begin with a key, or by a first line that
+/// is a row of numbers.
+fn is_csv(first: &str, file: &str) -> bool {
+    let named = file.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("csv"));
+    (named && !first.contains(':'))
+        || (first.contains(',') && first.split(',').all(|field| field.trim().parse::<f64>().is_ok()))
 }
