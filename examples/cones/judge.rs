@@ -44,6 +44,8 @@ pub(crate) struct Judge {
     index: usize,
     referee: Whistle,
     cones: Vec<Point>,
+    /// How many cones have fallen, of the contacts at the last look.
+    hits: usize,
     /// What was true when it looked last, and when that was.
     last: RobotTruth,
     time: f64,
@@ -62,6 +64,7 @@ impl Judge {
             index,
             referee: Whistle::new(course),
             cones: course.cones.iter().map(|cone| cone.position).collect(),
+            hits: 0,
             last,
             time: 0.0,
             trail: Vec::new(),
@@ -112,14 +115,19 @@ impl Judge {
         self.cones.iter().map(|cone| !self.last.contact_places.contains(cone)).collect()
     }
 
-    fn hits(&self) -> usize {
-        self.last.contact_places.iter().filter(|place| self.cones.contains(place)).count()
+    /// Counts the cones among the contacts, if there are others than at the last look: most looks see none.
+    fn count_hits(&mut self, contacts: &[Point]) {
+        if contacts != self.last.contact_places {
+            self.hits = contacts.iter().filter(|place| self.cones.contains(place)).count();
+        }
     }
 
     fn look(&mut self) -> io::Result<()> {
-        self.last = self.truth.robot(self.index)?;
+        let now = self.truth.robot(self.index)?;
+        self.count_hits(&now.contact_places);
+        self.last = now;
         self.time = self.truth.time()?;
-        self.referee.see(self.time, self.last.pose, self.hits());
+        self.referee.see(self.time, self.last.pose, self.hits);
         let verdict = self.referee.verdict();
         if self.clean.is_none() && verdict.cones_hit + verdict.off_course > 0 {
             self.clean = Some(self.last.path_length);
