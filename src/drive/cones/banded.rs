@@ -68,10 +68,16 @@ pub(super) struct Factors {
 impl Factors {
     /// Decomposes a matrix, to whose diagonal some more may be added. O(n).
     pub(super) fn refactor(&mut self, matrix: &CyclicBand, more: Option<&[f64]>) {
-        let n = matrix.size();
-        let m = n - 2;
-        let [main, first, second] = &matrix.bands;
-        let diagonal = |i: usize| main[i] + more.map_or(0.0, |more| more[i]);
+        let diagonal = |i: usize| matrix.bands[0][i] + more.map_or(0.0, |more| more[i]);
+        self.factor_band(matrix, diagonal);
+        self.solve_border(matrix);
+        self.factor_corner(matrix, diagonal);
+    }
+
+    /// Decomposes the plain band.
+    fn factor_band(&mut self, matrix: &CyclicBand, diagonal: impl Fn(usize) -> f64) {
+        let m = matrix.size() - 2;
+        let [_, first, second] = &matrix.bands;
         for list in [&mut self.one, &mut self.two, &mut self.inverse] {
             list.clear();
             list.resize(m, 0.0);
@@ -92,6 +98,13 @@ impl Factors {
             self.inverse[i] = 1.0 / pivot;
             pivots[i % 2] = pivot;
         }
+    }
+
+    /// Takes the border's columns out of a matrix, and solves them by the band.
+    fn solve_border(&mut self, matrix: &CyclicBand) {
+        let n = matrix.size();
+        let m = n - 2;
+        let [_, first, second] = &matrix.bands;
         for (k, raw) in self.raw.iter_mut().enumerate() {
             raw.clear();
             raw.resize(m, 0.0);
@@ -116,9 +129,14 @@ impl Factors {
             self.solve_band(&mut column);
             self.border[k] = column;
         }
+    }
+
+    /// Inverts what band and border leave of the corner.
+    fn factor_corner(&mut self, matrix: &CyclicBand, diagonal: impl Fn(usize) -> f64) {
+        let m = matrix.size() - 2;
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let a = diagonal(m) - product(&self.raw[0], &self.border[0]);
-        let b = first[m] - product(&self.raw[0], &self.border[1]);
+        let b = matrix.bands[1][m] - product(&self.raw[0], &self.border[1]);
         let c = diagonal(m + 1) - product(&self.raw[1], &self.border[1]);
         let determinant = a * c - b * b;
         self.corner = [c / determinant, -b / determinant, a / determinant];

@@ -72,6 +72,62 @@ pub(super) struct Walker<'c> {
 /// The best way so far: how bad it is, and its last node.
 type Best = Option<(f64, usize)>;
 
+/// Takes in a way, if it is better than the best one.
+fn keep(best: &mut Best, badness: f64, node: usize) {
+    if best.is_none_or(|(least, _)| badness < least) {
+        *best = Some((badness, node));
+    }
+}
+
+/// Ways that are being followed.
+struct Search {
+    /// The steps of all ways.
+    nodes: Vec<Node>,
+    /// The edges at which they begin.
+    roots: Vec<usize>,
+    /// The last steps of those that are followed now.
+    beam: Vec<usize>,
+    /// The best ways so far that closed, and that ended.
+    closed: Best,
+    ended: Best,
+}
+
+impl Search {
+    fn new(starts: Vec<Node>) -> Self {
+        let roots = starts.iter().map(|node| node.edge).collect();
+        let beam = (0..starts.len()).collect();
+        Self { nodes: starts, roots, beam, closed: None, ended: None }
+    }
+
+    /// Follows the best ones of some steps, one at each edge.
+    fn follow(&mut self, candidates: &mut [Node]) {
+        candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        self.beam.clear();
+        for candidate in candidates.iter() {
+            if self.beam.len() == BEAM {
+                break;
+            }
+            if !self.beam.iter().any(|&other| self.nodes[other].edge == candidate.edge) {
+                self.nodes.push(*candidate);
+                self.beam.push(self.nodes.len() - 1);
+            }
+        }
+    }
+
+    /// The pairs of the best way, and whether it is closed.
+    fn best(&self) -> Option<(Vec<Pair>, bool)> {
+        let (_, end) = self.closed.or(self.ended)?;
+        let mut pairs = Vec::new();
+        let mut at = Some(end);
+        while let Some(index) = at {
+            pairs.push(self.nodes[index].pair);
+            at = self.nodes[index].parent;
+        }
+        pairs.reverse();
+        Some((pairs, self.closed.is_some()))
+    }
+}
+
 /// A step of a way: an edge that is crossed, and how it got there.
 #[derive(Debug, Clone, Copy)]
 struct Node {
@@ -174,74 +230,49 @@ impl Walker<'_> {
 
     /// The best way from a car on. `None` if there is none.
     pub(super) fn walk(&self, car: Pose) -> Option<Way> {
-        let mut nodes = self.starts(car);
-        let roots: Vec<usize> = nodes.iter().map(|node| node.edge).collect();
-        let mut beam: Vec<usize> = (0..nodes.len()).collect();
-        // The best ways so far that closed, and that ended: how bad, and the node.
-        let (mut closed, mut ended): (Best, Best) = (None, None);
-        let keep = |best: &mut Best, badness: f64, node: usize| {
-            if best.is_none_or(|(least, _)| badness < least) {
-                *best = Some((badness, node));
-            }
-        };
+        let mut search = Search::new(self.starts(car));
         let mut candidates: Vec<Node> = Vec::new();
         for left in (0..self.cones.len() + self.cones.len() / 4 + 8).rev() {
             candidates.clear();
-            for &index in &beam {
-                let node = nodes[index];
-                // A way that ends is better the farther it leads.
-                let reached = node.length.min(self.parameters.horizon);
-                keep(&mut ended, node.cost - 0.4 * reached, index);
-                for exit in [following(node.edge), preceding(node.edge)] {
-                    let twin = self.mesh.twins[exit];
-                    if twin == delaunator::EMPTY {
-                        self.leave(&mut nodes, index, exit, &mut ended);
-                    } else if twin / 3 == roots[node.root] / 3 && node.length > self.parameters.shortest_loop
-                    {
-                        let aslant = if twin == roots[node.root] { 0.0 } else { 0.5 };
-                        // Of two loops, that with more of what a track looks like: not the shorter one.
-                        keep(&mut closed, node.cost + aslant - GOOD_STEP * f64::from(node.good), index);
-                    } else if !was_in(&nodes, index, twin / 3) {
-                        let step = self.step(&node, index, (self.pair(twin), self.mesh.gaps[twin]), twin);
-                        candidates.push(step);
-                    }
-                }
-            }
+            self.steps(&mut search, &mut candidates);
             // Nothing takes costs back, so a way is left that cannot become a better loop than the best one, were all its steps good.
-            let bound = closed.map_or(f64::INFINITY, |(badness, _)| badness);
+            let bound = search.closed.map_or(f64::INFINITY, |(badness, _)| badness);
             let best = |node: &Node| node.cost - GOOD_STEP * (f64::from(node.good) + left as f64);
             candidates.retain(|candidate| candidate.cost.is_finite() && best(candidate) < bound);
             if candidates.is_empty() {
                 break;
             }
-            candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-            beam.clear();
-            for candidate in &candidates {
-                if beam.len() == BEAM {
-                    break;
-                }
-                if !beam.iter().any(|&other| nodes[other].edge == candidate.edge) {
-                    nodes.push(*candidate);
-                    beam.push(nodes.len() - 1);
+            search.follow(&mut candidates);
+        }
+        let (mut pairs, closed) = search.best()?;
+        if !closed {
+            self.cut(&mut pairs);
+        }
+        (pairs.len() >= 2).then_some(Way { pairs, closed })
+    }
+
+    /// The next steps of all ways that are followed. Those that close or end are taken in.
+    fn steps(&self, search: &mut Search, candidates: &mut Vec<Node>) {
+        for &index in &search.beam {
+            let node = search.nodes[index];
+            // A way that ends is better the farther it leads.
+            let reached = node.length.min(self.parameters.horizon);
+            keep(&mut search.ended, node.cost - 0.4 * reached, index);
+            let root = search.roots[node.root];
+            for exit in [following(node.edge), preceding(node.edge)] {
+                let twin = self.mesh.twins[exit];
+                if twin == delaunator::EMPTY {
+                    self.leave(&mut search.nodes, index, exit, &mut search.ended);
+                } else if twin / 3 == root / 3 && node.length > self.parameters.shortest_loop {
+                    let aslant = if twin == root { 0.0 } else { 0.5 };
+                    // Of two loops, that with more of what a track looks like: not the shorter one.
+                    keep(&mut search.closed, node.cost + aslant - GOOD_STEP * f64::from(node.good), index);
+                } else if !was_in(&search.nodes, index, twin / 3) {
+                    let step = self.step(&node, index, (self.pair(twin), self.mesh.gaps[twin]), twin);
+                    candidates.push(step);
                 }
             }
         }
-        let (end, is_closed) = match (closed, ended) {
-            (Some((_, node)), _) => (node, true),
-            (None, Some((_, node))) => (node, false),
-            (None, None) => return None,
-        };
-        let mut pairs = Vec::new();
-        let mut at = Some(end);
-        while let Some(index) = at {
-            pairs.push(nodes[index].pair);
-            at = nodes[index].parent;
-        }
-        pairs.reverse();
-        if !is_closed {
-            self.cut(&mut pairs);
-        }
-        (pairs.len() >= 2).then_some(Way { pairs, closed: is_closed })
     }
 
     /// A way over the border of the triangulation ends there.
