@@ -82,7 +82,7 @@ impl Race {
         }
         let shot = self.options.noise.shot;
         if shot > 0.0 {
-            noise(image, shot, &mut self.cars[index].lidar);
+            noise(image, shot, &mut self.cars[index].camera);
         }
     }
 }

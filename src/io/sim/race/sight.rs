@@ -109,3 +109,41 @@ fn wall(scan: &mut LidarScan, a: Point, b: Point) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::Lidar;
+    use crate::io::sim::NoiseModel;
+    use crate::io::sim::race::{RaceCarSpec, RaceCone, RaceOptions};
+    use crate::world::Colour;
+
+    /// Of many scans of one cone straight ahead, the share that shows it, and the share that shows something elsewhere.
+    fn shares(missed: f64, phantoms: f64) -> (f64, f64) {
+        const SCANS: usize = 2000;
+        let cone = RaceCone::new(Point::new(10.0, 0.0), Colour::BLUE);
+        let options = RaceOptions { noise: NoiseModel::ideal(), missed, phantoms, ..RaceOptions::default() };
+        let cars = [(RaceCarSpec::default(), Pose::default())];
+        let mut race = Race::new(&[cone], &cars, options).unwrap();
+        let mut scan = LidarScan::default();
+        let (mut seen, mut elsewhere) = (0, 0);
+        for _ in 0..SCANS {
+            race.car(0).unwrap().scan_into(&mut scan).unwrap();
+            let hits = || scan.ranges.iter().enumerate().filter(|(_, range)| range.is_finite());
+            seen += usize::from(hits().any(|(beam, _)| scan.angle(beam).abs() < 0.01));
+            elsewhere += usize::from(hits().any(|(beam, _)| scan.angle(beam).abs() > 0.05));
+        }
+        (seen as f64 / SCANS as f64, elsewhere as f64 / SCANS as f64)
+    }
+
+    #[test]
+    fn cones_are_missed_and_phantoms_are_seen() {
+        assert_eq!(shares(0.0, 0.0), (1.0, 0.0));
+        assert_eq!(shares(1.0, 1.0), (0.0, 0.0));
+        let (seen, elsewhere) = shares(0.3, 0.0);
+        assert!((seen - 0.7).abs() < 0.05 && elsewhere == 0.0, "{seen} {elsewhere}");
+        // A few phantoms are before or beside the cone.
+        let (seen, elsewhere) = shares(0.0, 0.4);
+        assert!(seen == 1.0 && (elsewhere - 0.4).abs() < 0.06, "{seen} {elsewhere}");
+    }
+}
