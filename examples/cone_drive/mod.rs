@@ -10,7 +10,7 @@ use roverlab::io::{self, LidarScan, LidarSettings, RobotIo};
 use roverlab::picture::{Picture, Style};
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, Stage, rounded};
-use crate::cones::{Course, Judge, colour, pass};
+use crate::cones::{Course, Judge, check_campaign, check_race, colour, pass};
 
 /// The command line of the example `cone_drive`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -26,7 +26,9 @@ JSON fields:
   distance_clean_m                            metres to the first cone or off the course
   tracks, clean, clean_share                  of a campaign
   picture
-Outcomes: finished, penalised, timed_out, failed, raced (a campaign)."
+Outcomes: finished, collided (a cone was hit, whatever else came of it), penalised (all laps, but the course was left with
+all wheels), timed_out (time was over, or the car was far off its track), failed (the car's program), raced (a campaign).
+Tracks of events, an acceleration or a skidpad, are refused: `cone_race` drives them."
 )]
 pub(crate) struct Args {
     /// Track to drive on [default: one of our own].
@@ -70,6 +72,7 @@ struct Driven {
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
+    check_race(common)?;
     if !(args.speed > 0.0 && args.speed <= 30.0) {
         return Err(Failure::input(format!("--speed {}: expected more than 0, at most 30 m/s", args.speed)));
     }
@@ -169,7 +172,7 @@ fn lost(course: &Course, pose: Pose) -> bool {
 
 fn campaign(args: &Args, tracks: u32) -> Result<Report, Failure> {
     let (mut clean, mut laps, mut cones, mut off, mut metres) = (0_u32, 0, 0, 0, 0.0);
-    args.common.check_placeless("the tracks of a campaign are drawn")?;
+    check_campaign(&args.common)?;
     for seed in (0..u64::from(tracks)).map(|track| args.common.seed.wrapping_add(track)) {
         let course = Course::generated(seed)?;
         let stage = Stage::race(world(&course, args, seed).map_err(Failure::run)?, args.common.faults()?);
@@ -194,7 +197,7 @@ fn campaign(args: &Args, tracks: u32) -> Result<Report, Failure> {
 }
 
 fn picture(course: &Course, driven: &Driven) -> Picture {
-    let mut picture = Picture::new(&course.ground());
+    let mut picture = Picture::new(&course.frame(&driven.trail));
     picture.title("Cone drive, as printed");
     for cone in &course.cones {
         picture.disc(cone.position, 0.3, Style::aid().colour(colour(cone.colour)).filled(1.0));

@@ -3,13 +3,15 @@
 use super::Args;
 use super::race::race;
 use crate::common::{Failure, Outcome, Report, Stage, rounded};
-use crate::cones::{Course, Spoils};
+use crate::cones::{Course, Spoils, check_campaign, refuse};
 
 /// Races on so many tracks of our own, from the seed on, and tells of those that were not clean.
 pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Failure> {
     let common = &args.common;
-    common.check_placeless("the tracks of a campaign are drawn")?;
-    let (mut clean, mut finished, mut cones, mut off) = (0_u32, 0_u32, 0, 0);
+    check_campaign(common)?;
+    let given = [("--line", args.line.is_some()), ("--animation", args.animation.is_some())];
+    refuse(&given, "found a campaign; expected it with one race")?;
+    let (mut clean, mut finished, mut laps, mut cones, mut off) = (0_u32, 0_u32, 0, 0, 0);
     let (mut times, mut ratios) = (Vec::new(), Vec::new());
     for seed in (0..u64::from(tracks)).map(|track| common.seed.wrapping_add(track)) {
         let mut course = Course::generated(seed)?;
@@ -20,6 +22,7 @@ pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Fa
         let verdict = &outcome.verdict;
         clean += u32::from(outcome.is_clean());
         finished += u32::from(outcome.is_finished());
+        laps += verdict.lap_times.len();
         cones += verdict.cones_hit;
         off += verdict.off_course;
         if !outcome.is_clean() {
@@ -34,17 +37,21 @@ pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Fa
         ratios.extend(outcome.over_optimum.iter().copied());
         times.extend(verdict.lap_times.iter().skip(1).map(|time| course.corridor.length() / time));
     }
-    let mean = times.iter().sum::<f64>() / times.len().max(1) as f64;
-    let worst = ratios.iter().copied().fold(0.0, f64::max);
-    let ratio = ratios.iter().sum::<f64>() / ratios.len().max(1) as f64;
+    let worst = ratios.iter().copied().reduce(f64::max);
     Ok(Report::new(Outcome::verdict("raced"))
         .field("tracks", tracks)
         .field("clean", clean)
         .field("clean_share", rounded(f64::from(clean) / f64::from(tracks)))
         .field("finished", finished)
+        .field("laps", laps)
         .field("cones_hit", cones)
         .field("off_course", off)
-        .field("mean_racing_speed_m_s", rounded(mean))
-        .field("mean_lap_over_optimum", rounded(ratio))
-        .field("worst_lap_over_optimum", rounded(worst)))
+        .field("mean_racing_speed_m_s", mean(&times).map(rounded))
+        .field("mean_lap_over_optimum", mean(&ratios).map(rounded))
+        .field("worst_lap_over_optimum", worst.map(rounded)))
+}
+
+/// The mean of some numbers. `None` without any.
+fn mean(numbers: &[f64]) -> Option<f64> {
+    (!numbers.is_empty()).then(|| numbers.iter().sum::<f64>() / numbers.len() as f64)
 }

@@ -14,7 +14,7 @@ use crate::cones::{Course, colour};
 
 /// The track, the cones, the racing line, and the driven line coloured by speed.
 pub(crate) fn picture(course: &Course, outcome: &Outcome) -> Picture {
-    let mut picture = Picture::new(&course.ground());
+    let mut picture = Picture::new(&course.frame(&outcome.trail));
     picture.title(match course.event.as_ref().map(EventCourse::event) {
         Some(Event::Acceleration) => "Acceleration",
         Some(Event::Skidpad) => "Skidpad",
@@ -38,17 +38,19 @@ pub(crate) fn picture(course: &Course, outcome: &Outcome) -> Picture {
     let mut line = outcome.line.clone();
     close(&mut line, course);
     picture.line(line, Style::plan().width(1.0).labelled("racing line"));
-    // The last laps, which are all on the racing line, and the first one, which is slow.
+    // All laps: the first one, which is slow, and those on the racing line.
     let points = outcome.trail.iter().map(|(pose, speed)| (pose.to_world(Point::new(0.8, 0.0)), *speed));
     picture.speed_path(points);
-    let times: Vec<String> = outcome.verdict.lap_times.iter().map(|time| format!("{time:.2}")).collect();
-    picture.caption(format!(
-        "laps {} s; {} cones hit, {} times off course",
-        times.join(", "),
-        outcome.verdict.cones_hit,
-        outcome.verdict.off_course
-    ));
+    picture.caption(caption(outcome));
     picture
+}
+
+/// The times and the penalties in words.
+fn caption(outcome: &Outcome) -> String {
+    let times: Vec<String> = outcome.verdict.lap_times.iter().map(|time| format!("{time:.2}")).collect();
+    let laps = if times.is_empty() { "no laps".into() } else { format!("laps {} s", times.join(", ")) };
+    let (cones, off) = (outcome.verdict.cones_hit, outcome.verdict.off_course);
+    format!("{laps}; {cones} cones hit, {off} times off course")
 }
 
 /// Joins the end of a line to its beginning where the course is a loop.
@@ -67,7 +69,7 @@ pub(crate) fn animation(course: &Course, outcome: &Outcome, file: &Path) -> std:
 const SCALE: f64 = 8.0;
 
 fn document(course: &Course, outcome: &Outcome) -> Document {
-    let bounds = course.ground().floor;
+    let bounds = course.frame(&outcome.trail).floor;
     let size = bounds.size() * SCALE;
     let place = |p: Point| {
         let round = |value: f64| (value * 10.0).round() / 10.0;

@@ -5,9 +5,9 @@ use roverlab::geometry::{Aabb, Point, Segment};
 use roverlab::picture::{Picture, Style};
 use roverlab::world::World;
 
-use super::{Args, Sensors, refuse};
+use super::{Args, Sensors};
 use crate::common::{Failure, Outcome, Report, rounded};
-use crate::cones::colour;
+use crate::cones::{colour, refuse};
 
 /// Metres of the way ahead that are compared with the lane.
 const AHEAD: f64 = 8.0;
@@ -52,17 +52,15 @@ pub(crate) fn follow(args: &Args, frames: &[ConeFrame]) -> Result<Report, Failur
     Ok(Report { trouble: trouble.map(|error| error.to_string()), ..report })
 }
 
+/// What a log is read by. All other options affect a race, and there is none.
+const OF_LOGS: [&str; 2] = ["--track", "--sensors"];
+
 /// Fails when an option has no meaning for a log.
 fn check(args: &Args) -> Result<(), Failure> {
-    let given = [
-        ("--line", args.line.is_some()),
-        ("--other", args.other),
-        ("--animation", args.animation.is_some()),
-        ("--false-cones", args.false_cones > 0.0),
-        ("--missing", args.missing > 0.0),
-        ("--gap", args.gap > 0.0),
-        ("--fault", !args.common.fault.is_empty()),
-    ];
+    let options = args.common.origin.facts().options;
+    let names = options.iter().map(|option| option.split('=').next().unwrap_or(option));
+    let mut given: Vec<_> = names.map(|name| (name, !OF_LOGS.contains(&name))).collect();
+    given.push(("--animation", args.animation.is_some()));
     refuse(&given, "found the log of a drive; expected a track, or a command line without it")
 }
 

@@ -13,8 +13,8 @@ use roverlab::drive::cones::{ClosedSpline, EventCourse, TrackFile, parse_track};
 use roverlab::geometry::{Point, Segment};
 use roverlab::io::sim::race::RaceCarSpec;
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
-use crate::cones::{Course, Spoils};
+use crate::common::{CommonArgs, Failure, Outcome, Report, check_writable, rounded};
+use crate::cones::{Course, Spoils, check_race, refuse};
 use race::{Ending, Settings};
 
 /// The command line of the example `cone_race`.
@@ -25,7 +25,8 @@ use race::{Ending, Settings};
     after_help = "\
 The first lap is driven between the cones that the lidar sees, and makes the map; all others are on the racing line within
 what both axles hold. The referee adds 2 s for a cone and 10 s for leaving the course with all wheels. Tracks: FSSIM yaml,
-EUFS csv, TUM csv (lined with cones), or one of our own by the seed.
+EUFS csv, TUM csv (lined with cones), or one of our own by the seed. Circuits of TUM are several times as wide as tracks of
+Formula Student: on them, the racer is given other widths of the lane, speeds and ranges of its map, and no other knowledge.
 
 An acceleration strip or a skidpad, which the file's cones stand for, is driven as the event that it is: one run, whatever
 --laps says. The car knows which event it is at and what the rules say of its layout, and fits that to the cones that it
@@ -48,14 +49,20 @@ JSON fields:
   mapped                                               whether the whole track was planned after the first lap, or an event's
                                                        layout was found
   other_cones_hit, touched                             with a second car
-  tracks, clean, clean_share, mean_lap_over_optimum    of a campaign
+  tracks, clean, clean_share, finished                 of a campaign: finished are all races whose laps were all driven, clean
+                                                       those of them without a cone, leaving the course or touching
+  laps, cones_hit, off_course                          of a campaign: of all tracks, as the referee sees it
+  mean_racing_speed_m_s                                of a campaign: over all laps but the first ones
+  mean_lap_over_optimum, worst_lap_over_optimum        of a campaign: over all flying laps; null without any
   frames, planned, wrong_side                          of a log: with a lane; and with one that has a cone of a colour on the
                                                        wrong side
   from_driven_rms_m, from_driven_most_m                of a log: distance of the lane from the next 8 m that were driven
   picture, animation
-Outcomes: finished, penalised, timed_out, failed, impassable (the car does not fit between the cones, which is told before
-the race), lost (no cones that fit the event), missed (an event's car stands, but not in the lane behind its finish), raced (a
-campaign), planned (a log)."
+Outcomes: finished, collided (a cone or the second car was touched, whatever else came of it), penalised (all laps or the
+event, but the course was left with all wheels), timed_out, failed (the car's program), impassable (the car does not fit
+between the cones, which is told before the race), lost (no lane, or cones that do not fit the map or the event: the car
+stops), missed (the car stands, but not in the lane behind its event's finish, or after other laps than the referee counted),
+raced (a campaign), planned (a log)."
 )]
 pub(crate) struct Args {
     /// Track to race on [default: one of our own].
@@ -91,7 +98,7 @@ pub(crate) struct Args {
     pub(crate) other: bool,
 
     /// Draw the race as a moving picture.
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
     pub(crate) animation: Option<PathBuf>,
 
     /// Race on so many tracks of our own, from --seed on, and print a table.
@@ -144,15 +151,22 @@ fn metres(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| "expected 0 to 200 m".into())
 }
 
+fn svg_file(text: &str) -> Result<PathBuf, String> {
+    let file = PathBuf::from(text);
+    let is_svg = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
+    if is_svg { Ok(file) } else { Err("expected a name that ends in .svg".into()) }
+}
+
 /// The work of the example.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
-    common.check_picture()?;
-    check(common)?;
+    check_race(common)?;
     let spoils = Spoils { false_cones: args.false_cones, missing: args.missing, gap: args.gap };
     if let Some(tracks) = args.campaign {
         return campaign::run(args, tracks, spoils);
     }
+    check_pictures(args)?;
+    check_line(args)?;
     let published = args.line.as_ref().map(|file| published(common, file)).transpose()?;
     let mut course = match &args.track {
         Some(path) => match Course::read(common, path)? {
@@ -202,15 +216,17 @@ fn event_name(course: &Course) -> &'static str {
     }
 }
 
-/// Where and why a car at an event stood.
+/// Where and why a car was lost.
 fn lost(course: &Course, outcome: &race::Outcome) -> String {
+    let (found, expected) = if course.event.is_some() {
+        ("found no cones that fit its event", format!("those of the {}", event_name(course)))
+    } else if outcome.line.is_empty() {
+        ("found no lane", "cones to both sides of one".into())
+    } else {
+        ("found no cones that fit its map", "those of the first lap".into())
+    };
     let place = outcome.truth.pose;
-    format!(
-        "at ({:.1}, {:.1}) m the car found no cones that fit its event, and stopped; expected those of the {}",
-        place.x,
-        place.y,
-        event_name(course)
-    )
+    format!("at ({:.1}, {:.1}) m the car {found}, and stopped; expected {expected}", place.x, place.y)
 }
 
 /// What is told about a race.
@@ -282,17 +298,6 @@ fn distance(other: &[Point], line: &[Point]) -> Option<f64> {
     Some((sum / places.len() as f64).sqrt())
 }
 
-/// Fails when an option has no meaning here.
-fn check(common: &CommonArgs) -> Result<(), Failure> {
-    let given = [
-        ("--world", common.world.is_some()),
-        ("--robot", common.robot.is_some()),
-        ("--start", common.start.is_some()),
-        ("--goal", common.goal.is_some()),
-    ];
-    refuse(&given, "has no meaning for a race; expected a command line without it")
-}
-
 /// Fails when an option has no meaning for an acceleration or a skidpad.
 fn check_event(args: &Args) -> Result<(), Failure> {
     let given = [("--other", args.other), ("--line", args.line.is_some())];
@@ -302,23 +307,47 @@ fn check_event(args: &Args) -> Result<(), Failure> {
     )
 }
 
-/// Fails for the first of some options that is given, with what is wrong with it.
-fn refuse(options: &[(&str, bool)], wrong: &str) -> Result<(), Failure> {
-    let given = options.iter().find(|(_, given)| *given);
-    given.map_or(Ok(()), |(option, _)| Err(Failure::input(format!("{option}: {wrong}"))))
+/// Fails when there will be no racing line to compare with that of a file.
+fn check_line(args: &Args) -> Result<(), Failure> {
+    let given = [("--line", args.line.is_some() && args.laps < 2)];
+    refuse(&given, "found one lap, which is for the map; expected at least two, or a command line without it")
 }
 
-/// Saves the pictures: where the options say, and in the present folder if a person looks on.
+/// Fails when the pictures cannot be drawn where they are asked for.
+fn check_pictures(args: &Args) -> Result<(), Failure> {
+    args.common.check_picture()?;
+    args.animation.as_deref().map_or(Ok(()), |file| check_writable("--animation", file))?;
+    let (Some(still), Some(moving)) = pictures(args) else { return Ok(()) };
+    if place(&still) == place(&moving) {
+        return Err(Failure::input(format!(
+            "--picture and --animation: found the same file, {}; expected two",
+            still.display()
+        )));
+    }
+    Ok(())
+}
+
+/// The folder and the name of a file, by which two are the same one.
+fn place(file: &Path) -> (Option<PathBuf>, Option<&std::ffi::OsStr>) {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    (folder.canonicalize().ok(), file.file_name())
+}
+
+/// Where the still picture and the moving one are saved: where the options say, and in the present folder if a person looks on.
+fn pictures(args: &Args) -> (Option<PathBuf>, Option<PathBuf>) {
+    let named = |file: &Option<PathBuf>, name: &str| {
+        file.clone().or_else(|| (!args.common.json).then(|| PathBuf::from(name)))
+    };
+    (named(&args.common.picture, "cone_race.svg"), named(&args.animation, "cone_race_moving.svg"))
+}
+
+/// Saves the pictures.
 fn draw(
     args: &Args,
     course: &Course,
     outcome: &race::Outcome,
 ) -> (Option<PathBuf>, Option<PathBuf>, Option<String>) {
-    let named = |file: &Option<PathBuf>, name: &str| {
-        file.clone().or_else(|| (!args.common.json).then(|| PathBuf::from(name)))
-    };
-    let (still, moving) =
-        (named(&args.common.picture, "cone_race.svg"), named(&args.animation, "cone_race_moving.svg"));
+    let (still, moving) = pictures(args);
     let mut trouble = Vec::new();
     if let Some(file) = &still {
         trouble.extend(drawing::picture(course, outcome).save(file).err().map(|error| error.to_string()));

@@ -4,6 +4,8 @@
 
 mod course;
 mod judge;
+mod options;
 
 pub(crate) use course::{Course, Spoils, colour};
 pub(crate) use judge::{Judge, pass};
+pub(crate) use options::{check_campaign, check_race, refuse};
