@@ -247,7 +247,6 @@ impl Course {
         if self.wide {
             parameters.centre_line.width = [6.0, 24.0];
             parameters.map.farthest = 24.0;
-            parameters.limits.top_speed = 28.0;
             parameters.first_lap.top_speed = 10.0;
             parameters.lane = LaneParameters {
                 piece: 4.0,
