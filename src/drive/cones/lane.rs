@@ -36,7 +36,7 @@ impl Default for LaneParameters {
             piece: 2.5,
             pieces: 7,
             curvature: 0.38,
-            beam: 40,
+            beam: 100,
             clearance: 1.15,
             half_width: [1.4, 2.8],
             usual: 1.9,
@@ -122,7 +122,7 @@ impl Lane {
 /// there is, say that it is. Colours count, if they are known.
 ///
 /// `behind` is where the car was, oldest first, `car` where it is, at the point of it that is to be in the middle, and `before` the
-/// lane as it was found before. `None` without a cone at an edge. Takes O(n) for n cones.
+/// lane as it was found before. `None` without a cone at an edge. Takes O(n²) for n cones.
 pub fn lane(
     cones: &[Cone],
     behind: &[Pose],
@@ -183,7 +183,10 @@ fn search(
     p: &LaneParameters,
 ) -> Option<(Vec<Pose>, f64)> {
     let (car, earlier) = (way.car, way.earlier);
-    let (legs, sides) = (rows.legs(cones), rows.sides(cones.len()));
+    let legs = rows.legs(cones);
+    let beside = beside(cones, &rows.sides(cones.len()));
+    // From the beginning of a piece to what touches it, and to what may be at its edge.
+    let within = p.piece + before.half_width + p.clearance.max(WIDER * p.loose);
     let start = Piece { middle: car, end: car, bend: 0, cost: 0.0, passed: 0, parent: None };
     let mut pieces = vec![start];
     let mut beam = vec![0];
@@ -191,13 +194,15 @@ fn search(
         let mut next: Vec<Piece> = Vec::new();
         for &parent in &beam {
             let turns = if depth == 0 { -BENDS..=BENDS } else { -2..=2 };
+            let place = pieces[parent].end.position();
+            let near = |cone: &&Beside| (cone.position - place).norm_squared() < within * within;
+            let near: Vec<Beside> = beside.iter().filter(near).copied().collect();
             for turn in turns {
                 let bend = pieces[parent].bend + turn;
                 if bend.abs() <= BENDS {
-                    let mut piece =
-                        extended((cones, &sides), &pieces, parent, (bend, turn), before.half_width, p);
+                    let mut piece = extended(&near, &pieces, parent, (bend, turn), before.half_width, p);
                     piece.cost += KEEP * before.away(piece.middle.position());
-                    let way = [pieces[parent].end.position(), piece.end.position()];
+                    let way = [place, piece.end.position()];
                     let through = legs.iter().filter(|leg| passes(way, **leg)).count();
                     piece.cost += THROUGH * through as f64;
                     if leads_back(piece.middle, earlier, before.half_width) {
@@ -211,9 +216,9 @@ fn search(
         beam.clear();
         for piece in next {
             let alike = |&other: &usize| {
-                (pieces[other].end.position() - piece.end.position()).norm() < 0.4
+                pieces[other].bend == piece.bend
                     && (pieces[other].end.heading - piece.end.heading).abs() < 0.12
-                    && pieces[other].bend == piece.bend
+                    && (pieces[other].end.position() - piece.end.position()).norm_squared() < 0.16
             };
             if beam.len() < p.beam && !beam.iter().any(alike) {
                 pieces.push(piece);
@@ -232,9 +237,31 @@ fn search(
     Some((way, cost))
 }
 
-/// A way with one more piece.
+/// A cone that a way may come by.
+#[derive(Debug, Clone, Copy)]
+struct Beside {
+    position: Point,
+    /// Its bit among those that are passed.
+    bit: u128,
+    /// On which sides it is by its colour and by its row: 1 for left, 0 where that is not known.
+    sides: [f64; 2],
+    /// What it is worth at the edge.
+    worth: f64,
+}
+
+fn beside(cones: &[Cone], sides: &[i8]) -> Vec<Beside> {
+    let of_row = |(index, (cone, side)): (usize, (&Cone, &i8))| Beside {
+        position: cone.position,
+        bit: bit(index),
+        sides: [f64::from(cone.colour.side()), f64::from(*side)],
+        worth: if *side == 0 { 1.0 } else { OF_ROW },
+    };
+    cones.iter().zip(sides).enumerate().map(of_row).collect()
+}
+
+/// A way with one more piece, between the cones that are near it.
 fn extended(
-    (cones, sides): (&[Cone], &[i8]),
+    near: &[Beside],
     pieces: &[Piece],
     parent: usize,
     (bend, turn): (i32, i32),
@@ -252,7 +279,7 @@ fn extended(
     let steer = p.curvature * f64::from(turn) / f64::from(BENDS);
     let mut passed = pieces[parent].passed;
     let mut cost = pieces[parent].cost + BEND * curvature * curvature + STEER * steer * steer;
-    for (index, (cone, side)) in cones.iter().zip(sides).enumerate() {
+    for cone in near {
         let away = cone.position - middle.position();
         let along = away.dot(&ahead);
         if along.abs() > 0.5 * p.piece {
@@ -260,16 +287,16 @@ fn extended(
         }
         let left = crate::geometry::cross(ahead, away);
         let aside = left.abs();
-        let wrong = f64::from(cone.colour.side()) * left < 0.0 || f64::from(*side) * left < 0.0;
+        let wrong = cone.sides.iter().any(|side| side * left < 0.0);
         let close = ((p.clearance - aside) / 0.4).max(0.0);
         let off = (aside - half_width) / if aside > half_width { WIDER * p.loose } else { p.loose };
         cost += TOUCH * (close * close).min(1.0);
         let fits = 1.0 - off * off;
         // A way that goes around the end of a row comes by its cones a second time.
-        let again = passed & bit(index) != 0;
+        let again = passed & cone.bit != 0;
         if !wrong && fits > 0.0 && !again {
-            cost -= if *side == 0 { fits } else { OF_ROW * fits };
-            passed |= bit(index);
+            cost -= cone.worth * fits;
+            passed |= cone.bit;
         } else if wrong && aside < half_width + p.loose {
             cost += WRONG_SIDE;
         }

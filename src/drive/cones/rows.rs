@@ -46,7 +46,7 @@ const FARTHER: f64 = 1.7;
 /// rows. One more cone is worth 1, and each of a row less than the one before by a share: of what is farther off, less is seen.
 const SLANT: f64 = 0.35;
 const FAR: f64 = 0.07;
-const MISSING: f64 = 0.5;
+const MISSING: f64 = 0.15;
 const CHANGE: f64 = 0.3;
 const OTHER_EDGE: f64 = 2.5;
 const ALONE: f64 = 0.3;
