@@ -6,7 +6,7 @@ use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use roverlab::drive::safety::StoppingModel;
+use roverlab::drive::safety::{SpeedError, StoppingModel};
 use roverlab::geometry::Pose;
 use roverlab::io::log::{Attachment, Header, LogError, LogWriter, Player, Troop, Witness};
 use roverlab::io::robios::{RobiosRobot, RobiosTruth};
@@ -207,7 +207,8 @@ impl CommonArgs {
             None => Stage::race(race().map_err(Failure::input)?, self.faults()?),
         };
         let car = RaceCarSpec::default();
-        let model = StoppingModel { reaction: 0.0, lag: 1.0 / car.speed_gain, deceleration: car.brake };
+        let (lag, deceleration) = (1.0 / car.speed_gain, car.brake);
+        let model = StoppingModel { reaction: 0.0, lag, deceleration, error: SpeedError::NONE };
         self.recorded(scene, stage, vec![model])
     }
 
@@ -217,6 +218,9 @@ impl CommonArgs {
             _ => None,
         };
         let stops = self.origin.stops().clone();
+        // How well speeds are measured goes by the noise.
+        let error = SpeedError::default().scaled(self.noise);
+        let models = models.into_iter().map(|model| StoppingModel { error, ..model }).collect();
         let guard = self.supervised.then_some(Guard { models, apart: false, stops });
         Ok(Stage { recording: self.recording(scene, player)?, guard, ..stage })
     }
@@ -289,6 +293,7 @@ fn motors(scene: &Scene) -> Vec<StoppingModel> {
         reaction: 0.0,
         lag: motor.time_constant,
         deceleration: motor.max_acceleration,
+        error: SpeedError::NONE,
     };
     motors.map(model).collect()
 }

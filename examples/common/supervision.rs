@@ -143,7 +143,7 @@ pub(crate) fn guarded(
         };
         Panel { heartbeat: Some(beat.count), requests, ..Panel::default() }
     });
-    let parameters = SupervisorParameters::default();
+    let parameters = SupervisorParameters { speed_error: model.error, ..SupervisorParameters::default() };
     let stopping = parameters.stopping(model.lag, model.deceleration);
     let mut inner = Supervised::new(robot, exchange, parameters)?;
     inner.wait(0.1)?;

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use roverlab::drive::cones::{Racer, RacerParameters, sightings};
-use roverlab::drive::safety::{SafetyState, StopRecord, Supervised, SupervisorParameters};
+use roverlab::drive::safety::{SafetyState, SpeedError, StopRecord, Supervised, SupervisorParameters};
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::NoiseModel;
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
@@ -94,7 +94,11 @@ pub(crate) fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Drive
     let mut judge = Judge::new(course, stage.truth(0)?, 0).map_err(Failure::run)?;
     let events = if args.event.is_empty() { Event::ALL.to_vec() } else { args.event.clone() };
     let limit = args.common.time_limit.unwrap_or(20.0 + 15.0 * events.len() as f64);
-    let parameters = SupervisorParameters { fence: fence(args.fence), ..SupervisorParameters::default() };
+    let parameters = SupervisorParameters {
+        fence: fence(args.fence),
+        speed_error: SpeedError::default().scaled(args.common.noise),
+        ..SupervisorParameters::default()
+    };
     let spec = RaceCarSpec::default();
     let stopping = parameters.stopping(1.0 / spec.speed_gain, spec.brake);
     let base = Base::new(Crew::new(events), stage.truth(0)?, parameters.heartbeat);

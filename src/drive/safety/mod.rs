@@ -37,7 +37,7 @@
 //! is stuck arms nothing, even if it was stuck before the power came.
 //!
 //! [`Supervised`] puts any robot under this system: it looks at buttons, heartbeats, fence, pedals, program and sensors in every
-//! control period, and brakes. [`BaseStation`] is its other end.
+//! control period, and brakes. [`StoppingModel`] says how far it goes until it stands, with the [`SpeedError`] of what it measures. [`BaseStation`] is its other end.
 
 mod cause;
 mod health;
@@ -57,5 +57,5 @@ pub use machine::{SafetyCore, SafetyInputs, SafetyState};
 pub use monitor::{Deadline, Debounce, SignalHealth, SignalLimits, SignalMonitor, is_inside};
 pub use parameters::SupervisorParameters;
 pub use station::{BaseStation, Beat, Panel, Station};
-pub use stopping::StoppingModel;
+pub use stopping::{SpeedError, StoppingModel};
 pub use supervised::{StopRecord, Supervised};

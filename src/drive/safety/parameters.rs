@@ -1,4 +1,4 @@
-use super::StoppingModel;
+use super::{SpeedError, StoppingModel};
 use super::health::HealthLimits;
 use crate::geometry::Point;
 use crate::io::{Error, Result};
@@ -22,6 +22,8 @@ pub struct SupervisorParameters {
     pub gentle: f64,
     /// Metres per second, and radians per second, below which the vehicle stands.
     pub standing: [f64; 2],
+    /// How well the speed is measured, which says how far a stop may go.
+    pub speed_error: SpeedError,
     /// What sensors may do.
     pub health: HealthLimits,
 }
@@ -37,6 +39,7 @@ impl Default for SupervisorParameters {
             override_threshold: 0.1,
             gentle: 3.0,
             standing: [0.01, 0.02],
+            speed_error: SpeedError::default(),
             health: HealthLimits::default(),
         }
     }
@@ -44,9 +47,10 @@ impl Default for SupervisorParameters {
 
 impl SupervisorParameters {
     /// How a vehicle stops that follows speeds with a lag and a greatest deceleration: it reacts within one control period, and
-    /// brakes as gently as is allowed.
+    /// brakes as gently as is allowed from the speed that it measures.
     pub fn stopping(&self, lag: f64, deceleration: f64) -> StoppingModel {
-        StoppingModel { reaction: 2.0 * self.period, lag, deceleration: deceleration.min(self.gentle) }
+        let deceleration = deceleration.min(self.gentle);
+        StoppingModel { reaction: 2.0 * self.period, lag, deceleration, error: self.speed_error }
     }
 
     pub(super) fn validate(&self) -> Result<()> {
@@ -68,6 +72,13 @@ impl SupervisorParameters {
             ("equal readings in a row", f64::from(self.health.repeats)),
         ] {
             crate::io::error::require_positive(name, value)?;
+        }
+        for (name, value) in
+            [("relative error of the speed", self.speed_error.share), ("error of the speed", self.speed_error.offset)]
+        {
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err(Error::invalid_input(name, value, "0 or more, and finite"));
+            }
         }
         if matches!(self.fence.len(), 1 | 2) {
             return Err(Error::invalid_input(
