@@ -63,7 +63,7 @@ pub enum FaultKind {
 /// | text | means |
 /// |---|---|
 /// | `late@5`, `late:lidar=0.2@5` | readings are 0.5 s or 0.2 s old |
-/// | `hang@5`, `hang=3@5`, `hang@5-8` | the first call at 5 s or later takes 1 s or 3 s more |
+/// | `hang@5`, `hang=3@5`, `hang@5-8` | the first call at 5 s or later takes 1 s or 3 s more, 3600 s at most |
 /// | `clock@5`, `clock=-2@5` | the clock stands still, or jumps back by 2 s |
 /// | `jump@5`, `jump=200,0,90@5` | odometry jumps by 100 mm forward, 100 mm left and 15 degrees, or as given |
 ///
@@ -107,6 +107,8 @@ const KINDS: &str = "stuck, lost, nan, jump, late, link, hang or clock";
 const DEVICES: &str = "front, left, right, back, psdN, lidar, camera, odometry or all";
 const LATE: f64 = 0.5;
 const HANG: f64 = 1.0;
+/// The longest hang, in seconds: a simulated world goes on meanwhile.
+const LONGEST: f64 = 3600.0;
 const JUMP: [f64; 3] = [100.0, 100.0, 15.0];
 
 impl FromStr for Fault {
@@ -153,6 +155,9 @@ fn parse(text: &str) -> std::result::Result<Fault, String> {
         "hang" => {
             let default = until.map_or(HANG, |end| end - at);
             let seconds = not_negative("duration", seconds.unwrap_or(Ok(default))?)?;
+            if seconds > LONGEST {
+                return Err(format!("duration is {seconds}; expected at most {LONGEST}"));
+            }
             // The interval was the duration.
             return Ok(Fault::new(at, FaultKind::Hang(seconds)));
         }
@@ -348,6 +353,8 @@ mod tests {
                 "jump=1,2@1",
                 "fault \"jump=1,2@1\": amount is \"1,2\"; expected FORWARD,LEFT,TURN in millimetres and degrees",
             ),
+            ("hang=1e300@1", "fault \"hang=1e300@1\": duration is 1e300; expected at most 3600"),
+            ("hang@1-9999", "fault \"hang@1-9999\": duration is 9998; expected at most 3600"),
             ("hang=inf@1", "fault \"hang=inf@1\": amount is \"inf\"; expected a finite number"),
         ] {
             let error = text.parse::<Fault>().unwrap_err();
