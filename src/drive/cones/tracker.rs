@@ -79,6 +79,8 @@ pub struct LineTracker {
     reached: bool,
 }
 
+/// What no car's place, in metres, speed or rate of turn comes to.
+const BEYOND_ALL: f64 = 1e6;
 /// Metres from a line within which a car is on it, and metres per second at which it comes to it if it stands.
 const ON_LINE: f64 = 0.3;
 const SLOW: f64 = 2.0;
@@ -133,9 +135,10 @@ impl LineTracker {
     /// place and heading to nothing within some metres, both as the tyres slip. Also the distance from the line, positive to its
     /// left.
     ///
-    /// `None` beyond the end of an open line, and for what is no number.
+    /// `None` beyond the end of an open line, and for what is no number or no car's, as of odometry that has failed.
     pub fn step(&mut self, rear: Pose, moving: Twist) -> Option<(Twist, f64)> {
-        if !(rear.is_finite() && moving.is_finite()) {
+        let is_car = |value: f64| value.abs() < BEYOND_ALL;
+        if ![rear.x, rear.y, rear.heading, moving.linear, moving.angular].into_iter().all(is_car) {
             return None;
         }
         let p = self.parameters;
@@ -282,7 +285,7 @@ mod tests {
         let limits = CarLimits::circle(5.0, 3.0, 5.0, 10.0);
         let profile = SpeedProfile::open(&points, &limits, 5.0, 2.0).unwrap();
         let mut tracker = LineTracker::new(points, profile, false, TrackerParameters::rolling());
-        for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300] {
             assert_eq!(tracker.step(Pose::new(1.0, wrong, 0.0), Twist::new(3.0, 0.0)), None);
             assert_eq!(tracker.step(Pose::new(1.0, 0.0, 0.0), Twist::new(wrong, 0.0)), None);
         }
