@@ -187,6 +187,11 @@ impl Body {
         Twist::new(self.along, self.yaw_rate)
     }
 
+    /// Metres per second of the centre of mass, whichever way.
+    pub(super) fn speed(&self) -> f64 {
+        math::hypot(self.along, self.across)
+    }
+
     /// Metres per second to the left, at the rear axle.
     pub(super) fn slip(&self, spec: &RaceCarSpec) -> f64 {
         self.across - spec.rear * self.yaw_rate
@@ -206,7 +211,10 @@ impl Body {
         let (sin, cos) = math::sin_cos(self.heading);
         let share = match spec.model {
             CarModel::Kinematic => 0.0,
-            CarModel::Dynamic => ((self.along - ROLLS) / (SLIPS - ROLLS)).clamp(0.0, 1.0),
+            CarModel::Dynamic => {
+                let fastest = math::hypot(self.along, self.slip(spec));
+                ((fastest - ROLLS) / (SLIPS - ROLLS)).clamp(0.0, 1.0)
+            }
         };
         let mut next = *self;
         if share > 0.0 {
@@ -222,6 +230,9 @@ impl Body {
             next.along = mix(next.along, along);
             next.yaw_rate = mix(next.yaw_rate, yaw_rate);
             next.across = mix(next.across, yaw_rate * spec.rear);
+            if spec.model == CarModel::Dynamic {
+                next.hold(self, spec, dt);
+            }
         }
         next.x += dt * (cos * next.along - sin * next.across);
         next.y += dt * (sin * next.along + cos * next.across);
@@ -229,12 +240,32 @@ impl Body {
         *self = next;
     }
 
+    /// Keeps what has changed since before within what the tyres can hold: wheels that roll do not begin to at once.
+    fn hold(&mut self, before: &Self, spec: &RaceCarSpec, dt: f64) {
+        let turned = |rate: f64, along: f64, across: f64| {
+            let (sin, cos) = math::sin_cos(dt * rate);
+            (cos * along - sin * across, sin * along + cos * across)
+        };
+        let (along, across) = turned(self.yaw_rate, self.along, self.across);
+        let change = (along - before.along, across - before.across);
+        let excess = math::hypot(change.0, change.1) / (spec.grip * dt);
+        // Rounding is none.
+        if excess <= 1.001 {
+            return;
+        }
+        self.yaw_rate = before.yaw_rate + (self.yaw_rate - before.yaw_rate) / excess;
+        let (along, across) = (before.along + change.0 / excess, before.across + change.1 / excess);
+        (self.along, self.across) = turned(-self.yaw_rate, along, across);
+    }
+
     /// The forces of the tyres act on the speeds.
     fn slide(&mut self, spec: &RaceCarSpec, push: f64, dt: f64) {
         let base = spec.wheelbase();
-        let v = self.along.max(0.5);
+        let v = self.along.abs().max(0.5);
+        // Backwards a wheel that is turned leads to the other side.
+        let steered = self.steering * (self.along / 0.5).clamp(-1.0, 1.0);
         let slips = [
-            math::atan2(self.across + spec.front * self.yaw_rate, v) - self.steering,
+            math::atan2(self.across + spec.front * self.yaw_rate, v) - steered,
             math::atan2(self.across - spec.rear * self.yaw_rate, v),
         ];
         // Without transfer of load, each axle carries what the levers give it, and drives in proportion.
@@ -283,26 +314,47 @@ mod tests {
         }
     }
 
+    /// The acceleration of the centre of mass between two steps, in the frame of the world.
+    fn acceleration(before: &Body, after: &Body, dt: f64) -> f64 {
+        let velocity = |b: &Body| {
+            let (sin, cos) = math::sin_cos(b.heading);
+            (cos * b.along - sin * b.across, sin * b.along + cos * b.across)
+        };
+        let ((a, b), (c, d)) = (velocity(before), velocity(after));
+        math::hypot(c - a, d - b) / dt
+    }
+
     #[test]
     fn no_force_leaves_the_friction_circle() {
-        for (speed, steering) in [(8.0, 0.1), (12.0, 0.2), (20.0, 0.4), (25.0, 0.05)] {
+        for (speed, steering) in [(8.0, 0.1), (12.0, 0.2), (20.0, 0.4), (25.0, 0.05), (-25.0, 0.2), (-6.0, 0.6)] {
             let spec = RaceCarSpec::default();
             let mut body = Body::standing(&spec, Pose::default());
             for _ in 0..4000 {
                 let (before, dt) = (body, 0.002);
                 body.step(&spec, Command { speed, steering }, dt);
-                if before.along < SLIPS {
-                    continue;
-                }
-                // The acceleration of the centre of mass, in the frame of the world.
-                let velocity = |b: &Body| {
-                    let (sin, cos) = math::sin_cos(b.heading);
-                    (cos * b.along - sin * b.across, sin * b.along + cos * b.across)
-                };
-                let ((a, b), (c, d)) = (velocity(&before), velocity(&body));
-                let acceleration = math::hypot(c - a, d - b) / dt;
+                let acceleration = acceleration(&before, &body, dt);
                 assert!(acceleration < 1.02 * spec.grip, "{acceleration} at {before:?}");
             }
+        }
+    }
+
+    /// However it moves and whatever it is told, sliding sideways and backwards included, and the sliding comes to an end.
+    #[test]
+    fn nor_does_any_from_random_driving() {
+        let (spec, mut random) = (RaceCarSpec::default(), crate::random::Stream::new(11));
+        for _ in 0..300 {
+            let mut body = Body::standing(&spec, Pose::default());
+            (body.along, body.across) = (random.between(-25.0, 25.0), random.between(-12.0, 12.0));
+            (body.yaw_rate, body.steering) = (random.between(-5.0, 5.0), random.between(-0.6, 0.6));
+            for k in 0..3000 {
+                let wish = if k < 1000 { random.between(-30.0, 30.0) } else { 0.0 };
+                let command = Command { speed: wish, steering: random.between(-0.6, 0.6) };
+                let (before, dt) = (body, 0.002);
+                body.step(&spec, command, dt);
+                let acceleration = acceleration(&before, &body, dt);
+                assert!(acceleration < 1.02 * spec.grip, "{acceleration} at {before:?}");
+            }
+            assert!(math::hypot(body.along, body.across) < 1e-2, "it stands: {body:?}");
         }
     }
 
