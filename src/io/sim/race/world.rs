@@ -266,11 +266,11 @@ impl Entry {
             self.body.step(&self.spec, self.command, TICK / f64::from(SUBSTEPS));
         }
         let twist = self.body.twist();
-        if twist == Twist::default() {
+        if twist == Twist::default() && self.body.speed() == 0.0 {
             self.measured = twist;
             return;
         }
-        self.distance += twist.linear.abs() * TICK;
+        self.distance += self.body.speed() * TICK;
         let size = options.noise.wheel_mismatch / NoiseModel::real().wheel_mismatch;
         let slip = options.noise.slip * (twist.linear.abs() / TICK).sqrt() * self.drive.normal();
         let rate = twist.angular + self.drift + GYRO_NOISE * size * self.drive.normal();
