@@ -13,11 +13,11 @@ impl Causes {
     pub const REMOTE_STOP: Self = Self(1 << 1);
     /// The base station's heartbeat is missing. Soft.
     pub const HEARTBEAT_LOST: Self = Self(1 << 2);
-    /// The vehicle is outside its fence, or does not know where it is. Soft.
+    /// The vehicle is outside its fence. One that does not know where it is has a sensor that is not to be trusted. Soft.
     pub const OUTSIDE_FENCE: Self = Self(1 << 3);
     /// The driving program does not command any more. Soft.
     pub const WATCHDOG: Self = Self(1 << 4);
-    /// A sensor is frozen, lost, late, jumps or reads no numbers. Soft.
+    /// A sensor is frozen, lost, late or reads no numbers, or odometry jumps. Soft.
     pub const SENSOR: Self = Self(1 << 5);
     /// The clock stands or goes back. Soft.
     pub const CLOCK: Self = Self(1 << 6);

@@ -58,7 +58,8 @@ impl<F: FnMut(f64, Beat) -> Panel> Station for F {
 /// ```
 #[derive(Debug, Clone)]
 pub struct BaseStation {
-    /// What is told beside heartbeat and stop: buttons and pedals on board.
+    /// What is told beside heartbeat and stop: buttons and pedals on board, and `remote_stop` for another button of the station.
+    /// Its heartbeat is the station's own.
     pub panel: Panel,
     vehicle: Deadline,
     last: Option<u64>,
@@ -99,9 +100,31 @@ impl Station for BaseStation {
         }
         self.stop |= self.last.is_some() && self.vehicle.is_over(now);
         if !self.connected {
-            return self.panel;
+            // What is on board is there all the same; nothing of the station's own comes through.
+            return Panel { heartbeat: None, remote_stop: false, ..self.panel };
         }
         self.count += 1;
         Panel { heartbeat: Some(self.count), remote_stop: self.stop || self.panel.remote_stop, ..self.panel }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_of_a_station_comes_through_a_broken_link() {
+        let mut station = BaseStation::new(0.5);
+        let beat = |count| Beat { count, state: SafetyState::Auto };
+        station.panel = Panel { remote_stop: true, heartbeat: Some(7), brake: 0.5, ..Panel::default() };
+        station.panel.emergency_button = true;
+        station.stop();
+        station.connect(false);
+        let heard = station.exchange(0.0, beat(1));
+        assert!(!heard.remote_stop && heard.heartbeat.is_none(), "{heard:?}");
+        assert!(heard.emergency_button && heard.brake == 0.5, "what is on board needs no link: {heard:?}");
+        station.connect(true);
+        let heard = station.exchange(0.1, beat(2));
+        assert!(heard.remote_stop && heard.heartbeat == Some(1), "{heard:?}");
     }
 }
