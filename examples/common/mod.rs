@@ -77,6 +77,7 @@ pub(crate) use origin::Origin;
 pub(crate) use report::{Outcome, Report, millimetres, point_in_mm, rounded};
 pub(crate) use run::{Printed, main, run, run_printing};
 pub(crate) use stage::{Driven, Stage, StageTruth, StagedTroop};
+pub(crate) use supervision::DEADMAN;
 pub(crate) use trip::{StandIn, Trip};
 pub(crate) use values::{
     GoalOption, parse_goal, parse_noise, parse_picture, parse_point, parse_pose, parse_seconds,

@@ -41,6 +41,8 @@ pub(crate) struct Stage {
     truths: Mutex<BTreeMap<usize, SharedTruth>>,
     recording: Recording,
     guard: Option<Guard>,
+    /// Whether robots stop by themselves when nobody talks to them.
+    deadman: bool,
 }
 
 /// What the safety systems of robots go by, one for each robot.
@@ -342,7 +344,13 @@ impl Stage {
             truths: Mutex::default(),
             recording: Recording::default(),
             guard: None,
+            deadman: false,
         }
+    }
+
+    /// The same, with robots that stop by themselves when nobody talks to them for [`DEADMAN`] seconds.
+    pub(crate) fn with_deadman(self) -> Self {
+        Self { deadman: true, ..self }
     }
 
     /// A robot, by its index in the scene. Take all robots that drive at once before the first one does.
@@ -373,7 +381,7 @@ impl Stage {
     /// A simulated robot with the faults of the first one.
     fn faulty(&self, robot: impl RobotIo + Send + 'static, index: usize) -> Result<Driven, Failure> {
         let faults = if index == 0 { self.faults.clone() } else { Vec::new() };
-        if self.guard.is_none() {
+        if self.guard.is_none() && !self.deadman {
             return Ok(self.recording.recorder(Faulty::new(robot, faults), index));
         }
         let robot = Deadman::new(robot, DEADMAN).map_err(Failure::run)?;

@@ -32,6 +32,7 @@ pub(crate) struct Stops {
 /// What a safety system has done.
 #[derive(Debug, Clone, Copy)]
 struct Stop {
+    robot: usize,
     record: Option<StopRecord>,
     /// Metres that the robot went after the stop began, and those that it may go.
     metres: f64,
@@ -43,7 +44,8 @@ struct Stop {
 impl Stops {
     /// What is to be told, if there was a safety system.
     pub(crate) fn take(&self) -> Option<Value> {
-        let stops = std::mem::take(&mut *self.all.lock().unwrap_or_else(PoisonError::into_inner));
+        let mut stops = std::mem::take(&mut *self.all.lock().unwrap_or_else(PoisonError::into_inner));
+        stops.sort_by_key(|stop| stop.robot);
         (!stops.is_empty()).then(|| stops.iter().map(Stop::told).collect())
     }
 
@@ -67,27 +69,47 @@ impl Stop {
     }
 }
 
+/// What was true about a robot at a look.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sight {
+    time: f64,
+    metres: f64,
+    /// How fast it was on average since the look before.
+    speed: f64,
+}
+
 /// How far a robot has truly gone.
 #[derive(Debug, Clone, Copy, Default)]
 struct Odometer {
-    /// When and how far at the last look, and how fast up to then.
-    time: f64,
-    metres: f64,
-    speed: f64,
-    /// How far when the stop began, and how fast it went.
-    stop: Option<(f64, f64)>,
+    last: Sight,
+    before: Sight,
+    stop: Option<Began>,
 }
 
+/// How a stop began.
+#[derive(Debug, Clone, Copy)]
+struct Began {
+    from: Sight,
+    /// Whether nobody had looked for so long that the robot stopped by itself.
+    alone: bool,
+}
+
+/// Seconds between two looks that are too many: the robot's own watchdog has stopped it meanwhile.
+const GAP: f64 = DEADMAN;
+
 impl Odometer {
-    /// Takes in the way at a time. The state is that after the look before.
-    fn read(&mut self, now: f64, metres: f64, state: SafetyState) {
+    /// Takes in the way at a time, both true. The state is that after the look before.
+    fn read(&mut self, time: f64, metres: f64, state: SafetyState) {
+        let Self { last, before, .. } = *self;
         if state.is_stop() && self.stop.is_none() {
-            self.stop = Some((self.metres, self.speed));
+            // Behind a gap, the stop began in it.
+            let alone = last.time - before.time >= GAP;
+            self.stop = Some(Began { from: if alone { before } else { last }, alone });
         }
-        if now > self.time {
-            self.speed = (metres - self.metres).abs() / (now - self.time);
+        if time > last.time {
+            self.before = last;
+            self.last = Sight { time, metres, speed: (metres - last.metres).abs() / (time - last.time) };
         }
-        (self.time, self.metres) = (now, metres);
     }
 }
 
@@ -110,13 +132,14 @@ type Exchange = Box<dyn FnMut(f64, Beat) -> Panel + Send>;
 #[delegate(Encoders, target = "inner")]
 struct Guarded {
     inner: Supervised<Driven, Exchange>,
+    index: usize,
     odometer: Arc<Mutex<Odometer>>,
     stopping: StoppingModel,
     stops: Stops,
 }
 
 /// Seconds without a call after which a supervised robot stops by itself.
-pub(super) const DEADMAN: f64 = 0.3;
+pub(crate) const DEADMAN: f64 = 0.3;
 /// Seconds within which every robot comes to stand.
 const PATIENCE: f64 = 15.0;
 
@@ -130,10 +153,10 @@ pub(crate) fn guarded(
 ) -> Result<Driven> {
     let odometer = Arc::new(Mutex::new(Odometer::default()));
     let read = Arc::clone(&odometer);
-    let exchange: Exchange = Box::new(move |now, beat| {
-        if let Ok(truth) = truth.robot(index) {
+    let exchange: Exchange = Box::new(move |_, beat| {
+        if let (Ok(time), Ok(robot)) = (truth.time(), truth.robot(index)) {
             let mut odometer = read.lock().unwrap_or_else(PoisonError::into_inner);
-            odometer.read(now, truth.path_length, beat.state);
+            odometer.read(time, robot.path_length, beat.state);
         }
         // Armed, then started, each for as long as it takes.
         let requests = Requests {
@@ -147,7 +170,7 @@ pub(crate) fn guarded(
     let stopping = parameters.stopping(model.lag, model.deceleration);
     let mut inner = Supervised::new(robot, exchange, parameters)?;
     inner.wait(0.1)?;
-    Ok(Box::new(Guarded { inner, odometer, stopping, stops }))
+    Ok(Box::new(Guarded { inner, index, odometer, stopping, stops }))
 }
 
 impl Drop for Guarded {
@@ -157,21 +180,22 @@ impl Drop for Guarded {
         // What made the program end may be known to the safety system only when time passes.
         while (waited == 0.0 || self.inner.state().is_stop()) && !stood && waited < PATIENCE {
             // What fails is the fault's; time passes all the same.
-            let before = self.read().metres;
+            let before = self.read().last.metres;
             let _ = self.inner.wait(0.1);
-            stood = (self.read().metres - before).abs() < 1e-5;
+            stood = (self.read().last.metres - before).abs() < 1e-5;
             waited += 0.1;
         }
         let odometer = self.read();
-        let (from, speed) = odometer.stop.unwrap_or((odometer.metres, 0.0));
+        let began = odometer.stop.unwrap_or(Began { from: odometer.last, alone: false });
         let record = self.inner.last_stop();
-        // Without a link, the brake is in the hands of the robot's own watchdog.
-        let alone = record.is_some_and(|record| record.causes.has(Causes::LINK));
+        // Without a link, or while a call hangs, the brake is in the hands of the robot's own watchdog.
+        let alone = began.alone || record.is_some_and(|record| record.causes.has(Causes::LINK));
         let reaction = self.stopping.reaction + if alone { DEADMAN } else { 0.0 };
         self.stops.add(Stop {
+            robot: self.index,
             record,
-            metres: odometer.metres - from,
-            bound: StoppingModel { reaction, ..self.stopping }.distance(speed),
+            metres: odometer.last.metres - began.from.metres,
+            bound: StoppingModel { reaction, ..self.stopping }.distance(began.from.speed),
             stood,
         });
     }

@@ -8,7 +8,7 @@ use roverlab::drive::cones::{
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
 use roverlab::io::sim::{NoiseModel, RobotTruth};
-use roverlab::io::{self, LidarScan, LidarSettings, Resolution, RobotIo};
+use roverlab::io::{self, Clock, LidarScan, LidarSettings, Resolution, RobotIo};
 
 use super::Sensors;
 use super::event;
@@ -75,6 +75,23 @@ impl Other {
             }
         }
         Ok(())
+    }
+}
+
+/// Two cars to which time passes when the first one waits. The second one gets to notice it: its safety system has to look.
+struct Both<'a, R: ?Sized> {
+    waits: &'a mut R,
+    other: &'a mut (dyn RobotIo + Send),
+}
+
+impl<R: Clock + ?Sized> Clock for Both<'_, R> {
+    fn now(&mut self) -> io::Result<f64> {
+        self.waits.now()
+    }
+
+    fn wait(&mut self, seconds: f64) -> io::Result<()> {
+        self.waits.wait(seconds)?;
+        self.other.wait(0.0)
     }
 }
 
@@ -212,6 +229,8 @@ pub(crate) fn race(course: &Course, settings: &Settings, stage: &Stage) -> Resul
     let mut other = settings.other.then(|| Other::new(course, stage)).transpose()?;
     let mut plans = Plans::default();
     let driven = drive(course, settings, car.as_mut(), (&mut judge, other.as_mut()), &mut plans);
+    // The second car goes first: while the other one may have to stop, nobody looks at it.
+    let other = other.map(|other| (other.judge.verdict().cones_hit, judge.touched()));
     drop(car);
     let line = plans.first.iter().map(|point| course.start.to_world(*point)).collect();
     Ok(Outcome {
@@ -223,7 +242,7 @@ pub(crate) fn race(course: &Course, settings: &Settings, stage: &Stage) -> Resul
         trail: judge.trail().to_vec(),
         line,
         standing: judge.standing(),
-        other: other.map(|other| (other.judge.verdict().cones_hit, judge.touched())),
+        other,
     })
 }
 
@@ -250,7 +269,8 @@ fn drive<R: RobotIo + ?Sized>(
         match &mut other {
             Some(other) => {
                 other.act()?;
-                pass(car, &mut [&mut *judge, &mut other.judge], parameters.period)?;
+                let mut both = Both { waits: &mut *car, other: other.car.as_mut() };
+                pass(&mut both, &mut [&mut *judge, &mut other.judge], parameters.period)?;
             }
             None => pass(car, &mut [&mut *judge], parameters.period)?,
         }

@@ -122,7 +122,8 @@ impl Judge {
         }
     }
 
-    fn look(&mut self) -> io::Result<()> {
+    /// Looks at the car.
+    pub(crate) fn look(&mut self) -> io::Result<()> {
         let now = self.truth.robot(self.index)?;
         self.count_hits(&now.contact_places);
         self.last = now;

@@ -4,7 +4,7 @@ use roverlab::drive::safety::{BaseStation, Beat, Panel, SafetyState, Station};
 use roverlab::geometry::Pose;
 
 use super::crew::{Crew, Event};
-use crate::common::StageTruth;
+use crate::common::{DEADMAN, StageTruth};
 
 /// A stop as the camera saw it.
 #[derive(Debug, Clone)]
@@ -13,6 +13,8 @@ pub(crate) struct SeenStop {
     pub(crate) event: Option<(Event, f64)>,
     /// The speed when it began.
     pub(crate) speed: f64,
+    /// Whether nobody had looked for so long that the car had stopped by itself: it began with the last look before.
+    pub(crate) alone: bool,
     /// Where it began, and where the car stood, and how far it had gone at both.
     pub(crate) places: [Pose; 2],
     pub(crate) metres: [f64; 2],
@@ -33,6 +35,7 @@ pub(crate) struct Base {
     pub(crate) crew: Crew,
     truth: StageTruth,
     last: Look,
+    before: Look,
     /// Whether the car of the last stop has not stood yet.
     open: bool,
     pub(crate) stops: Vec<SeenStop>,
@@ -50,23 +53,18 @@ impl Base {
             crew,
             truth,
             last: Look::default(),
+            before: Look::default(),
             open: false,
             stops: Vec::new(),
             states: vec![(0.0, SafetyState::Manual)],
         }
     }
 
-    fn look(&mut self, now: f64) -> Look {
-        let passed = (now - self.last.time).max(1e-6);
-        match self.truth.robot(0) {
-            Ok(truth) => Look {
-                time: now,
-                pose: truth.pose,
-                metres: truth.path_length,
-                speed: (truth.path_length - self.last.metres).abs() / passed,
-            },
-            Err(_) => self.last,
-        }
+    fn look(&mut self) -> Look {
+        let (Ok(time), Ok(truth)) = (self.truth.time(), self.truth.robot(0)) else { return self.last };
+        let passed = (time - self.last.time).max(1e-6);
+        let speed = (truth.path_length - self.last.metres).abs() / passed;
+        Look { time, pose: truth.pose, metres: truth.path_length, speed }
     }
 
     /// Takes in the state that the car has had since the last look.
@@ -76,9 +74,10 @@ impl Base {
             self.states.push((self.last.time, state));
         }
         if state.severity() > before.severity() {
-            let Look { pose, metres, speed, .. } = self.last;
+            let alone = self.last.time - self.before.time >= DEADMAN;
+            let Look { pose, metres, speed, .. } = if alone { self.before } else { self.last };
             let event = self.crew.now;
-            self.stops.push(SeenStop { event, speed, places: [pose; 2], metres: [metres; 2] });
+            self.stops.push(SeenStop { event, speed, alone, places: [pose; 2], metres: [metres; 2] });
             self.open = true;
         }
         if let Some(stop) = self.stops.last_mut().filter(|_| self.open) {
@@ -90,9 +89,12 @@ impl Base {
 
 impl Station for Base {
     fn exchange(&mut self, now: f64, beat: Beat) -> Panel {
-        let look = self.look(now);
+        let look = self.look();
         self.note(beat.state, look);
-        let passed = now - self.last.time;
+        let passed = look.time - self.last.time;
+        if passed > 0.0 {
+            self.before = self.last;
+        }
         self.last = look;
         self.crew.act(&mut self.station, beat.state, look.speed < STANDING, (now, passed));
         self.station.exchange(now, beat)

@@ -3,7 +3,9 @@
 use std::fmt;
 
 use roverlab::drive::cones::{Racer, RacerParameters, sightings};
-use roverlab::drive::safety::{SafetyState, SpeedError, StopRecord, Supervised, SupervisorParameters};
+use roverlab::drive::safety::{
+    Causes, SafetyState, SpeedError, StopRecord, StoppingModel, Supervised, SupervisorParameters,
+};
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::NoiseModel;
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
@@ -13,7 +15,7 @@ use serde_json::{Value, json};
 use super::Args;
 use super::base::{Base, SeenStop};
 use super::crew::{Crew, Event};
-use crate::common::{CommonArgs, Driven as Robot, Failure, Stage, rounded};
+use crate::common::{CommonArgs, DEADMAN, Driven as Robot, Failure, Stage, rounded};
 use crate::cones::{Course, Judge, pass};
 
 /// A stop, and what was true about it.
@@ -106,10 +108,12 @@ pub(crate) fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Drive
     let mut records = Vec::new();
     let done = program(&mut car, &mut judge, limit, &mut records);
     let base = car.station_mut();
-    let stops = base.stops.iter().zip(&records).map(|(seen, record)| Stopped {
-        seen: seen.clone(),
-        record: *record,
-        bound: stopping.distance(seen.speed),
+    let stops = base.stops.iter().zip(&records).map(|(seen, record)| {
+        // Without a link, or while a call hangs, the brake is in the hands of the car's own watchdog.
+        let alone = seen.alone || record.causes.has(Causes::LINK);
+        let reaction = stopping.reaction + if alone { DEADMAN } else { 0.0 };
+        let bound = StoppingModel { reaction, ..stopping }.distance(seen.speed);
+        Stopped { seen: seen.clone(), record: *record, bound }
     });
     Ok(Driven { stops: stops.collect(), states: base.states.clone(), done, judge })
 }
@@ -145,7 +149,7 @@ fn program(
         let before = judge.time();
         let passed = pass(car, &mut [judge], 0.05);
         note(car, records);
-        if passed.is_err() && judge.time() <= before {
+        if passed.is_err() && (judge.look().is_err() || judge.time() <= before) {
             break;
         }
     }

@@ -21,7 +21,8 @@ use drive::{Driven, Stopped};
     about = "A racing car under its safety system: it is armed and started, something happens, it stands, and is set going again",
     after_help = "\
 The car drives between cones at up to 6 m/s. Whatever happens, it has to stand within the distance that is proved for its
-model, and it stands until somebody arms it again. Faults of `--fault` come on top.
+model, and it stands until somebody arms it again. A car that nobody talks to for 0.3 s stops by itself. Faults of `--fault`
+come on top.
 
 JSON fields:
   stops               of each: event, state, causes, time_s, reaction_ms after the event, speed_m_s, distance_m, bound_m
@@ -68,7 +69,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         Some(path) => Course::from_file(common, path)?,
         None => Course::generated(common.seed)?,
     };
-    let stage = common.stage_race(&course.scene(), || drive::world(&course, common))?;
+    let stage = common.stage_race(&course.scene(), || drive::world(&course, common))?.with_deadman();
     let driven = drive::drive(&course, args, &stage)?;
     for stop in &driven.stops {
         common.tell(stop);

@@ -69,6 +69,7 @@ impl SupervisorParameters {
             ("turning speed of standing", angular),
             ("greatest acceleration", self.health.acceleration),
             ("step of the speed", self.health.speed_step),
+            ("age of readings", self.health.age),
             ("equal readings in a row", f64::from(self.health.repeats)),
         ] {
             crate::io::error::require_positive(name, value)?;

@@ -1,22 +1,12 @@
 use std::collections::BTreeMap;
 
-use ambassador::Delegate;
-use image::RgbImage;
-
 use super::health::{OdometryHealth, ReadingHealth};
 use super::{
     Beat, Causes, Deadline, Debounce, Panel, SafetyCore, SafetyInputs, SafetyState, Station,
     SupervisorParameters, is_inside,
 };
 use crate::geometry::{Pose, Twist};
-use crate::io::delegate::{
-    ambassador_impl_Display, ambassador_impl_Encoders, ambassador_impl_Keys, ambassador_impl_Radio,
-};
-use crate::io::{
-    Clock, Display, DisplayOption, Drive, Encoders, Error, ErrorKind, Fill, Font, Key, Keys, Picture, Pixel,
-    Psd, Radio, RadioMessage, Result, Viewport,
-};
-use crate::world::Colour;
+use crate::io::{Clock, Drive, Error, ErrorKind, Psd, Result};
 
 /// A stop that has begun.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +24,7 @@ pub struct StopRecord {
 /// A robot under the safety system of a car that drives by wire (book, sections 14.2 and 14.3).
 ///
 /// It is a robot like the one inside, but a program's commands reach the wheels in the state [`SafetyState::Auto`] alone, and
-/// whenever time passes, every control period, it looks at the buttons, the heartbeat of the base station, the fence, the
+/// whenever time passes, every control period, in waits and at calls, it looks at the buttons, the heartbeat of the base station, the fence, the
 /// pedals, the program and the sensors. When something is wrong, it brakes, and keeps the curvature that was being driven
 /// until the vehicle stands; then it stands until somebody arms it again. While it brakes gently for want of a heartbeat, or of a
 /// program that has come back, the program's commands still steer, as long as all sensors are well; its speeds count for nothing.
@@ -65,12 +55,7 @@ pub struct StopRecord {
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Debug, Delegate)]
-#[expect(clippy::duplicated_attributes, reason = "every capability has the same target")]
-#[delegate(Display, target = "inner")]
-#[delegate(Keys, target = "inner")]
-#[delegate(Radio, target = "inner")]
-#[delegate(Encoders, target = "inner")]
+#[derive(Debug)]
 pub struct Supervised<R, S> {
     pub(super) inner: R,
     station: S,
@@ -81,8 +66,10 @@ pub struct Supervised<R, S> {
     heartbeat: Deadline,
     heard: Option<u64>,
     beat: u64,
-    /// Time that passed by waiting, which is what the watchdog goes by: a clock may stop.
+    /// Seconds that have passed: those of the clock, and at least those that were waited, as a clock may stop.
     pub(super) waited: f64,
+    /// What the clock showed when nothing had passed.
+    origin: Option<f64>,
     /// When it looks next, in that time.
     pub(super) due: f64,
     watchdog: Deadline,
@@ -128,11 +115,12 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
             heard: None,
             beat: 0,
             waited: 0.0,
+            origin: None,
             due: 0.0,
             watchdog,
             outside: Debounce::new(parameters.fence_debounce),
             fence: parameters.fence.iter().map(|corner| [corner.x, corner.y]).collect(),
-            odometry: OdometryHealth::new(),
+            odometry: OdometryHealth::new(&parameters.health),
             scans: ReadingHealth::default(),
             images: ReadingHealth::default(),
             distances: BTreeMap::new(),
@@ -188,13 +176,37 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
         Ok(manual)
     }
 
-    /// The program is alive.
+    /// The program is alive. What happened in the time since its last call is seen before that counts.
     pub(super) fn alive(&mut self) {
+        self.pass(0.0);
+        self.look_if_due();
         self.watchdog.feed(self.waited);
     }
 
+    /// Time has passed: so many seconds at least, and more if the clock says so.
+    pub(super) fn pass(&mut self, seconds: f64) {
+        self.waited += seconds;
+        let Some(now) = self.inner.peek_time().ok().filter(|now| now.is_finite()) else { return };
+        // To the nanosecond, as in recordings.
+        let now = (now * 1e9).round() / 1e9;
+        let shown = now - *self.origin.get_or_insert(now - self.waited);
+        self.waited = self.waited.max(shown);
+    }
+
+    /// Looks once in every control period.
+    pub(super) fn look_if_due(&mut self) {
+        if self.waited < self.due - 1e-6 {
+            return;
+        }
+        let next = self.waited + self.parameters.period;
+        self.look();
+        // Looking takes time on some robots, but must not take all of it.
+        self.pass(0.0);
+        self.due = next.max(self.waited + 0.1 * self.parameters.period);
+    }
+
     /// One look at everything, and what follows from it.
-    pub(super) fn look(&mut self) {
+    fn look(&mut self) {
         let mut causes = std::mem::take(&mut self.seen);
         causes = causes.with(self.read_clock());
         let (odometry, standing) = self.read_odometry();
@@ -220,7 +232,7 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
             Ok(now) => {
                 let went_on = self.clock.replace(now).is_none_or(|before| {
                     let passed = now - before;
-                    // It may also have passed in calls, but not stood, and not leapt.
+                    // It may go on in calls for longer, but not stand, and not leap.
                     passed > 0.2 * self.parameters.period && passed < self.parameters.period + 0.5
                 });
                 Causes::NONE.with_if(!went_on, Causes::CLOCK)
@@ -320,6 +332,17 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
         if alone && twist.linear * self.speed > 0.0 && twist.linear.abs() > 1e-3 && wanted.is_finite() {
             self.curvature = wanted;
         }
+    }
+
+    /// A reading that the program asked for. How long that took tells how late it is.
+    pub(super) fn reading<T>(&mut self, read: impl FnOnce(&mut R) -> Result<T>) -> Result<T> {
+        self.alive();
+        let before = self.waited;
+        let answer = read(&mut self.inner);
+        self.pass(0.0);
+        let late = self.waited - before > self.parameters.health.age;
+        self.seen = self.seen.with_if(late, Causes::SENSOR);
+        self.note(answer)
     }
 
     pub(super) fn note<T>(&mut self, answer: Result<T>) -> Result<T> {

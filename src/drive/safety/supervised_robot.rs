@@ -6,10 +6,51 @@ use super::health::digest;
 use super::supervised::{Supervised, fault};
 use super::{Causes, Station};
 use crate::geometry::{Pose, Twist};
+use crate::io::wrappers::signatures;
 use crate::io::{
-    Camera, Clock, DistanceSensors, Drive, ErrorKind, Lidar, LidarScan, LidarSettings, Motors, Psd,
-    Resolution, Result, Servos,
+    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, ErrorKind, Fill, Font, Key,
+    Keys, Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution,
+    Result, Servos, Viewport,
 };
+use crate::world::Colour;
+
+/// Capabilities that drive nothing and tell nothing of the surroundings: calls take time all the same.
+macro_rules! passed_on {
+    ($capability:ident { $( fn $name:ident($($arg:ident: $type:ty),*) -> $result:ty; )* }) => {
+        impl<R: Clock + Drive + $capability, S: Station> $capability for Supervised<R, S> {
+            $( fn $name(&mut self $(, $arg: $type)*) -> Result<$result> {
+                self.alive();
+                self.inner.$name($($arg),*)
+            } )*
+        }
+    };
+}
+
+signatures! { Display => passed_on!() }
+signatures! { Radio => passed_on!() }
+signatures! { Encoders => passed_on!() }
+
+impl<R: Clock + Drive + Keys, S: Station> Keys for Supervised<R, S> {
+    fn read_key(&mut self) -> Result<Option<Key>> {
+        self.alive();
+        self.inner.read_key()
+    }
+
+    /// Asks once in every control period, and looks.
+    fn wait_key(&mut self) -> Result<Key> {
+        loop {
+            if let Some(key) = self.read_key()? {
+                return Ok(key);
+            }
+            self.wait(self.parameters.period)?;
+        }
+    }
+
+    fn read_touch(&mut self) -> Result<Option<Pixel>> {
+        self.alive();
+        self.inner.read_touch()
+    }
+}
 
 impl<R: Clock + Drive, S: Station> Clock for Supervised<R, S> {
     fn now(&mut self) -> Result<f64> {
@@ -23,19 +64,16 @@ impl<R: Clock + Drive, S: Station> Clock for Supervised<R, S> {
         let mut left = seconds;
         let mut answer = Ok(());
         while left > 1e-9 {
-            let part = left.min(self.due - self.waited).max(1e-9);
+            let part = left.min(self.due - self.waited).max(1e-6);
             let waited = self.inner.wait(part);
-            self.waited += part;
+            self.pass(part);
             left -= part;
             if let Err(error) = waited {
                 self.seen =
                     self.seen.with(fault(&error)).with_if(error.kind() == ErrorKind::TimedOut, Causes::LINK);
                 answer = Err(error);
             }
-            if self.waited >= self.due - 1e-9 {
-                self.due = self.waited + self.parameters.period;
-                self.look();
-            }
+            self.look_if_due();
             if answer.is_err() {
                 break;
             }
@@ -63,21 +101,20 @@ impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
     }
 
     fn speed(&mut self) -> Result<Twist> {
-        self.alive();
-        let answer = self.inner.speed();
-        self.note(answer)
+        self.reading(R::speed)
     }
 
     fn pose(&mut self) -> Result<Pose> {
-        self.alive();
-        let answer = self.inner.pose();
-        self.note(answer)
+        self.reading(R::pose)
     }
 
     fn set_pose(&mut self, pose: Pose) -> Result<()> {
         self.alive();
-        self.odometry.forget();
-        self.inner.set_pose(pose)
+        let answer = self.inner.set_pose(pose);
+        if answer.is_ok() {
+            self.odometry.move_to(pose);
+        }
+        self.note(answer)
     }
 
     fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
@@ -165,8 +202,7 @@ impl<R: Clock + Drive + Servos, S: Station> Servos for Supervised<R, S> {
 
 impl<R: Clock + Drive + Lidar, S: Station> Lidar for Supervised<R, S> {
     fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()> {
-        self.alive();
-        let answer = self.inner.scan_into(scan);
+        let answer = self.reading(|inner| inner.scan_into(scan));
         if answer.is_ok() {
             let number = !scan.ranges.iter().any(|range| range.is_nan());
             let shows = scan.ranges.iter().any(|range| range.is_finite());
@@ -174,46 +210,47 @@ impl<R: Clock + Drive + Lidar, S: Station> Lidar for Supervised<R, S> {
             let good = self.scans.read(digest, self.pose, &self.parameters.health);
             self.seen = self.seen.with_if(!(number && good), Causes::SENSOR);
         }
-        self.note(answer)
+        answer
     }
 
     fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
+        self.alive();
         self.inner.configure_lidar(settings)
     }
 }
 
 impl<R: Clock + Drive + DistanceSensors, S: Station> DistanceSensors for Supervised<R, S> {
     fn distance(&mut self, sensor: Psd) -> Result<f64> {
-        self.alive();
-        let answer = self.inner.distance(sensor);
+        let answer = self.reading(|inner| inner.distance(sensor));
         if let Ok(distance) = answer {
             let digest = distance.is_finite().then(|| distance.to_bits());
             let health = self.distances.entry(sensor).or_default();
             let good = health.read(digest, self.pose, &self.parameters.health);
             self.seen = self.seen.with_if(distance.is_nan() || !good, Causes::SENSOR);
         }
-        self.note(answer)
+        answer
     }
 }
 
 impl<R: Clock + Drive + Camera, S: Station> Camera for Supervised<R, S> {
     fn set_resolution(&mut self, resolution: Resolution) -> Result<()> {
+        self.alive();
         self.inner.set_resolution(resolution)
     }
 
     fn resolution(&mut self) -> Result<Resolution> {
+        self.alive();
         self.inner.resolution()
     }
 
     fn image_into(&mut self, image: &mut RgbImage) -> Result<()> {
-        self.alive();
-        let answer = self.inner.image_into(image);
+        let answer = self.reading(|inner| inner.image_into(image));
         if answer.is_ok() {
             let black = image.as_raw().iter().all(|level| *level == 0);
             let digest = digest(image.as_raw().iter().map(|level| u64::from(*level)));
             let good = self.images.read(Some(digest), self.pose, &self.parameters.health);
             self.seen = self.seen.with_if(black || !good, Causes::SENSOR);
         }
-        self.note(answer)
+        answer
     }
 }

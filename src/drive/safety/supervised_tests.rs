@@ -4,7 +4,9 @@ use crate::geometry::{Point, Pose, Twist};
 use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions, SharedRace};
 use crate::io::sim::{NoiseModel, SimOptions, Simulation};
 use crate::io::wrappers::{Fault, Faulty};
-use crate::io::{Clock, Drive, Lidar, LidarScan, MockRobot, Motors, Servos};
+use crate::io::{
+    Camera, Clock, Display, DistanceSensors, Drive, Key, Keys, Lidar, LidarScan, MockRobot, Motors, Psd, Servos,
+};
 use crate::world::{Colour, RobotSpec, Scene, World};
 
 /// Armed and started at once, a heartbeat, and what else is asked for.
@@ -320,6 +322,83 @@ fn the_bend_of_a_servo_is_kept() {
     drop(car);
     let truth = race.truth(0).unwrap();
     assert!(truth.twist.linear > 0.2 && (truth.steering - 0.3).abs() < 0.05, "{truth:?}");
+}
+
+/// A program that never waits is looked at all the same, whatever calls its time goes by.
+#[test]
+fn reading_takes_time_in_which_it_is_looked_at() {
+    let scene = Scene::with_robot(World::walled(8.0, 8.0), RobotSpec::s4(), Pose::new(2.0, 4.0, 0.0));
+    let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 7)).unwrap();
+    let ordered = station(|now, panel| panel.emergency_button = now > 0.5);
+    let mut car =
+        Supervised::new(simulation.robot(0).unwrap(), ordered, SupervisorParameters::default()).unwrap();
+    car.wait(0.1).unwrap();
+    car.set_speed(Twist::new(0.3, 0.0)).unwrap();
+    while car.peek_time().unwrap() < 1.5 {
+        car.distance(Psd::FRONT).unwrap();
+    }
+    let stop = car.last_stop().unwrap();
+    assert!(stop.causes.has(Causes::EMERGENCY_BUTTON) && stop.time < 0.5 + 0.02 + 1e-3, "{stop:?}");
+    let there = simulation.truth().pose(0).unwrap();
+    while car.peek_time().unwrap() < 2.0 {
+        car.set_menu(["", "", "", "END"]).unwrap();
+    }
+    assert!(simulation.truth().pose(0).unwrap().distance_to(there.position()) < 1e-3, "it stands");
+}
+
+/// So is one that waits for a key.
+#[test]
+fn waiting_for_a_key_takes_time_in_which_it_is_looked_at() {
+    let scene = Scene::with_robot(World::walled(8.0, 8.0), RobotSpec::s4(), Pose::new(2.0, 4.0, 0.0));
+    let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 7)).unwrap();
+    simulation.press_key(0, 3.0, Key::Key2).unwrap();
+    let ordered = station(|now, panel| panel.emergency_button = now > 1.0);
+    let mut car =
+        Supervised::new(simulation.robot(0).unwrap(), ordered, SupervisorParameters::default()).unwrap();
+    car.wait(0.1).unwrap();
+    car.set_speed(Twist::new(0.3, 0.0)).unwrap();
+    assert_eq!(car.wait_key().unwrap(), Key::Key2);
+    let stop = car.last_stop().unwrap();
+    assert!(stop.causes == Causes::EMERGENCY_BUTTON && stop.time < 1.0 + 0.02 + 1e-3, "{stop:?}");
+    assert!(simulation.truth().pose(0).unwrap().x < 2.45 && car.peek_time().unwrap() < 3.1);
+}
+
+/// Readings that come late are seen as they get late.
+#[test]
+fn late_readings_stop_it() {
+    for text in ["late:front=0.5@3", "late:lidar=0.5@3", "late:camera=0.5@3"] {
+        let scene = Scene::with_robot(World::walled(8.0, 8.0), RobotSpec::s4(), Pose::new(2.0, 4.0, 0.0));
+        let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 7)).unwrap();
+        let robot = Faulty::new(simulation.robot(0).unwrap(), vec![text.parse::<Fault>().unwrap()]);
+        let mut car = Supervised::new(robot, station(|_, _| {}), SupervisorParameters::default()).unwrap();
+        let (mut scan, mut image) = (LidarScan::default(), image::RgbImage::default());
+        while car.last_stop().is_none() && car.peek_time().unwrap() < 5.0 {
+            let _ = car.set_speed(Twist::new(0.3, 0.2));
+            let _ = (car.distance(Psd::FRONT), car.scan_into(&mut scan), car.image_into(&mut image));
+            let _ = car.wait(0.05);
+        }
+        let stop = car.last_stop();
+        assert!(stop.is_some_and(|stop| stop.causes.has(Causes::SENSOR) && stop.time < 3.5), "{text}: {stop:?}");
+    }
+}
+
+#[test]
+fn a_pose_that_is_set_all_the_time_hides_no_jump() {
+    for pose in [Pose::new(f64::NAN, 0.0, 0.0), Pose::default()] {
+        let scene = Scene::with_robot(World::walled(8.0, 8.0), RobotSpec::s4(), Pose::new(2.0, 4.0, 0.0));
+        let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 7)).unwrap();
+        let faults = vec!["jump=400,200,40@3".parse::<Fault>().unwrap()];
+        let robot = Faulty::new(simulation.robot(0).unwrap(), faults);
+        let mut car = Supervised::new(robot, station(|_, _| {}), SupervisorParameters::default()).unwrap();
+        for _ in 0..200 {
+            let _ = car.set_speed(Twist::new(0.3, 0.0));
+            if car.peek_time().unwrap() < 2.9 || !pose.is_finite() {
+                let _ = car.set_pose(pose);
+            }
+            let _ = car.wait(0.02);
+        }
+        assert!(car.last_stop().is_some_and(|stop| stop.causes.has(Causes::SENSOR)), "{:?}", car.last_stop());
+    }
 }
 
 #[test]

@@ -38,6 +38,8 @@ mod quantised;
 mod trace_text;
 mod traced;
 
+pub(crate) use signatures::signatures;
+
 pub use deadman::Deadman;
 pub use fault::{Fault, FaultKind, Sensor};
 pub use faulty::Faulty;

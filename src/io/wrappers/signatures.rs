@@ -118,3 +118,5 @@ macro_rules! hooked_impl {
         }
     };
 }
+
+pub(crate) use signatures;
