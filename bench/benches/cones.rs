@@ -1,6 +1,6 @@
 //! Planning between cones: the lane around the car in a map of about 200 cones, the way through all of it, and the racing line on
-//! it. What counts is the worst track, so the slowest of many is printed beside the mean; each is the fastest of some repetitions, as the machine has other
-//! things to do.
+//! it, with all cones and with some that are missing and some that are false. What counts is the worst track, so the slowest of
+//! many is printed beside the mean; each is the fastest of some repetitions, as the machine has other things to do.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -10,7 +10,7 @@ use roverlab::drive::cones::{
     CarLimits, CentreLine, CentreLineParameters, Cone, GeneratedTrack, Lane, LaneParameters, LineSolver,
     RacingLineParameters, SpeedProfile, TrackOptions, generate, lane,
 };
-use roverlab::geometry::{Point, Pose, math};
+use roverlab::geometry::{Point, Pose, Vector, math};
 
 /// A map without colours, where the car is, and a way that was driven.
 struct Map {
@@ -45,6 +45,14 @@ fn lane_from(map: &Map, place: usize) -> Option<Lane> {
     lane(&map.cones, &behind, pose(place), &unknown, &LaneParameters::default())
 }
 
+/// A map in which one cone in ten is missing and as many are false.
+fn spoilt(map: &Map) -> Map {
+    let kept = map.cones.iter().enumerate().filter(|(index, _)| index % 10 != 3).map(|(_, cone)| *cone);
+    let aside = |cone: &Cone| Cone::unknown(cone.position + Vector::new(1.6, -1.9));
+    let cones = kept.chain(map.cones.iter().step_by(10).map(aside)).collect();
+    Map { cones, start: map.start, driven: map.driven.clone() }
+}
+
 /// Milliseconds, the fastest of twenty.
 #[allow(clippy::disallowed_methods, reason = "a benchmark measures")]
 fn fastest(mut work: impl FnMut()) -> f64 {
@@ -68,6 +76,7 @@ fn planning(c: &mut Criterion) {
     let racing = RacingLineParameters { margin: 0.95, ..RacingLineParameters::default() };
     let maps = maps();
     let (mut lanes, mut ways, mut lines, mut profiles) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut spoilt_lanes, mut spoilt_ways) = (Vec::new(), Vec::new());
     let mut solver = LineSolver::default();
     for map in &maps {
         for place in (5..map.driven.len() - 1).step_by(100) {
@@ -76,6 +85,16 @@ fn planning(c: &mut Criterion) {
                 black_box(lane_from(map, place));
             }));
         }
+        let spoilt = spoilt(map);
+        for place in (5..map.driven.len() - 1).step_by(100) {
+            spoilt_lanes.push(fastest(|| {
+                black_box(lane_from(&spoilt, place));
+            }));
+        }
+        // Whether it finds a way or not: both take their time.
+        spoilt_ways.push(fastest(|| {
+            let _ = black_box(CentreLine::along(&spoilt.cones, spoilt.start, &spoilt.driven, &parameters));
+        }));
         let plan = || CentreLine::along(&map.cones, map.start, &map.driven, &parameters).expect("a way");
         let way = plan();
         assert!(way.corridor.is_closed(), "the whole track is planned");
@@ -92,6 +111,8 @@ fn planning(c: &mut Criterion) {
     }
     tell("lane around the car", &lanes);
     tell("triangulation, way and corridor", &ways);
+    tell("lane, cones missing and false", &spoilt_lanes);
+    tell("way, cones missing and false", &spoilt_ways);
     tell("racing line", &lines);
     tell("speed profile", &profiles);
     let map = &maps[0];
