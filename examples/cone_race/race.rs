@@ -102,9 +102,9 @@ pub(crate) enum Ending {
     Finished,
     /// Time was over.
     TimedOut,
-    /// The car stood without cones that fit its event.
+    /// The car stood without a lane, or without cones that fit its map or its event.
     Lost,
-    /// The car stood, but not behind the finish and before the end of the lane there.
+    /// The car stood, but not behind the finish and before the end of the lane there; or it counted other laps than the referee.
     Missed,
 }
 
@@ -275,9 +275,14 @@ fn drive<R: RobotIo + ?Sized>(
             None => pass(car, &mut [&mut *judge], parameters.period)?,
         }
         plans.see(&racer);
-        if racer.phase() == RacePhase::Finished && speed.linear.abs() < 0.05 {
+        if racer.is_done(speed) {
             break;
         }
     }
-    Ok(if racer.phase() == RacePhase::Finished { Ending::Finished } else { Ending::TimedOut })
+    Ok(match racer.phase() {
+        RacePhase::Finished if judge.verdict().lap_times.len() == settings.laps => Ending::Finished,
+        RacePhase::Finished => Ending::Missed,
+        RacePhase::Lost => Ending::Lost,
+        RacePhase::Mapping | RacePhase::Racing => Ending::TimedOut,
+    })
 }

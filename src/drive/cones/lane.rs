@@ -36,7 +36,7 @@ impl Default for LaneParameters {
             piece: 2.5,
             pieces: 7,
             curvature: 0.38,
-            beam: 100,
+            beam: 40,
             clearance: 1.15,
             half_width: [1.4, 2.8],
             usual: 1.9,

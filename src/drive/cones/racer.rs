@@ -82,6 +82,8 @@ pub enum RacePhase {
     Racing,
     /// All laps are driven: it stands, or brakes.
     Finished,
+    /// It found no lane for ten metres of the first lap: it stands, or brakes.
+    Lost,
 }
 
 /// Races on a track that it does not know: between the cones that it sees in the first lap, on the racing line in all others.
@@ -110,8 +112,11 @@ pub struct Racer {
     lane: Lane,
     /// Decisions until it drives off: before that, it looks about and turns its wheels.
     looks: u32,
-    /// Metres per second that are left of its speed after the last lap.
+    /// Metres per second that are left of its speed after the last lap, or where it is lost.
     stopping: Option<f64>,
+    /// Metres by odometry, and how many they were when it last had a line to follow.
+    driven: f64,
+    led: f64,
 }
 
 /// Metres around the car within which cones are planned with in the first lap.
@@ -137,10 +142,14 @@ const LOOKS: u32 = 10;
 const NEXT_TO_NONE: f64 = 1e-3;
 /// Rounds in which kinks are taken out of a line.
 const ROUNDS: usize = 4;
-/// Metres per second squared by which it stops after the last lap.
+/// Metres per second squared by which it stops after the last lap, or where it is lost.
 const STOPS: f64 = 4.0;
 /// Metres per second at which it feels its way where nothing is known.
 const CRAWL: f64 = 1.5;
+/// Metres that it feels its way before it is lost.
+const ASTRAY: f64 = 10.0;
+/// Metres per second below which it stands.
+const STILL: f64 = 0.05;
 
 impl Racer {
     /// A racer at the start.
@@ -162,6 +171,8 @@ impl Racer {
             lane: Lane::unknown(parameters.lane.usual),
             looks: LOOKS,
             stopping: None,
+            driven: 0.0,
+            led: 0.0,
         }
     }
 
@@ -195,7 +206,9 @@ impl Racer {
         if !(odometry.is_finite() && speed.is_finite()) {
             return Twist::STOP;
         }
-        self.since_line += self.reckoning.step(odometry, speed, &self.parameters.tracker.tyres);
+        let way = self.reckoning.step(odometry, speed, &self.parameters.tracker.tyres);
+        self.since_line += way;
+        self.driven += way;
         self.map.update(self.reckoning.pose(), seen);
         self.count();
         let command = self.command(speed);
@@ -223,18 +236,7 @@ impl Racer {
 
     fn command(&mut self, speed: Twist) -> Twist {
         match self.phase {
-            RacePhase::Finished => {
-                if self.tracker.as_ref().is_some_and(|tracker| !tracker.is_closed()) {
-                    self.look_ahead();
-                }
-                let command = self.follow(speed);
-                // Straight on would lead off the track: it brakes along the line. Its own speed tells it nothing of how far it has
-                // come with that: what is measured is some percent of it wrong.
-                let stopping = self.stopping.unwrap_or(speed.linear) - STOPS * self.parameters.period;
-                self.stopping = Some(stopping);
-                let slower = stopping.min(command.linear).max(0.0);
-                Twist::new(slower, if speed.linear > 0.1 { slower * curvature_of(command) } else { 0.0 })
-            }
+            RacePhase::Finished | RacePhase::Lost => self.brake(speed),
             RacePhase::Racing => {
                 if std::mem::take(&mut self.plan_again)
                     && let Ok(tracker) = self.whole_track()
@@ -246,12 +248,36 @@ impl Racer {
             }
             RacePhase::Mapping => {
                 self.explore();
-                self.follow(speed)
+                let command = self.follow(speed);
+                if self.driven - self.led > ASTRAY {
+                    self.phase = RacePhase::Lost;
+                    return self.brake(speed);
+                }
+                command
             }
         }
     }
 
-    /// Races until all laps are driven and it stands, or a time is over. `watch` is told of every decision.
+    /// Straight on would lead off the track: it brakes along the line. Its own speed tells it nothing of how far it has come with
+    /// that: what is measured is some percent of it wrong.
+    fn brake(&mut self, speed: Twist) -> Twist {
+        if self.tracker.as_ref().is_some_and(|tracker| !tracker.is_closed()) {
+            self.look_ahead();
+        }
+        let command = self.follow(speed);
+        let stopping = self.stopping.unwrap_or(speed.linear) - STOPS * self.parameters.period;
+        self.stopping = Some(stopping);
+        let slower = stopping.min(command.linear).max(0.0);
+        Twist::new(slower, if speed.linear > 0.1 { slower * curvature_of(command) } else { 0.0 })
+    }
+
+    /// Whether it stands and drives no more.
+    pub fn is_done(&self, speed: Twist) -> bool {
+        matches!(self.phase, RacePhase::Finished | RacePhase::Lost) && speed.linear.abs() < STILL
+    }
+
+    /// Races until all laps are driven and it stands, or it is lost and stands, or a time is over. `watch` is told of
+    /// every decision.
     pub fn run<R: Clock + Drive + Lidar>(
         &mut self,
         robot: &mut R,
@@ -266,7 +292,7 @@ impl Racer {
             let command = self.step(pose, speed, &scan);
             robot.set_speed(command)?;
             watch(robot, self);
-            if self.phase == RacePhase::Finished && speed.linear.abs() < 0.05 {
+            if self.is_done(speed) {
                 break;
             }
             robot.wait(self.parameters.period)?;
@@ -277,6 +303,9 @@ impl Racer {
 
     /// Counts laps at the line, and ends the race.
     fn count(&mut self) {
+        if self.phase == RacePhase::Lost {
+            return;
+        }
         let pose = self.map.pose();
         let Some(line) = self.line else {
             self.line = (self.since_line >= LINE).then_some(pose);
@@ -319,10 +348,9 @@ impl Racer {
     fn follow(&mut self, speed: Twist) -> Twist {
         let pose = self.map.pose();
         let command = self.tracker.as_mut().and_then(|tracker| tracker.step(pose, speed));
-        match command {
-            Some((twist, _)) => twist,
-            None => Twist::new(CRAWL, 0.0),
-        }
+        let Some((twist, _)) = command else { return Twist::new(CRAWL, 0.0) };
+        self.led = self.driven;
+        twist
     }
 
     /// Plans with what is known: the whole track if it closes, else as far as it is seen.
