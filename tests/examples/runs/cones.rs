@@ -18,20 +18,142 @@ fn race(options: &[&str]) -> (u8, Value, String) {
     (status, serde_json::from_slice(&out).unwrap_or(Value::Null), String::from_utf8(err).unwrap())
 }
 
+/// What the race said on standard error, with its status.
+fn race_told(options: &[&str]) -> (u8, String) {
+    let (status, _, err) = race(options);
+    (status, err)
+}
+
+/// Runs the example `cone_drive`. Returns its status and what it said on standard error.
+fn drive(options: &[&str]) -> (u8, String) {
+    let words = ["cone_drive", "--json"].iter().chain(options).map(OsString::from);
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    let status = common::run("cone_drive", words, &mut out, &mut err, cone_drive::work);
+    (status, String::from_utf8(err).unwrap())
+}
+
 #[test]
 fn files_of_cones_are_raced_on() {
     for file in ["oval.csv", "oval.yaml"] {
         let track = format!("tests/data/cones/{file}");
         let options = ["--track", &track, "--laps", "3", "--line", "tests/data/cones/oval_line.csv"];
-        let (_, report, err) = race(&options);
-        assert_eq!(err, "", "{report}");
-        assert!(report["mapped"] == true && report["off_course"] == 0, "{report}");
+        let (status, report, err) = race(&options);
+        assert_eq!((status, err.as_str()), (0, ""), "{report}");
+        assert!(
+            report["mapped"] == true && report["off_course"] == 0 && report["cones_hit"] == 0,
+            "{report}"
+        );
         let times: Vec<f64> =
             report["lap_times_s"].as_array().unwrap().iter().map(|time| time.as_f64().unwrap()).collect();
         // The last lap is on the racing line, and the first one counts as well.
         assert!(report["laps"] == 3 && times.len() == 3 && times[times.len() - 1] < times[0], "{report}");
         assert!(report["racing_line_rms_m"].as_f64().unwrap() < 2.0, "{report}");
     }
+}
+
+#[test]
+fn a_circuit_of_tum_is_lined_and_raced_on() {
+    let (status, report, err) = race(&["--track", "tests/data/cones/oval_tum.csv", "--laps", "3"]);
+    assert_eq!((status, err.as_str()), (0, ""), "{report}");
+    assert!(report["mapped"] == true && report["laps"] == 3 && report["outcome"] == "finished", "{report}");
+}
+
+#[test]
+fn cameras_see_the_cones_of_laps() {
+    for sensors in ["camera", "both"] {
+        let options = ["--track", "tests/data/cones/oval.csv", "--laps", "2", "--sensors", sensors];
+        let (status, report, err) = race(&options);
+        assert_eq!((status, err.as_str()), (0, ""), "{report}");
+        assert!(
+            report["mapped"] == true && report["laps"] == 2 && report["outcome"] == "finished",
+            "{report}"
+        );
+    }
+}
+
+#[test]
+fn campaigns_without_flying_laps_have_no_figures_of_them() {
+    let (status, report, err) = race(&["--campaign", "2", "--laps", "1", "--seed", "3"]);
+    assert_eq!((status, err.as_str()), (0, ""), "{report}");
+    assert!(report["finished"] == 2 && report["laps"] == 2, "{report}");
+    for field in ["mean_racing_speed_m_s", "mean_lap_over_optimum", "worst_lap_over_optimum"] {
+        assert_eq!(report[field], Value::Null, "{report}");
+    }
+}
+
+#[test]
+fn a_car_that_has_lost_its_lane_stops() {
+    let (status, report, err) = race(&["--seed", "3", "--missing", "0.9"]);
+    assert_eq!(status, 1, "{report} {err}");
+    assert!(report["outcome"] == "lost" || report["outcome"] == "collided", "{report}");
+    assert!(err.contains("found no lane, and stopped"), "{err}");
+    assert!(report["sim_time_s"].as_f64().unwrap() < 120.0, "{report}");
+}
+
+#[test]
+fn options_without_effect_are_refused() {
+    let log = "tests/data/cones/log.json";
+    let line = "tests/data/cones/oval_line.csv";
+    for (options, option) in [
+        (vec!["--quantised"], "--quantised: "),
+        (vec!["--realtime"], "--realtime: "),
+        (vec!["--start", "1,2,3"], "--start: "),
+        (vec!["--campaign", "1", "--line", line], "--line: "),
+        (vec!["--campaign", "1", "--animation", "x.svg"], "--animation: "),
+        (vec!["--campaign", "1", "--supervised"], "--supervised: "),
+        (vec!["--track", "tests/data/cones/oval.csv", "--laps", "1", "--line", line], "--line: "),
+        (vec!["--track", log, "--laps", "3"], "--laps: "),
+        (vec!["--track", log, "--noise", "1"], "--noise: "),
+        (vec!["--track", log, "--time-limit", "10"], "--time-limit: "),
+        (vec!["--track", log, "--seed", "1"], "--seed: "),
+        (vec!["--animation", "/nonexistent/x.svg"], "--animation /nonexistent/x.svg: "),
+        (vec!["--picture", "x.svg", "--animation", "./x.svg"], "--picture and --animation: "),
+        (vec!["--animation", "x.png"], "invalid value 'x.png'"),
+    ] {
+        let (status, _, err) = race(&options);
+        assert!(status == 2 && err.starts_with(option) && err.contains("expected"), "{options:?}: {err}");
+    }
+    for (option, value) in [("--goal", "1,2"), ("--robot", "y"), ("--world", "x")] {
+        let (status, err) = drive(&[option, value]);
+        assert!(status == 2 && err.contains("has no meaning for a race"), "{err}");
+    }
+}
+
+#[test]
+fn tracks_that_are_none_are_refused() {
+    let folder = std::env::temp_dir().join(format!("roverlab-no-tracks-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    let ring = |name: &str, count: u32, radius: f64, row: &dyn Fn(f64, f64) -> String, header: &str| {
+        let arm = |k| direction(TAU * f64::from(k) / f64::from(count)) * radius;
+        let rows: String = (0..count).map(arm).map(|arm| row(arm.x, arm.y)).collect();
+        let file = folder.join(name);
+        fs::write(&file, format!("{header}\n{rows}")).unwrap();
+        file.display().to_string()
+    };
+    let tum = |x: f64, y: f64| format!("{x},{y},0.5,0.5\n");
+    let pair = |x: f64, y: f64| {
+        let out = Point::new(x, y).coords.normalize() * 1.6;
+        let (a, b) = (Point::new(x, y) - out, Point::new(x, y) + out);
+        format!("blue,{},{},0,0,0,0\nyellow,{},{},0,0,0,0\n", a.x, a.y, b.x, b.y)
+    };
+    let blue = |x: f64, y: f64| format!("- [{x}, {y}]\n");
+    let header = "# x_m,y_m,w_tr_right_m,w_tr_left_m";
+    for (file, expected) in [
+        (ring("short.csv", 8, 0.75, &tum, header), "expected a closed corridor of 30 to 50000 m"),
+        (ring("tiny.csv", 4, 0.5, &tum, header), "expected at least 5"),
+        (ring("long.csv", 500, 9e4, &tum, header), "expected a closed corridor of 30 to 50000 m"),
+        (ring("far.csv", 20, 8e4, &pair, "tag,x,y"), "expected at most 50 m"),
+        (ring("cut.yaml", 20, 30.0, &blue, "cones_left:"), "found no start, 20 blue and 0 yellow cones"),
+    ] {
+        for (status, err) in [drive(&["--track", &file]), race_told(&["--track", &file])] {
+            assert!(status == 2 && err.contains(&file) && err.contains(expected), "{err}");
+        }
+    }
+    let skidpad = folder.join("skidpad.csv").display().to_string();
+    fs::write(&skidpad, write_eufs(&self::skidpad())).unwrap();
+    let (status, err) = drive(&["--track", &skidpad]);
+    assert!(status == 2 && err.contains("which `cone_race` drives"), "{err}");
+    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
@@ -53,7 +175,7 @@ fn the_printed_driver_drives_some_way() {
         common::run("cone_drive", words.iter().map(OsString::from), &mut out, &mut err, cone_drive::work);
     let report: Value = serde_json::from_slice(&out).unwrap();
     assert_eq!((status, err.len()), (0, 0), "{report}");
-    assert!(report["distance_clean_m"].as_f64().unwrap() > 1.0, "{report}");
+    assert!(report["distance_clean_m"].as_f64().unwrap() > 100.0, "{report}");
 }
 
 #[test]
