@@ -131,6 +131,9 @@ pub struct ConeMap {
     /// Where it was in the first lap, and how far it had gone.
     trail: Vec<(Pose, f64)>,
     closed: bool,
+    /// Metres that the car had gone when it was closed.
+    known: f64,
+    fits: Option<bool>,
 }
 
 /// Votes for an edge by which a cone belongs to it, and votes that are counted.
@@ -177,6 +180,8 @@ impl ConeMap {
             way: 0.0,
             trail: Vec::new(),
             closed: false,
+            known: f64::INFINITY,
+            fits: None,
         }
     }
 
@@ -263,12 +268,40 @@ impl ConeMap {
             }
         }
         let matches = self.matches(&seen);
+        self.fits = self.compare(&seen, &matches);
         let known = self.landmarks.len();
         self.learn(&seen, &matches);
         self.forget(known, &matches, sightings);
         if !self.closed && self.trail.last().is_none_or(|(_, way)| self.way - way >= STRIDE) {
             self.trail.push((self.pose, self.way));
         }
+    }
+
+    /// Whether what was seen near the car at last is what a closed map has there. `None` before it is closed, and where neither
+    /// shows anything.
+    pub(super) fn fits(&self) -> Option<bool> {
+        self.fits
+    }
+
+    /// Compares sightings with the cones that the map had when it was closed: later ones may be there for a wrong pose's sake.
+    fn compare(&self, seen: &[&Sighting], matches: &[Option<usize>]) -> Option<bool> {
+        if !self.closed {
+            return None;
+        }
+        let is_known = |landmark: &usize| self.landmarks[*landmark].first <= self.known;
+        let near = seen.iter().zip(matches).filter(|(sighting, _)| sighting.range < VIEW.0);
+        let (mut all, mut known) = (0, 0);
+        for (_, landmark) in near {
+            all += 1;
+            known += usize::from(landmark.as_ref().is_some_and(is_known));
+        }
+        if all > 0 {
+            return Some(2 * known >= all);
+        }
+        let eye = self.pose.compose(&Pose::new(self.parameters.sensor, 0.0, 0.0));
+        let expected = self.confirmed().filter(|cone| in_view(eye.to_local(cone.position).coords)).count();
+        // One cone alone may have been knocked over.
+        (expected >= 2).then_some(false)
     }
 
     /// Takes in that cones at some places are those of an edge: 1 for the left one, -1 for the right one.
@@ -288,7 +321,7 @@ impl ConeMap {
         }
         if self.confirmed().all(|landmark| self.is_fresh(landmark)) {
             // A short lap has led back to cones that it went by just now: pose and map are good without.
-            self.closed = true;
+            (self.closed, self.known) = (true, self.way);
             self.drop_earlier_laps();
             return true;
         }
@@ -302,7 +335,7 @@ impl ConeMap {
         let Some(motion) = register(&points, &onto, expected) else { return false };
         self.bend(motion);
         self.merge();
-        self.closed = true;
+        (self.closed, self.known) = (true, self.way);
         true
     }
 

@@ -82,7 +82,8 @@ pub enum RacePhase {
     Racing,
     /// All laps are driven: it stands, or brakes.
     Finished,
-    /// It found no lane for ten metres of the first lap: it stands, or brakes.
+    /// It found no lane for ten metres of the first lap, or what it sees has not been what its map shows for a while: it stands,
+    /// or brakes.
     Lost,
 }
 
@@ -117,6 +118,8 @@ pub struct Racer {
     /// Metres by odometry, and how many they were when it last had a line to follow.
     driven: f64,
     led: f64,
+    /// Seconds by which what it sees fitted its map less often than not.
+    doubt: f64,
 }
 
 /// Metres around the car within which cones are planned with in the first lap.
@@ -148,6 +151,8 @@ const STOPS: f64 = 4.0;
 const CRAWL: f64 = 1.5;
 /// Metres that it feels its way before it is lost.
 const ASTRAY: f64 = 10.0;
+/// Seconds of sights that do not fit the map before it is lost.
+const DOUBT: f64 = 0.7;
 /// Metres per second below which it stands.
 const STILL: f64 = 0.05;
 
@@ -173,6 +178,7 @@ impl Racer {
             stopping: None,
             driven: 0.0,
             led: 0.0,
+            doubt: 0.0,
         }
     }
 
@@ -238,6 +244,10 @@ impl Racer {
         match self.phase {
             RacePhase::Finished | RacePhase::Lost => self.brake(speed),
             RacePhase::Racing => {
+                if self.is_elsewhere() {
+                    self.phase = RacePhase::Lost;
+                    return self.brake(speed);
+                }
                 if std::mem::take(&mut self.plan_again)
                     && let Ok(tracker) = self.whole_track()
                 {
@@ -256,6 +266,17 @@ impl Racer {
                 command
             }
         }
+    }
+
+    /// Whether it is not where its map says: for some time, most of what it sees near it has not been in the map.
+    fn is_elsewhere(&mut self) -> bool {
+        let period = self.parameters.period;
+        match self.map.fits() {
+            Some(true) => self.doubt = (self.doubt - period).max(0.0),
+            Some(false) => self.doubt += period,
+            None => (),
+        }
+        self.doubt > DOUBT
     }
 
     /// Straight on would lead off the track: it brakes along the line. Its own speed tells it nothing of how far it has come with

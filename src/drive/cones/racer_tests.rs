@@ -152,6 +152,37 @@ fn a_car_without_a_lane_stops() {
 }
 
 #[test]
+fn a_car_that_is_not_where_its_map_says_stops() {
+    let GeneratedTrack { track, corridor } = generate(21, &TrackOptions::drawn(21)).unwrap();
+    let cones: Vec<RaceCone> =
+        track.cones.iter().map(|cone| RaceCone::new(cone.position, Colour::BLUE)).collect();
+    let mut world =
+        Race::new(&cones, &[(RaceCarSpec::default(), track.start.unwrap())], RaceOptions::default()).unwrap();
+    let mut racer = Racer::new(RacerParameters::default());
+    let mut scan = LidarScan::default();
+    // Where the car believes to be leaps by some metres in the third lap, as after a bad correction of its odometry.
+    let leap = |racer: &Racer| if racer.laps() < 2 { Pose::default() } else { Pose::new(4.0, 3.0, 0.4) };
+    let mut before = 0.0;
+    while world.time() < 400.0 {
+        let mut car = world.car(0).unwrap();
+        car.scan_into(&mut scan).unwrap();
+        let (pose, speed) = (car.pose().unwrap(), car.speed().unwrap());
+        let command = racer.step(leap(&racer).compose(&pose), speed, &scan);
+        car.set_speed(command).unwrap();
+        world.advance(0.05);
+        if racer.laps() < 2 {
+            before = world.truth(0).unwrap().distance;
+        }
+        if racer.is_done(speed) {
+            break;
+        }
+    }
+    let gone = world.truth(0).unwrap().distance - before;
+    assert!(racer.phase() == RacePhase::Lost && gone < 60.0, "{:?} after {gone} m", racer.phase());
+    assert!(corridor.length() > 2.0 * gone);
+}
+
+#[test]
 fn the_same_seed_gives_the_same_race() {
     let [a, b] = [0, 1].map(|_| race(2, 1).verdict);
     assert_eq!(a, b);
