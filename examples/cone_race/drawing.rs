@@ -38,6 +38,10 @@ pub(crate) fn picture(course: &Course, outcome: &Outcome) -> Picture {
     let mut line = outcome.line.clone();
     close(&mut line, course);
     picture.line(line, Style::plan().width(1.0).labelled("racing line"));
+    if let Some(other) = &outcome.other {
+        let way = other.trail.iter().map(|(pose, _)| pose.to_world(Point::new(0.8, 0.0)));
+        picture.line(way, Style::aid().width(1.0).colour(Colour::BLACK).labelled("second car"));
+    }
     // All laps: the first one, which is slow, and those on the racing line.
     let points = outcome.trail.iter().map(|(pose, speed)| (pose.to_world(Point::new(0.8, 0.0)), *speed));
     picture.speed_path(points);

@@ -93,7 +93,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = metres)]
     pub(crate) gap: f64,
 
-    /// A second car drives ahead at a stroll, by the book's program.
+    /// A second car drives ahead at a stroll, in the middle of the lane that it sees. Only a lidar sees it.
     #[arg(long)]
     pub(crate) other: bool,
 
@@ -161,6 +161,11 @@ fn svg_file(text: &str) -> Result<PathBuf, String> {
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     check_race(common)?;
+    if args.other && args.sensors == Sensors::Camera {
+        return Err(Failure::input(
+            "--other: cars that drive by the camera alone do not see another one; expected lidar or both for --sensors",
+        ));
+    }
     let spoils = Spoils { false_cones: args.false_cones, missing: args.missing, gap: args.gap };
     if let Some(tracks) = args.campaign {
         return campaign::run(args, tracks, spoils);
@@ -260,8 +265,8 @@ fn report(course: &Course, outcome: &race::Outcome) -> Report {
         .field("track_length_m", rounded(course.corridor.length()))
         .field("cones", course.cones.len())
         .field("mapped", !outcome.line.is_empty())
-        .field("other_cones_hit", outcome.other.map(|(cones, _)| cones))
-        .field("touched", outcome.other.map(|(_, touched)| touched));
+        .field("other_cones_hit", outcome.other.as_ref().map(|other| other.cones_hit))
+        .field("touched", outcome.other.as_ref().map(|other| other.touched));
     Report {
         sim_time: Some(outcome.time),
         collisions: Some(outcome.truth.contacts.into()),

@@ -2,13 +2,13 @@
 
 use image::RgbImage;
 use roverlab::drive::cones::{
-    CameraMount, CameraSight, CarLimits, GapDriver, Hold, LineTracker, RacePhase, Racer, Sighting,
-    SpeedProfile, Tyres, Verdict, fuse, sightings,
+    CameraMount, CameraSight, CarLimits, Cone, ConeMap, Hold, LaneFinder, LineTracker, RacePhase, Racer,
+    Sighting, SpeedProfile, Tyres, Verdict, fuse, sightings,
 };
-use roverlab::geometry::{Point, Pose};
+use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
 use roverlab::io::sim::{NoiseModel, RobotTruth};
-use roverlab::io::{self, Clock, LidarScan, LidarSettings, Resolution, RobotIo};
+use roverlab::io::{self, Clock, LidarScan, Resolution, RobotIo};
 
 use super::Sensors;
 use super::event;
@@ -23,7 +23,7 @@ pub(crate) struct Settings {
     pub(crate) seed: u64,
     pub(crate) noise: f64,
     pub(crate) limit: Option<f64>,
-    /// Whether a second car drives ahead, by the book's program.
+    /// Whether a second car drives ahead.
     pub(crate) other: bool,
 }
 
@@ -41,14 +41,17 @@ impl Settings {
 
 /// Metres that a second car is ahead at first.
 const HEAD_START: f64 = 6.0;
-/// Metres per second of a second car.
+/// Metres per second of a second car, metres that it looks ahead on its way, and those within which it counts on cones.
 const STROLL: f64 = 3.0;
+const LOOK_AHEAD: f64 = 3.5;
+const SIGHT: f64 = 24.0;
 
-/// The second car.
+/// The second car, which drives in the middle of the lane that it sees, whatever it was like a lap ago.
 struct Other {
     car: Driven,
-    driver: GapDriver,
     scan: LidarScan,
+    map: ConeMap,
+    lane: LaneFinder,
     judge: Judge,
     decisions: u32,
 }
@@ -56,26 +59,52 @@ struct Other {
 impl Other {
     fn new(course: &Course, stage: &Stage) -> Result<Self, Failure> {
         let judge = Judge::new(course, stage.truth(1)?, 1).map_err(Failure::run)?;
-        let mut car = stage.robot(1)?;
-        let settings = LidarSettings { field_of_view: std::f64::consts::PI, tilt: 0.0, points: 180 };
-        let ready = car.configure_lidar(settings);
-        ready
-            .and_then(|()| car.set_motor(1, STROLL / RaceCarSpec::default().top_speed))
-            .map_err(Failure::run)?;
-        Ok(Self { car, driver: GapDriver::default(), scan: LidarScan::default(), judge, decisions: 0 })
+        let parameters = course.parameters(1);
+        Ok(Self {
+            car: stage.robot(1)?,
+            scan: LidarScan::default(),
+            map: ConeMap::new(parameters.map),
+            lane: LaneFinder::new(parameters.lane),
+            judge,
+            decisions: 0,
+        })
     }
 
     /// Steers at every second decision of the racer, which is ten times a second.
     fn act(&mut self) -> io::Result<()> {
         self.decisions += 1;
-        if self.decisions.is_multiple_of(2) {
-            self.car.scan_into(&mut self.scan)?;
-            if let Some(position) = self.driver.step(&self.scan) {
-                self.car.set_servo(1, position)?;
-            }
+        if !self.decisions.is_multiple_of(2) {
+            return Ok(());
         }
-        Ok(())
+        self.car.scan_into(&mut self.scan)?;
+        self.map.update(self.car.pose()?, &sightings(&self.scan));
+        let pose = self.map.pose();
+        let near: Vec<Cone> =
+            self.map.fresh_cones().filter(|cone| (cone.position - pose.position()).norm() < SIGHT).collect();
+        let middle = pose.compose(&Pose::new(0.5 * RaceCarSpec::default().wheelbase(), 0.0, 0.0));
+        let lane = self.lane.step(middle, &near);
+        // Without a lane it stands, and looks on.
+        let command = lane.map_or(Twist::STOP, |lane| pursue(&lane.points, pose));
+        self.car.set_speed(command)
     }
+}
+
+/// The way on a circle to the point of a line that is some metres ahead.
+fn pursue(line: &[Point], rear: Pose) -> Twist {
+    let ahead = line.iter().map(|point| rear.to_local(*point)).filter(|point| point.x > 0.0);
+    let off = |point: &Point| (point.coords.norm() - LOOK_AHEAD).abs();
+    let Some(aim) = ahead.min_by(|a, b| off(a).total_cmp(&off(b))) else { return Twist::STOP };
+    let curvature = 2.0 * aim.y / aim.coords.norm_squared().max(1.0);
+    Twist::new(STROLL, STROLL * curvature)
+}
+
+/// What came out of a second car's drive.
+#[derive(Debug, Clone)]
+pub(crate) struct Second {
+    pub(crate) cones_hit: usize,
+    /// Whether the two cars touched.
+    pub(crate) touched: bool,
+    pub(crate) trail: Vec<(Pose, f64)>,
 }
 
 /// Two cars to which time passes when the first one waits. The second one gets to notice it: its safety system has to look.
@@ -123,8 +152,8 @@ pub(crate) struct Outcome {
     /// Of each flying lap on a racing line, the lap time over the quasi-steady optimum on that line.
     pub(crate) over_optimum: Vec<f64>,
     pub(crate) standing: Vec<bool>,
-    /// Cones that the second car hit, and whether the two touched.
-    pub(crate) other: Option<(usize, bool)>,
+    /// What became of a second car.
+    pub(crate) other: Option<Second>,
 }
 
 impl Outcome {
@@ -135,7 +164,7 @@ impl Outcome {
 
     /// Whether all laps were driven without a penalty.
     pub(crate) fn is_clean(&self) -> bool {
-        let touched = self.other.is_some_and(|(_, touched)| touched);
+        let touched = self.other.as_ref().is_some_and(|other| other.touched);
         self.is_finished() && self.verdict.cones_hit + self.verdict.off_course == 0 && !touched
     }
 }
@@ -230,7 +259,11 @@ pub(crate) fn race(course: &Course, settings: &Settings, stage: &Stage) -> Resul
     let mut plans = Plans::default();
     let driven = drive(course, settings, car.as_mut(), (&mut judge, other.as_mut()), &mut plans);
     // The second car goes first: while the other one may have to stop, nobody looks at it.
-    let other = other.map(|other| (other.judge.verdict().cones_hit, judge.touched()));
+    let other = other.map(|other| Second {
+        cones_hit: other.judge.verdict().cones_hit,
+        touched: judge.touched(),
+        trail: other.judge.trail().to_vec(),
+    });
     drop(car);
     let line = plans.first.iter().map(|point| course.start.to_world(*point)).collect();
     Ok(Outcome {

@@ -180,11 +180,15 @@ fn the_printed_driver_drives_some_way() {
 
 #[test]
 fn two_cars_do_not_touch() {
-    for seed in ["1", "2"] {
+    // In the last two, a second car that did not keep to the course was touched.
+    for seed in ["1", "2", "5", "14"] {
         let (_, report, err) = race(&["--seed", seed, "--laps", "2", "--other"]);
         assert_eq!(err, "", "{report}");
         assert!(report["touched"] == false && report["laps"] == 2 && report["cones_hit"] == 0, "{report}");
+        assert_eq!(report["other_cones_hit"], 0, "{report}");
     }
+    let (status, _, err) = race(&["--other", "--sensors", "camera"]);
+    assert!(status == 2 && err.contains("expected lidar or both"), "{err}");
 }
 
 #[test]
