@@ -75,7 +75,8 @@ pub(crate) struct CommonArgs {
     #[arg(long, value_name = "KIND@T")]
     pub(crate) fault: Vec<String>,
 
-    /// Put robots under the safety system, armed and started; what it does is told. Robots stepped as a troop have none.
+    /// Put robots under the safety system, armed and started; what it does is told. Robots of campaigns and
+    /// those that are stepped as a troop have none.
     #[arg(long)]
     pub(crate) supervised: bool,
 
@@ -117,6 +118,16 @@ impl CommonArgs {
             ))),
             _ => Ok(()),
         }
+    }
+
+    /// Fails if robots were to be supervised, and none was.
+    pub(crate) fn check_supervised(&self, was: bool) -> Result<(), Failure> {
+        if self.supervised && !was {
+            return Err(Failure::input(
+                "--supervised: found no robot under a safety system; expected a run of one robot that drives",
+            ));
+        }
+        Ok(())
     }
 
     /// Fails if the options say what the file of a maze says.

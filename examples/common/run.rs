@@ -43,7 +43,9 @@ where
         let mut report = work(args)?;
         common.origin.tell_warnings();
         report.add_trouble(common.origin.take_trouble());
-        if let Some(safety) = common.origin.stops().take() {
+        let safety = common.origin.stops().take();
+        common.check_supervised(safety.is_some())?;
+        if let Some(safety) = safety {
             report = report.field("safety", safety);
         }
         common.check_recorded()?;

@@ -191,7 +191,8 @@ mod tests {
         assert!(read(0..500).iter().all(|good| *good));
         // Whole millimetres are often those of a while ago, but not in their order.
         let mut random = crate::random::Stream::new(3);
-        let rounded: Vec<u64> = (0..20_000).map(|_| (200.0 + 10.0 * random.normal()).round() as u64).collect();
+        let rounded: Vec<u64> =
+            (0..20_000).map(|_| (200.0 + 10.0 * random.normal()).round() as u64).collect();
         let wrong = read(rounded).iter().filter(|good| !**good).count();
         assert!(wrong < 10, "{wrong}");
     }

@@ -1,5 +1,5 @@
-use super::{SpeedError, StoppingModel};
 use super::health::HealthLimits;
+use super::{SpeedError, StoppingModel};
 use crate::geometry::Point;
 use crate::io::{Error, Result};
 
@@ -74,9 +74,10 @@ impl SupervisorParameters {
         ] {
             crate::io::error::require_positive(name, value)?;
         }
-        for (name, value) in
-            [("relative error of the speed", self.speed_error.share), ("error of the speed", self.speed_error.offset)]
-        {
+        for (name, value) in [
+            ("relative error of the speed", self.speed_error.share),
+            ("error of the speed", self.speed_error.offset),
+        ] {
             if !(value >= 0.0 && value.is_finite()) {
                 return Err(Error::invalid_input(name, value, "0 or more, and finite"));
             }

@@ -5,7 +5,8 @@ use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions, SharedRace}
 use crate::io::sim::{NoiseModel, SimOptions, Simulation};
 use crate::io::wrappers::{Fault, Faulty};
 use crate::io::{
-    Camera, Clock, Display, DistanceSensors, Drive, Key, Keys, Lidar, LidarScan, MockRobot, Motors, Psd, Servos,
+    Camera, Clock, Display, DistanceSensors, Drive, Key, Keys, Lidar, LidarScan, MockRobot, Motors, Psd,
+    Servos,
 };
 use crate::world::{Colour, RobotSpec, Scene, World};
 
@@ -378,7 +379,10 @@ fn late_readings_stop_it() {
             let _ = car.wait(0.05);
         }
         let stop = car.last_stop();
-        assert!(stop.is_some_and(|stop| stop.causes.has(Causes::SENSOR) && stop.time < 3.5), "{text}: {stop:?}");
+        assert!(
+            stop.is_some_and(|stop| stop.causes.has(Causes::SENSOR) && stop.time < 3.5),
+            "{text}: {stop:?}"
+        );
     }
 }
 

@@ -156,7 +156,7 @@ fn parse(text: &str) -> std::result::Result<Fault, String> {
             let default = until.map_or(HANG, |end| end - at);
             let seconds = not_negative("duration", seconds.unwrap_or(Ok(default))?)?;
             if seconds > LONGEST {
-                return Err(format!("duration is {seconds}; expected at most {LONGEST}"));
+                return Err(format!("duration is {seconds:?}; expected at most {LONGEST:?} s"));
             }
             // The interval was the duration.
             return Ok(Fault::new(at, FaultKind::Hang(seconds)));
@@ -353,8 +353,8 @@ mod tests {
                 "jump=1,2@1",
                 "fault \"jump=1,2@1\": amount is \"1,2\"; expected FORWARD,LEFT,TURN in millimetres and degrees",
             ),
-            ("hang=1e300@1", "fault \"hang=1e300@1\": duration is 1e300; expected at most 3600"),
-            ("hang@1-9999", "fault \"hang@1-9999\": duration is 9998; expected at most 3600"),
+            ("hang=1e300@1", "fault \"hang=1e300@1\": duration is 1e300; expected at most 3600.0 s"),
+            ("hang@1-9999", "fault \"hang@1-9999\": duration is 9998.0; expected at most 3600.0 s"),
             ("hang=inf@1", "fault \"hang=inf@1\": amount is \"inf\"; expected a finite number"),
         ] {
             let error = text.parse::<Fault>().unwrap_err();

@@ -294,11 +294,15 @@ impl<R: Drive + Clock> Drive for Faulty<R> {
     }
 
     fn set_pose(&mut self, pose: Pose) -> Result<()> {
-        if let Some(time) = self.begin()? {
+        let time = self.begin()?;
+        if let Some(time) = time {
             self.require(time, Sensor::Odometry, "odometry")?;
+        }
+        self.inner.set_pose(pose)?;
+        if let Some(time) = time {
             self.cure_jumps(time);
         }
-        self.inner.set_pose(pose)
+        Ok(())
     }
 
     fn set_speed(&mut self, twist: Twist) -> Result<()> {

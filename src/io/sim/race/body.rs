@@ -326,7 +326,9 @@ mod tests {
 
     #[test]
     fn no_force_leaves_the_friction_circle() {
-        for (speed, steering) in [(8.0, 0.1), (12.0, 0.2), (20.0, 0.4), (25.0, 0.05), (-25.0, 0.2), (-6.0, 0.6)] {
+        for (speed, steering) in
+            [(8.0, 0.1), (12.0, 0.2), (20.0, 0.4), (25.0, 0.05), (-25.0, 0.2), (-6.0, 0.6)]
+        {
             let spec = RaceCarSpec::default();
             let mut body = Body::standing(&spec, Pose::default());
             for _ in 0..4000 {
