@@ -191,11 +191,13 @@ impl Drop for Guarded {
         // Without a link, or while a call hangs, the brake is in the hands of the robot's own watchdog.
         let alone = began.alone || record.is_some_and(|record| record.causes.has(Causes::LINK));
         let reaction = self.stopping.reaction + if alone { DEADMAN } else { 0.0 };
+        // Until it does, the robot follows its last command, and may speed up.
+        let asked = if alone { self.inner.asked().unwrap_or(0.0) } else { 0.0 };
         self.stops.add(Stop {
             robot: self.index,
             record,
             metres: odometer.last.metres - began.from.metres,
-            bound: StoppingModel { reaction, ..self.stopping }.distance(began.from.speed),
+            bound: StoppingModel { reaction, ..self.stopping }.distance(began.from.speed.max(asked)),
             stood,
         });
     }

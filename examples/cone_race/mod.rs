@@ -41,7 +41,7 @@ JSON fields:
   laps, cones_hit, off_course, lap_times_s, total_s    of the race; the total is with penalties, the laps of an event are
                                                        its complete runs
   track_length_m, cones                                of the track
-  racing_line_rms_m                                    distance of the racing line from that of --line
+  racing_line_rms_m                                    distance of the racing line from that of --line, from two laps on
   lap_over_optimum                                     of each flying lap: its time over the quasi-steady optimum for the same
                                                        car on the same line; of an event's times: over that of the car from
                                                        standing, able to stop in the lane behind the finish, or around the
@@ -171,7 +171,6 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         return campaign::run(args, tracks, spoils);
     }
     check_pictures(args)?;
-    check_line(args)?;
     let published = args.line.as_ref().map(|file| published(common, file)).transpose()?;
     let mut course = match &args.track {
         Some(path) => match Course::read(common, path)? {
@@ -310,12 +309,6 @@ fn check_event(args: &Args) -> Result<(), Failure> {
         &given,
         "found a track of an acceleration or a skidpad; expected one of laps, or a command line without it",
     )
-}
-
-/// Fails when there will be no racing line to compare with that of a file.
-fn check_line(args: &Args) -> Result<(), Failure> {
-    let given = [("--line", args.line.is_some() && args.laps < 2)];
-    refuse(&given, "found one lap, which is for the map; expected at least two, or a command line without it")
 }
 
 /// Fails when the pictures cannot be drawn where they are asked for.

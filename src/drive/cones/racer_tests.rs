@@ -177,7 +177,7 @@ fn a_car_that_is_not_where_its_map_says_stops() {
         }
     }
     let gone = world.truth(0).unwrap().distance - before;
-    assert!(racer.phase() == RacePhase::Lost && gone < 60.0, "{:?} after {gone} m", racer.phase());
+    assert!(racer.phase() == RacePhase::Lost && gone < 90.0, "{:?} after {gone} m", racer.phase());
     assert!(corridor.length() > 2.0 * gone);
 }
 

@@ -305,6 +305,12 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
         let _ = self.inner.set_speed(Twist::new(speed, speed * self.curvature));
     }
 
+    /// The speed, in m/s, that the program asked for last: a robot whose link is lost may speed up to it until it stops by itself.
+    /// `None` if it drives by other means than speeds.
+    pub fn asked(&self) -> Option<f64> {
+        Some(self.wanted).filter(|speed| speed.is_finite())
+    }
+
     /// Remembers a command that has reached the wheels: to brake, its curvature is kept.
     pub(super) fn told(&mut self, wanted: f64, curvature: f64) {
         (self.wanted, self.direct) = (wanted.abs(), false);

@@ -123,7 +123,7 @@ impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
         }
         let answer = self.inner.straight(distance, speed);
         if answer.is_ok() {
-            self.told(f64::INFINITY, 0.0);
+            self.told(speed, 0.0);
         }
         self.note(answer)
     }
@@ -145,7 +145,7 @@ impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
         }
         let answer = self.inner.curve(length, angle, speed);
         if answer.is_ok() {
-            self.told(f64::INFINITY, if length.abs() > 1e-3 { angle / length } else { 0.0 });
+            self.told(speed, if length.abs() > 1e-3 { angle / length } else { 0.0 });
         }
         self.note(answer)
     }

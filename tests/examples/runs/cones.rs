@@ -101,7 +101,6 @@ fn options_without_effect_are_refused() {
         (vec!["--campaign", "1", "--line", line], "--line: "),
         (vec!["--campaign", "1", "--animation", "x.svg"], "--animation: "),
         (vec!["--campaign", "1", "--supervised"], "--supervised: "),
-        (vec!["--track", "tests/data/cones/oval.csv", "--laps", "1", "--line", line], "--line: "),
         (vec!["--track", log, "--laps", "3"], "--laps: "),
         (vec!["--track", log, "--noise", "1"], "--noise: "),
         (vec!["--track", log, "--time-limit", "10"], "--time-limit: "),

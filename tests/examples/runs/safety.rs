@@ -24,23 +24,26 @@ const OVAL: [&str; 2] = ["--track", "tests/data/cones/oval.csv"];
 type Drive = fn(&[&str]) -> Ended;
 
 /// The examples in which a robot drives that is supervised, and seconds into their runs at which something goes wrong.
-const PROGRAMS: [(&str, [f64; 2], Drive); 16] = [
+const PROGRAMS: [(&str, [f64; 2], Drive); 18] = [
     ("a_to_b", [2.0, 3.1], |options| run("a_to_b", a_to_b::work, options)),
     ("ackermann", [2.0, 3.1], |options| run("ackermann", ackermann::work, options)),
     ("color_tracking", [2.0, 3.1], |options| run("color_tracking", color_tracking::work, options)),
     ("cone_drive", [2.0, 3.1], |options| run("cone_drive", cone_drive::work, &[&OVAL, options].concat())),
     ("cone_race", [2.0, 3.1], |options| run("cone_race", cone_race::work, &[&OVAL, options].concat())),
+    ("coverage", [2.0, 3.1], |options| run("coverage", coverage::work, options)),
     ("distbug", [2.0, 3.1], |options| run("distbug", distbug::work, options)),
-    ("localise", [2.0, 3.1], |options| run("localise", localise::work, options)),
+    // It has ended before the third second.
+    ("localise", [1.0, 2.0], |options| run("localise", localise::work, options)),
     ("maze_explore", [2.0, 3.1], |options| run("maze_explore", maze_drive::explore, options)),
     ("maze_left", [2.0, 3.1], |options| run("maze_left", maze_drive::left, options)),
     ("maze_lidar", [2.0, 3.1], |options| run("maze_lidar", maze_drive::lidar, options)),
-    ("micromouse", [2.0, 3.1], |options| {
+    ("micromouse", [2.0, 2.6], |options| {
         run("micromouse", micromouse::work, &[&["--explore"], options].concat())
     }),
     ("motion", [2.0, 3.1], |options| run("motion", motion::work, options)),
     ("navigate", [2.0, 3.1], |options| run("navigate", navigate::work, options)),
     ("omni", [2.0, 3.1], |options| run("omni", omni::work, options)),
+    ("random_drive", [2.0, 3.1], |options| run("random_drive", random_drive::work, options)),
     ("second car", [2.0, 3.1], |options| {
         run("cone_race", cone_race::work, &[&OVAL, &["--other"][..], options].concat())
     }),
@@ -63,6 +66,10 @@ fn every_robot_stands_after_every_fault() {
     for (name, times, drive) in PROGRAMS {
         for time in times {
             for (fault, causes) in FAULTS {
+                // It stands then: odometry that sticks says what is so.
+                if name == "motion" && fault == "stuck" {
+                    continue;
+                }
                 let fault = format!("{fault}@{time}");
                 let (_, report, err) = drive(&["--supervised", "--fault", &fault, "--time-limit", "6"]);
                 if wrong(&report["safety"][0], causes) {
@@ -78,11 +85,13 @@ fn every_robot_stands_after_every_fault() {
 #[test]
 fn examples_without_a_supervised_robot_say_so() {
     let programs: [(&str, Drive); 4] = [
+        // Many robots, each in a world of its own.
+        ("bug_compare", |options| run("bug_compare", bug_compare::work, options)),
         // Stepped as a troop, all in one thread.
         ("follow_me", |options| run("follow_me", follow_me::work, options)),
-        ("random_drive", |options| run("random_drive", random_drive::work, options)),
-        // Drives in a simulator of its own, without a stage.
-        ("coverage", |options| run("coverage", coverage::work, options)),
+        ("random_drive", |options| {
+            run("random_drive", random_drive::work, &[&["--robots", "3"], options].concat())
+        }),
         // Many runs, on all cores.
         ("a_to_b", |options| {
             run("a_to_b", a_to_b::work, &[&["--campaign", "--runs", "1"], options].concat())
@@ -92,9 +101,6 @@ fn examples_without_a_supervised_robot_say_so() {
         let (status, _, err) = drive(&["--supervised", "--time-limit", "2"]);
         assert!(status == 2 && err.contains("--supervised: found no robot"), "{name}: {status} {err}");
     }
-    // In the contest of bugs every robot has a world of its own and is supervised; faults are for runs of one robot.
-    let (status, report, err) = run("bug_compare", bug_compare::work, &["--supervised", "--time-limit", "2"]);
-    assert!(report["safety"].as_array().is_some_and(|stops| stops.len() > 1), "{status} {report} {err}");
 }
 
 #[test]
@@ -134,7 +140,8 @@ fn a_car_that_nobody_talks_to_stops() {
             way <= bound && bound < 12.0 && stop["speed_m_s"].as_f64().unwrap() > 1.0,
             "{fault}: {report}"
         );
-        assert!(causes.iter().any(|cause| stop["causes"][0] == *cause), "{fault}: {report}");
+        let seen = stop["causes"].as_array().unwrap();
+        assert!(causes.iter().any(|cause| seen.iter().any(|seen| seen == cause)), "{fault}: {report}");
         assert_eq!(report["collisions"], 0, "{fault}: {report}");
     }
 }
