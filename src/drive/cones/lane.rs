@@ -5,6 +5,9 @@ use super::cone::Cone;
 use super::rows::{RowParameters, Rows, leads_back, passes, rows};
 use crate::geometry::{Point, Pose, Vector, direction, math};
 
+#[cfg(test)]
+mod tests;
+
 /// What a lane is looked for with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaneParameters {
@@ -460,70 +463,5 @@ fn keep_clear(points: &mut [Point], cones: &[Cone], room: f64) {
             *point += pushes;
         }
         smooth(points);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn known(cones: &[Cone]) -> Lane {
-        let p = LaneParameters::default();
-        let mut found = Lane::unknown(p.usual);
-        // Its width is learnt from look to look.
-        for _ in 0..20 {
-            found = lane(cones, &[], Pose::default(), &found, &p).unwrap();
-        }
-        found
-    }
-
-    fn row(side: f64, places: impl Iterator<Item = u32>) -> Vec<Cone> {
-        places.map(|k| Cone::unknown(Point::new(3.0 * f64::from(k), side))).collect()
-    }
-
-    #[test]
-    fn one_edge_is_enough() {
-        let both = [row(1.6, 0..8), row(-1.6, 0..8)].concat();
-        let found = known(&both);
-        // Where a way ends, it may turn to have one more cone beside it.
-        let beyond = |point: &Point| point.y.abs() > if point.x < 10.5 { 0.02 } else { 0.1 };
-        assert!(!found.points.iter().any(beyond), "{found:?}");
-        assert_eq!((found.edges[0].len(), found.edges[1].len()), (7, 7));
-        // The left one ends after six metres; two false cones stand beside the right one.
-        let mut cones = [row(1.6, 0..3), row(-1.6, 0..8)].concat();
-        cones.extend([Point::new(8.0, -3.0), Point::new(13.0, -3.4)].map(Cone::unknown));
-        let found = known(&cones);
-        assert!(found.points.len() > 12 && found.points.iter().all(|p| p.y.abs() < 0.3), "{found:?}");
-    }
-
-    #[test]
-    fn a_cone_that_stands_in_the_lane_is_given_room() {
-        let mut cones = [row(1.8, 0..8), row(-1.8, 0..8)].concat();
-        cones[3].position.y = 1.1;
-        let found = known(&cones);
-        let nearest =
-            found.points.iter().map(|p| (p - cones[3].position).norm()).fold(f64::INFINITY, f64::min);
-        assert!(nearest > 1.3, "{nearest}: {found:?}");
-    }
-
-    #[test]
-    fn a_lane_does_not_go_around_the_end_of_a_row() {
-        // The left row ends; behind it lies the way back. The right one turns off to the right.
-        let ends = [(-3.0, 2.1), (0.0, 2.1), (2.5, 2.6), (3.5, 3.4), (3.8, 4.2)];
-        let turns = [(-3.0, -2.1), (0.0, -2.1), (2.6, -1.6), (4.5, -3.4), (7.0, -4.0), (9.6, -4.2)];
-        let cones: Vec<Cone> =
-            [&ends[..], &turns[..]].concat().iter().map(|&(x, y)| Cone::unknown(Point::new(x, y))).collect();
-        let found = known(&cones);
-        assert!(found.points.iter().all(|point| point.x > -3.0 && point.y < 1.5), "{found:?}");
-        assert!(found.points.last().is_some_and(|last| last.x > 7.0), "{found:?}");
-    }
-
-    #[test]
-    fn there_is_no_lane_beside_a_row_of_known_cones() {
-        let left = |cone: Cone| Cone::new(cone.position, crate::drive::cones::ConeColour::Blue);
-        let cones: Vec<Cone> = row(1.8, 0..8).into_iter().map(left).collect();
-        let found = known(&cones);
-        assert!(found.points.iter().all(|point| point.y < 0.5), "{found:?}");
-        assert!(lane(&[], &[], Pose::default(), &found, &LaneParameters::default()).is_none());
     }
 }

@@ -24,10 +24,11 @@ pub struct StopRecord {
 /// A robot under the safety system of a car that drives by wire (book, sections 14.2 and 14.3).
 ///
 /// It is a robot like the one inside, but a program's commands reach the wheels in the state [`SafetyState::Auto`] alone, and
-/// whenever time passes, every control period, in waits and at calls, it looks at the buttons, the heartbeat of the base station, the fence, the
-/// pedals, the program and the sensors. When something is wrong, it brakes, and keeps the curvature that was being driven
-/// until the vehicle stands; then it stands until somebody arms it again. While it brakes gently for want of a heartbeat, or of a
-/// program that has come back, the program's commands still steer, as long as all sensors are well; its speeds count for nothing.
+/// whenever time passes, every control period, in waits and at calls, it looks at the buttons, the heartbeat of the base
+/// station, the fence, the pedals, the program and the sensors. When something is wrong, it brakes, and keeps the curvature
+/// that was being driven until the vehicle stands; then it stands until somebody arms it again. While it brakes gently for want
+/// of a heartbeat, or of a program that has come back, the program's commands still steer, as long as all sensors are well; its
+/// speeds count for nothing.
 ///
 /// A program that hangs does so between two calls, or in a [`wait`](Clock::wait) that is longer than the watchdog allows.
 ///

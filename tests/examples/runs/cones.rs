@@ -179,7 +179,7 @@ fn the_printed_driver_drives_some_way() {
 
 #[test]
 fn two_cars_do_not_touch() {
-    // In the last two, a second car that did not keep to the course was touched.
+    // In the last two, the cars touched when the second one was driven by the book's program.
     for seed in ["1", "2", "5", "14"] {
         let (_, report, err) = race(&["--seed", seed, "--laps", "2", "--other"]);
         assert_eq!(err, "", "{report}");
