@@ -143,7 +143,7 @@ const MOST_VOTES: i16 = 30;
 const MEMORY: u32 = 80;
 /// Metres from the sensor, and radians from straight ahead, within which a cone that is not seen is missed.
 const VIEW: (f64, f64) = (9.0, 0.8);
-/// Metres from the middle of a thing within which it hides what is behind it, about.
+/// Metres beside a thing within which it hides what is behind it, about.
 const SHADOW: f64 = 0.3;
 /// Metres that the car goes while a cone is fresh: so far, odometry and sightings are good.
 const FRESH: f64 = 25.0;
@@ -510,9 +510,10 @@ fn in_view(place: Vector) -> bool {
 
 /// Whether a thing stands before a place, both seen by a sensor, the thing in the frame of the car.
 fn hides(thing: &Sighting, sensor: f64, place: Vector) -> bool {
+    let beside = SHADOW + if thing.is_cone() { 0.0 } else { 0.5 * thing.size };
     let thing = thing.position.coords - Vector::new(sensor, 0.0);
     let (distance, along) = (place.norm(), thing.dot(&place) / place.norm());
-    along > 0.0 && along < distance - SHADOW && (cross(place, thing) / distance).abs() < SHADOW
+    along > 0.0 && along < distance - SHADOW && (cross(place, thing) / distance).abs() < beside
 }
 
 #[cfg(test)]

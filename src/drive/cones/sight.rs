@@ -38,6 +38,9 @@ const STEP: f64 = 0.3;
 
 /// The things in a scan: runs of beams whose ends are near each other. One beam in between may miss. O(n).
 ///
+/// What is small because something nearer hides the rest of it is left out: that may be a part of anything, such as of the side of
+/// a car, and looks like a cone.
+///
 /// ```
 /// use roverlab::drive::cones::sightings;
 /// use roverlab::io::LidarScan;
@@ -50,32 +53,36 @@ const STEP: f64 = 0.3;
 /// ```
 pub fn sightings(scan: &LidarScan) -> Vec<Sighting> {
     let mut found = Vec::new();
-    let mut run: Vec<(f64, f64)> = Vec::new();
+    let mut run: Vec<usize> = Vec::new();
     let mut misses = 0;
     for (beam, &range) in scan.ranges.iter().enumerate() {
         if !(range.is_finite() && range > 0.05) {
             misses += 1;
             continue;
         }
-        let near = run.last().is_some_and(|&(_, last)| (last - range).abs() < STEP && misses <= 1);
+        let near = run.last().is_some_and(|&last| (scan.ranges[last] - range).abs() < STEP && misses <= 1);
         if !near {
             found.extend(finish(scan, &run));
             run.clear();
         }
-        run.push((scan.angle(beam), range));
+        run.push(beam);
         misses = 0;
     }
     found.extend(finish(scan, &run));
     found
 }
 
-fn finish(scan: &LidarScan, run: &[(f64, f64)]) -> Option<Sighting> {
-    let (first, last) = (run.first()?, run.last()?);
+fn finish(scan: &LidarScan, run: &[usize]) -> Option<Sighting> {
+    let (&first, &last) = (run.first()?, run.last()?);
     let count = run.len() as f64;
-    let angle = run.iter().map(|(angle, _)| angle).sum::<f64>() / count;
-    let mean = run.iter().map(|(_, range)| range).sum::<f64>() / count;
-    let place = |&(angle, range): &(f64, f64)| direction(angle) * range;
+    let angle = run.iter().map(|&beam| scan.angle(beam)).sum::<f64>() / count;
+    let mean = run.iter().map(|&beam| scan.ranges[beam]).sum::<f64>() / count;
+    let place = |beam: usize| direction(scan.angle(beam)) * scan.ranges[beam];
     let size = (place(last) - place(first)).norm();
+    let before = first.checked_sub(1).is_some_and(|beside| is_nearer(scan, beside, first));
+    if size < Sighting::WIDEST_CONE && (before || is_nearer(scan, last + 1, last)) {
+        return None;
+    }
     // Beams meet a disc at a quarter of pi of its radius before its middle, in the mean.
     let range = mean + 0.785 * RADIUS;
     let half = math::asin((RADIUS / range).min(1.0));
@@ -89,6 +96,11 @@ fn finish(scan: &LidarScan, run: &[(f64, f64)]) -> Option<Sighting> {
         error: ERROR,
         colour: ConeColour::Unknown,
     })
+}
+
+/// Whether a beam ends before another one.
+fn is_nearer(scan: &LidarScan, beam: usize, other: usize) -> bool {
+    scan.ranges.get(beam).is_some_and(|range| *range > 0.05 && *range < scan.ranges[other])
 }
 
 #[cfg(test)]
@@ -126,9 +138,11 @@ mod tests {
 
     #[test]
     fn neighbours_are_told_apart() {
-        let found = sightings(&scan_of(&[Point::new(5.0, 0.0), Point::new(5.0, 0.4), Point::new(9.0, 0.1)]));
-        // The third one stands in the shadow of the first.
+        let found = sightings(&scan_of(&[Point::new(5.0, 0.0), Point::new(5.0, 0.4), Point::new(9.0, 0.3)]));
         assert_eq!(found.len(), 3);
+        // The third one stands in the shadow of the first.
+        let found = sightings(&scan_of(&[Point::new(5.0, 0.0), Point::new(5.0, 0.4), Point::new(9.0, 0.1)]));
+        assert_eq!(found.len(), 2);
         assert!(sightings(&LidarScan::default()).is_empty());
     }
 }
