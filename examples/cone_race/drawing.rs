@@ -114,7 +114,9 @@ fn document(course: &Course, outcome: &Outcome) -> Document {
                 .set("fill", colour(cone.colour).to_string()),
         );
     }
-    document.add(car(&outcome.trail, outcome.time, place))
+    let others = outcome.other.iter().map(|other| &other.trail);
+    let cars = others.chain([&outcome.trail]);
+    cars.fold(document, |document, trail| document.add(car(trail, outcome.time, place)))
 }
 
 /// A car that moves along its trail.

@@ -137,6 +137,33 @@ mod tests {
     }
 
     #[test]
+    fn the_side_of_a_car_is_no_row_of_cones() {
+        // From the corner at (6, 0.7) on, beams meet the side ever farther from each other.
+        let step = 0.01;
+        let wall = |beam: i32| {
+            let ray = direction(step * f64::from(beam));
+            let (rear, side) = (6.0 / ray.x, 0.7 / ray.y);
+            if (-0.7..0.7).contains(&(rear * ray.y)) {
+                rear
+            } else if side * ray.x > 6.0 && side * ray.x < 9.0 {
+                side
+            } else {
+                f64::INFINITY
+            }
+        };
+        let ranges: Vec<f64> = (-50..50).map(wall).collect();
+        let scan = LidarScan {
+            angle_min: -0.5,
+            angle_increment: step,
+            range_max: 25.0,
+            ranges,
+            ..LidarScan::default()
+        };
+        let found = sightings(&scan);
+        assert!(found.len() == 1 && !found[0].is_cone(), "{found:?}");
+    }
+
+    #[test]
     fn neighbours_are_told_apart() {
         let found = sightings(&scan_of(&[Point::new(5.0, 0.0), Point::new(5.0, 0.4), Point::new(9.0, 0.3)]));
         assert_eq!(found.len(), 3);

@@ -35,6 +35,19 @@ fn what_is_hidden_is_not_forgotten() {
 }
 
 #[test]
+fn what_a_car_hides_is_not_forgotten() {
+    let mut map = ConeMap::new(ConeMapParameters::default());
+    seen(&mut map, Pose::default(), 10, &[(5.0, 1.9), (8.0, -0.6)]);
+    // The second one is behind the right end of its rear.
+    let car = Sighting { size: 1.4, ..sighting(6.0, 0.0) };
+    (0..20).for_each(|_| map.update(Pose::default(), &[sighting(5.0, 1.9), car]));
+    assert_eq!(map.cones().count(), 2);
+    // It is gone, and so is the cone.
+    seen(&mut map, Pose::default(), 20, &[(5.0, 1.9)]);
+    assert_eq!(map.cones().count(), 1);
+}
+
+#[test]
 fn cones_that_were_passed_before_tell_their_edge() {
     let mut map = ConeMap::new(ConeMapParameters::default());
     seen(&mut map, Pose::default(), 10, &[(6.0, -1.5)]);
