@@ -33,6 +33,8 @@ impl Sighting {
 const RADIUS: f64 = 0.065;
 /// Metres by which the place of a cone in a scan is wrong.
 const ERROR: f64 = 0.03;
+/// Metres within which a beam has met nothing but the car itself.
+const BLIND: f64 = 0.05;
 /// Metres from point to point within one thing.
 const STEP: f64 = 0.3;
 
@@ -56,7 +58,7 @@ pub fn sightings(scan: &LidarScan) -> Vec<Sighting> {
     let mut run: Vec<usize> = Vec::new();
     let mut misses = 0;
     for (beam, &range) in scan.ranges.iter().enumerate() {
-        if !(range.is_finite() && range > 0.05) {
+        if !(range.is_finite() && range > BLIND) {
             misses += 1;
             continue;
         }
@@ -100,7 +102,7 @@ fn finish(scan: &LidarScan, run: &[usize]) -> Option<Sighting> {
 
 /// Whether a beam ends before another one.
 fn is_nearer(scan: &LidarScan, beam: usize, other: usize) -> bool {
-    scan.ranges.get(beam).is_some_and(|range| *range > 0.05 && *range < scan.ranges[other])
+    scan.ranges.get(beam).is_some_and(|range| *range > BLIND && *range < scan.ranges[other])
 }
 
 #[cfg(test)]
