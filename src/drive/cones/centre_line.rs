@@ -2,8 +2,13 @@ use super::cone::Cone;
 use super::corridor::Corridor;
 use super::error::PlanError;
 use super::generate::LONGEST;
-use super::walk::{Mesh, Pair, Walker, Way, sides};
+use super::mesh::Mesh;
+use super::sides::sides;
+use super::walk::{Pair, Walker, Way};
 use crate::geometry::{Point, Pose, Segment, Vector, cross, math};
+
+#[cfg(test)]
+mod tests;
 
 /// What the way between cones is expected to look like.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -29,6 +29,7 @@ mod hold;
 mod lane;
 mod lap;
 mod map;
+mod mesh;
 mod profile;
 mod racer;
 #[cfg(test)]
@@ -38,6 +39,7 @@ mod reckoning;
 mod referee;
 mod registration;
 mod rows;
+mod sides;
 mod sight;
 mod spline;
 #[cfg(test)]
