@@ -1,9 +1,10 @@
 //! The lane ahead of a car that knows only some of its cones: where one side is missing, where gaps are wide, and where others
 //! stand about.
 
+use super::arcs::ArcSearch;
 use super::cone::Cone;
-use super::rows::{RowParameters, Rows, leads_back, passes, rows};
-use crate::geometry::{Point, Pose, Vector, direction, math};
+use super::rows::{Passage, RowParameters, rows};
+use crate::geometry::{Point, Pose, Vector, math};
 
 #[cfg(test)]
 mod tests;
@@ -61,28 +62,12 @@ pub struct Lane {
     pub half_width: f64,
 }
 
-/// What touching a cone costs, having it on the wrong side, passing through a row of cones, leaving the lane found before,
-/// bending and steering.
-const TOUCH: f64 = 6.0;
-const WRONG_SIDE: f64 = 2.0;
-const THROUGH: f64 = 10.0;
-const KEEP: f64 = 0.35;
-const BEND: f64 = 4.0;
-const STEER: f64 = 16.0;
-/// What driving back costs where the car came from.
-const BACK: f64 = 12.0;
-/// How much farther outside a cone may stand than inside: tracks are wider here and there.
-const WIDER: f64 = 1.6;
-/// What a cone of a row is worth to a way that has it at its edge; any other one is worth 1.
-const OF_ROW: f64 = 1.7;
 /// What rows are worth against how well a way goes between them.
 const ROWS: f64 = 0.5;
 /// Metres along the lane over which a cone speaks for its edge.
 pub(super) const SPEAKS: f64 = 6.5;
 /// Metres along the lane within which a cone is next to a station.
 const NEXT_TO: f64 = 1.6;
-/// Different curvatures to one side.
-const BENDS: i32 = 5;
 
 /// Where a car was, is, and has been earlier.
 #[derive(Debug, Clone, Copy)]
@@ -94,18 +79,6 @@ pub(super) struct Way<'w> {
     pub(super) earlier: &'w [Pose],
 }
 
-/// A piece of a way.
-#[derive(Debug, Clone, Copy)]
-struct Piece {
-    middle: Pose,
-    end: Pose,
-    bend: i32,
-    cost: f64,
-    /// The cones that the way has gone by so far at half its width, a bit for each.
-    passed: u128,
-    parent: Option<usize>,
-}
-
 impl Lane {
     /// A lane of which nothing is known but half its width.
     pub(super) fn unknown(half_width: f64) -> Self {
@@ -113,10 +86,15 @@ impl Lane {
     }
 
     /// How far a place is from the lane, 0 to 1; 0 beyond its end.
-    fn away(&self, place: Point) -> f64 {
-        let squared = |i: &usize| (self.points[*i] - place).norm_squared();
-        let nearest = (0..self.points.len()).min_by(|a, b| squared(a).total_cmp(&squared(b)));
-        nearest.filter(|i| i + 2 < self.points.len()).map_or(0.0, |i| squared(&i).min(1.0))
+    pub(super) fn away(&self, place: Point) -> f64 {
+        let mut nearest = (0, f64::INFINITY);
+        for (i, point) in self.points.iter().enumerate() {
+            let squared = (point - place).norm_squared();
+            if squared < nearest.1 {
+                nearest = (i, squared);
+            }
+        }
+        if nearest.0 + 2 < self.points.len() { nearest.1.min(1.0) } else { 0.0 }
     }
 }
 
@@ -164,10 +142,12 @@ fn lane_between(cones: &[Cone], way: &Way, before: &Lane, parameters: &LaneParam
     let narrowest = p.half_width[0];
     let along_rows =
         RowParameters { reach: p.spacing, half_width, narrowest, loose: p.loose, sharpest: p.sharpest };
-    let rows = rows(cones, &stations, way.earlier, &along_rows);
+    let earlier: Vec<Passage> = way.earlier.iter().map(|pose| (*pose).into()).collect();
+    let rows = rows(cones, &stations, &earlier, &along_rows);
+    let search = ArcSearch { cones, earlier: &earlier, before, parameters };
     // Rows alone do not tell whether a car can drive between them.
     let ways = rows.iter().filter_map(|rows| {
-        let (poses, cost) = search(cones, rows, way, before, p)?;
+        let (poses, cost) = search.best(rows, way.car)?;
         Some((cost - ROWS * rows.worth, rows, poses))
     });
     let (_, rows, poses) = ways.min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -175,141 +155,6 @@ fn lane_between(cones: &[Cone], way: &Way, before: &Lane, parameters: &LaneParam
     let sides = rows.sides(cones.len());
     let found = settled((cones, &sides), &stations, half_width, parameters);
     found.edges.iter().any(|edge| !edge.is_empty()).then_some(found)
-}
-
-/// The best way between rows, and what it costs.
-fn search(
-    cones: &[Cone],
-    rows: &Rows,
-    way: &Way,
-    before: &Lane,
-    p: &LaneParameters,
-) -> Option<(Vec<Pose>, f64)> {
-    let (car, earlier) = (way.car, way.earlier);
-    let legs = rows.legs(cones);
-    let beside = beside(cones, &rows.sides(cones.len()));
-    // From the beginning of a piece to what touches it, and to what may be at its edge.
-    let within = p.piece + before.half_width + p.clearance.max(WIDER * p.loose);
-    let start = Piece { middle: car, end: car, bend: 0, cost: 0.0, passed: 0, parent: None };
-    let mut pieces = vec![start];
-    let mut beam = vec![0];
-    for depth in 0..p.pieces {
-        let mut next: Vec<Piece> = Vec::new();
-        for &parent in &beam {
-            let turns = if depth == 0 { -BENDS..=BENDS } else { -2..=2 };
-            let place = pieces[parent].end.position();
-            let near = |cone: &&Beside| (cone.position - place).norm_squared() < within * within;
-            let near: Vec<Beside> = beside.iter().filter(near).copied().collect();
-            for turn in turns {
-                let bend = pieces[parent].bend + turn;
-                if bend.abs() <= BENDS {
-                    let mut piece = extended(&near, &pieces, parent, (bend, turn), before.half_width, p);
-                    piece.cost += KEEP * before.away(piece.middle.position());
-                    let way = [place, piece.end.position()];
-                    let through = legs.iter().filter(|leg| passes(way, **leg)).count();
-                    piece.cost += THROUGH * through as f64;
-                    if leads_back(piece.middle, earlier, before.half_width) {
-                        piece.cost += BACK;
-                    }
-                    next.push(piece);
-                }
-            }
-        }
-        next.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        beam.clear();
-        for piece in next {
-            let alike = |&other: &usize| {
-                pieces[other].bend == piece.bend
-                    && (pieces[other].end.heading - piece.end.heading).abs() < 0.12
-                    && (pieces[other].end.position() - piece.end.position()).norm_squared() < 0.16
-            };
-            if beam.len() < p.beam && !beam.iter().any(alike) {
-                pieces.push(piece);
-                beam.push(pieces.len() - 1);
-            }
-        }
-    }
-    let mut way = Vec::new();
-    let mut at = *beam.first()?;
-    let cost = pieces[at].cost;
-    while let Some(parent) = pieces[at].parent {
-        way.extend([pieces[at].end, pieces[at].middle]);
-        at = parent;
-    }
-    way.reverse();
-    Some((way, cost))
-}
-
-/// A cone that a way may come by.
-#[derive(Debug, Clone, Copy)]
-struct Beside {
-    position: Point,
-    /// Its bit among those that are passed.
-    bit: u128,
-    /// On which sides it is by its colour and by its row: 1 for left, 0 where that is not known.
-    sides: [f64; 2],
-    /// What it is worth at the edge.
-    worth: f64,
-}
-
-fn beside(cones: &[Cone], sides: &[i8]) -> Vec<Beside> {
-    let of_row = |(index, (cone, side)): (usize, (&Cone, &i8))| Beside {
-        position: cone.position,
-        bit: bit(index),
-        sides: [f64::from(cone.colour.side()), f64::from(*side)],
-        worth: if *side == 0 { 1.0 } else { OF_ROW },
-    };
-    cones.iter().zip(sides).enumerate().map(of_row).collect()
-}
-
-/// A way with one more piece, between the cones that are near it.
-fn extended(
-    near: &[Beside],
-    pieces: &[Piece],
-    parent: usize,
-    (bend, turn): (i32, i32),
-    half_width: f64,
-    p: &LaneParameters,
-) -> Piece {
-    let from = pieces[parent].end;
-    let curvature = p.curvature * f64::from(bend) / f64::from(BENDS);
-    let arc = |length: f64| {
-        let chord = direction(from.heading + 0.5 * curvature * length) * length;
-        Pose::new(from.x + chord.x, from.y + chord.y, from.heading + curvature * length)
-    };
-    let middle = arc(0.5 * p.piece);
-    let ahead = direction(middle.heading);
-    let steer = p.curvature * f64::from(turn) / f64::from(BENDS);
-    let mut passed = pieces[parent].passed;
-    let mut cost = pieces[parent].cost + BEND * curvature * curvature + STEER * steer * steer;
-    for cone in near {
-        let away = cone.position - middle.position();
-        let along = away.dot(&ahead);
-        if along.abs() > 0.5 * p.piece {
-            continue;
-        }
-        let left = crate::geometry::cross(ahead, away);
-        let aside = left.abs();
-        let wrong = cone.sides.iter().any(|side| side * left < 0.0);
-        let close = ((p.clearance - aside) / 0.4).max(0.0);
-        let off = (aside - half_width) / if aside > half_width { WIDER * p.loose } else { p.loose };
-        cost += TOUCH * (close * close).min(1.0);
-        let fits = 1.0 - off * off;
-        // A way that goes around the end of a row comes by its cones a second time.
-        let again = passed & cone.bit != 0;
-        if !wrong && fits > 0.0 && !again {
-            cost -= cone.worth * fits;
-            passed |= cone.bit;
-        } else if wrong && aside < half_width + p.loose {
-            cost += WRONG_SIDE;
-        }
-    }
-    Piece { middle, end: arc(p.piece), bend, cost, passed, parent: Some(parent) }
-}
-
-/// The bit of a cone. Those beyond the 128th have none: they count whenever a way comes by.
-fn bit(cone: usize) -> u128 {
-    u32::try_from(cone).ok().and_then(|cone| 1_u128.checked_shl(cone)).unwrap_or(0)
 }
 
 /// A cone of an edge.

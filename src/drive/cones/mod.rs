@@ -13,6 +13,7 @@
 //! - [`minimum_curvature`]: the racing line within a [`Corridor`], and [`SpeedProfile`]: how fast a car goes along it,
 //!   within what its tyres [`Hold`].
 
+mod arcs;
 mod banded;
 mod box_qp;
 mod camera_sight;
@@ -28,6 +29,7 @@ mod generate;
 mod hold;
 mod lane;
 mod lap;
+mod legs;
 mod map;
 mod mesh;
 mod profile;

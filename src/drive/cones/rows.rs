@@ -6,7 +6,8 @@
 //! edge nowhere.
 
 use super::cone::Cone;
-use crate::geometry::{Point, Pose, Vector, cross, math};
+use super::legs::{Leg, legs_from};
+use crate::geometry::{Point, Pose, Vector, angle_difference, cross, math};
 
 #[cfg(test)]
 mod tests;
@@ -26,6 +27,8 @@ pub(super) struct RowParameters {
     pub(super) sharpest: f64,
 }
 
+/// Left and right.
+const SIDES: [f64; 2] = [1.0, -1.0];
 /// Pairs that are followed at a time.
 const BEAM: usize = 16;
 /// Cones of both rows at most.
@@ -36,8 +39,6 @@ const SEEDS: usize = 3;
 const NEXT: usize = 10;
 /// Metres ahead of the car, or behind a place where it was, at which a cone is beside it.
 const BESIDE: f64 = 2.0;
-/// Metres between two cones of a row at least.
-const NEAREST: f64 = 0.3;
 /// How much farther apart than usual the cones of a pair are at most: where they are farther, one row is missing.
 const FARTHER: f64 = 1.7;
 /// What it costs that a leg is aslant to the lane, for a radian squared, that it is long, for a metre, that a cone is missing on it,
@@ -70,10 +71,23 @@ struct End {
     /// `None` where a row begins without a cone.
     cone: Option<usize>,
     place: Point,
-    heading: Vector,
+    heading: f64,
     turn: f64,
     /// What the next cone is worth.
     share: f64,
+}
+
+/// A place by which a car came, and the unit vector along its way.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Passage {
+    pub(super) place: Point,
+    pub(super) ahead: Vector,
+}
+
+impl From<Pose> for Passage {
+    fn from(pose: Pose) -> Self {
+        Self { place: pose.position(), ahead: pose.forward() }
+    }
 }
 
 /// A left and a right row, by their ends, and how they got there.
@@ -117,37 +131,20 @@ impl Rows {
 ///
 /// `places` is where the car was and is, oldest first, and `earlier` the way by which it came. A row ends where no cone goes on with
 /// it. Takes O(n²) for n cones.
-pub(super) fn rows(cones: &[Cone], places: &[Pose], earlier: &[Pose], p: &RowParameters) -> Vec<Rows> {
+pub(super) fn rows(cones: &[Cone], places: &[Pose], earlier: &[Passage], p: &RowParameters) -> Vec<Rows> {
     let Some(car) = places.last() else { return vec![Rows::default()] };
-    let mut search = Search { cones, nearest: nearest(cones, p.reach), earlier, p, pairs: Vec::new() };
+    let mut search = Search::new(cones, *car, earlier, p);
     search.begin(places, *car);
     let mut beam: Vec<usize> = (0..search.pairs.len()).collect();
+    let mut next: Vec<Pair> = Vec::new();
     for _ in 0..LONGEST {
-        let mut next: Vec<Pair> = beam.iter().flat_map(|&parent| search.onward(parent)).collect();
-        next.sort_by(|a, b| b.worth.total_cmp(&a.worth));
-        beam.clear();
-        for pair in next {
-            let alike = |&other: &usize| search.pairs[other].cones() == pair.cones();
-            if beam.len() < BEAM && !beam.iter().any(alike) {
-                search.pairs.push(pair);
-                beam.push(search.pairs.len() - 1);
-            }
+        next.clear();
+        for &parent in &beam {
+            search.onward(parent, &mut next);
         }
+        beam = search.keep_best(&next);
     }
     search.readings()
-}
-
-/// For each cone the others within reach, the nearest ones first.
-fn nearest(cones: &[Cone], reach: f64) -> Vec<Vec<usize>> {
-    let others = |cone: &Cone| {
-        let away = |other: &usize| (cones[*other].position - cone.position).norm();
-        let mut near: Vec<usize> =
-            (0..cones.len()).filter(|other| (NEAREST..reach).contains(&away(other))).collect();
-        near.sort_by(|a, b| away(a).total_cmp(&away(b)));
-        near.truncate(NEXT);
-        near
-    };
-    cones.iter().map(others).collect()
 }
 
 impl Pair {
@@ -158,16 +155,25 @@ impl Pair {
 
 struct Search<'c> {
     cones: &'c [Cone],
-    nearest: Vec<Vec<usize>>,
-    earlier: &'c [Pose],
+    /// From each cone to those that may come next.
+    legs: Vec<Vec<Leg>>,
+    /// From where the left and the right row begin without a cone to their first ones.
+    first: [Vec<Leg>; 2],
+    earlier: &'c [Passage],
     p: &'c RowParameters,
     pairs: Vec<Pair>,
 }
 
-impl Search<'_> {
+impl<'c> Search<'c> {
+    fn new(cones: &'c [Cone], car: Pose, earlier: &'c [Passage], p: &'c RowParameters) -> Self {
+        let legs = cones.iter().map(|cone| legs_from(cone.position, cones, p.reach, NEXT)).collect();
+        let first = SIDES.map(|side| legs_from(beside(car, side, p), cones, p.reach, cones.len()));
+        Self { cones, legs, first, earlier, p, pairs: Vec::new() }
+    }
+
     /// The pairs beside the car, or beside where it was.
     fn begin(&mut self, places: &[Pose], car: Pose) {
-        let [left, right] = [1.0, -1.0].map(|side| self.seeds(places, car, side));
+        let [left, right] = SIDES.map(|side| self.seeds(places, car, side));
         for (left, worth) in &left {
             for (right, other) in &right {
                 let narrow = (left.place - right.place).norm() < 1.5 * self.p.narrowest;
@@ -187,11 +193,7 @@ impl Search<'_> {
                 let local = place.to_local(*position);
                 let aside = side * local.y;
                 let near = (0.5 * p.half_width..p.half_width + p.loose + 0.4).contains(&aside);
-                (local.x.abs() < BESIDE && near).then_some((
-                    at,
-                    place.forward(),
-                    (aside - p.half_width).abs(),
-                ))
+                (local.x.abs() < BESIDE && near).then_some((at, place.heading, (aside - p.half_width).abs()))
             });
             let Some((at, heading, off)) = beside else { continue };
             if f64::from(colour.side()) * side >= 0.0 {
@@ -200,86 +202,132 @@ impl Search<'_> {
             }
         }
         found.sort_by_key(|(at, ..)| *at);
-        let place = car.to_world(Point::new(0.0, side * p.half_width));
-        let none = End { cone: None, place, heading: car.forward(), turn: 0.0, share: 1.0 };
+        let place = beside(car, side, p);
+        let none = End { cone: None, place, heading: car.heading, turn: 0.0, share: 1.0 };
         found.into_iter().take(SEEDS).map(|(_, end, worth)| (end, worth)).chain([(none, -1.0)]).collect()
     }
 
-    /// The pairs that may come next.
-    fn onward(&self, parent: usize) -> Vec<Pair> {
-        let mut found = Vec::new();
+    /// Adds the pairs that may come next.
+    fn onward(&self, parent: usize, next: &mut Vec<Pair>) {
+        let rows = [0, 1].map(|side| self.row(parent, side));
         for side in 0..2 {
-            let candidates: Vec<usize> = match self.pairs[parent].ends[side].cone {
-                Some(cone) => self.nearest[cone].clone(),
-                None => (0..self.cones.len()).collect(),
+            let legs = match self.pairs[parent].ends[side].cone {
+                Some(cone) => &self.legs[cone],
+                None => &self.first[side],
             };
-            found.extend(candidates.into_iter().filter_map(|cone| self.with(parent, side, cone)));
+            next.extend(legs.iter().filter_map(|leg| self.with(parent, &rows, side, leg)));
         }
-        found
     }
 
-    /// A pair with its cone of one side replaced by the next one. `None` where that cannot be.
-    fn with(&self, parent: usize, side: usize, cone: usize) -> Option<Pair> {
+    /// Keeps the best ones of some pairs, no two of the same cones; their places.
+    fn keep_best(&mut self, next: &[Pair]) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..next.len()).collect();
+        order.sort_by(|&a, &b| next[b].worth.total_cmp(&next[a].worth));
+        let mut kept = Vec::with_capacity(BEAM);
+        for pair in order.into_iter().map(|at| &next[at]) {
+            if kept.len() == BEAM {
+                break;
+            }
+            let alike = |&other: &usize| self.pairs[other].cones() == pair.cones();
+            if !kept.iter().any(alike) {
+                self.pairs.push(*pair);
+                kept.push(self.pairs.len() - 1);
+            }
+        }
+        kept
+    }
+
+    /// A pair with its cone of one side replaced by that at the end of a leg. `None` where that cannot be.
+    fn with(&self, parent: usize, rows: &[Row; 2], side: usize, leg: &Leg) -> Option<Pair> {
         let (pair, p) = (&self.pairs[parent], self.p);
-        let sign = [1.0, -1.0][side];
-        let (own, other) = (&pair.ends[side], &pair.ends[1 - side]);
-        let Cone { position, colour } = self.cones[cone];
-        let leg = position - own.place;
-        let length = leg.norm();
-        if !(NEAREST..p.reach).contains(&length) || self.holds(parent, cone) {
+        let own = &pair.ends[side];
+        let turn = angle_difference(leg.heading, own.heading);
+        if turn.abs() > p.sharpest || rows.iter().any(|row| row.holds(leg.to)) {
             return None;
         }
-        let turn = angle(own.heading, leg);
-        if turn.abs() > p.sharpest {
+        let cost = self.cost_along(pair, side, leg);
+        if cost > DEAREST || self.leads_back(side, leg) || rows[1 - side].is_crossed_by(leg.ends) {
             return None;
         }
+        let cost = cost + self.cost_beside(pair, &rows[1 - side], side, leg)?;
+        if cost > DEAREST {
+            return None;
+        }
+        let cost = cost + BETWEEN * self.between(pair, side, leg);
+        let share = own.share * LESS;
+        let end = End { cone: Some(leg.to), place: leg.ends[1], heading: leg.heading, turn, share };
+        let mut ends = pair.ends;
+        ends[side] = end;
+        let worth = pair.worth + own.share * (1.0 - cost);
+        (cost < DEAREST).then_some(Pair { ends, worth, parent: Some(parent) })
+    }
+
+    /// What it costs that a row goes on along a leg.
+    fn cost_along(&self, pair: &Pair, side: usize, leg: &Leg) -> f64 {
+        let own = &pair.ends[side];
+        let turn = angle_difference(leg.heading, own.heading);
         // Where there is a pair, a row may turn sharply to where the other one goes already.
-        let usual = 2.0 * p.half_width;
-        let paired = (own.place - other.place).norm() < FARTHER * usual;
-        let slant = if paired { turn.abs().min(angle(other.heading, leg).abs()) } else { turn.abs() };
-        let width = self.distance_to_row(parent, 1 - side, position);
-        if width < 1.5 * p.narrowest || self.crosses(parent, 1 - side, [own.place, position]) {
-            return None;
-        }
-        // The middle of the lane is to the right of its left row.
-        let inwards = Vector::new(leg.y, -leg.x) * (sign * p.half_width / length);
-        let middle = own.place + leg * 0.5 + inwards;
-        if leads_back(Pose::new(middle.x, middle.y, math::atan2(leg.y, leg.x)), self.earlier, p.half_width) {
-            return None;
-        }
+        let slant = if self.is_paired(pair) {
+            turn.abs().min(angle_difference(leg.heading, pair.ends[1 - side].heading).abs())
+        } else {
+            turn.abs()
+        };
         // Half of the reach is as far as cones stand apart where none is missing.
-        let missing = (3.0 * (length / (0.5 * p.reach) - 1.0)).clamp(0.0, 1.0);
-        let mut cost = leg_cost(slant, length) + MISSING * missing * missing;
+        let missing = (3.0 * (leg.length / (0.5 * self.p.reach) - 1.0)).clamp(0.0, 1.0);
+        let mut cost = leg_cost(slant, leg.length) + MISSING * missing * missing;
         let change = turn - own.turn;
         // The first leg may be aslant: the car is.
         if own.share < 1.0 {
             cost += CHANGE * (change * change).min(1.0);
         }
-        if f64::from(colour.side()) * sign < 0.0 {
+        if f64::from(self.cones[leg.to].colour.side()) * SIDES[side] < 0.0 {
             cost += OTHER_EDGE;
         }
-        cost += TAKEN * self.taken(parent, 1 - side, position, leg_cost(turn, length));
-        let apart = (position - other.place).norm();
-        if apart < FARTHER * usual {
-            let narrow = (1.0 - width / (2.0 * p.narrowest)).max(0.0);
-            let wide = (apart / usual - 1.2).max(0.0);
-            cost += WIDTH * (16.0 * narrow * narrow + wide * wide);
-        } else {
-            cost += ALONE;
-        }
-        if cost > DEAREST {
+        cost
+    }
+
+    /// What it costs that the other row is where it is beside a leg. `None` where that is too near.
+    fn cost_beside(&self, pair: &Pair, other: &Row, side: usize, leg: &Leg) -> Option<f64> {
+        let (narrowest, place) = (self.p.narrowest, leg.ends[1]);
+        let width = other.distance_to(place);
+        if width < 1.5 * narrowest {
             return None;
         }
-        if paired {
-            cost += BETWEEN * self.between([own.place, position, other.place]) as f64;
+        let turn = angle_difference(leg.heading, pair.ends[side].heading);
+        let taken = TAKEN * other.takes(place, leg_cost(turn, leg.length), self.p.reach);
+        let apart = (place - pair.ends[1 - side].place).norm();
+        if apart >= self.widest() {
+            return Some(taken + ALONE);
         }
-        cost += BETWEEN * self.beside([own.place, position], sign) as f64;
-        let end =
-            End { cone: Some(cone), place: position, heading: leg / length, turn, share: own.share * LESS };
-        let mut ends = pair.ends;
-        ends[side] = end;
-        let worth = pair.worth + own.share * (1.0 - cost);
-        (cost < DEAREST).then_some(Pair { ends, worth, parent: Some(parent) })
+        let narrow = (1.0 - width / (2.0 * narrowest)).max(0.0);
+        let wide = (apart / (2.0 * self.p.half_width) - 1.2).max(0.0);
+        Some(taken + WIDTH * (16.0 * narrow * narrow + wide * wide))
+    }
+
+    /// How many cones stand where a leg leaves no room for them: between it and the other cone of a pair, and beside it.
+    fn between(&self, pair: &Pair, side: usize, leg: &Leg) -> f64 {
+        let [from, to] = leg.ends;
+        let within =
+            if self.is_paired(pair) { self.within([from, to, pair.ends[1 - side].place]) } else { 0 };
+        within as f64 + leg.crowd(self.cones, self.p.narrowest)[side]
+    }
+
+    /// Metres between the cones of a pair at most.
+    fn widest(&self) -> f64 {
+        FARTHER * 2.0 * self.p.half_width
+    }
+
+    /// Whether the cones of a pair stand opposite each other: else one row is missing.
+    fn is_paired(&self, pair: &Pair) -> bool {
+        (pair.ends[0].place - pair.ends[1].place).norm() < self.widest()
+    }
+
+    /// Whether the lane beside a leg is the way by which the car came, the wrong way round.
+    fn leads_back(&self, side: usize, leg: &Leg) -> bool {
+        // The middle of the lane is to the right of its left row.
+        let inwards = Vector::new(leg.along.y, -leg.along.x) * (SIDES[side] * self.p.half_width);
+        let place = nalgebra::center(&leg.ends[0], &leg.ends[1]) + inwards;
+        leads_back(Passage { place, ahead: leg.along }, self.earlier, self.p.half_width)
     }
 
     /// A pair and those before it.
@@ -287,57 +335,28 @@ impl Search<'_> {
         std::iter::successors(Some(&self.pairs[pair]), |pair| pair.parent.map(|parent| &self.pairs[parent]))
     }
 
-    /// Whether a row has a cone already.
-    fn holds(&self, pair: usize, cone: usize) -> bool {
-        self.back(pair).any(|pair| pair.cones().contains(&Some(cone)))
-    }
-
-    /// The legs of one of the rows of a pair, the last one first.
-    fn legs(&self, pair: usize, side: usize) -> impl Iterator<Item = [Point; 2]> {
-        let ends = self.back(pair).map(move |pair| pair.ends[side].place);
-        let mut last = None;
-        ends.filter_map(move |place| {
-            last.replace(place).filter(|after| *after != place).map(|after| [place, after])
-        })
-    }
-
-    /// Metres from a point to one of the rows of a pair.
-    fn distance_to_row(&self, pair: usize, side: usize, point: Point) -> f64 {
-        let end = (self.pairs[pair].ends[side].place - point).norm();
-        self.legs(pair, side)
-            .map(|[a, b]| crate::geometry::Segment::new(a, b).distance_to(point))
-            .fold(end, f64::min)
-    }
-
-    /// Whether a leg passes through one of the rows of a pair.
-    fn crosses(&self, pair: usize, side: usize, leg: [Point; 2]) -> bool {
-        self.legs(pair, side).any(|other| passes(leg, other))
-    }
-
-    /// How far a cone, to which a leg would cost so much, goes on better with one of the rows of a pair, 0 to 1.
-    fn taken(&self, pair: usize, side: usize, cone: Point, own: f64) -> f64 {
-        let ends = self.back(pair).map(|pair| &pair.ends[side]);
-        let better = ends.filter_map(|end| Some(own - end.cost_to(cone, self.p.reach)?)).fold(0.0, f64::max);
-        ((better - BETTER[0]) / (BETTER[1] - BETTER[0])).clamp(0.0, 1.0)
+    /// One of the rows of a pair.
+    fn row(&self, pair: usize, side: usize) -> Row {
+        let mut ends: Vec<End> = Vec::with_capacity(LONGEST);
+        for pair in self.back(pair) {
+            let end = pair.ends[side];
+            if ends.last().is_none_or(|last| last.place != end.place) {
+                ends.push(end);
+            }
+        }
+        Row { ends }
     }
 
     /// How many cones stand within a triangle.
-    fn between(&self, [a, b, c]: [Point; 3]) -> usize {
+    fn within(&self, [a, b, c]: [Point; 3]) -> usize {
+        let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
         let inside = |cone: &&Cone| {
-            let turns = [(a, b), (b, c), (c, a)].map(|(from, to)| cross(to - from, cone.position - from));
+            let place = cone.position;
+            if place.x < low.x || place.x > high.x || place.y < low.y || place.y > high.y {
+                return false;
+            }
+            let turns = [(a, b), (b, c), (c, a)].map(|(from, to)| cross(to - from, place - from));
             turns.iter().all(|turn| *turn > 1e-9) || turns.iter().all(|turn| *turn < -1e-9)
-        };
-        self.cones.iter().filter(inside).count()
-    }
-
-    /// How many cones stand near a leg on the side of the lane, which is to the right of a left row's leg.
-    fn beside(&self, [from, to]: [Point; 2], sign: f64) -> usize {
-        let leg = to - from;
-        let length = leg.norm();
-        let inside = |cone: &&Cone| {
-            let away = cone.position - from;
-            let (along, inwards) = (leg.dot(&away) / length, -sign * cross(leg, away) / length);
-            (NEAREST..length - NEAREST).contains(&along) && (NEAREST..self.p.narrowest).contains(&inwards)
         };
         self.cones.iter().filter(inside).count()
     }
@@ -374,12 +393,56 @@ impl Search<'_> {
     }
 }
 
+/// A row, the last cone first.
+struct Row {
+    ends: Vec<End>,
+}
+
+impl Row {
+    /// Whether it has a cone already.
+    fn holds(&self, cone: usize) -> bool {
+        self.ends.iter().any(|end| end.cone == Some(cone))
+    }
+
+    /// Its legs, from cone to cone.
+    fn legs(&self) -> impl Iterator<Item = [Point; 2]> {
+        self.ends.windows(2).map(|ends| [ends[1].place, ends[0].place])
+    }
+
+    /// Metres from a point.
+    fn distance_to(&self, point: Point) -> f64 {
+        let end = (self.ends[0].place - point).norm();
+        let away = |[a, b]: [Point; 2]| crate::geometry::Segment::new(a, b).distance_to(point);
+        self.legs().map(away).fold(end, f64::min)
+    }
+
+    /// Whether a leg passes through it.
+    fn is_crossed_by(&self, leg: [Point; 2]) -> bool {
+        self.legs().any(|other| passes(leg, other))
+    }
+
+    /// How far a cone, to which a leg would cost so much, goes on better with this row, 0 to 1.
+    fn takes(&self, cone: Point, own: f64, reach: f64) -> f64 {
+        let mut better = BETTER[0];
+        for end in &self.ends {
+            let length = (cone - end.place).norm();
+            // Most legs are too long to be better however straight on they lead.
+            if own - FAR * length > better
+                && let Some(cost) = end.cost_to(cone, reach)
+            {
+                better = better.max(own - cost);
+            }
+        }
+        ((better - BETTER[0]) / (BETTER[1] - BETTER[0])).clamp(0.0, 1.0)
+    }
+}
+
 impl End {
     /// What a leg from here to a cone costs. `None` where nothing is known of how the row goes here, and beyond reach.
     fn cost_to(&self, cone: Point, reach: f64) -> Option<f64> {
         let leg = cone - self.place;
         let known = self.cone.is_some() && self.share < 1.0 && leg.norm() < reach;
-        known.then(|| leg_cost(angle(self.heading, leg), leg.norm()))
+        known.then(|| leg_cost(angle_difference(math::atan2(leg.y, leg.x), self.heading), leg.norm()))
     }
 }
 
@@ -388,9 +451,9 @@ fn leg_cost(turn: f64, length: f64) -> f64 {
     SLANT * turn * turn + FAR * length
 }
 
-/// The angle from one vector to another, positive to the left.
-fn angle(from: Vector, to: Vector) -> f64 {
-    math::atan2(cross(from, to), from.dot(&to))
+/// Where a row begins without a cone beside a car, on its left or on its right.
+fn beside(car: Pose, side: f64, p: &RowParameters) -> Point {
+    car.to_world(Point::new(0.0, side * p.half_width))
 }
 
 /// Whether the way from one point to another passes through a leg.
@@ -406,8 +469,8 @@ const BACK: f64 = -0.8;
 const OVERLAPS: f64 = 1.8;
 
 /// Whether a lane with its middle at a place is the one by which the car came there earlier, or overlaps it, the wrong way round.
-pub(super) fn leads_back(middle: Pose, earlier: &[Pose], half_width: f64) -> bool {
+pub(super) fn leads_back(middle: Passage, earlier: &[Passage], half_width: f64) -> bool {
     let overlap = OVERLAPS * half_width;
-    let near = |pose: &&Pose| (pose.position() - middle.position()).norm_squared() < overlap * overlap;
-    earlier.iter().filter(near).any(|pose| pose.forward().dot(&middle.forward()) < BACK)
+    let near = |other: &&Passage| (other.place - middle.place).norm_squared() < overlap * overlap;
+    earlier.iter().filter(near).any(|other| other.ahead.dot(&middle.ahead) < BACK)
 }

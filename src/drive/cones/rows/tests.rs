@@ -3,7 +3,7 @@ use super::*;
 const P: RowParameters =
     RowParameters { reach: 10.5, half_width: 1.8, narrowest: 1.4, loose: 0.8, sharpest: 1.9 };
 
-fn best(cones: &[Cone], places: &[Pose], earlier: &[Pose], p: &RowParameters) -> Rows {
+fn best(cones: &[Cone], places: &[Pose], earlier: &[Passage], p: &RowParameters) -> Rows {
     rows(cones, places, earlier, p).swap_remove(0)
 }
 
@@ -33,13 +33,7 @@ fn rows_go_on_where_a_cone_is_missing() {
 
 #[test]
 fn a_leg_costs_more_the_more_it_turns_and_the_longer_it_is() {
-    let end = End {
-        cone: Some(0),
-        place: Point::new(0.0, -1.8),
-        heading: Vector::new(1.0, 0.0),
-        turn: 0.0,
-        share: 0.85,
-    };
+    let end = End { cone: Some(0), place: Point::new(0.0, -1.8), heading: 0.0, turn: 0.0, share: 0.85 };
     let cost = |x: f64, y: f64| end.cost_to(Point::new(x, y), 10.5);
     assert!(cost(4.0, -1.8) < cost(5.0, -1.8) && cost(4.0, -1.8) < cost(3.0, 0.8));
     assert_eq!(cost(10.6, -1.8), None);
@@ -167,16 +161,16 @@ fn no_row_leads_back_by_the_way_the_car_came_earlier() {
     let aside = [(6.2, -4.0), (6.2, -8.0), (9.8, -1.0), (9.8, -4.0), (9.8, -8.0)];
     let cones = at(&[&before[..], &aside[..]].concat());
     // The car came up there.
-    let earlier: Vec<Pose> =
-        (0..7).map(|k| Pose::new(8.0, f64::from(k) * 2.0 - 12.0, 0.5 * std::f64::consts::PI)).collect();
-    let last = |earlier: &[Pose]| {
+    let upwards = |k| Pose::new(8.0, f64::from(k) * 2.0 - 12.0, 0.5 * std::f64::consts::PI);
+    let earlier: Vec<Passage> = (0..7).map(|k| upwards(k).into()).collect();
+    let last = |earlier: &[Passage]| {
         let found = best(&cones, &[Pose::default()], earlier, &P);
         found.edges.iter().flatten().map(|&cone| cones[cone].position.y).fold(0.0, f64::min)
     };
     assert!(last(&[]) < -7.0 && last(&earlier) > -5.0, "{} {}", last(&[]), last(&earlier));
-    assert!(leads_back(Pose::new(8.5, -5.0, -1.6), &earlier, 1.8));
+    assert!(leads_back(Pose::new(8.5, -5.0, -1.6).into(), &earlier, 1.8));
     // Neither the same way again, nor across it, nor beside it.
     for pose in [Pose::new(8.5, -5.0, 1.6), Pose::new(8.0, -5.0, 0.0), Pose::new(11.4, -5.0, -1.6)] {
-        assert!(!leads_back(pose, &earlier, 1.8), "{pose:?}");
+        assert!(!leads_back(pose.into(), &earlier, 1.8), "{pose:?}");
     }
 }
