@@ -173,14 +173,16 @@ impl Outcome {
 pub(super) struct Eyes {
     sensors: Sensors,
     camera: CameraSight,
+    mount: CameraMount,
     scan: LidarScan,
     image: RgbImage,
 }
 
 impl Eyes {
     pub(super) fn new(sensors: Sensors) -> Self {
-        let camera = CameraSight::new(CameraMount::default());
-        Self { sensors, camera, scan: LidarScan::default(), image: RgbImage::default() }
+        let mount = CameraMount::default();
+        let camera = CameraSight::new(mount);
+        Self { sensors, camera, mount, scan: LidarScan::default(), image: RgbImage::default() }
     }
 
     /// The cones around a car.
@@ -193,7 +195,7 @@ impl Eyes {
         if self.sensors != Sensors::Lidar {
             car.image_into(&mut self.image)?;
             let found = self.camera.find(&self.image);
-            seen = if self.sensors == Sensors::Both { fuse(&seen, &found) } else { found };
+            seen = if self.sensors == Sensors::Both { fuse(&seen, &found, &self.mount) } else { found };
         }
         Ok(seen)
     }

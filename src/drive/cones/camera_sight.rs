@@ -42,6 +42,11 @@ const LEAST_PIXELS: usize = 6;
 /// Metres beyond which a pixel is too many metres.
 const FARTHEST: f64 = 14.0;
 
+/// Metres from the camera between which it finds the colours of nearly all cones, and radians at the edge of an image in which it
+/// may not.
+const CERTAIN: (f64, f64) = (2.5, 11.0);
+const AT_EDGE: f64 = 0.08;
+
 /// The colour of a pixel, if it is that of a cone.
 fn class(pixel: [u8; 3]) -> Option<usize> {
     // Most of an image is gray: told without the root that a hue takes.
@@ -94,6 +99,14 @@ impl CameraSight {
 }
 
 impl CameraMount {
+    /// Whether a cone at a place in the car's frame is near enough, and far enough within the image, for its colour to be found for
+    /// certain.
+    pub fn tells_colour_at(&self, place: Point) -> bool {
+        let (ahead, left) = (place.x - self.forward, place.y);
+        let (range, bearing) = (math::hypot(ahead, left), math::atan2(left, ahead));
+        (CERTAIN.0..CERTAIN.1).contains(&range) && bearing.abs() < 0.5 * self.field_of_view - AT_EDGE
+    }
+
     /// Pixels for a tangent of one.
     fn focal(&self, width: f64) -> f64 {
         0.5 * width / math::tan(0.5 * self.field_of_view)
@@ -123,8 +136,8 @@ impl CameraMount {
 }
 
 /// What lidar and camera see together: places by the lidar, colours by the camera where both see something in the same
-/// direction.
-pub fn fuse(lidar: &[Sighting], camera: &[Sighting]) -> Vec<Sighting> {
+/// direction. Where the camera would show a cone's colour and does not, the confidence is 0: what stands there is no cone.
+pub fn fuse(lidar: &[Sighting], camera: &[Sighting], mount: &CameraMount) -> Vec<Sighting> {
     let bearing = |sighting: &Sighting| math::atan2(sighting.position.y, sighting.position.x);
     lidar
         .iter()
@@ -137,7 +150,11 @@ pub fn fuse(lidar: &[Sighting], camera: &[Sighting]) -> Vec<Sighting> {
                 let away = |other: &Sighting| (seen.position - other.position).norm();
                 away(a).total_cmp(&away(b))
             });
-            Sighting { colour: best.map_or(ConeColour::Unknown, |other| other.colour), ..*seen }
+            match best {
+                Some(other) => Sighting { colour: other.colour, ..*seen },
+                None if mount.tells_colour_at(seen.position) => Sighting { confidence: 0.0, ..*seen },
+                None => *seen,
+            }
         })
         .collect()
 }
@@ -183,12 +200,27 @@ mod tests {
         };
         let lidar = [at(5.0, 1.0, 0.03, ConeColour::Unknown), at(5.0, -1.0, 0.03, ConeColour::Unknown)];
         let camera = [at(5.3, 1.05, 0.2, ConeColour::Blue), at(9.0, -1.8, 0.3, ConeColour::Yellow)];
-        let both = fuse(&lidar, &camera);
+        let both = fuse(&lidar, &camera, &CameraMount::default());
         assert_eq!(
             both.iter().map(|seen| seen.colour).collect::<Vec<_>>(),
             [ConeColour::Blue, ConeColour::Unknown]
         );
         assert_eq!(both[0].position, lidar[0].position);
+    }
+
+    #[test]
+    fn what_a_camera_would_show_and_does_not_is_no_cone() {
+        let confidence = |x: f64, y: f64| {
+            let position = Point::new(x, y);
+            let (range, colour) = (position.coords.norm(), ConeColour::Unknown);
+            let seen = Sighting { position, size: 0.1, confidence: 0.7, range, error: 0.03, colour };
+            fuse(&[seen], &[], &CameraMount::default())[0].confidence
+        };
+        assert!(confidence(5.0, 1.0) < 1e-9 && confidence(9.0, -6.0) < 1e-9);
+        // Beyond where it tells colours, beside its image, and below it.
+        for (x, y) in [(13.0, 1.0), (3.0, 4.0), (2.5, 0.0)] {
+            assert!(confidence(x, y) > 0.6, "{x} {y}");
+        }
     }
 
     #[test]

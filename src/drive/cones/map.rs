@@ -34,6 +34,8 @@ struct Landmark {
     missed: u32,
     /// Times that it was seen blue, yellow and orange.
     colours: [u16; 3],
+    /// Times that a camera showed no colour there.
+    pale: u16,
     /// Times that it was taken for one of the left edge, less those for the right one.
     side: i16,
     /// Metres that the car had gone when it was seen first, last, and in the mean.
@@ -66,33 +68,50 @@ impl Landmark {
         }
     }
 
-    fn vote(&mut self, colour: ConeColour) {
-        let index = match colour {
+    /// Whether a camera shows that it has no cone's colour.
+    fn is_pale(&self) -> bool {
+        self.pale >= PALE && self.pale > 2 * self.colours.iter().sum::<u16>()
+    }
+
+    fn vote(&mut self, sighting: &Sighting) {
+        let index = match sighting.colour {
             ConeColour::Blue => 0,
             ConeColour::Yellow => 1,
             ConeColour::Orange | ConeColour::BigOrange => 2,
-            ConeColour::Unknown => return,
+            ConeColour::Unknown => {
+                self.pale += u16::from(sighting.confidence <= 0.0 && self.pale < MOST_COLOURS);
+                return;
+            }
         };
         // Halved before it overflows, so that late votes count as well.
-        if self.colours[index] >= 1000 {
+        if self.colours[index] >= MOST_COLOURS {
             self.colours = self.colours.map(|count| count / 2);
         }
         self.colours[index] += 1;
     }
 
     /// A cone that is seen for the first time.
-    fn new(position: Point, colour: ConeColour, way: f64) -> Self {
-        let mut new =
-            Self { position, seen: 1, missed: 0, colours: [0; 3], side: 0, first: way, last: way, mean: way };
-        new.vote(colour);
+    fn new(position: Point, sighting: &Sighting, way: f64) -> Self {
+        let mut new = Self {
+            position,
+            seen: 1,
+            missed: 0,
+            colours: [0; 3],
+            pale: 0,
+            side: 0,
+            first: way,
+            last: way,
+            mean: way,
+        };
+        new.vote(sighting);
         new
     }
 
     /// Takes in that it was seen again.
-    fn see(&mut self, place: Point, colour: ConeColour, way: f64) {
+    fn see(&mut self, place: Point, sighting: &Sighting, way: f64) {
         self.seen = (self.seen + 1).min(MEMORY);
         self.missed = 0;
-        self.vote(colour);
+        self.vote(sighting);
         let share = 1.0 / f64::from(self.seen);
         self.position += (place - self.position) * share;
         self.mean += (way - self.mean) * share;
@@ -106,8 +125,9 @@ impl Landmark {
         self.seen = (self.seen + other.seen).min(MEMORY);
         self.missed = self.missed.min(other.missed);
         for (mine, theirs) in self.colours.iter_mut().zip(other.colours) {
-            *mine = (*mine + theirs).min(1000);
+            *mine = (*mine + theirs).min(MOST_COLOURS);
         }
+        self.pale = (self.pale + other.pale).min(MOST_COLOURS);
         self.side = (self.side + other.side).clamp(-MOST_VOTES, MOST_VOTES);
         self.last = self.last.max(other.last);
     }
@@ -136,6 +156,10 @@ pub struct ConeMap {
     fits: Option<bool>,
 }
 
+/// Times that a cone was seen in one colour, or in none, that are counted.
+const MOST_COLOURS: u16 = 1000;
+/// Looks of a camera that show no colour by which something has none.
+const PALE: u16 = 4;
 /// Votes for an edge by which a cone belongs to it, and votes that are counted.
 const SURE: i16 = 6;
 const MOST_VOTES: i16 = 30;
@@ -190,15 +214,15 @@ impl ConeMap {
         self.pose
     }
 
-    /// The cones that were seen often enough.
+    /// The cones that were seen often enough. Where most of them have colours, what has none is none of them.
     pub fn cones(&self) -> impl Iterator<Item = Cone> + '_ {
-        self.confirmed().map(|landmark| Cone::new(landmark.position, landmark.colour()))
+        self.real().map(|landmark| Cone::new(landmark.position, landmark.colour()))
     }
 
     /// Those of them that fit where the car is now: all of them once the map is closed, and those that were seen lately before
     /// that.
     pub fn fresh_cones(&self) -> impl Iterator<Item = Cone> + '_ {
-        let fresh = self.confirmed().filter(|landmark| self.is_fresh(landmark));
+        let fresh = self.real().filter(|landmark| self.is_fresh(landmark));
         fresh.map(|landmark| Cone::new(landmark.position, self.colour_of(landmark)))
     }
 
@@ -246,6 +270,13 @@ impl ConeMap {
 
     fn confirmed(&self) -> impl Iterator<Item = &Landmark> + '_ {
         self.landmarks.iter().filter(|landmark| landmark.seen >= self.parameters.confirmed)
+    }
+
+    /// Those of them that are not of another colour than cones.
+    fn real(&self) -> impl Iterator<Item = &Landmark> + '_ {
+        let pale = self.confirmed().filter(|landmark| landmark.is_pale()).count();
+        let painted = self.confirmed().filter(|landmark| landmark.painted() != ConeColour::Unknown).count();
+        self.confirmed().filter(move |landmark| pale >= painted || !landmark.is_pale())
     }
 
     fn is_fresh(&self, landmark: &Landmark) -> bool {
@@ -467,9 +498,9 @@ impl ConeMap {
             let others = seen.iter().zip(matches).enumerate();
             let mut taken = others.filter(|(other, (_, landmark))| *other < at || landmark.is_some());
             if let Some(index) = *landmark {
-                self.landmarks[index].see(place, sighting.colour, self.way);
+                self.landmarks[index].see(place, sighting, self.way);
             } else if !taken.any(|(_, (other, _))| is_part(sighting, other)) {
-                self.landmarks.push(Landmark::new(place, sighting.colour, self.way));
+                self.landmarks.push(Landmark::new(place, sighting, self.way));
             }
         }
     }

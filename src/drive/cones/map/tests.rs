@@ -22,6 +22,23 @@ fn two_things_in_one_scan_are_two_cones() {
 }
 
 #[test]
+fn what_has_no_colour_among_cones_that_have_one_is_none_of_them() {
+    let pale = |x, y| Sighting { confidence: 0.0, ..sighting(x, y) };
+    let blue = |x, y| Sighting { colour: ConeColour::Blue, ..sighting(x, y) };
+    let after = |looks: usize, sightings: &[Sighting]| {
+        let mut map = ConeMap::new(ConeMapParameters::default());
+        (0..looks).for_each(|_| map.update(Pose::default(), sightings));
+        let places: Vec<f64> = map.cones().map(|cone| cone.position.x).collect();
+        assert_eq!(places.len(), map.fresh_cones().count());
+        places
+    };
+    let mixed = [blue(5.0, 1.5), pale(6.0, 3.0), blue(8.0, 1.5), sighting(13.0, 1.5)];
+    assert_eq!(after(20, &mixed), [5.0, 8.0, 13.0]);
+    // Where no cone has a colour, it tells nothing.
+    assert_eq!(after(20, &[pale(5.0, 1.5), pale(6.0, 3.0)]), [5.0, 6.0]);
+}
+
+#[test]
 fn what_is_hidden_is_not_forgotten() {
     for (hidden, left) in [(true, 2), (false, 1)] {
         let mut map = ConeMap::new(ConeMapParameters::default());
