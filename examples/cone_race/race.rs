@@ -3,7 +3,7 @@
 use image::RgbImage;
 use roverlab::drive::cones::{
     CameraMount, CameraSight, CarLimits, Cone, ConeMap, Hold, LaneFinder, LineTracker, RacePhase, Racer,
-    Sighting, SpeedProfile, Tyres, Verdict, fuse, sightings,
+    Sighting, SpeedProfile, Tyres, Verdict, sightings,
 };
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
@@ -173,16 +173,14 @@ impl Outcome {
 pub(super) struct Eyes {
     sensors: Sensors,
     camera: CameraSight,
-    mount: CameraMount,
     scan: LidarScan,
     image: RgbImage,
 }
 
 impl Eyes {
     pub(super) fn new(sensors: Sensors) -> Self {
-        let mount = CameraMount::default();
-        let camera = CameraSight::new(mount);
-        Self { sensors, camera, mount, scan: LidarScan::default(), image: RgbImage::default() }
+        let camera = CameraSight::new(CameraMount::default());
+        Self { sensors, camera, scan: LidarScan::default(), image: RgbImage::default() }
     }
 
     /// The cones around a car.
@@ -195,7 +193,7 @@ impl Eyes {
         if self.sensors != Sensors::Lidar {
             car.image_into(&mut self.image)?;
             let found = self.camera.find(&self.image);
-            seen = if self.sensors == Sensors::Both { fuse(&seen, &found, &self.mount) } else { found };
+            seen = if self.sensors == Sensors::Both { self.camera.fuse(&seen, &found) } else { found };
         }
         Ok(seen)
     }

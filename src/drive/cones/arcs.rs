@@ -87,6 +87,8 @@ struct Scene {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ArcSearch<'s> {
     pub(super) cones: &'s [Cone],
+    /// What is no cone and not to be touched.
+    pub(super) others: &'s [Point],
     /// The way by which the car came.
     pub(super) earlier: &'s [Passage],
     /// The lane that was found before.
@@ -128,7 +130,8 @@ impl Arc {
 }
 
 impl Scene {
-    fn new(cones: &[Cone], rows: &Rows, earlier: &[Passage]) -> Self {
+    fn new(search: &ArcSearch, rows: &Rows) -> Self {
+        let cones = search.cones;
         let sides = rows.sides(cones.len());
         let of_row = |(index, (cone, side)): (usize, (&Cone, &i8))| Beside {
             position: cone.position,
@@ -136,8 +139,10 @@ impl Scene {
             sides: [f64::from(cone.colour.side()), f64::from(*side)],
             worth: if *side == 0 { 1.0 } else { OF_ROW },
         };
-        let cones_beside = cones.iter().zip(&sides).enumerate().map(of_row).collect();
-        Self { cones: cones_beside, legs: rows.legs(cones), earlier: earlier.to_vec() }
+        let other = |place: &Point| Beside { position: *place, bit: 0, sides: [0.0; 2], worth: 0.0 };
+        let beside = cones.iter().zip(&sides).enumerate().map(of_row);
+        let cones_beside = beside.chain(search.others.iter().map(other)).collect();
+        Self { cones: cones_beside, legs: rows.legs(cones), earlier: search.earlier.to_vec() }
     }
 
     /// Becomes what of another one is so near a place: cones, legs, and the way by which the car came.
@@ -168,7 +173,7 @@ impl ArcSearch<'_> {
         let arcs: Vec<Arc> = (-BENDS..=BENDS)
             .map(|bend| Arc::new(p.curvature * f64::from(bend) / f64::from(BENDS), p.piece))
             .collect();
-        let all = Scene::new(self.cones, rows, self.earlier);
+        let all = Scene::new(self, rows);
         let mut near = Scene::default();
         // From the beginning of a piece to what touches it and to what may be at its edge.
         let beside = p.piece + self.before.half_width + p.clearance.max(WIDER * p.loose);
@@ -251,7 +256,7 @@ impl ArcSearch<'_> {
 fn keep_best(pieces: &mut Vec<Piece>, next: &[Piece], most: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..next.len()).collect();
     order.sort_by(|&a, &b| next[a].cost.total_cmp(&next[b].cost));
-    let mut kept = Vec::with_capacity(most);
+    let mut kept = Vec::with_capacity(most.min(next.len()));
     for piece in order.into_iter().map(|at| &next[at]) {
         if kept.len() == most {
             break;

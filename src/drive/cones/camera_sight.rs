@@ -32,6 +32,8 @@ pub struct CameraSight {
     mount: CameraMount,
     components: Components,
     mask: Vec<u8>,
+    /// Width and height of the last image.
+    size: [f64; 2],
 }
 
 /// Hues in 255ths of a turn, from and to.
@@ -42,10 +44,13 @@ const LEAST_PIXELS: usize = 6;
 /// Metres beyond which a pixel is too many metres.
 const FARTHEST: f64 = 14.0;
 
-/// Metres from the camera between which it finds the colours of nearly all cones, and radians at the edge of an image in which it
-/// may not.
-const CERTAIN: (f64, f64) = (2.5, 11.0);
-const AT_EDGE: f64 = 0.08;
+/// Metres from the camera within which it finds the colours of nearly all cones that are large enough in the image: so many pixels,
+/// of a cone that is so wide and so high as far as its colour goes, in metres.
+const CERTAIN: f64 = 11.0;
+const LARGE: f64 = 2.0 * LEAST_PIXELS as f64;
+const CONE: [f64; 2] = [0.12, 0.3];
+/// Pixels at the border of an image within which a cone may be cut off, in shares of its width and height.
+const BORDER: f64 = 0.05;
 
 /// The colour of a pixel, if it is that of a cone.
 fn class(pixel: [u8; 3]) -> Option<usize> {
@@ -71,6 +76,7 @@ impl CameraSight {
     pub fn find(&mut self, image: &RgbImage) -> Vec<Sighting> {
         let (width, height) = (image.width() as usize, image.height() as usize);
         let mut found = Vec::new();
+        self.size = [width as f64, height as f64];
         if width == 0 || height == 0 {
             return found;
         }
@@ -96,20 +102,62 @@ impl CameraSight {
         }
         found
     }
+
+    /// What a lidar and the camera see together: places by the lidar, colours by what was [found](Self::find) in the last image in the
+    /// same direction.
+    ///
+    /// What would be large in the image and has no cone's colour there gets a confidence of 0: most likely it is no cone. Only
+    /// where the image shows the colours of as many others, as a camera that is blind, or late, shows none.
+    pub fn fuse(&self, lidar: &[Sighting], found: &[Sighting]) -> Vec<Sighting> {
+        let colour = |seen: &Sighting| Sighting { colour: colour_of(seen, found), ..*seen };
+        let mut fused: Vec<Sighting> = lidar.iter().map(colour).collect();
+        let is_pale = |seen: &Sighting| seen.colour == ConeColour::Unknown && self.would_show(seen.position);
+        let painted = fused.iter().filter(|seen| seen.colour != ConeColour::Unknown).count();
+        if painted >= fused.iter().filter(|seen| is_pale(seen)).count() {
+            fused.iter_mut().filter(|seen| is_pale(seen)).for_each(|seen| seen.confidence = 0.0);
+        }
+        fused
+    }
+
+    /// Whether a cone at a place in the car's frame would be large enough in the last image, and wholly within it, for its colour to
+    /// be found for certain.
+    fn would_show(&self, place: Point) -> bool {
+        let [width, height] = self.size;
+        let Some([column, row, depth]) = self.mount.project(place, self.size) else { return false };
+        let scale = self.mount.focal(width) / depth;
+        let within = |at: f64, size: f64| (BORDER * size..(1.0 - BORDER) * size).contains(&at);
+        depth < CERTAIN
+            && CONE[0] * CONE[1] * scale * scale > LARGE
+            && within(column, width)
+            && within(row, height)
+            && within(row - CONE[1] * scale, height)
+    }
+}
+
+/// The colour of what a camera found where a lidar sees something.
+fn colour_of(seen: &Sighting, found: &[Sighting]) -> ConeColour {
+    let bearing = |sighting: &Sighting| math::atan2(sighting.position.y, sighting.position.x);
+    let away = |other: &Sighting| (seen.position - other.position).norm();
+    let near = found.iter().filter(|other| {
+        (bearing(seen) - bearing(other)).abs() < 0.03 && away(other) < 0.4 + 3.0 * other.error
+    });
+    near.min_by(|a, b| away(a).total_cmp(&away(b))).map_or(ConeColour::Unknown, |other| other.colour)
 }
 
 impl CameraMount {
-    /// Whether a cone at a place in the car's frame is near enough, and far enough within the image, for its colour to be found for
-    /// certain.
-    pub fn tells_colour_at(&self, place: Point) -> bool {
-        let (ahead, left) = (place.x - self.forward, place.y);
-        let (range, bearing) = (math::hypot(ahead, left), math::atan2(left, ahead));
-        (CERTAIN.0..CERTAIN.1).contains(&range) && bearing.abs() < 0.5 * self.field_of_view - AT_EDGE
-    }
-
     /// Pixels for a tangent of one.
     fn focal(&self, width: f64) -> f64 {
         0.5 * width / math::tan(0.5 * self.field_of_view)
+    }
+
+    /// The column and the row of an image that show a place on the ground, and how far it lies in front of the image's plane, in
+    /// metres. `None` behind that.
+    fn project(&self, place: Point, [width, height]: [f64; 2]) -> Option<[f64; 3]> {
+        let (sin, cos) = math::sin_cos(self.pitch);
+        let (ahead, left) = (place.x - self.forward, place.y);
+        let (depth, below) = (ahead * cos + self.height * sin, self.height * cos - ahead * sin);
+        let scale = self.focal(width) / depth;
+        (depth > 1e-3).then_some([0.5 * width - left * scale, 0.5 * height + below * scale, depth])
     }
 
     /// The place on the ground that a pixel shows, its distance from the camera, and how far a pixel more is.
@@ -135,30 +183,6 @@ impl CameraMount {
     }
 }
 
-/// What lidar and camera see together: places by the lidar, colours by the camera where both see something in the same
-/// direction. Where the camera would show a cone's colour and does not, the confidence is 0: what stands there is no cone.
-pub fn fuse(lidar: &[Sighting], camera: &[Sighting], mount: &CameraMount) -> Vec<Sighting> {
-    let bearing = |sighting: &Sighting| math::atan2(sighting.position.y, sighting.position.x);
-    lidar
-        .iter()
-        .map(|seen| {
-            let near = camera.iter().filter(|other| {
-                let apart = (bearing(seen) - bearing(other)).abs();
-                apart < 0.03 && (seen.position - other.position).norm() < 0.4 + 3.0 * other.error
-            });
-            let best = near.min_by(|a, b| {
-                let away = |other: &Sighting| (seen.position - other.position).norm();
-                away(a).total_cmp(&away(b))
-            });
-            match best {
-                Some(other) => Sighting { colour: other.colour, ..*seen },
-                None if mount.tells_colour_at(seen.position) => Sighting { confidence: 0.0, ..*seen },
-                None => *seen,
-            }
-        })
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -167,6 +191,11 @@ mod tests {
     use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions};
     use crate::io::{Camera, Resolution};
     use crate::world::Colour;
+
+    /// One that has seen an image.
+    fn sight() -> CameraSight {
+        CameraSight { size: [640.0, 480.0], ..CameraSight::default() }
+    }
 
     #[test]
     fn cones_are_found_in_place_and_colour() {
@@ -200,7 +229,7 @@ mod tests {
         };
         let lidar = [at(5.0, 1.0, 0.03, ConeColour::Unknown), at(5.0, -1.0, 0.03, ConeColour::Unknown)];
         let camera = [at(5.3, 1.05, 0.2, ConeColour::Blue), at(9.0, -1.8, 0.3, ConeColour::Yellow)];
-        let both = fuse(&lidar, &camera, &CameraMount::default());
+        let both = sight().fuse(&lidar, &camera);
         assert_eq!(
             both.iter().map(|seen| seen.colour).collect::<Vec<_>>(),
             [ConeColour::Blue, ConeColour::Unknown]
@@ -210,17 +239,37 @@ mod tests {
 
     #[test]
     fn what_a_camera_would_show_and_does_not_is_no_cone() {
-        let confidence = |x: f64, y: f64| {
+        let at = |x: f64, y: f64, colour| {
             let position = Point::new(x, y);
-            let (range, colour) = (position.coords.norm(), ConeColour::Unknown);
-            let seen = Sighting { position, size: 0.1, confidence: 0.7, range, error: 0.03, colour };
-            fuse(&[seen], &[], &CameraMount::default())[0].confidence
+            let range = position.coords.norm();
+            Sighting { position, size: 0.1, confidence: 0.7, range, error: 0.03, colour }
         };
-        assert!(confidence(5.0, 1.0) < 1e-9 && confidence(9.0, -6.0) < 1e-9);
-        // Beyond where it tells colours, beside its image, and below it.
-        for (x, y) in [(13.0, 1.0), (3.0, 4.0), (2.5, 0.0)] {
-            assert!(confidence(x, y) > 0.6, "{x} {y}");
+        let blue = at(6.0, -3.0, ConeColour::Blue);
+        let lidar = |x, y| [at(6.0, -3.0, ConeColour::Unknown), at(x, y, ConeColour::Unknown)];
+        let confidence =
+            |sight: &CameraSight, x, y, found: &[Sighting]| sight.fuse(&lidar(x, y), found)[1].confidence;
+        assert!(
+            confidence(&sight(), 5.0, 1.0, &[blue]) < 1e-9 && confidence(&sight(), 9.0, -6.0, &[blue]) < 1e-9
+        );
+        // Too far off, beside the image, and below it.
+        for (x, y) in [(13.0, 1.0), (3.0, 4.0), (1.4, 0.0)] {
+            assert!(confidence(&sight(), x, y, &[blue]) > 0.6, "{x} {y}");
         }
+        // A small image, and one that shows nothing at all.
+        let small = CameraSight { size: [160.0, 120.0], ..sight() };
+        assert!(confidence(&small, 8.0, 1.0, &[blue]) > 0.6 && confidence(&small, 3.5, 0.5, &[blue]) < 1e-9);
+        assert!(confidence(&sight(), 5.0, 1.0, &[]) > 0.6);
+    }
+
+    #[test]
+    fn a_place_is_where_its_pixel_is() {
+        let mount = CameraMount::default();
+        for (x, y) in [(4.0, 1.0), (9.0, -3.0), (6.0, 0.0)] {
+            let [column, row, _] = mount.project(Point::new(x, y), [640.0, 480.0]).unwrap();
+            let (place, ..) = mount.place(column, row, 640.0, 480.0).unwrap();
+            assert!((place - Point::new(x, y)).norm() < 1e-9, "{place}");
+        }
+        assert_eq!(mount.project(Point::new(-3.0, 0.0), [640.0, 480.0]), None);
     }
 
     #[test]

@@ -77,6 +77,8 @@ pub(super) struct Way<'w> {
     pub(super) car: Pose,
     /// The way by which it came: it does not lead back there. Where a circuit crosses itself, it goes straight on.
     pub(super) earlier: &'w [Pose],
+    /// What is no cone and not to be touched.
+    pub(super) others: &'w [Point],
 }
 
 impl Lane {
@@ -111,7 +113,7 @@ pub fn lane(
     before: &Lane,
     parameters: &LaneParameters,
 ) -> Option<Lane> {
-    lane_where(cones, &Way { behind, car, earlier: &[] }, before, parameters)
+    lane_where(cones, &Way { behind, car, earlier: &[], others: &[] }, before, parameters)
 }
 
 /// The same for a car of which it is known where else it has been.
@@ -144,7 +146,7 @@ fn lane_between(cones: &[Cone], way: &Way, before: &Lane, parameters: &LaneParam
         RowParameters { reach: p.spacing, half_width, narrowest, loose: p.loose, sharpest: p.sharpest };
     let earlier: Vec<Passage> = way.earlier.iter().map(|pose| (*pose).into()).collect();
     let rows = rows(cones, &stations, &earlier, &along_rows);
-    let search = ArcSearch { cones, earlier: &earlier, before, parameters };
+    let search = ArcSearch { cones, others: way.others, earlier: &earlier, before, parameters };
     // Rows alone do not tell whether a car can drive between them.
     let ways = rows.iter().filter_map(|rows| {
         let (poses, cost) = search.best(rows, way.car)?;
@@ -153,7 +155,10 @@ fn lane_between(cones: &[Cone], way: &Way, before: &Lane, parameters: &LaneParam
     let (_, rows, poses) = ways.min_by(|a, b| a.0.total_cmp(&b.0))?;
     stations.extend(poses);
     let sides = rows.sides(cones.len());
-    let found = settled((cones, &sides), &stations, half_width, parameters);
+    let mut found = settled((cones, &sides), &stations, half_width, parameters);
+    let places: Vec<Point> =
+        cones.iter().map(|cone| cone.position).chain(way.others.iter().copied()).collect();
+    keep_clear(&mut found.points, &places, p.clearance + BEYOND_TOUCH);
     found.edges.iter().any(|edge| !edge.is_empty()).then_some(found)
 }
 
@@ -191,9 +196,11 @@ fn settled((cones, sides): (&[Cone], &[i8]), stations: &[Pose], half_width: f64,
         .map(|(pose, offset)| pose.position() + normal(pose) * *offset)
         .collect();
     let half_width = width(&edges, half_width, p);
-    let mut points = even(&points);
-    keep_clear(&mut points, cones, p.clearance + BEYOND_TOUCH);
-    Lane { points, edges: edges.map(|edge| edge.iter().map(|cone| cone.index).collect()), half_width }
+    Lane {
+        points: even(&points),
+        edges: edges.map(|edge| edge.iter().map(|cone| cone.index).collect()),
+        half_width,
+    }
 }
 
 /// The cones of a side, in their order along the lane: 1 for the left one.
@@ -295,16 +302,16 @@ const PUSHES: usize = 8;
 /// Metres to a cone that are kept beside those at which a car touches it, where the lane is wide enough.
 const BEYOND_TOUCH: f64 = 0.4;
 
-/// Moves points away from cones that are nearer than some metres, where those of the other edge let them.
-fn keep_clear(points: &mut [Point], cones: &[Cone], room: f64) {
+/// Moves points away from cones, or other places, that are nearer than some metres, where those of the other edge let them.
+fn keep_clear(points: &mut [Point], places: &[Point], room: f64) {
     for _ in 0..PUSHES {
         for point in points.iter_mut() {
-            let push = |cone: &Cone| {
-                let away = *point - cone.position;
+            let push = |place: &Point| {
+                let away = *point - place;
                 let distance = away.norm().max(1e-6);
                 away * (0.5 * (room - distance).max(0.0) / distance)
             };
-            let pushes: Vector = cones.iter().map(push).sum();
+            let pushes: Vector = places.iter().map(push).sum();
             *point += pushes;
         }
         smooth(points);

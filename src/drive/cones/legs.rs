@@ -9,7 +9,7 @@ use crate::geometry::{Point, Vector, cross, math};
 const NEAREST: f64 = 0.3;
 
 /// From a cone, or from where a row begins without one, to a cone that may come next.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Leg {
     /// The cone to which it leads.
     pub(super) to: usize,
@@ -31,7 +31,7 @@ impl Leg {
     }
 
     /// How many cones stand on the side of the lane within some metres of it, if it is one of a left row and if it is one of a
-    /// right row.
+    /// right row. Counted once: it is asked with the same cones and metres always.
     pub(super) fn crowd(&self, cones: &[Cone], within: f64) -> [f64; 2] {
         *self.crowd.get_or_init(|| {
             let mut sides = [0.0; 2];
@@ -48,7 +48,7 @@ impl Leg {
     }
 }
 
-/// The legs from a place to all cones within reach, the nearest ones first.
+/// The legs from a place to so many cones within reach at most, the nearest ones first.
 pub(super) fn legs_from(from: Point, cones: &[Cone], reach: f64, most: usize) -> Vec<Leg> {
     let mut near: Vec<(f64, usize)> = Vec::new();
     for (index, cone) in cones.iter().enumerate() {

@@ -70,7 +70,9 @@ impl Landmark {
 
     /// Whether a camera shows that it has no cone's colour.
     fn is_pale(&self) -> bool {
-        self.pale >= PALE && self.pale > 2 * self.colours.iter().sum::<u16>()
+        self.painted() == ConeColour::Unknown
+            && self.pale >= PALE
+            && self.pale > 2 * self.colours.iter().sum::<u16>()
     }
 
     fn vote(&mut self, sighting: &Sighting) {
@@ -158,8 +160,10 @@ pub struct ConeMap {
 
 /// Times that a cone was seen in one colour, or in none, that are counted.
 const MOST_COLOURS: u16 = 1000;
-/// Looks of a camera that show no colour by which something has none.
+/// Looks of a camera that show no colour by which something has none, and how many cones there have to be with colours for each
+/// such thing.
 const PALE: u16 = 4;
+const MANY: usize = 4;
 /// Votes for an edge by which a cone belongs to it, and votes that are counted.
 const SURE: i16 = 6;
 const MOST_VOTES: i16 = 30;
@@ -214,7 +218,8 @@ impl ConeMap {
         self.pose
     }
 
-    /// The cones that were seen often enough. Where most of them have colours, what has none is none of them.
+    /// The cones that were seen often enough. Where a camera shows the colours of most of them, those that it shows to have none are
+    /// left out: they are [others](Self::fresh_others).
     pub fn cones(&self) -> impl Iterator<Item = Cone> + '_ {
         self.real().map(|landmark| Cone::new(landmark.position, landmark.colour()))
     }
@@ -224,6 +229,14 @@ impl ConeMap {
     pub fn fresh_cones(&self) -> impl Iterator<Item = Cone> + '_ {
         let fresh = self.real().filter(|landmark| self.is_fresh(landmark));
         fresh.map(|landmark| Cone::new(landmark.position, self.colour_of(landmark)))
+    }
+
+    /// Where something stands that is as small as a cone and has no cone's colour, as fresh as those: no edge of a track, but nothing
+    /// to drive into.
+    pub fn fresh_others(&self) -> impl Iterator<Item = Point> + '_ {
+        let painted = self.is_painted();
+        let others = self.confirmed().filter(move |landmark| painted && landmark.is_pale());
+        others.filter(|landmark| self.is_fresh(landmark)).map(|landmark| landmark.position)
     }
 
     /// The colour of a cone, or that of one near it that was passed earlier in the first lap: between crossings, a circuit has all
@@ -239,9 +252,9 @@ impl ConeMap {
             let node = self.trail.partition_point(|(_, way)| *way < other.mean);
             self.trail.get(node).is_some_and(|(pose, _)| pose.forward().dot(&ahead).abs() < ATHWART)
         };
-        let earlier = self
-            .confirmed()
-            .filter(|other| !self.is_fresh(other) && away(other) < EARLIER && !athwart(other));
+        let earlier = self.confirmed().filter(|other| {
+            !other.is_pale() && !self.is_fresh(other) && away(other) < EARLIER && !athwart(other)
+        });
         let nearest = earlier.min_by(|a, b| away(a).total_cmp(&away(b)));
         nearest.map_or(ConeColour::Unknown, Landmark::colour)
     }
@@ -272,11 +285,17 @@ impl ConeMap {
         self.landmarks.iter().filter(|landmark| landmark.seen >= self.parameters.confirmed)
     }
 
-    /// Those of them that are not of another colour than cones.
+    /// Those of them that have a cone's colour, or may have one.
     fn real(&self) -> impl Iterator<Item = &Landmark> + '_ {
+        let painted = self.is_painted();
+        self.confirmed().filter(move |landmark| !(painted && landmark.is_pale()))
+    }
+
+    /// Whether a camera shows the colours of nearly all cones.
+    fn is_painted(&self) -> bool {
         let pale = self.confirmed().filter(|landmark| landmark.is_pale()).count();
         let painted = self.confirmed().filter(|landmark| landmark.painted() != ConeColour::Unknown).count();
-        self.confirmed().filter(move |landmark| pale >= painted || !landmark.is_pale())
+        painted >= MANY * pale
     }
 
     fn is_fresh(&self, landmark: &Landmark) -> bool {

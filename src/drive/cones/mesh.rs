@@ -94,7 +94,7 @@ impl Mesh {
         [right, left]
     }
 
-    /// The half-edges by which the triangle of a half-edge is left: to whoever enters it by that one.
+    /// The two half-edges by which whoever enters a triangle by a half-edge may leave it.
     pub(super) fn exits(edge: usize) -> [usize; 2] {
         [following(edge), preceding(edge)]
     }

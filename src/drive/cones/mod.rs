@@ -50,7 +50,7 @@ mod tracker;
 mod tyres;
 mod walk;
 
-pub use camera_sight::{CameraMount, CameraSight, fuse};
+pub use camera_sight::{CameraMount, CameraSight};
 pub use centre_line::{CentreLine, CentreLineParameters};
 pub use cone::{Cone, ConeColour, ConeTrack, Event};
 pub use corridor::{Corridor, Station};

@@ -422,7 +422,9 @@ impl Racer {
         let own = pose.compose(&middle);
         let behind: Vec<Pose> = behind.filter(|pose| own.to_local(pose.position()).x < -0.5).collect();
         let earlier: Vec<Pose> = self.map.earlier(NEAR).map(|pose| pose.compose(&middle)).collect();
-        let way = Way { behind: &behind, car: own, earlier: &earlier };
+        let near_it = |place: &Point| (place - own.position()).norm() < NEAR;
+        let others: Vec<Point> = self.map.fresh_others().filter(near_it).collect();
+        let way = Way { behind: &behind, car: own, earlier: &earlier, others: &others };
         let found = lane_where(near, &way, &self.lane, &self.parameters.lane).ok_or(PlanError::NoWay)?;
         for (edge, side) in found.edges.iter().zip([1, -1]) {
             let places = edge.iter().map(|&cone| near[cone].position);

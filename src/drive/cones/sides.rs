@@ -71,11 +71,12 @@ impl Nearest {
 
 fn side_of(stretches: &[Stretch], point: Point) -> i8 {
     let mut nearest = Nearest { squared: f64::INFINITY, along: Vector::zeros(), away: Vector::zeros() };
-    // What is farther than the whole of a disc is needs no look.
+    // What is farther than the whole of a disc is needs no look. What is no number is not farther.
     let farthest = |stretch: &Stretch| (point - stretch.middle).norm() + stretch.radius;
     let bound = stretches.iter().map(farthest).fold(f64::INFINITY, f64::min);
     for stretch in stretches {
-        if (point - stretch.middle).norm() - stretch.radius <= bound {
+        let is_farther = (point - stretch.middle).norm() - stretch.radius > bound;
+        if !is_farther {
             nearest.look_at(stretch.legs, point);
         }
     }

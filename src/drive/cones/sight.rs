@@ -9,7 +9,8 @@ pub struct Sighting {
     pub position: Point,
     /// Metres from its first point to its last.
     pub size: f64,
-    /// How many of the beams that a cone would stop it has stopped, 0 to 1; 0 where a camera shows that it has no cone's colour.
+    /// How many of the beams that a cone would stop it has stopped, 0 to 1; 0 of what [most likely is
+    /// none](super::CameraSight::fuse) by its colour.
     pub confidence: f64,
     /// Metres from the sensor.
     pub range: f64,

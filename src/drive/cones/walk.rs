@@ -61,7 +61,7 @@ struct Head {
     length: f64,
     /// Steps from cone to cone as on a track.
     good: u32,
-    /// The last triangles; after so many steps, each at the place of its step, around and around.
+    /// The last triangles, as a ring: that of a step is at its number modulo the length.
     trail: [usize; MEMORY],
 }
 
@@ -103,7 +103,7 @@ struct Search {
     heads: Vec<Head>,
     /// Those that were followed one step before.
     earlier: Vec<Head>,
-    steps: usize,
+    depth: usize,
     /// The best ways so far that closed, and that ended.
     closed: Best,
     ended: Best,
@@ -262,7 +262,7 @@ impl Walker<'_> {
     /// Follows the best ones of some steps, one at each edge.
     fn follow(&self, search: &mut Search, steps: &mut [Step]) {
         steps.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        search.steps += 1;
+        search.depth += 1;
         std::mem::swap(&mut search.heads, &mut search.earlier);
         search.heads.clear();
         for step in steps.iter() {
@@ -277,7 +277,7 @@ impl Walker<'_> {
 
     /// Lets one of the ways take a step.
     fn take(&self, search: &mut Search, step: &Step) {
-        let Search { links, heads, earlier, steps, .. } = search;
+        let Search { links, heads, earlier, depth, .. } = search;
         let head = &earlier[step.head];
         let leg = self.mesh.leg(head.edge, step.exit);
         let mut next = Head {
@@ -290,7 +290,7 @@ impl Walker<'_> {
             ..*head
         };
         next.legs[leg.side] = Some(leg.along);
-        next.trail[*steps % MEMORY] = triangle(step.entry);
+        next.trail[*depth % MEMORY] = triangle(step.entry);
         heads.push(next);
     }
 

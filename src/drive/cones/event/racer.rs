@@ -334,11 +334,12 @@ impl EventRacer {
         left.iter().sum::<f64>() < END
     }
 
-    /// A command that stops before cones that stand in the way, as at the end of a lane.
+    /// A command that stops before cones, and other things, that stand in the way, as at the end of a lane.
     fn before_cones(&self, command: Twist, fresh: &[Cone]) -> Twist {
         let Some((layout, line)) = self.layout.as_ref().zip(self.line.as_ref()) else { return command };
         let p = &self.parameters;
-        let places = fresh.iter().map(|cone| layout.pose.to_local(cone.position));
+        let places = fresh.iter().map(|cone| cone.position).chain(self.map.fresh_others());
+        let places = places.map(|place| layout.pose.to_local(place));
         let gaps = places.filter_map(|place| line.distance_to(place, self.beside(), AHEAD));
         let Some(gap) = gaps.min_by(f64::total_cmp) else { return command };
         let free = (gap - (p.outline.nose - p.outline.ahead) - STANDS).max(0.0);

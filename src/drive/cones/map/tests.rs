@@ -32,10 +32,27 @@ fn what_has_no_colour_among_cones_that_have_one_is_none_of_them() {
         assert_eq!(places.len(), map.fresh_cones().count());
         places
     };
-    let mixed = [blue(5.0, 1.5), pale(6.0, 3.0), blue(8.0, 1.5), sighting(13.0, 1.5)];
-    assert_eq!(after(20, &mixed), [5.0, 8.0, 13.0]);
-    // Where no cone has a colour, it tells nothing.
-    assert_eq!(after(20, &[pale(5.0, 1.5), pale(6.0, 3.0)]), [5.0, 6.0]);
+    let painted = [blue(5.0, 1.5), blue(6.5, 1.5), blue(8.0, 1.5), blue(9.5, 1.5), sighting(13.0, 1.5)];
+    let mixed = [&painted[..], &[pale(6.0, 3.0)]].concat();
+    assert_eq!(after(20, &mixed), [5.0, 6.5, 8.0, 9.5, 13.0]);
+    // Where few cones have a colour, it tells nothing.
+    assert_eq!(after(20, &[pale(5.0, 1.5), pale(6.0, 3.0), blue(8.0, 1.5)]), [5.0, 6.0, 8.0]);
+}
+
+#[test]
+fn what_has_no_colour_is_not_driven_into_and_a_known_cone_keeps_its_colour() {
+    let painted = |x| Sighting { colour: ConeColour::Blue, ..sighting(x, 1.5) };
+    let pale = |seen: Sighting| Sighting { confidence: 0.0, colour: ConeColour::Unknown, ..seen };
+    let mut map = ConeMap::new(ConeMapParameters::default());
+    let row = [painted(5.0), painted(6.5), painted(8.0), painted(9.5)];
+    let seen = [&row[..], &[pale(sighting(6.0, 3.0))]].concat();
+    (0..20).for_each(|_| map.update(Pose::default(), &seen));
+    let others: Vec<Point> = map.fresh_others().collect();
+    assert!(others.len() == 1 && (others[0] - Point::new(6.0, 3.0)).norm() < 0.01, "{others:?}");
+    // A camera that fails after a while takes none of them away.
+    let dark: Vec<Sighting> = seen.into_iter().map(pale).collect();
+    (0..200).for_each(|_| map.update(Pose::default(), &dark));
+    assert_eq!(map.cones().count(), 4);
 }
 
 #[test]
