@@ -137,7 +137,7 @@ pub(crate) enum Sensors {
     Lidar,
     /// The camera above the driver: colours, and places that are the less certain the farther they are.
     Camera,
-    /// Places by the lidar, colours by the camera.
+    /// Places by the lidar, colours by the camera; what has no cone's colour is none.
     Both,
 }
 
