@@ -249,8 +249,7 @@ impl Course {
             parameters.map.farthest = 24.0;
             parameters.first_lap.top_speed = 10.0;
             parameters.lane = LaneParameters {
-                piece: 4.0,
-                pieces: 6,
+                ahead: 24.0,
                 curvature: 0.12,
                 half_width: [3.0, 11.0],
                 usual: 5.5,

@@ -1,10 +1,11 @@
 //! The lane ahead of a car that knows only some of its cones: where one side is missing, where gaps are wide, and where others
 //! stand about.
 
-use super::arcs::ArcSearch;
 use super::cone::Cone;
+use super::fit::Fitter;
 use super::rows::{Passage, RowParameters, rows};
-use crate::geometry::{Point, Pose, Vector, math};
+use super::ways::{along_lane, beside_row, distinct, straight_on};
+use crate::geometry::{Point, Pose, Vector};
 
 #[cfg(test)]
 mod tests;
@@ -12,14 +13,10 @@ mod tests;
 /// What a lane is looked for with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaneParameters {
-    /// Metres of a piece, which has one curvature.
-    pub piece: f64,
-    /// Pieces.
-    pub pieces: usize,
+    /// Metres ahead of the car.
+    pub ahead: f64,
     /// The greatest curvature, in 1/m.
     pub curvature: f64,
-    /// Ways that are followed at a time.
-    pub beam: usize,
     /// Metres to a cone at which a car would touch it.
     pub clearance: f64,
     /// Metres from the middle to an edge, from least to most.
@@ -37,10 +34,8 @@ pub struct LaneParameters {
 impl Default for LaneParameters {
     fn default() -> Self {
         Self {
-            piece: 2.5,
-            pieces: 7,
+            ahead: 17.5,
             curvature: 0.38,
-            beam: 40,
             clearance: 1.15,
             half_width: [1.4, 2.8],
             usual: 1.9,
@@ -61,13 +56,6 @@ pub struct Lane {
     /// Metres from the middle to an edge, as its cones say.
     pub half_width: f64,
 }
-
-/// What rows are worth against how well a way goes between them.
-const ROWS: f64 = 0.5;
-/// Metres along the lane over which a cone speaks for its edge.
-pub(super) const SPEAKS: f64 = 6.5;
-/// Metres along the lane within which a cone is next to a station.
-const NEXT_TO: f64 = 1.6;
 
 /// Where a car was, is, and has been earlier.
 #[derive(Debug, Clone, Copy)]
@@ -100,12 +88,26 @@ impl Lane {
     }
 }
 
-/// Looks for the lane that most cones are the edges of: a way of arcs, by a beam search, that keeps clear of all cones and has as
-/// many as possible at half its width on both sides. Then its middle is moved to where the cones of both sides, or of the one that
-/// there is, say that it is. Colours count, if they are known.
+/// The lane that the cones are most likely the edges of, some of which may be missing and some false: a curve with edges at half its
+/// width to both sides, whose bends begin slowly, and which keeps clear of all cones. Colours count, if they are known.
+///
+/// The cones are read as rows first, in up to four ways; beside each row, along the lane found before, and straight on, the lane is
+/// found that fits the cones there best, by least squares in which cones count by how likely they are at an edge; the most likely one
+/// of these is told.
 ///
 /// `behind` is where the car was, oldest first, `car` where it is, at the point of it that is to be in the middle, and `before` the
 /// lane as it was found before. `None` without a cone at an edge. Takes O(n²) for n cones.
+///
+/// ```
+/// use roverlab::drive::cones::{Cone, Lane, LaneParameters, lane};
+/// use roverlab::geometry::{Point, Pose};
+/// let edge = |y: f64| (0..6).map(move |k| Cone::unknown(Point::new(3.0 * f64::from(k), y)));
+/// let cones: Vec<Cone> = edge(1.6).chain(edge(-1.8)).collect();
+/// let unknown = Lane { points: Vec::new(), edges: [Vec::new(), Vec::new()], half_width: 1.9 };
+/// let found = lane(&cones, &[], Pose::default(), &unknown, &LaneParameters::default()).expect("a lane");
+/// assert_eq!((found.edges[0].len(), found.edges[1].len()), (6, 6));
+/// assert!(found.points[8..].iter().all(|point| (point.y + 0.1).abs() < 0.1));
+/// ```
 pub fn lane(
     cones: &[Cone],
     behind: &[Pose],
@@ -124,7 +126,7 @@ pub(super) fn lane_where(
     parameters: &LaneParameters,
 ) -> Option<Lane> {
     let car = way.car;
-    let reach = parameters.piece * parameters.pieces as f64 + parameters.spacing;
+    let reach = parameters.ahead + parameters.spacing;
     let near: Vec<usize> =
         (0..cones.len()).filter(|&cone| (cones[cone].position - car.position()).norm() < reach).collect();
     let cones: Vec<Cone> = near.iter().map(|&cone| cones[cone]).collect();
@@ -137,137 +139,46 @@ pub(super) fn lane_where(
 
 /// The same between cones that are all near.
 fn lane_between(cones: &[Cone], way: &Way, before: &Lane, parameters: &LaneParameters) -> Option<Lane> {
-    let half_width = before.half_width;
-    let mut stations = way.behind.to_vec();
-    stations.push(way.car);
-    let p = parameters;
-    let narrowest = p.half_width[0];
-    let along_rows =
-        RowParameters { reach: p.spacing, half_width, narrowest, loose: p.loose, sharpest: p.sharpest };
+    // What is far behind says nothing of the lane here, and a curve from there would bend too slowly.
+    let is_far = |pose: &&Pose| (pose.position() - way.car.position()).norm() > parameters.spacing;
+    let behind = way.behind.iter().skip_while(is_far).copied();
+    let stations: Vec<Pose> = behind.chain([way.car]).collect();
     let earlier: Vec<Passage> = way.earlier.iter().map(|pose| (*pose).into()).collect();
-    let rows = rows(cones, &stations, &earlier, &along_rows);
-    let search = ArcSearch { cones, others: way.others, earlier: &earlier, before, parameters };
-    // Rows alone do not tell whether a car can drive between them.
-    let ways = rows.iter().filter_map(|rows| {
-        let (poses, cost) = search.best(rows, way.car)?;
-        Some((cost - ROWS * rows.worth, rows, poses))
-    });
-    let (_, rows, poses) = ways.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    stations.extend(poses);
-    let sides = rows.sides(cones.len());
-    let mut found = settled((cones, &sides), &stations, half_width, parameters);
+    let fitter = Fitter { cones, way, earlier: &earlier, before, parameters };
+    let fits = ways(cones, &stations, &earlier, before, parameters)
+        .into_iter()
+        .filter_map(|ahead| fitter.fit(&[&stations[..], &ahead].concat(), stations.len() - 1));
+    let best = fits.max_by(|a, b| a.worth.total_cmp(&b.worth))?;
+    let mut points = even(&best.middle);
     let places: Vec<Point> =
         cones.iter().map(|cone| cone.position).chain(way.others.iter().copied()).collect();
-    keep_clear(&mut found.points, &places, p.clearance + BEYOND_TOUCH);
+    keep_clear(&mut points, &places, parameters.clearance + BEYOND_TOUCH);
+    let found = Lane { points, edges: best.edges, half_width: best.half_width };
     found.edges.iter().any(|edge| !edge.is_empty()).then_some(found)
 }
 
-/// A cone of an edge.
-#[derive(Debug, Clone, Copy)]
-struct EdgeCone {
-    /// Metres along the lane, and aside of it.
-    along: f64,
-    aside: f64,
-    index: usize,
-}
-
-/// The middle between the edges along some stations.
-fn settled((cones, sides): (&[Cone], &[i8]), stations: &[Pose], half_width: f64, p: &LaneParameters) -> Lane {
-    let mut along = vec![0.0];
-    for pair in stations.windows(2) {
-        along.push(along[along.len() - 1] + (pair[1].position() - pair[0].position()).norm());
-    }
-    let edges = [1.0, -1.0].map(|side| edge((cones, sides), stations, &along, (half_width, p.loose), side));
-    let mut offsets: Vec<f64> = along.iter().map(|at| offset(&edges, *at, half_width)).collect();
-    for _ in 0..3 {
-        let old = offsets.clone();
-        for i in 1..old.len().saturating_sub(1) {
-            offsets[i] = 0.25 * old[i - 1] + 0.5 * old[i] + 0.25 * old[i + 1];
-        }
-    }
-    // Beyond the last cone, nothing is known.
-    let last = edges.iter().flatten().map(|cone| cone.along).fold(0.0, f64::max);
-    let known = along.iter().position(|at| *at > last + 1.5).unwrap_or(along.len());
-    let normal = |pose: &Pose| Vector::new(-math::sin(pose.heading), math::cos(pose.heading));
-    let points: Vec<Point> = stations
-        .iter()
-        .zip(&offsets)
-        .take(known)
-        .map(|(pose, offset)| pose.position() + normal(pose) * *offset)
-        .collect();
-    let half_width = width(&edges, half_width, p);
-    Lane {
-        points: even(&points),
-        edges: edges.map(|edge| edge.iter().map(|cone| cone.index).collect()),
-        half_width,
-    }
-}
-
-/// The cones of a side, in their order along the lane: 1 for the left one.
-fn edge(
-    (cones, sides): (&[Cone], &[i8]),
+/// Ways ahead near which the lane may lie: beside the rows of each reading, along the lane found before, and straight on.
+fn ways(
+    cones: &[Cone],
     stations: &[Pose],
-    along: &[f64],
-    (half_width, loose): (f64, f64),
-    side: f64,
-) -> Vec<EdgeCone> {
-    let mut found: Vec<EdgeCone> = Vec::new();
-    for (index, (cone, known)) in cones.iter().zip(sides).enumerate() {
-        let nearest = (0..stations.len()).min_by(|&a, &b| {
-            let squared = |i: usize| (stations[i].position() - cone.position).norm_squared();
-            squared(a).total_cmp(&squared(b))
-        });
-        let Some(nearest) = nearest else { continue };
-        let local = stations[nearest].to_local(cone.position);
-        let aside = side * local.y;
-        let wrong = f64::from(cone.colour.side()) * side < 0.0;
-        // A cone of a row is at that row's edge wherever the lane is wider or narrower than usual.
-        let at_edge = if *known == 0 {
-            (aside - half_width).abs() < loose && !wrong
-        } else {
-            f64::from(*known) * side > 0.0 && (0.0..2.0 * half_width).contains(&aside)
-        };
-        if local.x.abs() < NEXT_TO && at_edge {
-            found.push(EdgeCone { along: along[nearest] + local.x, aside, index });
+    earlier: &[Passage],
+    before: &Lane,
+    p: &LaneParameters,
+) -> Vec<Vec<Pose>> {
+    let Some(&car) = stations.last() else { return Vec::new() };
+    let (half_width, narrowest) = (before.half_width, p.half_width[0]);
+    let along_rows =
+        RowParameters { reach: p.spacing, half_width, narrowest, loose: p.loose, sharpest: p.sharpest };
+    let mut ways = Vec::new();
+    for rows in rows(cones, stations, earlier, &along_rows) {
+        for (row, right) in rows.edges.iter().zip([half_width, -half_width]) {
+            let places: Vec<Point> = row.iter().map(|&cone| cones[cone].position).collect();
+            ways.extend(beside_row(&places, right, car, p.ahead));
         }
     }
-    found.sort_by(|a, b| a.along.total_cmp(&b.along));
-    found
-}
-
-/// How far the middle is to the left of the lane at a place.
-fn offset(edges: &[Vec<EdgeCone>; 2], at: f64, half_width: f64) -> f64 {
-    let [left, right] = [0, 1].map(|side| distance(&edges[side], at));
-    match (left, right) {
-        (Some(left), Some(right)) => 0.5 * (left - right),
-        (Some(left), None) => left - half_width,
-        (None, Some(right)) => half_width - right,
-        (None, None) => 0.0,
-    }
-}
-
-/// Metres to an edge at a place, between the cones before and behind it.
-fn distance(edge: &[EdgeCone], at: f64) -> Option<f64> {
-    let next = edge.partition_point(|cone| cone.along < at);
-    let near = |cone: Option<&EdgeCone>| cone.filter(|cone| (cone.along - at).abs() < SPEAKS).copied();
-    match (near(next.checked_sub(1).and_then(|k| edge.get(k))), near(edge.get(next))) {
-        (Some(before), Some(after)) => {
-            let share = (at - before.along) / (after.along - before.along).max(1e-6);
-            Some(before.aside + (after.aside - before.aside) * share)
-        }
-        (one, other) => one.or(other).map(|cone| cone.aside),
-    }
-}
-
-/// Half the width as the cones say, in small steps.
-fn width(edges: &[Vec<EdgeCone>; 2], before: f64, p: &LaneParameters) -> f64 {
-    let mut asides: Vec<f64> = edges.iter().flatten().map(|cone| cone.aside).collect();
-    if asides.len() < 3 {
-        return before;
-    }
-    asides.sort_by(f64::total_cmp);
-    let step = 0.1 * (asides[asides.len() / 2] - before);
-    (before + step).clamp(p.half_width[0], p.half_width[1])
+    ways.extend(along_lane(before, car, p.ahead));
+    ways.extend(straight_on(car, p.ahead));
+    distinct(ways)
 }
 
 /// Points at even steps of about a metre along a chain, smoothed.

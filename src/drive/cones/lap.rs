@@ -2,12 +2,14 @@
 
 use super::corridor::Corridor;
 use super::error::PlanError;
-use super::lane::{LaneParameters, SPEAKS};
+use super::lane::LaneParameters;
 use super::spline::ClosedSpline;
 use crate::geometry::{Point, Pose, math};
 
 /// Metres beyond the usual widths at which cones of an edge may stand beside the way of a lap.
 const BEYOND: f64 = 0.5;
+/// Metres along the lap over which a cone speaks for its edge.
+const SPEAKS: f64 = 6.5;
 /// Stations of a lap to both sides within which the width of a track is about the same.
 const ALIKE: usize = 10;
 

@@ -22,7 +22,7 @@ pub struct ConeMapParameters {
 
 impl Default for ConeMapParameters {
     fn default() -> Self {
-        Self { gate: 0.9, farthest: 15.0, confirmed: 4, sensor: 2.15, drift: [0.03, 0.006] }
+        Self { gate: 0.9, farthest: 20.0, confirmed: 4, sensor: 2.15, drift: [0.03, 0.006] }
     }
 }
 

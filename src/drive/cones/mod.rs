@@ -13,17 +13,18 @@
 //! - [`minimum_curvature`]: the racing line within a [`Corridor`], and [`SpeedProfile`]: how fast a car goes along it,
 //!   within what its tyres [`Hold`].
 
-mod arcs;
 mod banded;
 mod box_qp;
 mod camera_sight;
 mod centre_line;
 mod cone;
 mod corridor;
+mod curve;
 mod error;
 mod event;
 mod files;
 mod finder;
+mod fit;
 mod gap;
 mod generate;
 mod hold;
@@ -49,6 +50,7 @@ mod tests;
 mod tracker;
 mod tyres;
 mod walk;
+mod ways;
 
 pub use camera_sight::{CameraMount, CameraSight};
 pub use centre_line::{CentreLine, CentreLineParameters};

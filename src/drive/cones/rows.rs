@@ -108,12 +108,6 @@ pub(super) struct Rows {
 }
 
 impl Rows {
-    /// The legs of both rows, from cone to cone.
-    pub(super) fn legs(&self, cones: &[Cone]) -> Vec<[Point; 2]> {
-        let leg = |pair: &[usize]| [cones[pair[0]].position, cones[pair[1]].position];
-        self.edges.iter().flat_map(|edge| edge.windows(2).map(leg)).collect()
-    }
-
     /// On which side of the lane each of so many cones is, 1 for left, 0 for those of no row.
     pub(super) fn sides(&self, cones: usize) -> Vec<i8> {
         let mut sides = vec![0; cones];

@@ -203,7 +203,7 @@ mod tests {
         }
 
         #[test]
-        fn slip_grows_with_every_force(across in 0.0..10.0f64, along in 0.0..6.0f64) {
+        fn slip_grows_with_every_force_below_the_limit(across in 0.0..8.4f64, along in 0.0..6.0f64) {
             let tyres = Tyres::default();
             let (less, more) = (tyres.slips(across, along), tyres.slips(across + 0.3, along));
             let pushed = tyres.slips(across, along + 0.5);

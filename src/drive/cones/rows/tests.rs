@@ -8,7 +8,9 @@ fn best(cones: &[Cone], places: &[Pose], earlier: &[Passage], p: &RowParameters)
 }
 
 fn legs(cones: &[Cone], places: &[Pose], p: &RowParameters) -> Vec<[Point; 2]> {
-    best(cones, places, &[], p).legs(cones)
+    let rows = best(cones, places, &[], p);
+    let leg = |pair: &[usize]| [cones[pair[0]].position, cones[pair[1]].position];
+    rows.edges.iter().flat_map(|edge| edge.windows(2).map(leg)).collect()
 }
 
 fn at(places: &[(f64, f64)]) -> Vec<Cone> {

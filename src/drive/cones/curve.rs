@@ -1,0 +1,258 @@
+//! The middle of a lane as a curve: where it begins, and its curvature from knot to knot.
+
+use nalgebra::SVector;
+
+use super::cone::Cone;
+use crate::geometry::{Point, Pose, Vector, angle_difference, cross, direction};
+
+/// Places at which the curvature is unknown; it is linear in between.
+pub(super) const KNOTS: usize = 12;
+/// What is unknown of a lane: metres aside of where its way begins, radians by which it is turned there, half its width beside the
+/// car, how much that grows with a metre, and the curvatures.
+pub(super) const UNKNOWNS: usize = 4 + KNOTS;
+pub(super) const ASIDE: usize = 0;
+pub(super) const TURNED: usize = 1;
+pub(super) const WIDTH: usize = 2;
+pub(super) const WIDENS: usize = 3;
+pub(super) const BENDS: usize = 4;
+
+/// Steps in which a curve is followed.
+const STEPS_TO_KNOT: usize = 4;
+pub(super) const STEPS: usize = STEPS_TO_KNOT * (KNOTS - 1);
+/// Metres that a way has at least.
+const SHORTEST: f64 = 1.0;
+/// How far around a knot its curvature is taken from a way, in knots.
+const AROUND: f64 = 0.6;
+
+/// A number for each unknown.
+pub(super) type Unknowns = SVector<f64, UNKNOWNS>;
+
+/// A lane, by its unknowns.
+#[derive(Debug, Clone)]
+pub(super) struct Curve {
+    /// Where its way begins.
+    begin: Pose,
+    /// Metres from step to step.
+    pub(super) step: f64,
+    /// The step beside the car.
+    pub(super) car: usize,
+    pub(super) unknowns: Unknowns,
+    /// Where its middle is at each step, and the unit vectors along it.
+    pub(super) places: Vec<Point>,
+    pub(super) ahead: Vec<Vector>,
+}
+
+/// A cone beside a curve.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Beside {
+    pub(super) cone: usize,
+    /// The step that is next to it.
+    pub(super) step: usize,
+    /// Metres to the left of the middle.
+    pub(super) left: f64,
+    /// Metres along the middle, from the car.
+    pub(super) along: f64,
+}
+
+impl Curve {
+    /// The curve about along a way, of which one station is beside the car. `None` for one that is too short.
+    pub(super) fn along(stations: &[Pose], car: usize, half_width: f64) -> Option<Self> {
+        let begin = *stations.first()?;
+        let way = Headings::of(stations);
+        let total = way.total();
+        if total < SHORTEST {
+            return None;
+        }
+        let mut unknowns = Unknowns::zeros();
+        unknowns[WIDTH] = half_width;
+        let spacing = total / (KNOTS - 1) as f64;
+        for knot in 0..KNOTS {
+            let at = spacing * knot as f64;
+            let (from, to) = ((at - AROUND * spacing).max(0.0), (at + AROUND * spacing).min(total));
+            unknowns[BENDS + knot] = (way.at(to) - way.at(from)) / (to - from);
+        }
+        let step = total / STEPS as f64;
+        let car = ((way.metres[car] / step).round() as usize).min(STEPS);
+        let mut curve = Self { begin, step, car, unknowns, places: Vec::new(), ahead: Vec::new() };
+        curve.follow();
+        Some(curve)
+    }
+
+    /// Changes the unknowns.
+    pub(super) fn set(&mut self, unknowns: Unknowns) {
+        self.unknowns = unknowns;
+        self.follow();
+    }
+
+    /// Goes along it, from its unknowns.
+    fn follow(&mut self) {
+        let begin = direction(self.begin.heading);
+        let mut at = self.begin.position() + Vector::new(-begin.y, begin.x) * self.unknowns[ASIDE];
+        let mut ahead = direction(self.begin.heading + self.unknowns[TURNED]);
+        self.places.clear();
+        self.ahead.clear();
+        for step in 0..=STEPS {
+            self.places.push(at);
+            self.ahead.push(ahead);
+            let (knot, share) = before(step);
+            let [from, to] = [0, 1].map(|next| self.unknowns[BENDS + knot + next]);
+            let half = 0.5 * self.step * (from * (1.0 - share) + to * share);
+            let middle = turned(ahead, half);
+            at += middle * self.step;
+            ahead = turned(middle, half);
+        }
+    }
+
+    /// Half the width of the lane at a step.
+    pub(super) fn half_width(&self, step: usize) -> f64 {
+        self.unknowns[WIDTH] + self.unknowns[WIDENS] * self.from_car(step)
+    }
+
+    /// Metres along it from the car to a step.
+    pub(super) fn from_car(&self, step: usize) -> f64 {
+        (step as f64 - self.car as f64) * self.step
+    }
+
+    /// The cones within some metres of the middle, but for those before its beginning and beyond its end.
+    pub(super) fn beside(&self, cones: &[Cone], within: f64) -> Vec<Beside> {
+        let beside = |(cone, Cone { position, .. }): (usize, &Cone)| {
+            let step = self.nearest(*position)?;
+            let away = position - self.places[step];
+            let (left, beyond) = (cross(self.ahead[step], away), self.ahead[step].dot(&away));
+            let near = away.norm_squared() < within * within && beyond.abs() <= self.step;
+            near.then_some(Beside { cone, step, left, along: self.from_car(step) + beyond })
+        };
+        cones.iter().enumerate().filter_map(beside).collect()
+    }
+
+    fn nearest(&self, place: Point) -> Option<usize> {
+        let squared = self.places.iter().map(|point| (point - place).norm_squared());
+        squared.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(step, _)| step)
+    }
+
+    /// How far the middle moves to the left at a step, with each unknown.
+    pub(super) fn moves(&self, step: usize) -> Unknowns {
+        let (place, ahead) = (self.places[step], self.ahead[step]);
+        let mut moves = Unknowns::zeros();
+        moves[ASIDE] = ahead.dot(&direction(self.begin.heading));
+        moves[TURNED] = (place - self.places[0]).dot(&ahead);
+        for i in 0..step {
+            let (knot, share) = before(i);
+            // A bend there turns all that comes after the middle of its step.
+            let middle = nalgebra::center(&self.places[i], &self.places[i + 1]);
+            let arm = (place - middle).dot(&ahead) * self.step;
+            moves[BENDS + knot] += arm * (1.0 - share);
+            moves[BENDS + knot + 1] += arm * share;
+        }
+        moves
+    }
+}
+
+/// The knot before a step, or at it, and the share of the one behind it.
+fn before(step: usize) -> (usize, f64) {
+    let knot = (step / STEPS_TO_KNOT).min(KNOTS - 2);
+    (knot, step as f64 / STEPS_TO_KNOT as f64 - knot as f64)
+}
+
+/// A unit vector turned by a small angle, to a millionth of a radian: many are turned, and sines take long.
+fn turned(v: Vector, angle: f64) -> Vector {
+    let tangent = 0.5 * angle * (1.0 + angle * angle / 12.0);
+    let scale = 1.0 / (1.0 + tangent * tangent);
+    let (cos, sin) = ((1.0 - tangent * tangent) * scale, 2.0 * tangent * scale);
+    Vector::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos)
+}
+
+/// The headings along a way.
+struct Headings {
+    /// Metres from its beginning to each station.
+    metres: Vec<f64>,
+    /// The heading there, without leaps by a full turn.
+    headings: Vec<f64>,
+}
+
+impl Headings {
+    fn of(stations: &[Pose]) -> Self {
+        let mut way = Self { metres: vec![0.0], headings: vec![stations[0].heading] };
+        for pair in stations.windows(2) {
+            let leg = (pair[1].position() - pair[0].position()).norm();
+            let turn = angle_difference(pair[1].heading, pair[0].heading);
+            way.metres.push(way.total() + leg);
+            way.headings.push(way.headings[way.headings.len() - 1] + turn);
+        }
+        way
+    }
+
+    fn total(&self) -> f64 {
+        self.metres[self.metres.len() - 1]
+    }
+
+    /// The heading so many metres from the beginning.
+    fn at(&self, metres: f64) -> f64 {
+        let next = self.metres.partition_point(|way| *way < metres).clamp(1, self.metres.len() - 1);
+        let ([from, to], [start, end]) =
+            ([self.metres[next - 1], self.metres[next]], [self.headings[next - 1], self.headings[next]]);
+        let share = ((metres - from) / (to - from).max(1e-9)).clamp(0.0, 1.0);
+        start + (end - start) * share
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A way on a circle.
+    fn circle(curvature: f64, metres: u32) -> Vec<Pose> {
+        let mut poses = vec![Pose::new(3.0, -2.0, 0.4)];
+        for _ in 0..metres {
+            let half = direction(0.5 * curvature);
+            poses.push(poses[poses.len() - 1].compose(&Pose::new(half.x, half.y, curvature)));
+        }
+        poses
+    }
+
+    proptest! {
+        #[test]
+        fn a_curve_goes_along_its_way(curvature in -0.3..0.3f64) {
+            let way = circle(curvature, 24);
+            let curve = Curve::along(&way, 8, 1.9).unwrap();
+            prop_assert!((curve.from_car(0) + 8.0).abs() < curve.step);
+            for pose in &way {
+                let nearest = curve.nearest(pose.position()).unwrap();
+                let aside = cross(curve.ahead[nearest], pose.position() - curve.places[nearest]);
+                prop_assert!(aside.abs() < 0.05, "{aside} at {nearest}");
+            }
+        }
+
+        #[test]
+        fn moves_are_the_derivatives(
+            bends in proptest::collection::vec(-0.25..0.25f64, KNOTS), step in 1..=STEPS, unknown in 0..UNKNOWNS,
+        ) {
+            let mut curve = Curve::along(&circle(0.0, 24), 8, 1.9).unwrap();
+            let mut unknowns = curve.unknowns;
+            for (knot, bend) in bends.iter().enumerate() {
+                unknowns[BENDS + knot] = *bend;
+            }
+            curve.set(unknowns);
+            let moves = curve.moves(step);
+            let (place, left) = (curve.places[step], Vector::new(-curve.ahead[step].y, curve.ahead[step].x));
+            let small = 1e-5;
+            unknowns[unknown] += small;
+            curve.set(unknowns);
+            let moved = (curve.places[step] - place).dot(&left) / small;
+            prop_assert!((moved - moves[unknown]).abs() < 0.02 * (1.0 + moved.abs()), "{moved} {}", moves[unknown]);
+        }
+    }
+
+    #[test]
+    fn cones_beyond_its_ends_are_not_beside_it() {
+        let curve = Curve::along(&circle(0.0, 24), 8, 1.9).unwrap();
+        let begin = Pose::new(3.0, -2.0, 0.4);
+        let cone = |x: f64, y: f64| Cone::unknown(begin.to_world(Point::new(x, y)));
+        let found = curve.beside(&[cone(-2.0, 1.0), cone(5.0, 1.5), cone(26.0, -1.0), cone(9.0, 6.0)], 4.0);
+        assert_eq!(found.len(), 1);
+        let one = found[0];
+        assert!(one.cone == 1 && (one.left - 1.5).abs() < 1e-3 && (one.along + 3.0).abs() < 0.5, "{one:?}");
+        assert!(Curve::along(&circle(0.0, 0), 0, 1.9).is_none());
+    }
+}

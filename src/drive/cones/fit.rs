@@ -1,0 +1,413 @@
+//! The lane that cones near a way are most likely the edges of.
+//!
+//! Cones of an edge stand near it, others anywhere beyond it, and hardly any in between; where an edge has none for long, that
+//! speaks against it. So each cone says how much more likely it is with a lane than without one. From a rough way, the most likely
+//! lane is found by expectation and maximisation: each cone counts by how likely it is one of an edge, and least squares move the
+//! edges there. At first cones count that are some way off, in the end those alone that are next to an edge. What is expected of any
+//! lane counts as well: that its width is about what it was, and that bends begin slowly.
+
+use nalgebra::SMatrix;
+
+use super::cone::Cone;
+use super::curve::{ASIDE, BENDS, Beside, Curve, KNOTS, STEPS, TURNED, UNKNOWNS, Unknowns, WIDENS, WIDTH};
+use super::lane::{Lane, LaneParameters, Way};
+use super::rows::{Passage, leads_back, passes};
+use crate::geometry::{Point, Pose, math};
+
+type Information = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+
+/// How far cones of an edge stand off it, for a metre that they may be loose; and how many times as far they are taken for those of
+/// the edge, from round to round.
+const OFF: f64 = 0.25;
+const ROUNDS: [f64; 7] = [3.5, 2.5, 1.8, 1.3, 1.0, 1.0, 1.0];
+/// How much more likely it is that a cone stands just at an edge than elsewhere beside the lane.
+const AT_EDGE: f64 = 27.0;
+/// How likely it is that what is held to be the edge of a cone is the other one.
+const MISTAKEN: f64 = 0.02;
+/// Below this share, a cone counts for nothing.
+const UNLIKELY: f64 = 0.01;
+/// What is expected of the unknowns, as deviations: metres aside for a metre of looseness, radians, a share of half the width, metres
+/// for a metre; as shares of the greatest curvature, the curvature, and by how much it is greater all the same.
+const BEGINS: f64 = 0.6;
+const HEADS: f64 = 0.2;
+const WIDER: f64 = 0.03;
+const WIDENING: f64 = 0.02;
+const CURVES: f64 = 1.2;
+const TOO_SHARP: f64 = 0.08;
+/// How curvature changes from knot to knot, as a share of the greatest; what a great change costs, which is little, as sharp bends
+/// are what tracks are made of; and how much more it may change where cones are looked for farther off.
+const STEERS: f64 = 0.02;
+const SHARP: f64 = 0.4;
+const SLOWLY: f64 = 6.0;
+/// What a cone costs that stands in the lane, so many metres or more from its edge, and one that a car would touch; and the metres
+/// over which that grows.
+const INSIDE: f64 = 4.0;
+const TOUCHED: f64 = 3.0;
+const WITHIN: f64 = 0.45;
+const GROWS: f64 = 0.3;
+/// What it costs at most that an edge has no cones for long, and how soon it costs that.
+const HOLE: f64 = 3.0;
+const SOON: f64 = 0.7;
+/// Of the way ahead, how much is near enough for all of its cones to be known.
+const KNOWN: f64 = 0.7;
+/// Metres along an edge within which two cones count as one.
+const NEARER: f64 = 0.8;
+/// What it costs to lead back where the car came from, to pass between two cones that are known to be of one edge, and to be
+/// another lane than before. Looked at from so many steps to so many.
+const BACK: f64 = 8.0;
+const THROUGH: f64 = 5.0;
+const CHANGE: f64 = 2.5;
+const STRIDE: usize = 4;
+
+/// A lane through cones.
+#[derive(Debug, Clone)]
+pub(super) struct LaneFit {
+    /// Its middle as far as there are cones at its edges.
+    pub(super) middle: Vec<Point>,
+    /// Half its width beside the car.
+    pub(super) half_width: f64,
+    /// The cones of the left and of the right edge, in their order along it.
+    pub(super) edges: [Vec<usize>; 2],
+    /// How much more likely the cones are with it than without any lane: a logarithm.
+    pub(super) worth: f64,
+}
+
+/// Metres of the middle that are known beyond the last cone of an edge.
+const BEYOND: f64 = 1.5;
+
+/// What lanes are fitted to.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fitter<'f> {
+    pub(super) cones: &'f [Cone],
+    pub(super) way: &'f Way<'f>,
+    pub(super) earlier: &'f [Passage],
+    /// The lane that was found before.
+    pub(super) before: &'f Lane,
+    pub(super) parameters: &'f LaneParameters,
+}
+
+/// A sum of unknowns, each in deviations, and how far it is off what is expected.
+#[derive(Debug, Clone, Copy)]
+struct Expectation {
+    sum: [(usize, f64); 2],
+    off: f64,
+    /// Whether what is far off is hardly more likely than what is farther off, as by Student; else as by Gauss.
+    heavy: bool,
+}
+
+impl Expectation {
+    /// How unlikely it is: the logarithm of how much more likely it is to be as expected.
+    fn cost(&self) -> f64 {
+        let squared = self.off * self.off;
+        if self.heavy { SHARP * math::ln(1.0 + squared) } else { 0.5 * squared }
+    }
+
+    /// What it weighs among squares.
+    fn weight(&self) -> f64 {
+        if self.heavy { 2.0 * SHARP / (1.0 + self.off * self.off) } else { 1.0 }
+    }
+}
+
+/// A cone of an edge: metres along it from the car, and what it is worth.
+#[derive(Debug, Clone, Copy)]
+struct EdgeCone {
+    cone: usize,
+    along: f64,
+    worth: f64,
+}
+
+impl Fitter<'_> {
+    /// The most likely lane near some stations, of which one is beside the car. `None` without a way.
+    pub(super) fn fit(&self, stations: &[Pose], car: usize) -> Option<LaneFit> {
+        let mut curve = Curve::along(stations, car, self.before.half_width)?;
+        for round in ROUNDS {
+            self.improve(&mut curve, round);
+        }
+        Some(self.told(&curve))
+    }
+
+    /// Metres from the middle within which cones say something.
+    fn reach(&self) -> f64 {
+        self.parameters.half_width[1] + self.parameters.loose + 2.0
+    }
+
+    /// The odds that a cone beside a curve is one of its left and of its right edge.
+    fn odds(&self, curve: &Curve, beside: &Beside, round: f64) -> [f64; 2] {
+        let half_width = curve.half_width(beside.step);
+        let known = self.cones[beside.cone].colour.side();
+        let scale = OFF * self.parameters.loose * round;
+        [1, -1].map(|side: i8| {
+            let far = (f64::from(side) * beside.left - half_width) / scale;
+            // Student's distribution of three degrees of freedom: some cones stand farther off.
+            let tail = 1.0 + far * far / 3.0;
+            let mistaken = if known * side < 0 { MISTAKEN } else { 1.0 };
+            mistaken * AT_EDGE / (round * tail * tail)
+        })
+    }
+
+    /// Moves a curve to where it is most likely, as far as can be told from where it is: a step of Gauss and Newton.
+    fn improve(&self, curve: &mut Curve, round: f64) {
+        let (mut information, mut slope) = self.expected(curve, round);
+        let scale = OFF * self.parameters.loose * round;
+        for beside in curve.beside(self.cones, self.reach()) {
+            let odds = self.odds(curve, &beside, round);
+            let all = 1.0 + odds[0] + odds[1];
+            if odds[0].max(odds[1]) < UNLIKELY * all {
+                continue;
+            }
+            let moves = curve.moves(beside.step);
+            for (side, odds) in [1.0, -1.0].into_iter().zip(odds) {
+                let off = side * beside.left - curve.half_width(beside.step);
+                let weight = odds / all * 4.0 / (3.0 * scale * scale + off * off);
+                let mut row = moves * -side;
+                row[WIDTH] = -1.0;
+                row[WIDENS] = -curve.from_car(beside.step);
+                information.ger(weight, &row, &row, 1.0);
+                slope += row * (off * weight);
+            }
+        }
+        let Some(solver) = information.cholesky() else { return };
+        let mut unknowns = curve.unknowns - solver.solve(&slope);
+        let [least, most] = self.parameters.half_width;
+        unknowns[WIDTH] = unknowns[WIDTH].clamp(least, most);
+        curve.set(unknowns);
+    }
+
+    /// What is expected of any lane, as information on the unknowns, and the slope of how unlikely a curve is by it.
+    fn expected(&self, curve: &Curve, round: f64) -> (Information, Unknowns) {
+        let (mut information, mut slope) = (Information::zeros(), Unknowns::zeros());
+        for expectation in self.expectations(curve, round) {
+            let weight = expectation.weight();
+            for (i, a) in expectation.sum {
+                slope[i] += weight * a * expectation.off;
+                for (j, b) in expectation.sum {
+                    information[(i, j)] += weight * a * b;
+                }
+            }
+        }
+        (information, slope)
+    }
+
+    fn expectations(&self, curve: &Curve, round: f64) -> impl Iterator<Item = Expectation> {
+        let (p, usual, unknowns) = (self.parameters, self.before.half_width, curve.unknowns);
+        let one = move |unknown: usize, expected: f64, deviation: f64| Expectation {
+            sum: [(unknown, 1.0 / deviation), (unknown, 0.0)],
+            off: (unknowns[unknown] - expected) / deviation,
+            heavy: false,
+        };
+        let begin = [
+            one(ASIDE, 0.0, BEGINS * p.loose),
+            one(TURNED, 0.0, HEADS),
+            one(WIDTH, usual, WIDER * usual),
+            one(WIDENS, 0.0, WIDENING),
+        ];
+        let bends = (BENDS..BENDS + KNOTS).flat_map(move |knot| {
+            let sharpest = p.curvature.copysign(unknowns[knot]);
+            let sharp = unknowns[knot].abs() > p.curvature;
+            let too_sharp = sharp.then(|| one(knot, sharpest, TOO_SHARP * p.curvature));
+            [Some(one(knot, 0.0, CURVES * p.curvature)), too_sharp].into_iter().flatten()
+        });
+        let deviation = STEERS * p.curvature * (1.0 + SLOWLY * (round - 1.0));
+        let changes = (BENDS..BENDS + KNOTS - 1).map(move |knot| Expectation {
+            sum: [(knot + 1, 1.0 / deviation), (knot, -1.0 / deviation)],
+            off: (unknowns[knot + 1] - unknowns[knot]) / deviation,
+            heavy: true,
+        });
+        begin.into_iter().chain(bends).chain(changes)
+    }
+
+    /// What a curve is worth, and which cones are at its edges.
+    fn told(&self, curve: &Curve) -> LaneFit {
+        let mut edges: [Vec<EdgeCone>; 2] = [Vec::new(), Vec::new()];
+        let mut worth = 0.0;
+        for beside in curve.beside(self.cones, self.reach()) {
+            let odds = self.odds(curve, &beside, 1.0);
+            let likely = math::ln(1.0 + odds[0] + odds[1]);
+            worth += likely - self.inside(curve, &beside);
+            let side = usize::from(odds[1] > odds[0]);
+            if odds[side] > 1.0 {
+                edges[side].push(EdgeCone { cone: beside.cone, along: beside.along, worth: likely });
+            }
+        }
+        for edge in &mut edges {
+            edge.sort_by(|a, b| a.along.total_cmp(&b.along));
+            worth -= twice(edge) + self.holes(curve, edge);
+        }
+        worth -= self.expectations(curve, 1.0).map(|expectation| expectation.cost()).sum::<f64>();
+        worth -= self.obstacles(curve) + self.back(curve) + self.through(curve) + self.changed(curve);
+        let last = edges.iter().filter_map(|edge| edge.last()).map(|cone| cone.along).reduce(f64::max);
+        let known = |last: f64| (last + BEYOND - curve.from_car(0)) / curve.step;
+        let known = last.map_or(0, |last| known(last).max(0.0) as usize + 1);
+        LaneFit {
+            middle: curve.places[..known.min(STEPS + 1)].to_vec(),
+            half_width: curve.unknowns[WIDTH],
+            edges: edges.map(|edge| edge.iter().map(|cone| cone.cone).collect()),
+            worth,
+        }
+    }
+
+    /// What it costs that something stands in the lane.
+    fn inside(&self, curve: &Curve, beside: &Beside) -> f64 {
+        let aside = beside.left.abs();
+        let within = (curve.half_width(beside.step) - WITHIN - aside) / GROWS;
+        let touched = (self.parameters.clearance - aside) / GROWS;
+        INSIDE * within.clamp(0.0, 1.0) + TOUCHED * touched.clamp(0.0, 1.0)
+    }
+
+    /// What it costs that an edge ahead of the car has no cones for long. What it had none for behind is so whatever lies ahead.
+    fn holes(&self, curve: &Curve, edge: &[EdgeCone]) -> f64 {
+        let usual = 0.5 * self.parameters.spacing;
+        let hole = |metres: f64| HOLE * (1.0 - math::exp(-SOON * (metres / usual - 1.0).max(0.0)));
+        let end = self.known(curve);
+        let behind = edge.iter().map(|cone| cone.along).filter(|at| *at <= 0.0);
+        let mut last = behind.fold(curve.from_car(0), f64::max);
+        let mut cost = -hole(-last);
+        let ahead = edge.iter().map(|cone| cone.along).filter(|at| (0.0..end).contains(at));
+        for at in ahead.chain([end]) {
+            cost += hole(at - last);
+            last = at;
+        }
+        cost
+    }
+
+    /// Metres along a curve within which all cones are known.
+    fn known(&self, curve: &Curve) -> f64 {
+        let (car, most) = (self.way.car.position(), KNOWN * self.parameters.ahead);
+        let is_far = |step: &usize| (curve.places[*step] - car).norm() > most;
+        curve.from_car((curve.car..STEPS).find(is_far).unwrap_or(STEPS))
+    }
+
+    /// What it costs that what is no cone stands in the lane.
+    fn obstacles(&self, curve: &Curve) -> f64 {
+        let others: Vec<Cone> = self.way.others.iter().map(|place| Cone::unknown(*place)).collect();
+        curve.beside(&others, self.reach()).iter().map(|beside| self.inside(curve, beside)).sum()
+    }
+
+    /// What it costs that a curve leads back by where the car came from.
+    fn back(&self, curve: &Curve) -> f64 {
+        let leads = |step: &usize| {
+            let passage = Passage { place: curve.places[*step], ahead: curve.ahead[*step] };
+            leads_back(passage, self.earlier, self.before.half_width)
+        };
+        BACK * (curve.car..=STEPS).step_by(STRIDE).filter(leads).count() as f64
+    }
+
+    /// What it costs that a curve passes between cones that are known to be of one edge.
+    fn through(&self, curve: &Curve) -> f64 {
+        let usual = 0.5 * self.parameters.spacing;
+        let places: Vec<Point> = curve.places[curve.car..].iter().step_by(STRIDE).copied().collect();
+        let mut crossed = 0;
+        for (i, a) in self.cones.iter().enumerate().filter(|(_, cone)| cone.colour.side() != 0) {
+            for b in self.cones[..i].iter().filter(|b| b.colour.side() == a.colour.side()) {
+                if (a.position - b.position).norm_squared() < usual * usual {
+                    let crosses = |way: &&[Point]| passes([way[0], way[1]], [a.position, b.position]);
+                    crossed += places.windows(2).filter(crosses).count();
+                }
+            }
+        }
+        THROUGH * crossed as f64
+    }
+
+    /// What it costs to be another lane than before.
+    fn changed(&self, curve: &Curve) -> f64 {
+        let ahead = curve.places[curve.car..].iter().step_by(STRIDE);
+        let count = ahead.len() as f64;
+        CHANGE * ahead.map(|place| self.before.away(*place)).sum::<f64>() / count
+    }
+}
+
+/// What cones of an edge are worth that stand where another one of it does: of an edge that tells one thing, not two.
+fn twice(edge: &[EdgeCone]) -> f64 {
+    let less = |pair: &[EdgeCone]| {
+        if pair[1].along - pair[0].along < NEARER { pair[0].worth.min(pair[1].worth) } else { 0.0 }
+    };
+    edge.windows(2).map(less).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::direction;
+    use proptest::prelude::*;
+
+    /// The pose on a bend that begins at the car, so many metres from it along the lane.
+    fn on_bend(curvature: f64, along: f64) -> Pose {
+        let turn = curvature * along.max(0.0);
+        let way = direction(0.5 * turn) * along;
+        Pose::new(way.x, way.y, turn)
+    }
+
+    /// Cones at both edges of a lane 3.6 m wide, the right one first.
+    fn edges(curvature: f64) -> Vec<Cone> {
+        let edge = |side: f64| {
+            (-2..6).map(move |k| on_bend(curvature, 3.0 * f64::from(k)).to_world(Point::new(0.0, 1.8 * side)))
+        };
+        edge(-1.0).chain(edge(1.0)).map(Cone::unknown).collect()
+    }
+
+    fn fitted(cones: &[Cone], ahead: &[Pose]) -> LaneFit {
+        let behind: Vec<Pose> = [-6.0, -4.0, -2.0].map(|x| Pose::new(x, 0.0, 0.0)).to_vec();
+        let way = Way { behind: &behind, car: Pose::default(), earlier: &[], others: &[] };
+        let before = Lane::unknown(1.8);
+        let parameters = LaneParameters::default();
+        let fitter = Fitter { cones, way: &way, earlier: &[], before: &before, parameters: &parameters };
+        let stations = [&behind[..], &[way.car], ahead].concat();
+        fitter.fit(&stations, behind.len()).unwrap()
+    }
+
+    /// A way along a bend, so much more aside for each metre.
+    fn rough(curvature: f64, aside: f64) -> Vec<Pose> {
+        (1..=17)
+            .map(|k| on_bend(curvature, f64::from(k)).compose(&Pose::new(0.0, aside * f64::from(k), 0.0)))
+            .collect()
+    }
+
+    proptest! {
+        #[test]
+        fn false_cones_do_not_move_a_lane(
+            curvature in -0.12..0.12f64, aside in -0.03..0.03f64, at in 0.0..12.0f64, beyond in 1.2..2.5f64, left: bool,
+        ) {
+            let mut cones = edges(curvature);
+            let aside_of = |y: f64| if left { y } else { -y };
+            cones.push(Cone::unknown(on_bend(curvature, at).to_world(Point::new(0.0, aside_of(1.8 + beyond)))));
+            let found = fitted(&cones, &rough(curvature, aside));
+            prop_assert_eq!(&found.edges[1], &(0..8).collect::<Vec<_>>());
+            prop_assert_eq!(&found.edges[0], &(8..16).collect::<Vec<_>>());
+            for point in &found.middle {
+                let off = (-60..180).map(|k| (on_bend(curvature, 0.1 * f64::from(k)).position() - point).norm());
+                prop_assert!(off.fold(f64::INFINITY, f64::min) < 0.2, "{point}");
+            }
+        }
+
+        #[test]
+        fn a_way_that_leads_off_the_lane_leads_to_none_that_is_better(curvature in -0.1..0.1f64, missing in 0..16usize) {
+            let mut cones = edges(curvature);
+            cones.remove(missing);
+            let right = fitted(&cones, &rough(curvature, 0.0));
+            let wrong = fitted(&cones, &rough(curvature, 0.2));
+            // Both may end in the same lane, but for what a few rounds leave: much less than the 3.3 that a cone is worth.
+            prop_assert!(right.worth > wrong.worth - 1.0, "{} {}", right.worth, wrong.worth);
+            prop_assert!(right.worth > 20.0);
+        }
+    }
+
+    #[test]
+    fn cones_that_are_next_to_each_other_count_once() {
+        let mut cones = edges(0.0);
+        let once = fitted(&cones, &rough(0.0, 0.0)).worth;
+        cones.push(Cone::unknown(cones[4].position + crate::geometry::Vector::new(0.3, 0.02)));
+        let twice = fitted(&cones, &rough(0.0, 0.0)).worth;
+        assert!((once - twice).abs() < 0.3, "{once} {twice}");
+    }
+
+    #[test]
+    fn a_lane_with_one_edge_is_worth_less_and_is_one() {
+        let all = edges(0.04);
+        let right: Vec<Cone> = all[..8].to_vec();
+        let ahead = rough(0.04, 0.0);
+        let (both, one) = (fitted(&all, &ahead), fitted(&right, &ahead));
+        assert!(one.worth > 0.0 && both.worth > one.worth + 8.0 * 2.5, "{} {}", one.worth, both.worth);
+        let away = one.middle.iter().zip(&both.middle).map(|(a, b)| (a - b).norm());
+        assert!(away.fold(0.0, f64::max) < 0.15, "{one:?} {both:?}");
+    }
+}
