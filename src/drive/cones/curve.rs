@@ -105,11 +105,11 @@ impl Curve {
 
     /// Half the width of the lane at a step.
     pub(super) fn half_width(&self, step: usize) -> f64 {
-        self.unknowns[WIDTH] + self.unknowns[WIDENS] * self.from_car(step)
+        self.unknowns[WIDTH] + self.unknowns[WIDENS] * self.past_car(step)
     }
 
     /// Metres along it from the car to a step.
-    pub(super) fn from_car(&self, step: usize) -> f64 {
+    pub(super) fn past_car(&self, step: usize) -> f64 {
         (step as f64 - self.car as f64) * self.step
     }
 
@@ -120,7 +120,7 @@ impl Curve {
             let away = position - self.places[step];
             let (left, beyond) = (cross(self.ahead[step], away), self.ahead[step].dot(&away));
             let near = away.norm_squared() < within * within && beyond.abs() <= self.step;
-            near.then_some(Beside { cone, step, left, along: self.from_car(step) + beyond })
+            near.then_some(Beside { cone, step, left, along: self.past_car(step) + beyond })
         };
         cones.iter().enumerate().filter_map(beside).collect()
     }
@@ -216,7 +216,7 @@ mod tests {
         fn a_curve_goes_along_its_way(curvature in -0.3..0.3f64) {
             let way = circle(curvature, 24);
             let curve = Curve::along(&way, 8, 1.9).unwrap();
-            prop_assert!((curve.from_car(0) + 8.0).abs() < curve.step);
+            prop_assert!((curve.past_car(0) + 8.0).abs() < curve.step);
             for pose in &way {
                 let nearest = curve.nearest(pose.position()).unwrap();
                 let aside = cross(curve.ahead[nearest], pose.position() - curve.places[nearest]);

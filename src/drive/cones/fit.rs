@@ -161,7 +161,7 @@ impl Fitter<'_> {
                 let weight = odds / all * 4.0 / (3.0 * scale * scale + off * off);
                 let mut row = moves * -side;
                 row[WIDTH] = -1.0;
-                row[WIDENS] = -curve.from_car(beside.step);
+                row[WIDENS] = -curve.past_car(beside.step);
                 information.ger(weight, &row, &row, 1.0);
                 slope += row * (off * weight);
             }
@@ -236,7 +236,7 @@ impl Fitter<'_> {
         worth -= self.expectations(curve, 1.0).map(|expectation| expectation.cost()).sum::<f64>();
         worth -= self.obstacles(curve) + self.back(curve) + self.through(curve) + self.changed(curve);
         let last = edges.iter().filter_map(|edge| edge.last()).map(|cone| cone.along).reduce(f64::max);
-        let known = |last: f64| (last + BEYOND - curve.from_car(0)) / curve.step;
+        let known = |last: f64| (last + BEYOND - curve.past_car(0)) / curve.step;
         let known = last.map_or(0, |last| known(last).max(0.0) as usize + 1);
         LaneFit {
             middle: curve.places[..known.min(STEPS + 1)].to_vec(),
@@ -260,7 +260,7 @@ impl Fitter<'_> {
         let hole = |metres: f64| HOLE * (1.0 - math::exp(-SOON * (metres / usual - 1.0).max(0.0)));
         let end = self.known(curve);
         let behind = edge.iter().map(|cone| cone.along).filter(|at| *at <= 0.0);
-        let mut last = behind.fold(curve.from_car(0), f64::max);
+        let mut last = behind.fold(curve.past_car(0), f64::max);
         let mut cost = -hole(-last);
         let ahead = edge.iter().map(|cone| cone.along).filter(|at| (0.0..end).contains(at));
         for at in ahead.chain([end]) {
@@ -274,7 +274,7 @@ impl Fitter<'_> {
     fn known(&self, curve: &Curve) -> f64 {
         let (car, most) = (self.way.car.position(), KNOWN * self.parameters.ahead);
         let is_far = |step: &usize| (curve.places[*step] - car).norm() > most;
-        curve.from_car((curve.car..STEPS).find(is_far).unwrap_or(STEPS))
+        curve.past_car((curve.car..STEPS).find(is_far).unwrap_or(STEPS))
     }
 
     /// What it costs that what is no cone stands in the lane.
