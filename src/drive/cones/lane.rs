@@ -10,7 +10,7 @@ use crate::geometry::{Point, Pose, Vector};
 #[cfg(test)]
 mod tests;
 
-/// What a lane is looked for with.
+/// What a lane is looked for with. All numbers are greater than 0 and finite, and it looks no farther ahead than 1000 m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaneParameters {
     /// Metres ahead of the car.
@@ -43,6 +43,21 @@ impl Default for LaneParameters {
             spacing: 10.5,
             sharpest: 1.9,
         }
+    }
+}
+
+/// Metres that are looked ahead at most.
+const FARTHEST: f64 = 1000.0;
+
+impl LaneParameters {
+    /// Whether all numbers are within their ranges.
+    fn is_usable(&self) -> bool {
+        let p = self;
+        let [least, most] = p.half_width;
+        let numbers =
+            [p.ahead, p.curvature, p.clearance, least, most, p.usual, p.loose, p.spacing, p.sharpest];
+        let are_good = numbers.iter().all(|number| *number > 0.0 && number.is_finite());
+        are_good && least <= most && p.ahead <= FARTHEST
     }
 }
 
@@ -96,7 +111,9 @@ impl Lane {
 /// of these is told.
 ///
 /// `behind` is where the car was, oldest first, `car` where it is, at the point of it that is to be in the middle, and `before` the
-/// lane as it was found before. `None` without a cone at an edge. Takes O(n²) for n cones.
+/// lane as it was found before. What is found begins up to [`LaneParameters::spacing`] behind the car, where `behind` does, and ends
+/// just beyond the last cone of its edges. `None` without a cone at an edge, and with parameters out of their ranges. Takes O(n²) for
+/// n cones.
 ///
 /// ```
 /// use roverlab::drive::cones::{Cone, Lane, LaneParameters, lane};
@@ -125,6 +142,9 @@ pub(super) fn lane_where(
     before: &Lane,
     parameters: &LaneParameters,
 ) -> Option<Lane> {
+    if !parameters.is_usable() || before.half_width <= 0.0 {
+        return None;
+    }
     let car = way.car;
     let reach = parameters.ahead + parameters.spacing;
     let near: Vec<usize> =
@@ -140,15 +160,15 @@ pub(super) fn lane_where(
 /// The same between cones that are all near.
 fn lane_between(cones: &[Cone], way: &Way, before: &Lane, parameters: &LaneParameters) -> Option<Lane> {
     // What is far behind says nothing of the lane here, and a curve from there would bend too slowly.
-    let is_far = |pose: &&Pose| (pose.position() - way.car.position()).norm() > parameters.spacing;
-    let behind = way.behind.iter().skip_while(is_far).copied();
-    let stations: Vec<Pose> = behind.chain([way.car]).collect();
+    let is_far = |pose: &Pose| (pose.position() - way.car.position()).norm() > parameters.spacing;
+    let first = way.behind.iter().rposition(is_far).map_or(0, |far| far + 1);
+    let stations: Vec<Pose> = way.behind[first..].iter().copied().chain([way.car]).collect();
     let earlier: Vec<Passage> = way.earlier.iter().map(|pose| (*pose).into()).collect();
     let fitter = Fitter { cones, way, earlier: &earlier, before, parameters };
     let fits = ways(cones, &stations, &earlier, before, parameters)
         .into_iter()
         .filter_map(|ahead| fitter.fit(&[&stations[..], &ahead].concat(), stations.len() - 1));
-    let best = fits.max_by(|a, b| a.worth.total_cmp(&b.worth))?;
+    let best = fits.filter(|fit| fit.worth.is_finite()).max_by(|a, b| a.worth.total_cmp(&b.worth))?;
     let mut points = even(&best.middle);
     let places: Vec<Point> =
         cones.iter().map(|cone| cone.position).chain(way.others.iter().copied()).collect();

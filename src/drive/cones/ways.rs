@@ -14,7 +14,7 @@ const ENOUGH: usize = 3;
 const ALIKE: f64 = 0.5;
 
 /// The way some metres to the right of a row of cones, which is given in its order along the lane; on the left where they are
-/// negative. `None` without two cones ahead of the car.
+/// negative. `None` without two cones one after the other of which the later one is ahead of the car or well away from it.
 pub(super) fn beside_row(row: &[Point], right: f64, car: Pose, reach: f64) -> Option<Vec<Pose>> {
     let beside = |pair: &[Point]| {
         let leg = pair[1] - pair[0];
@@ -49,26 +49,29 @@ pub(super) fn straight_on(car: Pose, reach: f64) -> Option<Vec<Pose>> {
     prolonged(vec![car.compose(&Pose::new(STEP, 0.0, 0.0))], car, reach)
 }
 
-/// A way that goes straight on from its end, until it reaches so far from a car.
-fn prolonged(mut way: Vec<Pose>, car: Pose, reach: f64) -> Option<Vec<Pose>> {
+/// A way that ends so many metres from a car along it: cut off there, or straight on from its end until there.
+fn prolonged(way: Vec<Pose>, car: Pose, reach: f64) -> Option<Vec<Pose>> {
     let last = *way.last()?;
-    let mut length = 0.0;
-    let mut from = car.position();
-    let mut is_near = |pose: &Pose| {
-        length += (pose.position() - from).norm();
-        from = pose.position();
-        length < reach
-    };
-    let near = way.iter().take_while(|pose| is_near(pose)).count();
-    way.truncate(near.max(1));
+    let (mut from, mut length) = (car.position(), 0.0);
+    let mut stations: Vec<Pose> = Vec::with_capacity(way.len());
+    for pose in way {
+        let leg = pose.position() - from;
+        if length + leg.norm() >= reach {
+            let end = from + leg * ((reach - length) / leg.norm());
+            stations.push(Pose::new(end.x, end.y, pose.heading));
+            return Some(stations);
+        }
+        (from, length) = (pose.position(), length + leg.norm());
+        stations.push(pose);
+    }
     let ahead = direction(last.heading);
     let mut beyond = STEP;
     while length + beyond < reach {
         let place = last.position() + ahead * beyond;
-        way.push(Pose::new(place.x, place.y, last.heading));
+        stations.push(Pose::new(place.x, place.y, last.heading));
         beyond += STEP;
     }
-    Some(way)
+    Some(stations)
 }
 
 fn nearest(places: impl Iterator<Item = Point>, place: Point) -> Option<usize> {
@@ -110,11 +113,17 @@ mod tests {
         let row: Vec<Point> =
             (0..6).map(|k| car.to_world(Point::new(3.0 * f64::from(k) - 4.0, 1.8))).collect();
         let lane = Lane { points: row.clone(), edges: [Vec::new(), Vec::new()], half_width: 1.8 };
-        let ways = [straight_on(car, 17.5), beside_row(&row, 1.8, car, 17.5), along_lane(&lane, car, 17.5)];
+        let wide: Vec<Point> = [-2.0, 7.0, 17.0, 27.0].map(|x| car.to_world(Point::new(x, 1.8))).to_vec();
+        let ways = [
+            straight_on(car, 17.5),
+            beside_row(&row, 1.8, car, 17.5),
+            beside_row(&wide, 1.8, car, 17.5),
+            along_lane(&lane, car, 17.5),
+        ];
         for way in ways.iter().flatten() {
-            assert!((15.5..18.6).contains(&length(way, car)), "{} {way:?}", length(way, car));
+            assert!((16.4..17.6).contains(&length(way, car)), "{} {way:?}", length(way, car));
         }
-        assert_eq!(ways.iter().flatten().count(), 3);
+        assert_eq!(ways.iter().flatten().count(), 4);
         for pose in ways[1].as_ref().unwrap() {
             let local = car.to_local(pose.position());
             assert!(local.x > 1.0 && local.y.abs() < 1e-9 && (pose.heading - 0.3).abs() < 1e-9, "{local}");

@@ -48,7 +48,7 @@ impl Default for EventParameters {
                 ..limits
             },
             outline: CarOutline { room: 0.3, ..outline },
-            map: ConeMapParameters { farthest: 20.0, ..map },
+            map,
             tracker,
             strip: 75.3,
             // The shortest lanes behind the finish are 25 and 21 m long.

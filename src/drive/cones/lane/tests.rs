@@ -60,3 +60,32 @@ fn there_is_no_lane_beside_a_row_of_known_cones() {
     assert!(found.points.iter().all(|point| point.y < 0.5), "{found:?}");
     assert!(lane(&[], &[], Pose::default(), &found, &LaneParameters::default()).is_none());
 }
+
+#[test]
+fn parameters_out_of_their_ranges_find_no_lane() {
+    let cones = [row(1.6, 0..6), row(-1.6, 0..6)].concat();
+    let p = LaneParameters::default();
+    let find = |p: LaneParameters, half_width: f64| {
+        lane(&cones, &[], Pose::default(), &Lane::unknown(half_width), &p).is_some()
+    };
+    assert!(find(p, 1.9));
+    let wrong = [
+        LaneParameters { half_width: [2.8, 1.4], ..p },
+        LaneParameters { half_width: [f64::NAN, 2.8], ..p },
+        LaneParameters { ahead: f64::INFINITY, ..p },
+        LaneParameters { loose: 0.0, ..p },
+        LaneParameters { curvature: 0.0, ..p },
+    ];
+    assert!(!wrong.into_iter().any(|wrong| find(wrong, 1.9)) && !find(p, 0.0));
+}
+
+#[test]
+fn where_the_car_was_a_lap_ago_does_not_matter() {
+    let cones = [row(1.6, 0..6), row(-1.6, 0..6)].concat();
+    let find = |behind: &[Pose]| {
+        lane(&cones, behind, Pose::default(), &Lane::unknown(1.9), &LaneParameters::default()).unwrap()
+    };
+    let lately = [-4.0, -2.0].map(|x| Pose::new(x, 0.0, 0.0));
+    let earlier = [Pose::new(-1.0, 0.1, 0.0), Pose::new(30.0, 9.0, 1.5), Pose::new(-40.0, 2.0, 0.0)];
+    assert_eq!(find(&[&earlier[..], &lately].concat()), find(&lately));
+}
