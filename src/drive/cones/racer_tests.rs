@@ -59,6 +59,32 @@ fn race_on(track: &ConeTrack, corridor: Corridor, seed: u64, laps: usize) -> Rac
 }
 
 #[test]
+fn a_line_that_moves_aside_is_come_to_without_weaving() {
+    let straight = |y: f64| -> Vec<Point> { (0..1000).map(|k| Point::new(f64::from(k), y)).collect() };
+    let profile = SpeedProfile::open(&straight(0.0), &RacerParameters::default().limits, 30.0, 0.0).unwrap();
+    let tracker =
+        |y: f64| LineTracker::new(straight(y), profile.clone(), false, TrackerParameters::default());
+    let options = RaceOptions { noise: NoiseModel::ideal(), ..RaceOptions::default() };
+    let mut world = Race::new(&[], &[(RaceCarSpec::default(), Pose::default())], options).unwrap();
+    let (mut before, mut moved) = (tracker(0.0), tracker(0.8));
+    let (mut most, mut last) = (0.0_f64, 0.0);
+    while world.truth(0).unwrap().pose.x < 700.0 {
+        let pose = world.truth(0).unwrap().pose;
+        let mut car = world.car(0).unwrap();
+        let speed = car.speed().unwrap();
+        let line = if pose.x < 500.0 { &mut before } else { &mut moved };
+        let (command, aside) = line.step(pose, speed).unwrap();
+        car.set_speed(command).unwrap();
+        world.advance(0.05);
+        if pose.x > 500.0 {
+            assert!(speed.linear > 29.0, "{speed:?}");
+            (most, last) = (most.max(aside), aside);
+        }
+    }
+    assert!(most < 0.1 && last.abs() < 0.02, "{most} beyond, {last} in the end");
+}
+
+#[test]
 fn the_first_lap_makes_the_map() {
     for seed in 0..3 {
         let raced = race(seed, 1);

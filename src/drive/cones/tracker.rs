@@ -86,6 +86,9 @@ const ON_LINE: f64 = 0.3;
 const SLOW: f64 = 2.0;
 /// The share of the metres in which an error dies out by which one counts at most: what is farther off is approached at 14 degrees.
 const SLANTED: f64 = 0.4;
+/// The share of the tyres' grip that is asked of them to come back to a line. With more of it, a fast car whose line moves aside would
+/// steer until its tyres slip, and weave.
+const BACK: f64 = 1.0 / 3.0;
 /// Metres before and beyond a place between which the turn of the nose is taken.
 const SWINGS: f64 = 1.0;
 
@@ -168,7 +171,8 @@ impl LineTracker {
         let length = p.length + p.length_by_speed * speed.abs();
         let swing = if speed > SLIPS { p.swing * self.swing(i, share, beyond, push) } else { 0.0 };
         // Without a bound, a line that begins far beside the car would be driven at athwart.
-        let back = aside.clamp(-SLANTED * length, SLANTED * length);
+        let most = (SLANTED * length).min(BACK * p.tyres.grip * length * length / (speed * speed));
+        let back = aside.clamp(-most, most);
         let wanted = curvature + swing - back / (length * length) - 1.6 * math::sin(turned) / length;
         // The rear axle drives a tighter bend than the point ahead of it.
         let inside = (1.0 - (p.ahead * wanted) * (p.ahead * wanted)).max(0.5).sqrt();
