@@ -150,8 +150,9 @@ pub struct ConeMap {
     odometry: Option<Pose>,
     /// Metres that the car has gone.
     way: f64,
-    /// Where it was in the first lap, and how far it had gone.
+    /// Where it was in the first lap, and how far it had gone; and how far where that lap begins.
     trail: Vec<(Pose, f64)>,
+    begun: f64,
     closed: bool,
     /// Metres that the car had gone when it was closed.
     known: f64,
@@ -207,6 +208,7 @@ impl ConeMap {
             odometry: None,
             way: 0.0,
             trail: Vec::new(),
+            begun: 0.0,
             closed: false,
             known: f64::INFINITY,
             fits: None,
@@ -278,7 +280,7 @@ impl ConeMap {
 
     /// Metres by which the pose may be wrong that is compared with that of the start.
     pub fn tolerance(&self) -> f64 {
-        if self.closed { WRONG.0 } else { WRONG.0 + WRONG.1 * self.way }
+        if self.closed { WRONG.0 } else { WRONG.0 + WRONG.1 * (self.way - self.begun) }
     }
 
     fn confirmed(&self) -> impl Iterator<Item = &Landmark> + '_ {
@@ -389,6 +391,18 @@ impl ConeMap {
         true
     }
 
+    /// Takes the last so many metres of the way for the first lap, where that could not be closed: on a straight, rows of cones may
+    /// look alike at many places, and plain farther on.
+    pub(super) fn begin_later(&mut self, metres: f64) {
+        let begun = self.way - metres;
+        if self.closed || begun <= self.begun {
+            return;
+        }
+        self.begun = begun;
+        self.landmarks.retain(|landmark| landmark.last >= begun);
+        self.trail.retain(|(_, way)| *way >= begun);
+    }
+
     /// Moves the end of the lap by a motion, its beginning not at all, and what is between in proportion to the way.
     fn bend(&mut self, motion: Pose) {
         self.trail.push((self.pose, self.way));
@@ -407,8 +421,9 @@ impl ConeMap {
         }
         self.pose = after[after.len() - 1];
         // The lap ends where it began, not where that was noticed.
-        let begin = self.trail[0].0.x;
-        while self.trail.len() > 2 && self.trail.last().is_some_and(|(pose, _)| pose.x > begin - STRIDE) {
+        let (begin, _) = self.trail[0];
+        let is_beyond = |(pose, _): &(Pose, f64)| begin.to_local(pose.position()).x > -STRIDE;
+        while self.trail.len() > 2 && self.trail.last().is_some_and(is_beyond) {
             self.trail.pop();
         }
     }
@@ -432,7 +447,7 @@ impl ConeMap {
 
     /// Metres of the way in which the first cones were seen.
     fn beginning(&self) -> f64 {
-        BEGINNING.min(0.5 * self.way)
+        self.begun + BEGINNING.min(0.5 * (self.way - self.begun))
     }
 
     /// Makes one cone of those that are too near each other to be two.

@@ -110,8 +110,10 @@ pub struct Racer {
     stale: u32,
     /// Whether a lap was ended since the racing line was planned.
     plan_again: bool,
-    /// Decisions until the whole track is tried to be planned again.
+    /// Decisions until the whole track is tried to be planned again, or a map to be closed.
     patience: u32,
+    /// Metres of a lap after which the map was not closed.
+    open_lap: Option<f64>,
     /// The lane ahead in the first lap.
     lane: Lane,
     /// Decisions until it drives off: before that, it looks about and turns its wheels.
@@ -144,6 +146,8 @@ const SHORTEST: f64 = 12.0;
 const OTHERS: (f64, f64, f64) = (1.5, 24.0, 4.5);
 /// Decisions at the start at which it only looks: a cone is one after some sightings, and wheels turn a third of a second to the stop.
 const LOOKS: u32 = 10;
+/// Metres by which a lap that is closed later begins before the place where the car is now.
+const BEFORE_LAP: f64 = 15.0;
 /// Metres per second that are next to none: a curvature is kept by them as well.
 const NEXT_TO_NONE: f64 = 1e-3;
 /// Rounds in which kinks are taken out of a line.
@@ -176,6 +180,7 @@ impl Racer {
             stale: 0,
             plan_again: false,
             patience: 0,
+            open_lap: None,
             lane: Lane::unknown(parameters.lane.usual),
             looks: LOOKS,
             stopping: None,
@@ -350,6 +355,11 @@ impl Racer {
         if !(around && self.is_behind(line)) {
             return;
         }
+        if !self.map.is_closed() {
+            // It began at the start, and ended where the car came by there.
+            let past = line.to_local(self.map.pose().position()).x + LINE;
+            self.open_lap.get_or_insert(self.since_line - past);
+        }
         self.since_line = 0.0;
         self.in_front = false;
         self.laps += 1;
@@ -386,6 +396,16 @@ impl Racer {
                 self.plan_again = false;
                 self.phase = RacePhase::Racing;
                 return;
+            }
+        }
+        if let Some(lap) = self.open_lap
+            && self.patience == 0
+            && !self.map.is_closed()
+        {
+            self.patience = 4;
+            self.map.begin_later(lap + BEFORE_LAP);
+            if self.map.close() {
+                self.lane.points.clear();
             }
         }
         self.patience = self.patience.saturating_sub(1);
