@@ -18,6 +18,7 @@ pub(super) const BENDS: usize = 4;
 
 /// Steps in which a curve is followed.
 const STEPS_TO_KNOT: usize = 4;
+const AROUND_KNOT: usize = STEPS_TO_KNOT / 2;
 pub(super) const STEPS: usize = STEPS_TO_KNOT * (KNOTS - 1);
 /// Metres that a way has at least.
 const SHORTEST: f64 = 1.0;
@@ -30,16 +31,39 @@ pub(super) type Unknowns = SVector<f64, UNKNOWNS>;
 /// A lane, by its unknowns.
 #[derive(Debug, Clone)]
 pub(super) struct Curve {
-    /// Where its way begins.
+    /// Where its way begins, and the unit vector along it there.
     begin: Pose,
+    begins: Vector,
     /// Metres from step to step.
     pub(super) step: f64,
     /// The step beside the car.
     pub(super) car: usize,
     pub(super) unknowns: Unknowns,
     /// Where its middle is at each step, and the unit vectors along it.
-    pub(super) places: Vec<Point>,
-    pub(super) ahead: Vec<Vector>,
+    pub(super) places: [Point; STEPS + 1],
+    pub(super) ahead: [Vector; STEPS + 1],
+    /// How much it turns by the curvature at each knot; and by that at the knots before and behind each step, up to there.
+    bends: [Bend; KNOTS],
+    begun: [[Bend; 2]; STEPS + 1],
+}
+
+/// How much a curvature turns a lane: the metres on which it does, and the sum of their places.
+#[derive(Debug, Clone, Copy, Default)]
+struct Bend {
+    metres: f64,
+    places: Vector,
+}
+
+impl Bend {
+    fn add(&mut self, metres: f64, place: Point) {
+        self.metres += metres;
+        self.places += place.coords * metres;
+    }
+
+    /// How far a place beyond it moves to the left of some way, for each 1/m.
+    fn moves(&self, place: Point, ahead: Vector) -> f64 {
+        (place.coords * self.metres - self.places).dot(&ahead)
+    }
 }
 
 /// A cone beside a curve.
@@ -73,7 +97,17 @@ impl Curve {
         }
         let step = total / STEPS as f64;
         let car = ((way.metres[car] / step).round() as usize).min(STEPS);
-        let mut curve = Self { begin, step, car, unknowns, places: Vec::new(), ahead: Vec::new() };
+        let mut curve = Self {
+            begin,
+            begins: direction(begin.heading),
+            step,
+            car,
+            unknowns,
+            places: [Point::origin(); STEPS + 1],
+            ahead: [Vector::zeros(); STEPS + 1],
+            bends: [Bend::default(); KNOTS],
+            begun: [[Bend::default(); 2]; STEPS + 1],
+        };
         curve.follow();
         Some(curve)
     }
@@ -86,19 +120,24 @@ impl Curve {
 
     /// Goes along it, from its unknowns.
     fn follow(&mut self) {
-        let begin = direction(self.begin.heading);
-        let mut at = self.begin.position() + Vector::new(-begin.y, begin.x) * self.unknowns[ASIDE];
+        let left = Vector::new(-self.begins.y, self.begins.x);
+        let mut at = self.begin.position() + left * self.unknowns[ASIDE];
         let mut ahead = direction(self.begin.heading + self.unknowns[TURNED]);
-        self.places.clear();
-        self.ahead.clear();
+        self.bends = [Bend::default(); KNOTS];
         for step in 0..=STEPS {
-            self.places.push(at);
-            self.ahead.push(ahead);
+            self.places[step] = at;
+            self.ahead[step] = ahead;
             let (knot, share) = before(step);
+            self.begun[step] = [self.bends[knot], self.bends[knot + 1]];
             let [from, to] = [0, 1].map(|next| self.unknowns[BENDS + knot + next]);
             let half = 0.5 * self.step * (from * (1.0 - share) + to * share);
             let middle = turned(ahead, half);
-            at += middle * self.step;
+            let next = at + middle * self.step;
+            // A bend there turns all that comes after the middle of its step.
+            let turns_at = nalgebra::center(&at, &next);
+            self.bends[knot].add(self.step * (1.0 - share), turns_at);
+            self.bends[knot + 1].add(self.step * share, turns_at);
+            at = next;
             ahead = turned(middle, half);
         }
     }
@@ -116,7 +155,7 @@ impl Curve {
     /// The cones within some metres of the middle, but for those before its beginning and beyond its end.
     pub(super) fn beside(&self, cones: &[Cone], within: f64) -> Vec<Beside> {
         let beside = |(cone, Cone { position, .. }): (usize, &Cone)| {
-            let step = self.nearest(*position)?;
+            let step = self.nearest(*position, within)?;
             let away = position - self.places[step];
             let (left, beyond) = (cross(self.ahead[step], away), self.ahead[step].dot(&away));
             let near = away.norm_squared() < within * within && beyond.abs() <= self.step;
@@ -125,24 +164,37 @@ impl Curve {
         cones.iter().enumerate().filter_map(beside).collect()
     }
 
-    fn nearest(&self, place: Point) -> Option<usize> {
-        let squared = self.places.iter().map(|point| (point - place).norm_squared());
-        squared.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(step, _)| step)
+    /// The step next to a place. `None` where none is within some metres, or not by much.
+    fn nearest(&self, place: Point, within: f64) -> Option<usize> {
+        let squared = |step: usize| (self.places[step] - place).norm_squared();
+        let from_knots: [f64; KNOTS] = std::array::from_fn(|knot| squared(knot * STEPS_TO_KNOT));
+        let least = from_knots.into_iter().fold(f64::INFINITY, f64::min).sqrt();
+        // No step is farther than this from one of the knots beside it.
+        let between = AROUND_KNOT as f64 * self.step;
+        if least > within + between {
+            return None;
+        }
+        let near = (least + between) * (least + between);
+        let steps = (0..KNOTS).filter(|&knot| from_knots[knot] <= near).flat_map(|knot| {
+            let at = knot * STEPS_TO_KNOT;
+            at.saturating_sub(AROUND_KNOT)..=(at + AROUND_KNOT).min(STEPS)
+        });
+        let nearer = |nearest: (usize, f64), step: usize| {
+            let squared = squared(step);
+            if squared < nearest.1 { (step, squared) } else { nearest }
+        };
+        Some(steps.fold((0, f64::INFINITY), nearer).0)
     }
 
     /// How far the middle moves to the left at a step, with each unknown.
     pub(super) fn moves(&self, step: usize) -> Unknowns {
         let (place, ahead) = (self.places[step], self.ahead[step]);
         let mut moves = Unknowns::zeros();
-        moves[ASIDE] = ahead.dot(&direction(self.begin.heading));
+        moves[ASIDE] = ahead.dot(&self.begins);
         moves[TURNED] = (place - self.places[0]).dot(&ahead);
-        for i in 0..step {
-            let (knot, share) = before(i);
-            // A bend there turns all that comes after the middle of its step.
-            let middle = nalgebra::center(&self.places[i], &self.places[i + 1]);
-            let arm = (place - middle).dot(&ahead) * self.step;
-            moves[BENDS + knot] += arm * (1.0 - share);
-            moves[BENDS + knot + 1] += arm * share;
+        let (knot, _) = before(step);
+        for (unknown, bend) in self.bends[..knot].iter().chain(&self.begun[step]).enumerate() {
+            moves[BENDS + unknown] = bend.moves(place, ahead);
         }
         moves
     }
@@ -218,7 +270,7 @@ mod tests {
             let curve = Curve::along(&way, 8, 1.9).unwrap();
             prop_assert!((curve.past_car(0) + 8.0).abs() < curve.step);
             for pose in &way {
-                let nearest = curve.nearest(pose.position()).unwrap();
+                let nearest = curve.nearest(pose.position(), 1.0).unwrap();
                 let aside = cross(curve.ahead[nearest], pose.position() - curve.places[nearest]);
                 prop_assert!(aside.abs() < 0.05, "{aside} at {nearest}");
             }

@@ -162,7 +162,7 @@ impl Fitter<'_> {
                 let mut row = moves * -side;
                 row[WIDTH] = -1.0;
                 row[WIDENS] = -curve.past_car(beside.step);
-                information.ger(weight, &row, &row, 1.0);
+                information.syger(weight, &row, &row, 1.0);
                 slope += row * (off * weight);
             }
         }

@@ -130,13 +130,8 @@ pub(super) fn rows(cones: &[Cone], places: &[Pose], earlier: &[Passage], p: &Row
     let mut search = Search::new(cones, *car, earlier, p);
     search.begin(places, *car);
     let mut beam: Vec<usize> = (0..search.pairs.len()).collect();
-    let mut next: Vec<Pair> = Vec::new();
     for _ in 0..LONGEST {
-        next.clear();
-        for &parent in &beam {
-            search.onward(parent, &mut next);
-        }
-        beam = search.keep_best(&next);
+        beam = search.onward(&beam);
     }
     search.readings()
 }
@@ -145,6 +140,18 @@ impl Pair {
     fn cones(&self) -> [Option<usize>; 2] {
         self.ends.map(|end| end.cone)
     }
+}
+
+/// A leg by which one of the rows of a pair may go on.
+#[derive(Debug, Clone, Copy)]
+struct Step {
+    /// The pair, as one of those that are followed.
+    from: usize,
+    side: usize,
+    leg: usize,
+    /// What it costs along its row, and what the pair with it is worth at most.
+    cost: f64,
+    most: f64,
 }
 
 struct Search<'c> {
@@ -201,55 +208,87 @@ impl<'c> Search<'c> {
         found.into_iter().take(SEEDS).map(|(_, end, worth)| (end, worth)).chain([(none, -1.0)]).collect()
     }
 
-    /// Adds the pairs that may come next.
-    fn onward(&self, parent: usize, next: &mut Vec<Pair>) {
-        let rows = [0, 1].map(|side| self.row(parent, side));
-        for side in 0..2 {
-            let legs = match self.pairs[parent].ends[side].cone {
-                Some(cone) => &self.legs[cone],
-                None => &self.first[side],
-            };
-            next.extend(legs.iter().filter_map(|leg| self.with(parent, &rows, side, leg)));
+    /// The best pairs that may come after some, no two of the same cones; their places.
+    ///
+    /// Most of what a leg costs takes long to find out, and is found out of those alone that may be among the best.
+    fn onward(&mut self, beam: &[usize]) -> Vec<usize> {
+        let rows: Vec<[Row; 2]> = beam.iter().map(|&pair| [0, 1].map(|side| self.row(pair, side))).collect();
+        let mut steps = (0..beam.len()).flat_map(|from| self.steps(beam, from)).collect::<Vec<Step>>();
+        steps.sort_by(|a, b| b.most.total_cmp(&a.most));
+        let mut steps = steps.into_iter().peekable();
+        // The best one last.
+        let mut found: Vec<Pair> = Vec::new();
+        let mut kept: Vec<[Option<usize>; 2]> = Vec::with_capacity(BEAM);
+        while kept.len() < BEAM {
+            let best = found.last().map_or(f64::NEG_INFINITY, |pair| pair.worth);
+            if let Some(step) = steps.next_if(|step| step.most >= best) {
+                let parent = beam[step.from];
+                if !kept.contains(&self.cones_after(parent, &step))
+                    && let Some(pair) = self.with(parent, &rows[step.from], &step)
+                {
+                    found.insert(found.partition_point(|other| other.worth < pair.worth), pair);
+                }
+                continue;
+            }
+            let Some(pair) = found.pop() else { break };
+            if !kept.contains(&pair.cones()) {
+                kept.push(pair.cones());
+                self.pairs.push(pair);
+            }
         }
+        (self.pairs.len() - kept.len()..self.pairs.len()).collect()
     }
 
-    /// Keeps the best ones of some pairs, no two of the same cones; their places.
-    fn keep_best(&mut self, next: &[Pair]) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..next.len()).collect();
-        order.sort_by(|&a, &b| next[b].worth.total_cmp(&next[a].worth));
-        let mut kept = Vec::with_capacity(BEAM);
-        for pair in order.into_iter().map(|at| &next[at]) {
-            if kept.len() == BEAM {
-                break;
-            }
-            let alike = |&other: &usize| self.pairs[other].cones() == pair.cones();
-            if !kept.iter().any(alike) {
-                self.pairs.push(*pair);
-                kept.push(self.pairs.len() - 1);
-            }
-        }
-        kept
+    /// The legs by which a pair may go on.
+    fn steps<'s>(&'s self, beam: &[usize], from: usize) -> impl Iterator<Item = Step> + 's {
+        let pair = &self.pairs[beam[from]];
+        (0..2).flat_map(move |side| {
+            let own = &pair.ends[side];
+            self.legs_of(own, side).iter().enumerate().filter_map(move |(at, leg)| {
+                if angle_difference(leg.heading, own.heading).abs() > self.p.sharpest {
+                    return None;
+                }
+                let cost = self.cost_along(pair, side, leg);
+                let least = cost + self.cost_apart(pair, side, leg);
+                let most = pair.worth + own.share * (1.0 - least);
+                (least <= DEAREST).then_some(Step { from, side, leg: at, cost, most })
+            })
+        })
+    }
+
+    /// The cones of a pair that has gone on by a leg.
+    fn cones_after(&self, parent: usize, step: &Step) -> [Option<usize>; 2] {
+        let pair = &self.pairs[parent];
+        let leg = &self.legs_of(&pair.ends[step.side], step.side)[step.leg];
+        let mut cones = pair.cones();
+        cones[step.side] = Some(leg.to);
+        cones
+    }
+
+    /// The legs that begin where a row ends.
+    fn legs_of(&self, end: &End, side: usize) -> &[Leg] {
+        end.cone.map_or(&self.first[side], |cone| &self.legs[cone])
     }
 
     /// A pair with its cone of one side replaced by that at the end of a leg. `None` where that cannot be.
-    fn with(&self, parent: usize, rows: &[Row; 2], side: usize, leg: &Leg) -> Option<Pair> {
-        let (pair, p) = (&self.pairs[parent], self.p);
+    fn with(&self, parent: usize, rows: &[Row; 2], step: &Step) -> Option<Pair> {
+        let (pair, side) = (&self.pairs[parent], step.side);
         let own = &pair.ends[side];
-        let turn = angle_difference(leg.heading, own.heading);
-        if turn.abs() > p.sharpest || rows.iter().any(|row| row.holds(leg.to)) {
+        let leg = &self.legs_of(own, side)[step.leg];
+        if rows.iter().any(|row| row.holds(leg.to))
+            || self.leads_back(side, leg)
+            || rows[1 - side].is_crossed_by(leg.ends)
+        {
             return None;
         }
-        let cost = self.cost_along(pair, side, leg);
-        if cost > DEAREST || self.leads_back(side, leg) || rows[1 - side].is_crossed_by(leg.ends) {
-            return None;
-        }
-        let cost = cost + self.cost_beside(pair, &rows[1 - side], side, leg)?;
+        let cost = step.cost + self.cost_beside(pair, &rows[1 - side], side, leg)?;
         if cost > DEAREST {
             return None;
         }
         let cost = cost + BETWEEN * self.between(pair, side, leg);
-        let share = own.share * LESS;
-        let end = End { cone: Some(leg.to), place: leg.ends[1], heading: leg.heading, turn, share };
+        let turn = angle_difference(leg.heading, own.heading);
+        let end =
+            End { cone: Some(leg.to), place: leg.ends[1], heading: leg.heading, turn, share: own.share * LESS };
         let mut ends = pair.ends;
         ends[side] = end;
         let worth = pair.worth + own.share * (1.0 - cost);
@@ -290,12 +329,18 @@ impl<'c> Search<'c> {
         let turn = angle_difference(leg.heading, pair.ends[side].heading);
         let taken = TAKEN * other.takes(place, leg_cost(turn, leg.length), self.p.reach);
         let apart = (place - pair.ends[1 - side].place).norm();
+        let narrow = if apart < self.widest() { (1.0 - width / (2.0 * narrowest)).max(0.0) } else { 0.0 };
+        Some(taken + WIDTH * 16.0 * narrow * narrow + self.cost_apart(pair, side, leg))
+    }
+
+    /// The part of that for how far apart the ends of both rows are.
+    fn cost_apart(&self, pair: &Pair, side: usize, leg: &Leg) -> f64 {
+        let apart = (leg.ends[1] - pair.ends[1 - side].place).norm();
         if apart >= self.widest() {
-            return Some(taken + ALONE);
+            return ALONE;
         }
-        let narrow = (1.0 - width / (2.0 * narrowest)).max(0.0);
         let wide = (apart / (2.0 * self.p.half_width) - 1.2).max(0.0);
-        Some(taken + WIDTH * (16.0 * narrow * narrow + wide * wide))
+        WIDTH * wide * wide
     }
 
     /// How many cones stand where a leg leaves no room for them: between it and the other cone of a pair, and beside it.
