@@ -97,7 +97,7 @@ fn report(args: &Args, course: &Course, driven: Driven) -> Report {
     let done = verdict.lap_times.len() >= usize::from(args.laps);
     let word = match (done, verdict.cones_hit + verdict.off_course) {
         _ if driven.error.is_some() => Outcome::failure("failed"),
-        (false, _) => Outcome::verdict("timed_out"),
+        (false, _) => Outcome::failure("timed_out"),
         (true, 0) => Outcome::verdict("finished"),
         (true, _) => Outcome::verdict("penalised"),
     };

@@ -12,7 +12,7 @@ pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Fa
     let given = [("--line", args.line.is_some()), ("--animation", args.animation.is_some())];
     refuse(&given, "found a campaign; expected it with one race")?;
     let (mut clean, mut finished, mut laps, mut cones, mut off) = (0_u32, 0_u32, 0, 0, 0);
-    let (mut times, mut ratios) = (Vec::new(), Vec::new());
+    let (mut times, mut ratios, mut unclean) = (Vec::new(), Vec::new(), Vec::new());
     for seed in (0..u64::from(tracks)).map(|track| common.seed.wrapping_add(track)) {
         let mut course = Course::generated(seed)?;
         course.spoil(spoils, seed);
@@ -26,6 +26,7 @@ pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Fa
         cones += verdict.cones_hit;
         off += verdict.off_course;
         if !outcome.is_clean() {
+            unclean.push(seed);
             common.tell(format_args!(
                 "track {seed}: {:?}, {} laps, {} cones hit, {} times off course",
                 outcome.ending,
@@ -46,6 +47,7 @@ pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Fa
         .field("laps", laps)
         .field("cones_hit", cones)
         .field("off_course", off)
+        .field("not_clean", unclean)
         .field("mean_racing_speed_m_s", mean(&times).map(rounded))
         .field("mean_lap_over_optimum", mean(&ratios).map(rounded))
         .field("worst_lap_over_optimum", worst.map(rounded)))

@@ -182,6 +182,9 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if course.event.is_some() {
         check_event(args)?;
     }
+    if let Some(line) = &published {
+        check_line(&course, line)?;
+    }
     if let Some(reason) = course.impassable(&RaceCarSpec::default()) {
         return Ok(impassable(&course, reason));
     }
@@ -286,6 +289,23 @@ fn published(common: &CommonArgs, file: &Path) -> Result<Vec<Point>, Failure> {
         TrackFile::Line(line) => Ok(line),
         _ => Err(Failure::input(format!("--line {name}: found a track; expected a line without widths"))),
     }
+}
+
+/// Metres from the middle of a track within which a line may be one of it, beside half its width.
+const OFF_TRACK: f64 = 10.0;
+
+/// Fails where a line is not one of a course.
+fn check_line(course: &Course, line: &[Point]) -> Result<(), Failure> {
+    let stations = course.corridor.stations();
+    let half_width = stations.iter().map(|station| station.left.max(station.right)).fold(0.0, f64::max);
+    let away = |place: &Point| {
+        stations.iter().map(|station| (station.position - place).norm()).fold(f64::INFINITY, f64::min)
+    };
+    let farthest = line.iter().map(away).fold(0.0, f64::max);
+    if farthest <= half_width + OFF_TRACK {
+        return Ok(());
+    }
+    Err(Failure::input(format!("--line: found a point {farthest:.0} m from the middle of the track; expected a line on it")))
 }
 
 /// The root of the mean squared distance of a racing line from another one. `None` without one.

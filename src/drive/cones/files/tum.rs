@@ -6,6 +6,8 @@ use crate::drive::cones::{Corridor, PlanError};
 use crate::geometry::Point;
 use crate::world::formats::{FormatError, Location, shown};
 
+/// Metres from the middle to an edge: no track is wider, and one of them is not lined with a million cones.
+const WIDEST: f64 = 100.0;
 const HEADER: &str = "# x_m,y_m,w_tr_right_m,w_tr_left_m";
 
 /// Reads a circuit of the TUM race track database: a closed centre line in metres, and how far the track reaches to the
@@ -14,8 +16,8 @@ pub fn parse_tum(text: &str, file: &str) -> Result<Corridor, FormatError> {
     let numbers = table::<4>(text, file, HEADER)?;
     for (values, at) in &numbers {
         for (width, side) in [(values[2], "right"), (values[3], "left")] {
-            if width <= 0.0 {
-                let expected = format!("a positive width to the {side}");
+            if !(width > 0.0 && width <= WIDEST) {
+                let expected = format!("a width to the {side} of more than 0, at most {WIDEST} m");
                 return Err(FormatError::new(file, *at, width.to_string(), expected));
             }
         }
