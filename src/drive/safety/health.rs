@@ -69,6 +69,11 @@ impl OdometryHealth {
         !(jumps || frozen || late)
     }
 
+    /// Somebody vouches for it: what it did before is no more held against it.
+    pub(super) fn trust(&mut self) {
+        (self.frozen, self.missing) = (0, 0.0);
+    }
+
     /// The pose was set: what comes next is measured against that. How fast it was is known as before, and since when.
     pub(super) fn move_to(&mut self, pose: Pose) {
         if let Some((_, before, _)) = &mut self.last {
@@ -130,6 +135,12 @@ impl ReadingHealth {
         let late = !equal && self.echo.hears(digest, limits.repeats);
         self.last = digest;
         self.frozen < limits.repeats && !late
+    }
+
+    /// Somebody vouches for it: that it stays as it is counts from now on, and only while the vehicle moves.
+    pub(super) fn trust(&mut self) {
+        self.frozen = 0;
+        self.echo.runs = [0; REMEMBERED];
     }
 }
 
