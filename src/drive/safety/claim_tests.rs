@@ -147,6 +147,7 @@ fn a_program_that_only_reads_is_stopped_while_it_drives() {
     assert_eq!(stopped_reading(|car| car.straight(0.6, 0.3).unwrap()), None, "a way with an end");
     assert_eq!(stopped_reading(|car| car.set_speed(Twist::STOP).unwrap()), None, "it stands");
     assert_eq!(stopped_reading(|_| {}), None, "it has not begun");
+    assert_eq!(stopped_reading(|car| car.wait(5.0).unwrap()), None, "it waits as it asked for");
     assert_eq!(
         stopped_reading(|car| {
             car.set_motor(1, 0.3).unwrap();

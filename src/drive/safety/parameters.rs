@@ -10,8 +10,8 @@ pub struct SupervisorParameters {
     pub period: f64,
     /// Seconds without a heartbeat of the base station that are allowed.
     pub heartbeat: f64,
-    /// Seconds that are allowed without a command of the driving program, or without any call of it while the vehicle is told to
-    /// stand, or drives a way that has an end.
+    /// Seconds that are allowed without a command of the driving program, or, while the vehicle is told to stand, or drives a way
+    /// that has an end, without any call of it.
     pub watchdog: f64,
     /// Corners of the area that must not be left, in the frame of odometry: none, or at least three.
     pub fence: Vec<Point>,

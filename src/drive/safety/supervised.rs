@@ -47,10 +47,10 @@ pub struct StopRecord {
 /// | a sensor that the program reads is lost, reads no numbers, or takes longer than `health.age` | with that reading |
 /// | such a sensor stays as it is, or gets late | with `health.repeats` such readings of a vehicle that moves |
 ///
-/// The program is silent if it does not call at all, or waits for too long at once. While its last command keeps the vehicle
-/// going without an end, a [speed](Drive::set_speed) or a [motor](crate::io::Motors), it has to command again in time: that it
-/// reads sensors shows no more that it drives. While the vehicle is told to stand, or to drive a way that has an end, as by
-/// [`straight`](Drive::straight), any call shows that it lives.
+/// While the program's last command keeps the vehicle going without an end, a [speed](Drive::set_speed) or a
+/// [motor](crate::io::Motors), it lives as long as it commands again in time: that it reads sensors, or waits, shows no more that it
+/// drives. While the vehicle is told to stand, or to drive a way that has an end, as by [`straight`](Drive::straight), any call
+/// shows that it lives, and so does a wait while it goes on; a call of the robot inside that hangs does not.
 ///
 /// # What it cannot notice
 ///
@@ -231,6 +231,11 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
     pub(super) fn alive(&mut self) {
         self.pass(0.0);
         self.look_if_due();
+        self.shows_life();
+    }
+
+    /// A call, or a wait that goes on as the program asked for it, shows that it lives, unless it has to command.
+    pub(super) fn shows_life(&mut self) {
         if !(self.rolls || self.powered.contains(&true)) {
             self.watchdog.feed(self.waited);
         }

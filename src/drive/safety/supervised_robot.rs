@@ -77,6 +77,7 @@ impl<R: Clock + Drive, S: Station> Clock for Supervised<R, S> {
                 answer = Err(error);
             }
             self.look_if_due();
+            self.shows_life();
             if answer.is_err() {
                 break;
             }
