@@ -82,6 +82,37 @@ impl OdometryHealth {
     }
 }
 
+/// Whether the sensors are trusted: not from a fault on until somebody vouches for them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Trust {
+    lost: bool,
+    /// Whether somebody vouched at the last look.
+    vouched: bool,
+}
+
+impl Default for Trust {
+    /// Who vouches at the first look has not begun to: the button may be stuck.
+    fn default() -> Self {
+        Self { lost: false, vouched: true }
+    }
+}
+
+impl Trust {
+    /// Takes in whether somebody vouches for them. Whether they begin to be trusted by that.
+    pub(super) fn begins(&mut self, vouches: bool) -> bool {
+        let begins = vouches && !self.vouched;
+        self.vouched = vouches;
+        self.lost &= !begins;
+        begins
+    }
+
+    /// Takes in whether one is at fault now. Whether they are not trusted.
+    pub(super) fn is_lost(&mut self, fault: bool) -> bool {
+        self.lost |= fault;
+        self.lost
+    }
+}
+
 /// What readings may do.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HealthLimits {

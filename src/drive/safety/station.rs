@@ -2,6 +2,7 @@ use super::{Causes, Deadline, Requests, SafetyState};
 
 /// What people and the base station tell a vehicle's safety system in one control period.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a wire of its own")]
 pub struct Panel {
     /// The button on board that takes the power away.
     pub emergency_button: bool,

@@ -1,4 +1,4 @@
-use super::health::{OdometryHealth, ReadingHealth};
+use super::health::{OdometryHealth, ReadingHealth, Trust};
 use super::{
     Beat, Causes, Deadline, Debounce, Panel, SafetyCore, SafetyInputs, SafetyState, Station,
     SupervisorParameters, is_inside,
@@ -118,9 +118,7 @@ pub struct Supervised<R, S> {
     pub(super) images: ReadingHealth,
     /// Of every distance sensor that there can be, so that no reading has to allocate.
     pub(super) distances: Box<[ReadingHealth]>,
-    /// Whether a sensor was found at fault that nobody has vouched for since, and whether somebody did at the last look.
-    distrusts: bool,
-    vouched: bool,
+    trust: Trust,
     clock: Option<f64>,
     pub(super) pose: Pose,
     /// The speed measured last, and the curvature driven last.
@@ -130,13 +128,32 @@ pub struct Supervised<R, S> {
     pub(super) wanted: f64,
     /// Whether it turns motors and servos itself, so that the curvature has to be measured.
     pub(super) direct: bool,
-    /// Whether the program's last speed keeps the vehicle going without an end, and which motors do.
-    rolls: bool,
-    powered: [bool; 256],
+    going: Going,
     /// The speed asked for while it brakes.
     braking: Option<f64>,
     causes: Causes,
     stop: Option<StopRecord>,
+}
+
+/// What of the program's last commands keeps the vehicle going without an end.
+#[derive(Debug, Clone, Copy)]
+struct Going {
+    /// A speed does.
+    rolls: bool,
+    /// Which motors do.
+    powered: [bool; 256],
+}
+
+impl Default for Going {
+    fn default() -> Self {
+        Self { rolls: false, powered: [false; 256] }
+    }
+}
+
+impl Going {
+    fn has_no_end(&self) -> bool {
+        self.rolls || self.powered.contains(&true)
+    }
 }
 
 /// The longest wait, in seconds, and the longest time that a clock is believed to have leapt by: what comes after it has to come.
@@ -170,16 +187,14 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
             scans: ReadingHealth::default(),
             images: ReadingHealth::default(),
             distances: vec![ReadingHealth::default(); 256].into_boxed_slice(),
-            distrusts: false,
-            vouched: true,
+            trust: Trust::default(),
             clock: None,
             pose: Pose::default(),
             speed: 0.0,
             curvature: 0.0,
             wanted: f64::INFINITY,
             direct: false,
-            rolls: false,
-            powered: [false; 256],
+            going: Going::default(),
             braking: None,
             causes: Causes::NONE,
             stop: None,
@@ -236,7 +251,7 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
 
     /// A call, or a wait that goes on as the program asked for it, shows that it lives, unless it has to command.
     pub(super) fn shows_life(&mut self) {
-        if !(self.rolls || self.powered.contains(&true)) {
+        if !self.going.has_no_end() {
             self.watchdog.feed(self.waited);
         }
     }
@@ -344,16 +359,14 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
     /// A sensor that was found at fault is not trusted before somebody vouches for it: that it is late, for one, shows only as it
     /// gets late.
     fn distrusted(&mut self, causes: Causes, vouches: bool) -> Causes {
-        if vouches && !self.vouched {
-            self.distrusts = false;
+        if self.trust.begins(vouches) {
             self.odometry.trust();
             self.scans.trust();
             self.images.trust();
             self.distances.iter_mut().for_each(ReadingHealth::trust);
         }
-        self.vouched = vouches;
-        self.distrusts |= causes.has(Causes::SENSOR);
-        Causes::NONE.with_if(self.distrusts, Causes::SENSOR)
+        let lost = self.trust.is_lost(causes.has(Causes::SENSOR));
+        Causes::NONE.with_if(lost, Causes::SENSOR)
     }
 
     /// Brakes where the state asks for it. Errors are looked at in the next period, when the link is asked again.
@@ -401,14 +414,14 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
     /// Whether the program may drive now. By a command it shows that it lives, whether that reaches the wheels or not; `rolls` says
     /// whether it keeps the vehicle going without an end.
     pub(super) fn may_drive(&mut self, rolls: bool) -> bool {
-        (self.rolls, self.powered) = (rolls, [false; 256]);
+        self.going = Going { rolls, ..Going::default() };
         self.commanded()
     }
 
     /// The same for a motor, which is powered or not.
     pub(super) fn may_turn(&mut self, motor: u8, powered: bool) -> bool {
-        self.rolls = false;
-        self.powered[usize::from(motor)] = powered;
+        self.going.rolls = false;
+        self.going.powered[usize::from(motor)] = powered;
         self.commanded()
     }
 
