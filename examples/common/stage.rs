@@ -51,6 +51,8 @@ struct Guard {
     models: Vec<StoppingModel>,
     /// Whether each robot is alone in a world.
     apart: bool,
+    /// When something goes wrong with the first one.
+    fault: Option<f64>,
     stops: Stops,
 }
 
@@ -223,7 +225,8 @@ impl CommonArgs {
         // How well speeds are measured goes by the noise.
         let error = SpeedError::default().scaled(self.noise);
         let models = models.into_iter().map(|model| StoppingModel { error, ..model }).collect();
-        let guard = self.supervised.then_some(Guard { models, apart: false, stops });
+        let fault = self.faults()?.iter().map(|fault| fault.at).reduce(f64::min);
+        let guard = self.supervised.then_some(Guard { models, apart: false, fault, stops });
         Ok(Stage { recording: self.recording(scene, player)?, guard, ..stage })
     }
 
@@ -375,6 +378,7 @@ impl Stage {
         let models = &guard.models;
         let model = *models.get(index).or(models.first()).ok_or_else(|| Failure::input("no robot"))?;
         let who = if guard.apart { 0 } else { index };
+        let model = (model, guard.fault.filter(|_| index == 0));
         guarded(robot, self.truth(index)?, who, model, guard.stops.clone()).map_err(Failure::run)
     }
 

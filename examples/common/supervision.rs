@@ -6,7 +6,7 @@ use ambassador::Delegate;
 use roverlab::drive::safety::{
     Beat, Causes, Panel, Requests, SafetyState, StopRecord, StoppingModel, Supervised, SupervisorParameters,
 };
-use roverlab::geometry::{Pose, Twist};
+use roverlab::geometry::{Pose, Twist, angle_difference};
 use roverlab::io::delegate::{
     GrayImage, RgbImage, ambassador_impl_Camera, ambassador_impl_Clock, ambassador_impl_Display,
     ambassador_impl_DistanceSensors, ambassador_impl_Drive, ambassador_impl_Encoders, ambassador_impl_Keys,
@@ -34,11 +34,25 @@ pub(crate) struct Stops {
 struct Stop {
     robot: usize,
     record: Option<StopRecord>,
+    /// When it truly began.
+    time: Option<f64>,
     /// Metres that the robot went after the stop began, and those that it may go.
     metres: f64,
     bound: f64,
+    fault: Option<Before>,
     /// Whether it stood at last.
     stood: bool,
+}
+
+/// The fault before a stop.
+#[derive(Debug, Clone, Copy)]
+struct Before {
+    time: f64,
+    /// Metres from the last look before it until the robot stood.
+    metres: f64,
+    /// How fast the wheels went then, and the greatest speed between fault and stop.
+    rolling: f64,
+    fastest: f64,
 }
 
 impl Stops {
@@ -61,10 +75,14 @@ impl Stop {
         json!({
             "state": state,
             "causes": causes,
-            "time_s": self.record.map(|record| super::rounded(record.time)),
+            "time_s": self.time.or(self.record.map(|record| record.time)).map(super::rounded),
             "stop_mm": super::millimetres(self.metres),
             "bound_mm": super::millimetres(self.bound),
             "stood": self.stood,
+            "fault_s": self.fault.map(|fault| super::rounded(fault.time)),
+            "since_fault_mm": self.fault.map(|fault| super::millimetres(fault.metres)),
+            "rolling_mm_s": self.fault.map(|fault| super::millimetres(fault.rolling)),
+            "fastest_mm_s": self.fault.map(|fault| super::millimetres(fault.fastest)),
         })
     }
 }
@@ -74,8 +92,23 @@ impl Stop {
 struct Sight {
     time: f64,
     metres: f64,
-    /// How fast it was on average since the look before.
+    heading: f64,
+    /// How fast it was on average since the look before, and how fast its wheels went that turn it as well.
     speed: f64,
+    rolling: f64,
+}
+
+/// Metres that wheels go for a turn of one radian.
+const ARM: f64 = 0.1;
+
+impl Sight {
+    /// What is seen at a later time.
+    fn next(self, time: f64, metres: f64, heading: f64) -> Self {
+        let passed = time - self.time;
+        let turned = angle_difference(heading, self.heading).abs();
+        let speed = (metres - self.metres).abs() / passed;
+        Self { time, metres, heading, speed, rolling: speed + ARM * turned / passed }
+    }
 }
 
 /// How far a robot has truly gone.
@@ -84,11 +117,17 @@ struct Odometer {
     last: Sight,
     before: Sight,
     stop: Option<Began>,
+    /// When something goes wrong with the robot, the last look before, and the greatest speed from then on to the stop.
+    fault: Option<f64>,
+    fault_from: Option<Sight>,
+    fastest: f64,
 }
 
 /// How a stop began.
 #[derive(Debug, Clone, Copy)]
 struct Began {
+    time: f64,
+    state: SafetyState,
     from: Sight,
     /// Whether nobody had looked for so long that the robot stopped by itself.
     alone: bool,
@@ -99,16 +138,24 @@ const GAP: f64 = DEADMAN;
 
 impl Odometer {
     /// Takes in the way at a time, both true. The state is that after the look before.
-    fn read(&mut self, time: f64, metres: f64, state: SafetyState) {
+    fn read(&mut self, time: f64, (metres, heading): (f64, f64), state: SafetyState) {
         let Self { last, before, .. } = *self;
         if state.is_stop() && self.stop.is_none() {
             // Behind a gap, the stop began in it.
             let alone = last.time - before.time >= GAP;
-            self.stop = Some(Began { from: if alone { before } else { last }, alone });
+            self.stop =
+                Some(Began { time: last.time, state, from: if alone { before } else { last }, alone });
         }
         if time > last.time {
             self.before = last;
-            self.last = Sight { time, metres, speed: (metres - last.metres).abs() / (time - last.time) };
+            self.last = last.next(time, metres, heading);
+        }
+        if self.fault_from.is_none() && self.fault.is_some_and(|fault| time > fault) {
+            self.fault_from = Some(last);
+            self.fastest = last.speed;
+        }
+        if self.fault_from.is_some() && self.stop.is_none() {
+            self.fastest = self.fastest.max(self.last.speed);
         }
     }
 }
@@ -134,7 +181,8 @@ struct Guarded {
     inner: Supervised<Driven, Exchange>,
     index: usize,
     odometer: Arc<Mutex<Odometer>>,
-    stopping: StoppingModel,
+    parameters: SupervisorParameters,
+    model: StoppingModel,
     stops: Stops,
 }
 
@@ -142,21 +190,25 @@ struct Guarded {
 pub(crate) const DEADMAN: f64 = 0.3;
 /// Seconds within which every robot comes to stand.
 const PATIENCE: f64 = 15.0;
+/// Waits at most for that: those that fail may take no time at all.
+const ROUNDS: usize = 2000;
+/// Metres per second below which a robot stands.
+const STANDS: f64 = 1e-4;
 
-/// Puts a robot under the safety system.
+/// Puts a robot under the safety system; `fault` is when something goes wrong with it.
 pub(crate) fn guarded(
     robot: Driven,
     mut truth: StageTruth,
     index: usize,
-    model: StoppingModel,
+    (model, fault): (StoppingModel, Option<f64>),
     stops: Stops,
 ) -> Result<Driven> {
-    let odometer = Arc::new(Mutex::new(Odometer::default()));
+    let odometer = Arc::new(Mutex::new(Odometer { fault, ..Odometer::default() }));
     let read = Arc::clone(&odometer);
     let exchange: Exchange = Box::new(move |_, beat| {
         if let (Ok(time), Ok(robot)) = (truth.time(), truth.robot(index)) {
             let mut odometer = read.lock().unwrap_or_else(PoisonError::into_inner);
-            odometer.read(time, robot.path_length, beat.state);
+            odometer.read(time, (robot.path_length, robot.pose.heading), beat.state);
         }
         // Armed, then started, each for as long as it takes.
         let requests = Requests {
@@ -167,43 +219,70 @@ pub(crate) fn guarded(
         Panel { heartbeat: Some(beat.count), requests, ..Panel::default() }
     });
     let parameters = SupervisorParameters { speed_error: model.error, ..SupervisorParameters::default() };
-    let stopping = parameters.stopping(model.lag, model.deceleration);
-    let mut inner = Supervised::new(robot, exchange, parameters)?;
+    let mut inner = Supervised::new(robot, exchange, parameters.clone())?;
     inner.wait(0.1)?;
-    Ok(Box::new(Guarded { inner, index, odometer, stopping, stops }))
+    Ok(Box::new(Guarded { inner, index, odometer, parameters, model, stops }))
 }
 
 impl Drop for Guarded {
     fn drop(&mut self) {
-        let mut waited = 0.0;
-        let mut stood = false;
-        // What made the program end may be known to the safety system only when time passes.
-        while (waited == 0.0 || self.inner.state().is_stop()) && !stood && waited < PATIENCE {
-            // What fails is the fault's; time passes all the same.
-            let before = self.read().last.metres;
-            let _ = self.inner.wait(0.1);
-            stood = (self.read().last.metres - before).abs() < 1e-5;
-            waited += 0.1;
-        }
+        let stood = self.stands_at_last();
         let odometer = self.read();
-        let began = odometer.stop.unwrap_or(Began { from: odometer.last, alone: false });
         let record = self.inner.last_stop();
-        // Without a link, or while a call hangs, the brake is in the hands of the robot's own watchdog.
-        let alone = began.alone || record.is_some_and(|record| record.causes.has(Causes::LINK));
-        let reaction = self.stopping.reaction + if alone { DEADMAN } else { 0.0 };
-        // Until it does, the robot follows its last command, and may speed up.
-        let asked = if alone { self.inner.asked().unwrap_or(0.0) } else { 0.0 };
+        let metres = |from: Sight| odometer.last.metres - from.metres;
+        let state = self.inner.state();
+        let began = odometer.stop.unwrap_or(Began { time: 0.0, state, from: odometer.last, alone: false });
+        let fault = odometer.fault.zip(odometer.fault_from).map(|(time, from)| Before {
+            time,
+            metres: metres(from),
+            rolling: from.rolling,
+            fastest: odometer.fastest,
+        });
         self.stops.add(Stop {
             robot: self.index,
             record,
-            metres: odometer.last.metres - began.from.metres,
-            bound: StoppingModel { reaction, ..self.stopping }.distance(began.from.speed.max(asked)),
+            time: odometer.stop.map(|began| began.time),
+            metres: metres(began.from),
+            bound: self.bound(began, record),
+            fault,
             stood,
         });
     }
 }
 
 impl Guarded {
+    /// Lets a stop come to its end. Whether the robot stands then.
+    ///
+    /// Time is the true one: a wait that fails ends before its time, and a clock may stop.
+    fn stands_at_last(&mut self) -> bool {
+        let from = self.read().last.time;
+        for _ in 0..ROUNDS {
+            // What fails is the fault's; time passes all the same, unless the world has come to its end.
+            let _ = self.inner.wait(0.1);
+            let now = self.read().last;
+            if now.speed < STANDS {
+                return true;
+            }
+            // What made the program end may be known to the safety system only when time passes.
+            if !self.inner.state().is_stop() || now.time - from > PATIENCE {
+                return false;
+            }
+        }
+        false
+    }
+
+    /// Metres that the robot may go from where a stop began.
+    fn bound(&self, began: Began, record: Option<StopRecord>) -> f64 {
+        let StoppingModel { lag, deceleration, .. } = self.model;
+        let stopping = self.parameters.stopping_in(began.state, lag, deceleration);
+        // Without a link, or while a call hangs, the brake is in the hands of the robot's own watchdog.
+        let alone = began.alone || record.is_some_and(|record| record.causes.has(Causes::LINK));
+        let reaction = stopping.reaction + if alone { DEADMAN } else { 0.0 };
+        // Until it does, the robot follows its last command, and may speed up.
+        let asked = if alone { self.inner.asked().unwrap_or(0.0) } else { 0.0 };
+        StoppingModel { reaction, ..stopping }.distance(began.from.speed.max(asked))
+    }
+
     fn read(&self) -> Odometer {
         *self.odometer.lock().unwrap_or_else(PoisonError::into_inner)
     }

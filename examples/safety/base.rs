@@ -1,16 +1,33 @@
 //! The other end of the radio link: the base station with its crew, and a camera that sees how far the car truly goes.
 
-use roverlab::drive::safety::{BaseStation, Beat, Panel, SafetyState, Station};
+use roverlab::drive::safety::{BaseStation, Beat, Causes, Panel, SafetyState, Station};
 use roverlab::geometry::Pose;
 
 use super::crew::{Crew, Event};
 use crate::common::{DEADMAN, StageTruth};
 
+/// What the car did about something: it stopped, or the driver got it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Answer {
+    /// What had happened, and when, if anything had that it had not answered before.
+    pub(crate) event: Option<(Event, f64)>,
+    /// When the state changed, by the car's clock, to what, and why.
+    pub(crate) time: f64,
+    pub(crate) state: SafetyState,
+    pub(crate) causes: Causes,
+}
+
+impl Answer {
+    /// Seconds from the event to this.
+    pub(crate) fn reaction(&self) -> Option<f64> {
+        self.event.map(|(_, time)| self.time - time)
+    }
+}
+
 /// A stop as the camera saw it.
 #[derive(Debug, Clone)]
 pub(crate) struct SeenStop {
-    /// What had happened, and when.
-    pub(crate) event: Option<(Event, f64)>,
+    pub(crate) answer: Answer,
     /// The speed when it began.
     pub(crate) speed: f64,
     /// Whether nobody had looked for so long that the car had stopped by itself: it began with the last look before.
@@ -39,6 +56,11 @@ pub(crate) struct Base {
     /// Whether the car of the last stop has not stood yet.
     open: bool,
     pub(crate) stops: Vec<SeenStop>,
+    /// How often the driver got the car while it drove by itself.
+    pub(crate) takeovers: Vec<Answer>,
+    /// When the car asked last, by its own clock, and the last event that it has answered.
+    asked: f64,
+    answered: Option<(Event, f64)>,
     /// When the state changed, and to what.
     pub(crate) states: Vec<(f64, SafetyState)>,
 }
@@ -56,6 +78,9 @@ impl Base {
             before: Look::default(),
             open: false,
             stops: Vec::new(),
+            takeovers: Vec::new(),
+            asked: 0.0,
+            answered: None,
             states: vec![(0.0, SafetyState::Manual)],
         }
     }
@@ -68,29 +93,43 @@ impl Base {
     }
 
     /// Takes in the state that the car has had since the last look.
-    fn note(&mut self, state: SafetyState, look: Look) {
+    fn note(&mut self, beat: Beat, look: Look) {
         let before = self.states.last().map_or(SafetyState::Manual, |(_, state)| *state);
-        if state != before {
-            self.states.push((self.last.time, state));
+        if beat.state != before {
+            self.states.push((self.last.time, beat.state));
         }
-        if state.severity() > before.severity() {
-            let alone = self.last.time - self.before.time >= DEADMAN;
-            let Look { pose, metres, speed, .. } = if alone { self.before } else { self.last };
-            let event = self.crew.now;
-            self.stops.push(SeenStop { event, speed, alone, places: [pose; 2], metres: [metres; 2] });
-            self.open = true;
+        if beat.state.severity() > before.severity() {
+            self.note_stop(beat);
+        } else if (before, beat.state) == (SafetyState::Auto, SafetyState::Manual) {
+            let answer = self.answer(beat);
+            self.takeovers.push(answer);
         }
         if let Some(stop) = self.stops.last_mut().filter(|_| self.open) {
             (stop.places[1], stop.metres[1]) = (look.pose, look.metres);
             self.open = look.speed > STANDING;
         }
     }
+
+    fn note_stop(&mut self, beat: Beat) {
+        let alone = self.last.time - self.before.time >= DEADMAN;
+        let Look { pose, metres, speed, .. } = if alone { self.before } else { self.last };
+        let answer = self.answer(beat);
+        self.stops.push(SeenStop { answer, speed, alone, places: [pose; 2], metres: [metres; 2] });
+        self.open = true;
+    }
+
+    fn answer(&mut self, Beat { state, causes, .. }: Beat) -> Answer {
+        let event = self.crew.now.filter(|now| self.answered != Some(*now));
+        self.answered = event.or(self.answered);
+        Answer { event, time: self.asked, state, causes }
+    }
 }
 
 impl Station for Base {
     fn exchange(&mut self, now: f64, beat: Beat) -> Panel {
         let look = self.look();
-        self.note(beat.state, look);
+        self.note(beat, look);
+        self.asked = now;
         let passed = look.time - self.last.time;
         if passed > 0.0 {
             self.before = self.last;

@@ -1,6 +1,6 @@
 //! The people around the car: they arm and start it, let something happen, and set it going again.
 
-use roverlab::drive::safety::{BaseStation, SafetyState};
+use roverlab::drive::safety::{BaseStation, SafetyState, SupervisorParameters};
 
 /// Something that happens while the car drives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -34,6 +34,17 @@ impl Event {
         }
     }
 
+    /// Seconds after which the car has to answer it: one control period after it can be noticed.
+    pub(crate) fn allowed(self, parameters: &SupervisorParameters) -> f64 {
+        let noticed = match self {
+            Self::Button | Self::Remote | Self::Pedal | Self::Wheel => 0.0,
+            Self::Radio => parameters.heartbeat,
+            // The program hangs in its next step.
+            Self::Hang => parameters.watchdog + STEP,
+        };
+        noticed + parameters.period
+    }
+
     /// Begins or ends it.
     fn set(self, station: &mut BaseStation, on: bool) {
         match self {
@@ -54,6 +65,9 @@ impl Event {
     }
 }
 
+/// Seconds of a step of the program that drives.
+pub(crate) const STEP: f64 = 0.05;
+
 /// Seconds that the car drives before something happens, and stands before it is armed again.
 const DRIVES: f64 = 5.0;
 const STANDS: f64 = 1.0;
@@ -69,11 +83,13 @@ pub(crate) struct Crew {
     /// What goes on, and when it began.
     pub(crate) now: Option<(Event, f64)>,
     hang: bool,
+    /// From when on all sensors are well again.
+    well: f64,
 }
 
 impl Crew {
-    pub(crate) fn new(events: Vec<Event>) -> Self {
-        Self { events, next: 0, driven: 0.0, stood: 0.0, now: None, hang: false }
+    pub(crate) fn new(events: Vec<Event>, well: f64) -> Self {
+        Self { events, next: 0, driven: 0.0, stood: 0.0, now: None, hang: false, well }
     }
 
     /// Whether the program is to hang now, once.
@@ -108,6 +124,8 @@ impl Crew {
         {
             event.set(station, false);
         }
+        // Who looks at the sensors sees those that still fail, so nobody vouches for them.
+        station.panel.sensors_checked = self.stood > 0.5 * STANDS && time > self.well;
         // Buttons are pressed and let go.
         station.panel.requests.arm = self.stood > STANDS && (self.stood / step).round() as u64 % 20 < 5;
         station.panel.requests.start = state == SafetyState::Armed && self.stood > 1.5 * STANDS;

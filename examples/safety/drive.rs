@@ -4,17 +4,18 @@ use std::fmt;
 
 use roverlab::drive::cones::{Racer, RacerParameters, sightings};
 use roverlab::drive::safety::{
-    Causes, SafetyState, SpeedError, StopRecord, StoppingModel, Supervised, SupervisorParameters,
+    Causes, SafetyState, SpeedError, StoppingModel, Supervised, SupervisorParameters,
 };
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::NoiseModel;
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
+use roverlab::io::wrappers::{Fault, FaultKind};
 use roverlab::io::{self, Clock, Drive, Lidar, LidarScan};
 use serde_json::{Value, json};
 
 use super::Args;
-use super::base::{Base, SeenStop};
-use super::crew::{Crew, Event};
+use super::base::{Answer, Base, SeenStop};
+use super::crew::{Crew, Event, STEP};
 use crate::common::{CommonArgs, DEADMAN, Driven as Robot, Failure, Stage, rounded};
 use crate::cones::{Course, Judge, pass};
 
@@ -22,7 +23,6 @@ use crate::cones::{Course, Judge, pass};
 #[derive(Debug, Clone)]
 pub(crate) struct Stopped {
     seen: SeenStop,
-    record: StopRecord,
     bound: f64,
 }
 
@@ -46,38 +46,47 @@ impl Stopped {
         self.distance() <= self.bound + 1e-6
     }
 
-    fn reaction(&self) -> Option<f64> {
-        self.seen.event.map(|(_, time)| self.record.time - time)
-    }
-
     pub(crate) fn told(&self) -> Value {
-        json!({
-            "event": self.seen.event.map(|(event, _)| event.name()),
-            "state": format!("{:?}", self.record.state),
-            "causes": self.record.causes.names().collect::<Vec<_>>(),
-            "time_s": rounded(self.record.time),
-            "reaction_ms": self.reaction().map(|seconds| rounded(1000.0 * seconds)),
-            "speed_m_s": rounded(self.seen.speed),
-            "distance_m": rounded(self.distance()),
-            "bound_m": rounded(self.bound),
-        })
+        let mut told = told(&self.seen.answer);
+        told["speed_m_s"] = rounded(self.seen.speed).into();
+        told["distance_m"] = rounded(self.distance()).into();
+        told["bound_m"] = rounded(self.bound).into();
+        told
+    }
+}
+
+/// What the car did, for the report.
+pub(crate) fn told(answer: &Answer) -> Value {
+    json!({
+        "event": answer.event.map(|(event, _)| event.name()),
+        "state": format!("{:?}", answer.state),
+        "causes": answer.causes.names().collect::<Vec<_>>(),
+        "time_s": rounded(answer.time),
+        "reaction_ms": answer.reaction().map(|seconds| rounded(1000.0 * seconds)),
+    })
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let causes: Vec<&str> = self.causes.names().collect();
+        write!(f, "{:6.2} s: {:?} for {}", self.time, self.state, causes.join(", "))?;
+        self.reaction().map_or(Ok(()), |reaction| write!(f, ", {:.0} ms after it began", 1000.0 * reaction))
     }
 }
 
 impl fmt::Display for Stopped {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let causes: Vec<&str> = self.record.causes.names().collect();
-        write!(f, "{:6.2} s: {:?} for {}", self.record.time, self.record.state, causes.join(", "))?;
-        if let Some(reaction) = self.reaction() {
-            write!(f, ", {:.0} ms after it began", 1000.0 * reaction)?;
-        }
-        write!(f, "; from {:.2} m/s in {:.2} of {:.2} m", self.seen.speed, self.distance(), self.bound)
+        let Self { seen, bound } = self;
+        write!(f, "{}; from {:.2} m/s in {:.2} of {bound:.2} m", seen.answer, seen.speed, self.distance())
     }
 }
 
 /// What came out of a drive.
 pub(crate) struct Driven {
     pub(crate) stops: Vec<Stopped>,
+    pub(crate) takeovers: Vec<Answer>,
+    /// Whether each event was answered in time.
+    pub(crate) prompt: bool,
     pub(crate) states: Vec<(f64, SafetyState)>,
     /// Whether everything happened in time.
     pub(crate) done: bool,
@@ -101,21 +110,42 @@ pub(crate) fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Drive
         speed_error: SpeedError::default().scaled(args.common.noise),
         ..SupervisorParameters::default()
     };
-    let spec = RaceCarSpec::default();
-    let stopping = parameters.stopping(1.0 / spec.speed_gain, spec.brake);
-    let base = Base::new(Crew::new(events), stage.truth(0)?, parameters.heartbeat);
-    let mut car = Supervised::new(stage.robot(0)?, base, parameters).map_err(Failure::run)?;
-    let mut records = Vec::new();
-    let done = program(&mut car, &mut judge, limit, &mut records);
+    let crew = Crew::new(events, well(&args.common.faults()?));
+    let base = Base::new(crew, stage.truth(0)?, parameters.heartbeat);
+    let mut car = Supervised::new(stage.robot(0)?, base, parameters.clone()).map_err(Failure::run)?;
+    let done = program(&mut car, &mut judge, limit);
     let base = car.station_mut();
-    let stops = base.stops.iter().zip(&records).map(|(seen, record)| {
-        // Without a link, or while a call hangs, the brake is in the hands of the car's own watchdog.
-        let alone = seen.alone || record.causes.has(Causes::LINK);
-        let reaction = stopping.reaction + if alone { DEADMAN } else { 0.0 };
-        let bound = StoppingModel { reaction, ..stopping }.distance(seen.speed);
-        Stopped { seen: seen.clone(), record: *record, bound }
-    });
-    Ok(Driven { stops: stops.collect(), states: base.states.clone(), done, judge })
+    let bounded = |seen: &SeenStop| Stopped { bound: bound(&parameters, seen), seen: seen.clone() };
+    let stops: Vec<Stopped> = base.stops.iter().map(bounded).collect();
+    let mut answers = base.stops.iter().map(|stop| stop.answer).chain(base.takeovers.iter().copied());
+    let prompt = answers.all(|answer| is_prompt(&answer, &parameters));
+    let (takeovers, states) = (base.takeovers.clone(), base.states.clone());
+    Ok(Driven { stops, takeovers, prompt, states, done, judge })
+}
+
+/// Metres that the car may go in a stop.
+fn bound(parameters: &SupervisorParameters, seen: &SeenStop) -> f64 {
+    let spec = RaceCarSpec::default();
+    let stopping = parameters.stopping_in(seen.answer.state, 1.0 / spec.speed_gain, spec.brake);
+    // Without a link, or while a call hangs, the brake is in the hands of the car's own watchdog.
+    let alone = seen.alone || seen.answer.causes.has(Causes::LINK);
+    let reaction = stopping.reaction + if alone { DEADMAN } else { 0.0 };
+    StoppingModel { reaction, ..stopping }.distance(seen.speed)
+}
+
+/// Whether an event was answered in time, to the microsecond.
+fn is_prompt(answer: &Answer, parameters: &SupervisorParameters) -> bool {
+    answer.event.is_none_or(|(event, time)| answer.time - time <= event.allowed(parameters) + 1e-6)
+}
+
+/// From when on no fault disturbs a sensor any more.
+fn well(faults: &[Fault]) -> f64 {
+    let end = |fault: &Fault| match fault.kind {
+        FaultKind::Hang(seconds) => fault.at + seconds,
+        FaultKind::ClockStop | FaultKind::ClockJump(_) => 0.0,
+        _ => fault.until.unwrap_or(f64::INFINITY),
+    };
+    faults.iter().map(end).fold(0.0, f64::max)
 }
 
 fn fence(half: Option<f64>) -> Vec<Point> {
@@ -125,12 +155,7 @@ fn fence(half: Option<f64>) -> Vec<Point> {
 }
 
 /// The program that drives, until everything has happened. Whether it has, within some seconds.
-fn program(
-    car: &mut Supervised<Robot, Base>,
-    judge: &mut Judge,
-    limit: f64,
-    records: &mut Vec<StopRecord>,
-) -> bool {
+fn program(car: &mut Supervised<Robot, Base>, judge: &mut Judge, limit: f64) -> bool {
     let mut racer = Racer::new(RacerParameters { laps: 100, ..RacerParameters::rolling() });
     let mut scan = LidarScan::default();
     while judge.time() < limit && !car.station_mut().crew.is_done() {
@@ -147,20 +172,10 @@ fn program(
         }
         // A wait that fails has taken its time, but for a car that is out of reach for good.
         let before = judge.time();
-        let passed = pass(car, &mut [judge], 0.05);
-        note(car, records);
+        let passed = pass(car, &mut [judge], STEP);
         if passed.is_err() && (judge.look().is_err() || judge.time() <= before) {
             break;
         }
     }
     car.station_mut().crew.is_done()
-}
-
-/// Notes the last stop, if it is new.
-fn note(car: &Supervised<Robot, Base>, records: &mut Vec<StopRecord>) {
-    if let Some(stop) = car.last_stop()
-        && records.last().is_none_or(|last| *last != stop)
-    {
-        records.push(stop);
-    }
 }

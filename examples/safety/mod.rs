@@ -21,14 +21,16 @@ use drive::{Driven, Stopped};
     about = "A racing car under its safety system: it is armed and started, something happens, it stands, and is set going again",
     after_help = "\
 The car drives between cones at up to 6 m/s. Whatever happens, it has to stand within the distance that is proved for its
-model, and it stands until somebody arms it again. A car that nobody talks to for 0.3 s stops by itself. Faults of `--fault`
-come on top.
+model, and it stands until somebody arms it again. A car that nobody talks to for 0.3 s stops by itself. What happens has to be
+answered within one control period of when it can be noticed. Faults of `--fault` come on top; while a sensor fails, nobody
+vouches for it, and the car is not armed again.
 
 JSON fields:
   stops               of each: event, state, causes, time_s, reaction_ms after the event, speed_m_s, distance_m, bound_m
+  takeovers           the same of each time that the driver got the car, up to reaction_ms
   states              [seconds, state] of every change
   picture
-Outcomes: stood (every stop within its bound), overran, timed_out."
+Outcomes: stood (every stop within its bound), overran, late (something was not answered in time), timed_out."
 )]
 pub(crate) struct Args {
     /// Track to drive on [default: one of our own].
@@ -74,6 +76,9 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     for stop in &driven.stops {
         common.tell(stop);
     }
+    for takeover in &driven.takeovers {
+        common.tell(takeover);
+    }
     let file = common.picture.clone().or_else(|| (!common.json).then(|| PathBuf::from("safety.svg")));
     let saved = file.as_ref().map(|file| picture(&course, &driven).save(file)).transpose();
     let trouble = saved.err().map(|error| error.to_string());
@@ -83,6 +88,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 fn report(course: &Course, driven: &Driven) -> Report {
     let word = if driven.stops.iter().any(|stop| !stop.is_within()) {
         Outcome::failure("overran")
+    } else if !driven.prompt {
+        Outcome::failure("late")
     } else if driven.done {
         Outcome::verdict("stood")
     } else {
@@ -93,6 +100,7 @@ fn report(course: &Course, driven: &Driven) -> Report {
     let truth = driven.judge.truth();
     let report = Report::new(word)
         .field("stops", driven.stops.iter().map(Stopped::told).collect::<Vec<_>>())
+        .field("takeovers", driven.takeovers.iter().map(drive::told).collect::<Vec<_>>())
         .field("states", states);
     Report {
         sim_time: Some(driven.judge.time()),

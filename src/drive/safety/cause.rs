@@ -15,9 +15,10 @@ impl Causes {
     pub const HEARTBEAT_LOST: Self = Self(1 << 2);
     /// The vehicle is outside its fence. One that does not know where it is has a sensor that is not to be trusted. Soft.
     pub const OUTSIDE_FENCE: Self = Self(1 << 3);
-    /// The driving program does not command any more. Soft.
+    /// The driving program is silent, or only reads while its last command keeps the vehicle going. Soft.
     pub const WATCHDOG: Self = Self(1 << 4);
-    /// A sensor is frozen, lost, late or reads no numbers, or odometry jumps. Soft.
+    /// A sensor is frozen, lost, late or reads no numbers, or odometry jumps; or one was, and nobody has vouched for it since.
+    /// Soft.
     pub const SENSOR: Self = Self(1 << 5);
     /// The clock stands or goes back. Soft.
     pub const CLOCK: Self = Self(1 << 6);

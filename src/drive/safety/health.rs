@@ -69,11 +69,47 @@ impl OdometryHealth {
         !(jumps || frozen || late)
     }
 
+    /// Somebody vouches for it: what it did before is no more held against it.
+    pub(super) fn trust(&mut self) {
+        (self.frozen, self.missing) = (0, 0.0);
+    }
+
     /// The pose was set: what comes next is measured against that. How fast it was is known as before, and since when.
     pub(super) fn move_to(&mut self, pose: Pose) {
         if let Some((_, before, _)) = &mut self.last {
             *before = pose;
         }
+    }
+}
+
+/// Whether the sensors are trusted: not from a fault on until somebody vouches for them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Trust {
+    lost: bool,
+    /// Whether somebody vouched at the last look.
+    vouched: bool,
+}
+
+impl Default for Trust {
+    /// Who vouches at the first look has not begun to: the button may be stuck.
+    fn default() -> Self {
+        Self { lost: false, vouched: true }
+    }
+}
+
+impl Trust {
+    /// Takes in whether somebody vouches for them. Whether they begin to be trusted by that.
+    pub(super) fn begins(&mut self, vouches: bool) -> bool {
+        let begins = vouches && !self.vouched;
+        self.vouched = vouches;
+        self.lost &= !begins;
+        begins
+    }
+
+    /// Takes in whether one is at fault now. Whether they are not trusted.
+    pub(super) fn is_lost(&mut self, fault: bool) -> bool {
+        self.lost |= fault;
+        self.lost
     }
 }
 
@@ -130,6 +166,12 @@ impl ReadingHealth {
         let late = !equal && self.echo.hears(digest, limits.repeats);
         self.last = digest;
         self.frozen < limits.repeats && !late
+    }
+
+    /// Somebody vouches for it: that it stays as it is counts from now on, and only while the vehicle moves.
+    pub(super) fn trust(&mut self) {
+        self.frozen = 0;
+        self.echo.runs = [0; REMEMBERED];
     }
 }
 

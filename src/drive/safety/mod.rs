@@ -36,10 +36,14 @@
 //! request, made while the vehicle stands and no cause is left. What counts as a request is its beginning, so that a button that
 //! is stuck arms nothing, even if it was stuck before the power came.
 //!
+//! What a sensor was found at stays a cause until somebody vouches for the sensor ([`Panel::sensors_checked`]).
+//!
 //! [`Supervised`] puts any robot under this system: it looks at buttons, heartbeats, fence, pedals, program and sensors in every
-//! control period, and brakes. [`StoppingModel`] says how far it goes until it stands, with the [`SpeedError`] of what it measures. [`BaseStation`] is its other end.
+//! control period, and brakes; its documentation says what it notices, how soon, and what it cannot. [`StoppingModel`] says how far it goes until it stands, with the [`SpeedError`] of what it measures. [`BaseStation`] is its other end.
 
 mod cause;
+#[cfg(test)]
+mod claim_tests;
 mod health;
 mod machine;
 mod monitor;

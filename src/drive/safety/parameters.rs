@@ -1,16 +1,17 @@
 use super::health::HealthLimits;
-use super::{SpeedError, StoppingModel};
+use super::{SafetyState, SpeedError, StoppingModel};
 use crate::geometry::Point;
 use crate::io::{Error, Result};
 
 /// What a vehicle is supervised by.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SupervisorParameters {
-    /// Seconds between two looks at everything.
+    /// Seconds between two looks at everything, 0.1 ms at least.
     pub period: f64,
     /// Seconds without a heartbeat of the base station that are allowed.
     pub heartbeat: f64,
-    /// Seconds without a call of the driving program that are allowed.
+    /// Seconds that are allowed without a command of the driving program, or, while the vehicle is told to stand, or drives a way
+    /// that has an end, without any call of it.
     pub watchdog: f64,
     /// Corners of the area that must not be left, in the frame of odometry: none, or at least three.
     pub fence: Vec<Point>,
@@ -27,6 +28,9 @@ pub struct SupervisorParameters {
     /// What sensors may do.
     pub health: HealthLimits,
 }
+
+/// The shortest control period, in seconds: a wait is no more looks than can be made.
+const SHORTEST: f64 = 1e-4;
 
 impl Default for SupervisorParameters {
     fn default() -> Self {
@@ -46,11 +50,26 @@ impl Default for SupervisorParameters {
 }
 
 impl SupervisorParameters {
-    /// How a vehicle stops that follows speeds with a lag and a greatest deceleration: it reacts within one control period, and
-    /// brakes as gently as is allowed from the speed that it measures.
+    /// How a vehicle comes to a safe stop that follows speeds with a lag in seconds and a greatest deceleration in m/s²: it reacts
+    /// within one control period, and brakes as gently as is allowed from the speed that it measures. A stop that becomes an
+    /// emergency on its way is shorter.
     pub fn stopping(&self, lag: f64, deceleration: f64) -> StoppingModel {
         let deceleration = deceleration.min(self.gentle);
         StoppingModel { reaction: 2.0 * self.period, lag, deceleration, error: self.speed_error }
+    }
+
+    /// How the same vehicle comes to an emergency stop: with all the deceleration that there is, and whatever speed it measures, as
+    /// it is told to stand at once.
+    pub fn emergency_stopping(&self, lag: f64, deceleration: f64) -> StoppingModel {
+        StoppingModel { reaction: 2.0 * self.period, lag, deceleration, error: SpeedError::NONE }
+    }
+
+    /// How it stops in a state: [`stopping`](Self::stopping), or [`emergency_stopping`](Self::emergency_stopping).
+    pub fn stopping_in(&self, state: SafetyState, lag: f64, deceleration: f64) -> StoppingModel {
+        match state {
+            SafetyState::EmergencyStop => self.emergency_stopping(lag, deceleration),
+            _ => self.stopping(lag, deceleration),
+        }
     }
 
     pub(super) fn validate(&self) -> Result<()> {
@@ -62,6 +81,9 @@ impl SupervisorParameters {
             ("gentle deceleration", self.gentle),
         ] {
             crate::io::error::require_positive(name, value)?;
+        }
+        if self.period < SHORTEST {
+            return Err(Error::invalid_input("control period", self.period, "at least 0.0001 s"));
         }
         let [linear, angular] = self.standing;
         for (name, value) in [

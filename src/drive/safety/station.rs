@@ -1,7 +1,8 @@
-use super::{Deadline, Requests, SafetyState};
+use super::{Causes, Deadline, Requests, SafetyState};
 
 /// What people and the base station tell a vehicle's safety system in one control period.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a wire of its own")]
 pub struct Panel {
     /// The button on board that takes the power away.
     pub emergency_button: bool,
@@ -19,6 +20,9 @@ pub struct Panel {
     pub steering_force: f64,
     /// What people ask for.
     pub requests: Requests,
+    /// Somebody has looked at the sensors and vouches for them: those that were found at fault are trusted again. What counts is
+    /// when it rises.
+    pub sensors_checked: bool,
 }
 
 /// What a vehicle tells its base station in each control period: the heartbeat's other direction.
@@ -28,6 +32,8 @@ pub struct Beat {
     pub count: u64,
     /// The state of the safety system.
     pub state: SafetyState,
+    /// What was wrong when it got into that state, or still is.
+    pub causes: Causes,
 }
 
 /// Whoever sits at the other end: people, buttons, the base station.
@@ -45,16 +51,21 @@ impl<F: FnMut(f64, Beat) -> Panel> Station for F {
 /// A base station (book, section 14.3): it has a heartbeat of its own, listens to the vehicle's, and orders a stop when that is
 /// missing; the order stays until it is taken back.
 ///
+/// A vehicle that hangs does not ask it anything. So the station has to be [looked](Self::look) at again and again by a clock of
+/// its own, from where the people are who should know; from the first look on, that clock alone counts.
+///
 /// ```
-/// use roverlab::drive::safety::{BaseStation, Beat, SafetyState, Station};
+/// use roverlab::drive::safety::{BaseStation, Beat, Causes, SafetyState, Station};
 /// let mut station = BaseStation::new(0.5);
-/// let beat = |count| Beat { count, state: SafetyState::Auto };
+/// let beat = |count| Beat { count, state: SafetyState::Auto, causes: Causes::NONE };
+/// station.look(10.0);
 /// assert!(!station.exchange(0.0, beat(1)).remote_stop);
-/// // The same beat for too long: nobody is there.
-/// assert!(station.exchange(0.6, beat(1)).remote_stop);
+/// assert!(!station.look(10.4));
+/// // No beat for too long: nobody is there.
+/// assert!(station.look(10.6));
 /// assert!(station.exchange(0.7, beat(2)).remote_stop, "an order stays");
 /// station.take_back();
-/// assert!(!station.exchange(0.8, beat(3)).remote_stop);
+/// assert!(!station.look(10.7) && !station.exchange(0.8, beat(3)).remote_stop);
 /// ```
 #[derive(Debug, Clone)]
 pub struct BaseStation {
@@ -65,15 +76,26 @@ pub struct BaseStation {
     last: Option<u64>,
     count: u64,
     stop: bool,
-    /// Whether its heartbeat reaches the vehicle.
-    connected: bool,
+    /// What the station's own clock showed last; without one, it goes by what the vehicle says.
+    time: Option<f64>,
+    /// Whether the vehicle's heartbeat reaches it, and whether what it says reaches the vehicle.
+    hears: bool,
+    is_heard: bool,
 }
 
 impl BaseStation {
     /// A station that waits so many seconds for a heartbeat.
     pub fn new(limit: f64) -> Self {
-        let panel = Panel::default();
-        Self { panel, vehicle: Deadline::new(limit), last: None, count: 0, stop: false, connected: true }
+        Self {
+            panel: Panel::default(),
+            vehicle: Deadline::new(limit),
+            last: None,
+            count: 0,
+            stop: false,
+            time: None,
+            hears: true,
+            is_heard: true,
+        }
     }
 
     /// Somebody presses a stop button.
@@ -81,25 +103,49 @@ impl BaseStation {
         self.stop = true;
     }
 
-    /// Somebody takes the order back. The vehicle stands until it is armed.
+    /// Somebody takes the order back. The vehicle stands until it is armed. While its heartbeat is missing, the next look orders
+    /// it anew.
     pub fn take_back(&mut self) {
         self.stop = false;
     }
 
-    /// Cuts or mends the radio link.
+    /// Cuts or mends the radio link, in both directions.
     pub fn connect(&mut self, connected: bool) {
-        self.connected = connected;
+        self.connect_each(connected, connected);
+    }
+
+    /// Cuts or mends each direction: whether the station hears the vehicle, and whether it is heard.
+    pub fn connect_each(&mut self, hears: bool, is_heard: bool) {
+        (self.hears, self.is_heard) = (hears, is_heard);
+    }
+
+    /// Looks whether the vehicle is still there, at a time in seconds of the station's own clock. Whether the station orders a
+    /// stop.
+    pub fn look(&mut self, now: f64) -> bool {
+        if self.time.is_none() && self.last.is_some() {
+            // What was heard so far was heard by another clock.
+            self.vehicle.feed(now);
+        }
+        self.time = Some(now);
+        self.judge(now)
+    }
+
+    /// Orders a stop if a vehicle that was there is no more.
+    fn judge(&mut self, now: f64) -> bool {
+        self.stop |= self.last.is_some() && self.vehicle.is_over(now);
+        self.stop
     }
 }
 
 impl Station for BaseStation {
     fn exchange(&mut self, now: f64, beat: Beat) -> Panel {
-        if self.connected && self.last != Some(beat.count) {
+        let now = self.time.unwrap_or(now);
+        if self.hears && self.last != Some(beat.count) {
             self.last = Some(beat.count);
             self.vehicle.feed(now);
         }
-        self.stop |= self.last.is_some() && self.vehicle.is_over(now);
-        if !self.connected {
+        self.judge(now);
+        if !self.is_heard {
             // What is on board is there all the same; nothing of the station's own comes through.
             return Panel { heartbeat: None, remote_stop: false, ..self.panel };
         }
@@ -115,7 +161,7 @@ mod tests {
     #[test]
     fn nothing_of_a_station_comes_through_a_broken_link() {
         let mut station = BaseStation::new(0.5);
-        let beat = |count| Beat { count, state: SafetyState::Auto };
+        let beat = |count| Beat { count, state: SafetyState::Auto, causes: Causes::NONE };
         station.panel = Panel { remote_stop: true, heartbeat: Some(7), brake: 0.5, ..Panel::default() };
         station.panel.emergency_button = true;
         station.stop();

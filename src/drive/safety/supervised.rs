@@ -1,12 +1,10 @@
-use std::collections::BTreeMap;
-
-use super::health::{OdometryHealth, ReadingHealth};
+use super::health::{OdometryHealth, ReadingHealth, Trust};
 use super::{
     Beat, Causes, Deadline, Debounce, Panel, SafetyCore, SafetyInputs, SafetyState, Station,
     SupervisorParameters, is_inside,
 };
 use crate::geometry::{Pose, Twist};
-use crate::io::{Clock, Drive, Error, ErrorKind, Psd, Result};
+use crate::io::{Clock, Drive, Error, ErrorKind, Result};
 
 /// A stop that has begun.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +28,45 @@ pub struct StopRecord {
 /// of a heartbeat, or of a program that has come back, the program's commands still steer, as long as all sensors are well; its
 /// speeds count for nothing.
 ///
-/// A program that hangs does so between two calls, or in a [`wait`](Clock::wait) that is longer than the watchdog allows.
+/// # What it notices, and how soon
+///
+/// What can be noticed is answered by the look after that, so within one control period; during a call of the robot inside that
+/// takes longer, when the call has ended. With the [parameters](SupervisorParameters) it can be noticed
+///
+/// | what | seconds after it began |
+/// |---|---|
+/// | a button, a pedal, the steering wheel, a stop of the base station | 0 |
+/// | the heartbeat is missing | `heartbeat`, from the last one |
+/// | the vehicle is outside the fence | `fence_debounce - 1` periods |
+/// | the program is silent | `watchdog`, from what showed that it lived |
+/// | the link is gone; odometry is lost, reads no numbers, or jumps | 0 |
+/// | the clock stands, goes back or leaps | one period |
+/// | odometry stays as it is | `health.repeats` periods, and as long as 10 mm take at the speed that it tells |
+/// | odometry gets late | as a jump or as one that stays, whichever its first late readings look like |
+/// | odometry has not been read for longer than `health.age`, as a call hung | with the end of that call |
+/// | a sensor that the program reads is lost, reads no numbers, or takes longer than `health.age` | with that reading |
+/// | such a sensor stays as it is, or gets late | with `health.repeats` such readings of a vehicle that moves |
+///
+/// While the program's last command keeps the vehicle going without an end, a [speed](Drive::set_speed) or a
+/// [motor](crate::io::Motors), it lives as long as it commands again in time: that it reads sensors, or waits, shows no more that it
+/// drives. While the vehicle is told to stand, or to drive a way that has an end, as by [`straight`](Drive::straight), any call
+/// shows that it lives, and so does a wait while it goes on; a call of the robot inside that hangs does not.
+///
+/// # What it cannot notice
+///
+/// Readings have no time stamps, so that a sensor gets late is seen, but not that it is: one that has been late since before it
+/// was first read is trusted, and so is odometry that gets stuck while the vehicle stands, and one whose error grows slowly.
+/// Ranges and images that jump are not noticed, as they do so at every edge. Sensors that nobody reads are not looked at, but for
+/// odometry.
+///
+/// Therefore a sensor that was found at fault stays a [cause](Causes::SENSOR) until somebody vouches for it
+/// ([`Panel::sensors_checked`]), and so long the vehicle is not armed. Who vouches for a sensor that is still late is believed;
+/// one that is lost, stuck or reads no numbers is found out again.
+///
+/// # Memory, panics, and time without end
+///
+/// All memory is allocated by [`new`](Self::new), some 300 kB. After that, nothing here allocates or panics: what the robot inside
+/// and the station do is their own. A wait of more than a day fails with [`ErrorKind::InvalidInput`].
 ///
 /// ```
 /// use roverlab::drive::safety::{Beat, Panel, Requests, SafetyState, Supervised, SupervisorParameters};
@@ -80,7 +116,9 @@ pub struct Supervised<R, S> {
     pub(super) odometry: OdometryHealth,
     pub(super) scans: ReadingHealth,
     pub(super) images: ReadingHealth,
-    pub(super) distances: BTreeMap<Psd, ReadingHealth>,
+    /// Of every distance sensor that there can be, so that no reading has to allocate.
+    pub(super) distances: Box<[ReadingHealth]>,
+    trust: Trust,
     clock: Option<f64>,
     pub(super) pose: Pose,
     /// The speed measured last, and the curvature driven last.
@@ -90,12 +128,36 @@ pub struct Supervised<R, S> {
     pub(super) wanted: f64,
     /// Whether it turns motors and servos itself, so that the curvature has to be measured.
     pub(super) direct: bool,
+    going: Going,
     /// The speed asked for while it brakes.
     braking: Option<f64>,
     causes: Causes,
     stop: Option<StopRecord>,
 }
 
+/// What of the program's last commands keeps the vehicle going without an end.
+#[derive(Debug, Clone, Copy)]
+struct Going {
+    /// A speed does.
+    rolls: bool,
+    /// Which motors do.
+    powered: [bool; 256],
+}
+
+impl Default for Going {
+    fn default() -> Self {
+        Self { rolls: false, powered: [false; 256] }
+    }
+}
+
+impl Going {
+    fn has_no_end(&self) -> bool {
+        self.rolls || self.powered.contains(&true)
+    }
+}
+
+/// The longest wait, in seconds, and the longest time that a clock is believed to have leapt by: what comes after it has to come.
+pub(super) const LONGEST: f64 = 86_400.0;
 /// Metres per second above which speeds tell a curvature.
 const ROLLS: f64 = 0.05;
 
@@ -124,13 +186,15 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
             odometry: OdometryHealth::new(&parameters.health),
             scans: ReadingHealth::default(),
             images: ReadingHealth::default(),
-            distances: BTreeMap::new(),
+            distances: vec![ReadingHealth::default(); 256].into_boxed_slice(),
+            trust: Trust::default(),
             clock: None,
             pose: Pose::default(),
             speed: 0.0,
             curvature: 0.0,
             wanted: f64::INFINITY,
             direct: false,
+            going: Going::default(),
             braking: None,
             causes: Causes::NONE,
             stop: None,
@@ -177,11 +241,19 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
         Ok(manual)
     }
 
-    /// The program is alive. What happened in the time since its last call is seen before that counts.
+    /// The program calls. What happened in the time since its last call is seen before that counts. That it calls shows no more
+    /// that it drives while the vehicle goes on without an end.
     pub(super) fn alive(&mut self) {
         self.pass(0.0);
         self.look_if_due();
-        self.watchdog.feed(self.waited);
+        self.shows_life();
+    }
+
+    /// A call, or a wait that goes on as the program asked for it, shows that it lives, unless it has to command.
+    pub(super) fn shows_life(&mut self) {
+        if !self.going.has_no_end() {
+            self.watchdog.feed(self.waited);
+        }
     }
 
     /// Time has passed: so many seconds at least, and more if the clock says so.
@@ -191,7 +263,9 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
         // To the nanosecond, as in recordings.
         let now = (now * 1e9).round() / 1e9;
         let shown = now - *self.origin.get_or_insert(now - self.waited);
-        self.waited = self.waited.max(shown);
+        if shown - self.waited <= LONGEST {
+            self.waited = self.waited.max(shown);
+        }
     }
 
     /// Looks once in every control period.
@@ -214,9 +288,10 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
         causes = causes.with(odometry);
         causes = causes.with_if(self.watchdog.is_over(self.waited), Causes::WATCHDOG);
         self.beat += 1;
-        let beat = Beat { count: self.beat, state: self.core.state() };
+        let beat = Beat { count: self.beat, state: self.core.state(), causes: self.causes };
         let panel = self.station.exchange(self.waited, beat);
         causes = causes.with(self.read_panel(&panel));
+        causes = causes.with(self.distrusted(causes, panel.sensors_checked));
         let before = self.core.state();
         let state = self.core.step(SafetyInputs { causes, requests: panel.requests, standing });
         self.causes = causes;
@@ -281,6 +356,19 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
             .with_if(driver, Causes::DRIVER)
     }
 
+    /// A sensor that was found at fault is not trusted before somebody vouches for it: that it is late, for one, shows only as it
+    /// gets late.
+    fn distrusted(&mut self, causes: Causes, vouches: bool) -> Causes {
+        if self.trust.begins(vouches) {
+            self.odometry.trust();
+            self.scans.trust();
+            self.images.trust();
+            self.distances.iter_mut().for_each(ReadingHealth::trust);
+        }
+        let lost = self.trust.is_lost(causes.has(Causes::SENSOR));
+        Causes::NONE.with_if(lost, Causes::SENSOR)
+    }
+
     /// Brakes where the state asks for it. Errors are looked at in the next period, when the link is asked again.
     fn act(&mut self, before: SafetyState, state: SafetyState, standing: bool) {
         if !state.is_stop() {
@@ -323,9 +411,24 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
         (self.wanted, self.direct) = (f64::INFINITY, true);
     }
 
-    /// Whether the program may drive now; it lives, in any case.
-    pub(super) fn may_drive(&mut self) -> bool {
+    /// Whether the program may drive now. By a command it shows that it lives, whether that reaches the wheels or not; `rolls` says
+    /// whether it keeps the vehicle going without an end.
+    pub(super) fn may_drive(&mut self, rolls: bool) -> bool {
+        self.going = Going { rolls, ..Going::default() };
+        self.commanded()
+    }
+
+    /// The same for a motor, which is powered or not.
+    pub(super) fn may_turn(&mut self, motor: u8, powered: bool) -> bool {
+        self.going.rolls = false;
+        self.going.powered[usize::from(motor)] = powered;
+        self.commanded()
+    }
+
+    /// The same for what drives nothing, as a servo.
+    pub(super) fn commanded(&mut self) -> bool {
         self.alive();
+        self.watchdog.feed(self.waited);
         self.core.state().lets_drive()
     }
 

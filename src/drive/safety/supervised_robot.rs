@@ -3,13 +3,13 @@
 use image::RgbImage;
 
 use super::health::digest;
-use super::supervised::{Supervised, fault};
+use super::supervised::{LONGEST, Supervised, fault};
 use super::{Causes, Station};
 use crate::geometry::{Pose, Twist};
 use crate::io::wrappers::signatures;
 use crate::io::{
-    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, ErrorKind, Fill, Font, Key,
-    Keys, Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution,
+    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
+    Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution,
     Result, Servos, Viewport,
 };
 use crate::world::Colour;
@@ -61,6 +61,9 @@ impl<R: Clock + Drive, S: Station> Clock for Supervised<R, S> {
     fn wait(&mut self, seconds: f64) -> Result<()> {
         self.alive();
         crate::io::error::require_finite("seconds", seconds)?;
+        if seconds > LONGEST {
+            return Err(Error::invalid_input("seconds", seconds, "at most a day, 86400"));
+        }
         let mut left = seconds;
         let mut answer = Ok(());
         while left > 1e-9 {
@@ -74,6 +77,7 @@ impl<R: Clock + Drive, S: Station> Clock for Supervised<R, S> {
                 answer = Err(error);
             }
             self.look_if_due();
+            self.shows_life();
             if answer.is_err() {
                 break;
             }
@@ -88,7 +92,7 @@ impl<R: Clock + Drive, S: Station> Clock for Supervised<R, S> {
 
 impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
     fn set_speed(&mut self, twist: Twist) -> Result<()> {
-        if !self.may_drive() {
+        if !self.may_drive(twist != Twist::STOP) {
             self.steer_on(twist);
             return Ok(());
         }
@@ -118,7 +122,7 @@ impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
     }
 
     fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
-        if !self.may_drive() {
+        if !self.may_drive(false) {
             return Ok(());
         }
         let answer = self.inner.straight(distance, speed);
@@ -129,7 +133,7 @@ impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
     }
 
     fn turn(&mut self, angle: f64, speed: f64) -> Result<()> {
-        if !self.may_drive() {
+        if !self.may_drive(false) {
             return Ok(());
         }
         let answer = self.inner.turn(angle, speed);
@@ -140,7 +144,7 @@ impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
     }
 
     fn curve(&mut self, length: f64, angle: f64, speed: f64) -> Result<()> {
-        if !self.may_drive() {
+        if !self.may_drive(false) {
             return Ok(());
         }
         let answer = self.inner.curve(length, angle, speed);
@@ -176,7 +180,7 @@ impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
 
 impl<R: Clock + Drive + Motors, S: Station> Motors for Supervised<R, S> {
     fn set_motor(&mut self, motor: u8, fraction: f64) -> Result<()> {
-        if !self.may_drive() {
+        if !self.may_turn(motor, fraction != 0.0) {
             return Ok(());
         }
         let answer = self.inner.set_motor(motor, fraction);
@@ -189,7 +193,7 @@ impl<R: Clock + Drive + Motors, S: Station> Motors for Supervised<R, S> {
 
 impl<R: Clock + Drive + Servos, S: Station> Servos for Supervised<R, S> {
     fn set_servo(&mut self, servo: u8, position: f64) -> Result<()> {
-        if !self.may_drive() {
+        if !self.commanded() {
             return Ok(());
         }
         let answer = self.inner.set_servo(servo, position);
@@ -224,7 +228,7 @@ impl<R: Clock + Drive + DistanceSensors, S: Station> DistanceSensors for Supervi
         let answer = self.reading(|inner| inner.distance(sensor));
         if let Ok(distance) = answer {
             let digest = distance.is_finite().then(|| distance.to_bits());
-            let health = self.distances.entry(sensor).or_default();
+            let health = &mut self.distances[usize::from(sensor.0)];
             let good = health.read(digest, self.pose, &self.parameters.health);
             self.seen = self.seen.with_if(distance.is_nan() || !good, Causes::SENSOR);
         }

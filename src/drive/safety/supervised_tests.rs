@@ -5,13 +5,13 @@ use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions, SharedRace}
 use crate::io::sim::{NoiseModel, SimOptions, Simulation};
 use crate::io::wrappers::{Fault, Faulty};
 use crate::io::{
-    Camera, Clock, Display, DistanceSensors, Drive, Key, Keys, Lidar, LidarScan, MockRobot, Motors, Psd,
-    Servos,
+    Camera, Clock, Display, DistanceSensors, Drive, ErrorKind, Key, Keys, Lidar, LidarScan, MockRobot,
+    Motors, Psd, Servos,
 };
 use crate::world::{Colour, RobotSpec, Scene, World};
 
 /// Armed and started at once, a heartbeat, and what else is asked for.
-fn station(change: impl Fn(f64, &mut Panel)) -> impl FnMut(f64, Beat) -> Panel {
+pub(super) fn station(change: impl Fn(f64, &mut Panel)) -> impl FnMut(f64, Beat) -> Panel {
     move |now, beat| {
         let requests = Requests { arm: now > 0.03, start: now > 0.07, disarm: false };
         let mut panel = Panel { heartbeat: Some(beat.count), requests, ..Panel::default() };
@@ -21,14 +21,14 @@ fn station(change: impl Fn(f64, &mut Panel)) -> impl FnMut(f64, Beat) -> Panel {
 }
 
 /// Drives with 0.5 m/s for some seconds, a command every 0.1 s.
-fn drive<R: Clock + Drive, S: Station>(car: &mut Supervised<R, S>, seconds: f64) {
+pub(super) fn drive<R: Clock + Drive, S: Station>(car: &mut Supervised<R, S>, seconds: f64) {
     for _ in 0..(10.0 * seconds).round() as usize {
         let _ = car.set_speed(Twist::new(0.5, 0.1));
         let _ = car.wait(0.1);
     }
 }
 
-fn mock() -> MockRobot {
+pub(super) fn mock() -> MockRobot {
     MockRobot::new().with_ideal_drive()
 }
 
@@ -272,6 +272,9 @@ fn a_program_that_tells_nonsense_is_stopped_all_the_same() {
         drive(&mut car, 0.9);
         let _ = car.set_speed(Twist::new(0.01, angular));
         assert!(car.wait(f64::INFINITY).is_err() && car.wait(f64::NAN).is_err());
+        for seconds in [1e300, 86_401.0] {
+            assert_eq!(car.wait(seconds).unwrap_err().kind(), ErrorKind::InvalidInput, "{seconds}");
+        }
         car.wait(2.0).unwrap();
         assert_eq!(car.state(), SafetyState::EmergencyStop);
         assert!(race.truth(0).unwrap().twist.linear.abs() < 1e-3, "{angular}: {:?}", race.truth(0));
@@ -334,7 +337,7 @@ fn reading_takes_time_in_which_it_is_looked_at() {
     let mut car =
         Supervised::new(simulation.robot(0).unwrap(), ordered, SupervisorParameters::default()).unwrap();
     car.wait(0.1).unwrap();
-    car.set_speed(Twist::new(0.3, 0.0)).unwrap();
+    car.straight(2.0, 0.3).unwrap();
     while car.peek_time().unwrap() < 1.5 {
         car.distance(Psd::FRONT).unwrap();
     }
@@ -357,7 +360,7 @@ fn waiting_for_a_key_takes_time_in_which_it_is_looked_at() {
     let mut car =
         Supervised::new(simulation.robot(0).unwrap(), ordered, SupervisorParameters::default()).unwrap();
     car.wait(0.1).unwrap();
-    car.set_speed(Twist::new(0.3, 0.0)).unwrap();
+    car.straight(2.0, 0.3).unwrap();
     assert_eq!(car.wait_key().unwrap(), Key::Key2);
     let stop = car.last_stop().unwrap();
     assert!(stop.causes == Causes::EMERGENCY_BUTTON && stop.time < 1.0 + 0.02 + 1e-3, "{stop:?}");
@@ -410,4 +413,7 @@ fn parameters_that_are_none() {
     let parameters = SupervisorParameters { watchdog: 0.0, ..SupervisorParameters::default() };
     let error = Supervised::new(mock(), station(|_, _| {}), parameters).err().unwrap();
     assert_eq!(error.to_string(), "watchdog is 0; expected a positive, finite number");
+    let parameters = SupervisorParameters { period: 1e-9, ..SupervisorParameters::default() };
+    let error = Supervised::new(mock(), station(|_, _| {}), parameters).err().unwrap();
+    assert_eq!(error.to_string(), "control period is 0.000000001; expected at least 0.0001 s");
 }

@@ -249,7 +249,7 @@ fn skidpad() -> ConeTrack {
 }
 
 /// A folder of its own with the files of both events.
-fn events(test: &str) -> (PathBuf, [String; 2]) {
+pub(super) fn events(test: &str) -> (PathBuf, [String; 2]) {
     let folder = std::env::temp_dir().join(format!("roverlab-{test}-{}", std::process::id()));
     fs::create_dir_all(&folder).unwrap();
     let files = ["strip.csv", "skidpad.yaml"].map(|name| folder.join(name).display().to_string());
