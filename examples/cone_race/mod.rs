@@ -305,7 +305,9 @@ fn check_line(course: &Course, line: &[Point]) -> Result<(), Failure> {
     if farthest <= half_width + OFF_TRACK {
         return Ok(());
     }
-    Err(Failure::input(format!("--line: found a point {farthest:.0} m from the middle of the track; expected a line on it")))
+    Err(Failure::input(format!(
+        "--line: found a point {farthest:.0} m from the middle of the track; expected a line on it"
+    )))
 }
 
 /// The root of the mean squared distance of a racing line from another one. `None` without one.

@@ -8,7 +8,7 @@ use roverlab::drive::cones::{
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
 use roverlab::io::sim::{NoiseModel, RobotTruth};
-use roverlab::io::{self, Clock, LidarScan, Resolution, RobotIo};
+use roverlab::io::{self, Clock, LidarScan, RobotIo};
 
 use super::Sensors;
 use super::event;
@@ -290,7 +290,7 @@ fn drive<R: RobotIo + ?Sized>(
     let mut racer = Racer::new(parameters);
     let mut eyes = Eyes::new(settings.sensors);
     if settings.sensors != Sensors::Lidar {
-        car.set_resolution(Resolution::Vga)?;
+        car.set_resolution(course.resolution())?;
     }
     // A first lap at a crawl, and all others at a walk.
     let slow = if settings.other { 2.0 } else { 3.0 };

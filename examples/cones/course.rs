@@ -8,6 +8,7 @@ use roverlab::drive::cones::{
     GeneratedTrack, LaneParameters, RacerParameters, TrackFile, TrackOptions, generate, lined, parse_track,
 };
 use roverlab::geometry::{Aabb, Point, Pose, math};
+use roverlab::io::Resolution;
 use roverlab::io::sim::race::{RaceCarSpec, RaceCone};
 use roverlab::random::Stream;
 use roverlab::world::{Colour, Object, ObjectKind, Scene, Settings, Shape, World};
@@ -260,6 +261,11 @@ impl Course {
             };
         }
         parameters
+    }
+
+    /// Pixels of a camera that shows the cones of both edges.
+    pub(crate) fn resolution(&self) -> Resolution {
+        if self.wide { Resolution::Cam1Mp } else { Resolution::Vga }
     }
 
     /// The outline of the car.

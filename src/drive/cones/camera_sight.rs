@@ -41,8 +41,8 @@ const HUES: [(ConeColour, u8, u8); 3] =
     [(ConeColour::Orange, 10, 27), (ConeColour::Yellow, 28, 52), (ConeColour::Blue, 140, 185)];
 const LEAST_SATURATION: u8 = 90;
 const LEAST_PIXELS: usize = 6;
-/// Metres beyond which a pixel is too many metres.
-const FARTHEST: f64 = 14.0;
+/// Metres of the ground that one row of an image may show: it does some 14 m away with 640 columns, and 20 m with 1296.
+const COARSEST: f64 = 2.0 / 3.0;
 
 /// Metres from the camera within which it finds the colours of nearly all cones that are large enough in the image: so many pixels,
 /// of a cone that is so wide and so high as far as its colour goes, in metres.
@@ -150,6 +150,11 @@ impl CameraMount {
         0.5 * width / math::tan(0.5 * self.field_of_view)
     }
 
+    /// Metres within which a row of an image is few enough metres of the ground.
+    fn farthest(&self, width: f64) -> f64 {
+        (COARSEST * self.height * self.focal(width)).sqrt()
+    }
+
     /// The column and the row of an image that show a place on the ground, and how far it lies in front of the image's plane, in
     /// metres. `None` behind that.
     fn project(&self, place: Point, [width, height]: [f64; 2]) -> Option<[f64; 3]> {
@@ -175,7 +180,7 @@ impl CameraMount {
         let (ahead, depth) = ground(row)?;
         let left = depth * (0.5 * width - column) / focal;
         let range = math::hypot(ahead, left);
-        if range > FARTHEST {
+        if range > self.farthest(width) {
             return None;
         }
         let next = ground(row - 1.0).map_or(range, |(farther, _)| farther - ahead);
@@ -270,6 +275,22 @@ mod tests {
             assert!((place - Point::new(x, y)).norm() < 1e-9, "{place}");
         }
         assert_eq!(mount.project(Point::new(-3.0, 0.0), [640.0, 480.0]), None);
+    }
+
+    #[test]
+    fn finer_images_show_cones_farther_off() {
+        let cones = [RaceCone::new(Point::new(18.0, 1.0), Colour::from_hex(0x1f_4f_d8))];
+        let options = RaceOptions { noise: NoiseModel::ideal(), ..RaceOptions::default() };
+        let mut race = Race::new(&cones, &[(RaceCarSpec::default(), Pose::default())], options).unwrap();
+        let mut car = race.car(0).unwrap();
+        let mut sight = CameraSight::new(CameraMount::default());
+        for (resolution, seen) in [(Resolution::Vga, 0), (Resolution::Cam1Mp, 1)] {
+            car.set_resolution(resolution).unwrap();
+            let found = sight.find(&car.image().unwrap());
+            assert_eq!(found.len(), seen, "{resolution:?}");
+            let away = |one: &Sighting| (one.position - cones[0].position).norm();
+            assert!(found.iter().all(|one| away(one) < 3.0 * one.error), "{found:?}");
+        }
     }
 
     #[test]

@@ -287,8 +287,13 @@ impl<'c> Search<'c> {
         }
         let cost = cost + BETWEEN * self.between(pair, side, leg);
         let turn = angle_difference(leg.heading, own.heading);
-        let end =
-            End { cone: Some(leg.to), place: leg.ends[1], heading: leg.heading, turn, share: own.share * LESS };
+        let end = End {
+            cone: Some(leg.to),
+            place: leg.ends[1],
+            heading: leg.heading,
+            turn,
+            share: own.share * LESS,
+        };
         let mut ends = pair.ends;
         ends[side] = end;
         let worth = pair.worth + own.share * (1.0 - cost);
