@@ -23,10 +23,11 @@ use race::{Ending, Settings};
     name = "cone_race",
     about = "Races on a track of cones that the car does not know: a map in the first lap, then the racing line",
     after_help = "\
-The first lap is driven between the cones that the lidar sees, and makes the map; all others are on the racing line within
+The first lap is driven between the cones that the car sees, and makes the map; all others are on the racing line within
 what both axles hold. The referee adds 2 s for a cone and 10 s for leaving the course with all wheels. Tracks: FSSIM yaml,
 EUFS csv, TUM csv (lined with cones), or one of our own by the seed. Circuits of TUM are several times as wide as tracks of
-Formula Student: on them, the racer is given other widths of the lane, speeds and ranges of its map, and no other knowledge.
+Formula Student: on them, the racer is given other widths of the lane, speeds and ranges of its map, a finer camera, and no other knowledge.
+Drive those by lidar: what the camera alone shows of cones so far off is seldom enough to find the start of a lap again.
 
 An acceleration strip or a skidpad, which the file's cones stand for, is driven as the event that it is: one run, whatever
 --laps says. The car knows which event it is at and what the rules say of its layout, and fits that to the cones that it

@@ -41,7 +41,8 @@ const HUES: [(ConeColour, u8, u8); 3] =
     [(ConeColour::Orange, 10, 27), (ConeColour::Yellow, 28, 52), (ConeColour::Blue, 140, 185)];
 const LEAST_SATURATION: u8 = 90;
 const LEAST_PIXELS: usize = 6;
-/// Metres of the ground that one row of an image may show: it does some 14 m away with 640 columns, and 20 m with 1296.
+/// Metres of the ground that one row of an image may show: the racing car's camera does 14 m away with 640 columns, and 20 m away with
+/// 1296.
 const COARSEST: f64 = 2.0 / 3.0;
 
 /// Metres from the camera within which it finds the colours of nearly all cones that are large enough in the image: so many pixels,

@@ -164,7 +164,7 @@ impl Curve {
         cones.iter().enumerate().filter_map(beside).collect()
     }
 
-    /// The step next to a place. `None` where none is within some metres, or not by much.
+    /// The step next to a place, if that is within some metres; one that is a little farther off may be told as well.
     fn nearest(&self, place: Point, within: f64) -> Option<usize> {
         let squared = |step: usize| (self.places[step] - place).norm_squared();
         let from_knots: [f64; KNOTS] = std::array::from_fn(|knot| squared(knot * STEPS_TO_KNOT));

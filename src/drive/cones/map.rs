@@ -150,7 +150,8 @@ pub struct ConeMap {
     odometry: Option<Pose>,
     /// Metres that the car has gone.
     way: f64,
-    /// Where it was in the first lap, and how far it had gone; and how far where that lap begins.
+    /// Where it was in the lap that the map is of, the first one if that is closed, and how far it had gone; and how far where that
+    /// lap begins.
     trail: Vec<(Pose, f64)>,
     begun: f64,
     closed: bool,
@@ -280,7 +281,7 @@ impl ConeMap {
 
     /// Metres by which the pose may be wrong that is compared with that of the start.
     pub fn tolerance(&self) -> f64 {
-        if self.closed { WRONG.0 } else { WRONG.0 + WRONG.1 * (self.way - self.begun) }
+        if self.closed { WRONG.0 } else { wrong_after(self.way) }
     }
 
     fn confirmed(&self) -> impl Iterator<Item = &Landmark> + '_ {
@@ -383,7 +384,8 @@ impl ConeMap {
         let at = |landmark: &Landmark| landmark.position;
         let onto: Vec<Point> = self.confirmed().filter(first).map(at).collect();
         let points: Vec<Point> = self.confirmed().filter(last).map(at).collect();
-        let expected = Expected { place: self.pose.position(), wrong: (self.tolerance(), WRONG.2) };
+        let expected =
+            Expected { place: self.pose.position(), wrong: (wrong_after(self.way - self.begun), WRONG.2) };
         let Some(motion) = register(&points, &onto, expected) else { return false };
         self.bend(motion);
         self.merge();
@@ -392,10 +394,10 @@ impl ConeMap {
     }
 
     /// Takes the last so many metres of the way for the first lap, where that could not be closed: on a straight, rows of cones may
-    /// look alike at many places, and plain farther on.
+    /// look alike at many places, and plain farther on. Does nothing for less than twice the metres within which cones are fresh.
     pub(super) fn begin_later(&mut self, metres: f64) {
         let begun = self.way - metres;
-        if self.closed || begun <= self.begun {
+        if self.closed || begun <= self.begun || metres < 2.0 * FRESH {
             return;
         }
         self.begun = begun;
@@ -407,7 +409,7 @@ impl ConeMap {
     fn bend(&mut self, motion: Pose) {
         self.trail.push((self.pose, self.way));
         let beginning = self.beginning();
-        let until = (self.way - END - beginning).max(beginning + STRIDE);
+        let until = (self.way - END - (beginning - self.begun)).max(beginning + STRIDE);
         let share = |way: f64| ((way - beginning) / (until - beginning)).clamp(0.0, 1.0);
         let (before, shares): (Vec<Pose>, Vec<f64>) =
             self.trail.iter().map(|(pose, way)| (*pose, share(*way))).unzip();
@@ -565,6 +567,11 @@ impl ConeMap {
 fn is_part(new: &Sighting, other: &Sighting) -> bool {
     let away = (new.position - other.position).norm();
     away > 0.0 && away < APART
+}
+
+/// Metres by which a pose may be wrong after so many metres of the way.
+fn wrong_after(way: f64) -> f64 {
+    WRONG.0 + WRONG.1 * way
 }
 
 /// Whether a cone at a place, from the sensor, would be seen.

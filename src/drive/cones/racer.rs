@@ -97,7 +97,7 @@ pub struct Racer {
     map: ConeMap,
     phase: RacePhase,
     laps: usize,
-    /// Metres by odometry since the start line was crossed.
+    /// Metres by odometry since a lap was counted, or since the start.
     since_line: f64,
     /// Where the line is: the car's pose as it crossed it for the first time.
     line: Option<Pose>,
@@ -356,9 +356,9 @@ impl Racer {
             return;
         }
         if !self.map.is_closed() {
-            // It began at the start, and ended where the car came by there.
+            // The first one began at the start, and ended where the car came by there; all others are counted at the same place.
             let past = line.to_local(self.map.pose().position()).x + LINE;
-            self.open_lap.get_or_insert(self.since_line - past);
+            self.open_lap = Some(self.since_line - if self.laps == 0 { past } else { 0.0 });
         }
         self.since_line = 0.0;
         self.in_front = false;

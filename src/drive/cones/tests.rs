@@ -169,7 +169,11 @@ fn broken_files_are_told_where() {
         (format!("{tum}1,2,3,4\n"), "t:1:1: found 1 points; expected at least 4 points"),
         (
             format!("{tum}0,0,1,1\n9,0,1,1\n9,9,-1,1\n0,9,1,1\n"),
-            "t:4:1: found -1; expected a positive width to the right",
+            "t:4:1: found -1; expected a width to the right of more than 0, at most 100 m",
+        ),
+        (
+            format!("{tum}0,0,1,1\n9,0,1,101\n9,9,1,1\n0,9,1,1\n"),
+            "t:3:1: found 101; expected a width to the left of more than 0, at most 100 m",
         ),
         (
             format!("{tum}0,0,1,1\n9,0,1,1\n9,0,1,1\n9,9,1,1\n0,9,1,1\n"),

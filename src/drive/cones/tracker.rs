@@ -86,9 +86,9 @@ const ON_LINE: f64 = 0.3;
 const SLOW: f64 = 2.0;
 /// The share of the metres in which an error dies out by which one counts at most: what is farther off is approached at 14 degrees.
 const SLANTED: f64 = 0.4;
-/// The share of the tyres' grip that is asked of them to come back to a line. With more of it, a fast car whose line moves aside would
+/// The share of the tyres' grip that is asked of them at most to come back to a line. With all of it, a fast car whose line moves aside would
 /// steer until its tyres slip, and weave.
-const BACK: f64 = 1.0 / 3.0;
+const BACK: f64 = 0.6;
 /// Metres before and beyond a place between which the turn of the nose is taken.
 const SWINGS: f64 = 1.0;
 

@@ -168,13 +168,27 @@ fn flying_laps_are_near_the_optimum() {
 
 #[test]
 fn the_printed_driver_drives_some_way() {
-    let words = ["cone_drive", "--json", "--track", "tests/data/cones/oval.csv", "--time-limit", "40"];
+    let words = ["cone_drive", "--json", "--track", "tests/data/cones/oval.csv", "--time-limit", "60"];
     let (mut out, mut err) = (Vec::new(), Vec::new());
     let status =
         common::run("cone_drive", words.iter().map(OsString::from), &mut out, &mut err, cone_drive::work);
     let report: Value = serde_json::from_slice(&out).unwrap();
     assert_eq!((status, err.len()), (0, 0), "{report}");
     assert!(report["distance_clean_m"].as_f64().unwrap() > 100.0, "{report}");
+    let words = ["--track", "tests/data/cones/oval.csv", "--time-limit", "40"];
+    assert_eq!(drive(&words).0, 1, "half a lap is none");
+}
+
+#[test]
+fn a_line_is_one_of_the_track() {
+    let folder = std::env::temp_dir().join(format!("roverlab-line-elsewhere-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("line.csv");
+    fs::write(&file, "# x_m,y_m\n0,500\n10,500\n10,510\n0,510\n").unwrap();
+    let (status, _, err) = race(&["--track", "tests/data/cones/oval.csv", "--line", file.to_str().unwrap()]);
+    assert_eq!(status, 2, "{err}");
+    assert!(err.contains("m from the middle of the track; expected a line on it"), "{err}");
+    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]

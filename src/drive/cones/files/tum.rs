@@ -6,7 +6,7 @@ use crate::drive::cones::{Corridor, PlanError};
 use crate::geometry::Point;
 use crate::world::formats::{FormatError, Location, shown};
 
-/// Metres from the middle to an edge: no track is wider, and one of them is not lined with a million cones.
+/// Metres from the middle to an edge at most. No track is wider, and wider ones would take long to line with cones.
 const WIDEST: f64 = 100.0;
 const HEADER: &str = "# x_m,y_m,w_tr_right_m,w_tr_left_m";
 

@@ -127,3 +127,59 @@ fn of_a_short_lap_that_was_driven_again_one_is_left() {
         assert!((15.0..18.9).contains(&legs.iter().sum::<f64>()), "{laps}: {legs:?}");
     }
 }
+
+/// The middle of a lane of two straights and two half circles, so many metres from the middle of a straight.
+fn on_stadium(along: f64) -> Pose {
+    const STRAIGHT: f64 = 120.0;
+    const RADIUS: f64 = 20.0;
+    let half = STRAIGHT + std::f64::consts::PI * RADIUS;
+    let (turns, along) = ((along / half).floor(), along.rem_euclid(half));
+    let within = if along < 0.5 * STRAIGHT {
+        Pose::new(along, 0.0, 0.0)
+    } else if along < half - 0.5 * STRAIGHT {
+        let angle = (along - 0.5 * STRAIGHT) / RADIUS;
+        Pose::new(0.5 * STRAIGHT + RADIUS * math::sin(angle), RADIUS - RADIUS * math::cos(angle), angle)
+    } else {
+        Pose::new(half - along, 2.0 * RADIUS, std::f64::consts::PI)
+    };
+    let turned = if turns.rem_euclid(2.0) > 0.5 { std::f64::consts::PI } else { 0.0 };
+    Pose::new(0.0, RADIUS, turned).compose(&Pose::new(0.0, -RADIUS, 0.0)).compose(&within)
+}
+
+#[test]
+fn a_lap_that_begins_later_closes_as_well() {
+    let lap = 2.0 * (120.0 + std::f64::consts::PI * 20.0);
+    let cones: Vec<Point> = (0..73)
+        .map(|k| on_stadium(lap / 73.0 * f64::from(k) + 0.8 * math::sin(1.7 * f64::from(k))))
+        .flat_map(|pose| [2.0, -2.0].map(|y| pose.to_world(Point::new(0.0, y))))
+        .collect();
+    // On the far half of the first bend, of the second one, and of the first one a lap later.
+    for past in [80.0, 260.0, 440.0] {
+        let mut map = ConeMap::new(ConeMapParameters::default());
+        let mut along = 0.0;
+        while along < lap + past {
+            let car = on_stadium(along);
+            let ahead = cones.iter().map(|cone| car.to_local(*cone));
+            let near = ahead.filter(|place| place.x > 0.0 && place.coords.norm() < 15.0);
+            let sightings: Vec<Sighting> = near.map(|place| sighting(place.x, place.y)).collect();
+            (0..3).for_each(|_| map.update(car, &sightings));
+            along += 1.0;
+        }
+        // Less than what is fresh is no lap.
+        map.begin_later(FRESH);
+        map.begin_later(-1.0);
+        assert!(
+            map.trail().next().is_some_and(|pose| pose.position().coords.norm() < 2.0 * STRIDE),
+            "{past}"
+        );
+        map.begin_later(lap + 15.0);
+        assert!(map.close(), "{past}");
+        let off = on_stadium(along - 1.0).to_local(map.pose().position());
+        assert!(off.coords.norm() < 0.1, "{past}: {off}");
+        assert!(map.cones().count() <= cones.len(), "{past}: {}", map.cones().count());
+        let trail: Vec<Point> = map.trail().map(|pose| pose.position()).collect();
+        let n = trail.len();
+        let around: f64 = (0..n).map(|i| (trail[(i + 1) % n] - trail[i]).norm()).sum();
+        assert!((around - lap).abs() < 5.0, "{past}: {around}");
+    }
+}
