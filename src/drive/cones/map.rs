@@ -1,6 +1,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::cone::{Cone, ConeColour};
+use super::landmark::Landmark;
 use super::registration::{Expected, register, spread};
 use super::sight::Sighting;
 use crate::geometry::{Point, Pose, Vector, cross, math, normalize_angle};
@@ -23,115 +24,6 @@ pub struct ConeMapParameters {
 impl Default for ConeMapParameters {
     fn default() -> Self {
         Self { gate: 0.9, farthest: 20.0, confirmed: 4, sensor: 2.15, drift: [0.03, 0.006] }
-    }
-}
-
-/// A cone of the map.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Landmark {
-    position: Point,
-    seen: u32,
-    missed: u32,
-    /// Times that it was seen blue, yellow and orange.
-    colours: [u16; 3],
-    /// Times that a camera showed no colour there.
-    pale: u16,
-    /// Times that it was taken for one of the left edge, less those for the right one.
-    side: i16,
-    /// Metres that the car had gone when it was seen first, last, and in the mean.
-    first: f64,
-    last: f64,
-    mean: f64,
-}
-
-impl Landmark {
-    /// The colour that it was seen in most often, or else that of the edge for which it was taken, once that is more than chance.
-    fn colour(&self) -> ConeColour {
-        match self.painted() {
-            ConeColour::Unknown if self.side >= SURE => ConeColour::Blue,
-            ConeColour::Unknown if self.side <= -SURE => ConeColour::Yellow,
-            painted => painted,
-        }
-    }
-
-    fn painted(&self) -> ConeColour {
-        let [blue, yellow, orange] = self.colours;
-        let most = blue.max(yellow).max(orange);
-        if most < 3 || blue + yellow + orange >= 2 * most {
-            ConeColour::Unknown
-        } else if most == blue {
-            ConeColour::Blue
-        } else if most == yellow {
-            ConeColour::Yellow
-        } else {
-            ConeColour::Orange
-        }
-    }
-
-    /// Whether a camera shows that it has no cone's colour.
-    fn is_pale(&self) -> bool {
-        self.painted() == ConeColour::Unknown
-            && self.pale >= PALE
-            && self.pale > 2 * self.colours.iter().sum::<u16>()
-    }
-
-    fn vote(&mut self, sighting: &Sighting) {
-        let index = match sighting.colour {
-            ConeColour::Blue => 0,
-            ConeColour::Yellow => 1,
-            ConeColour::Orange | ConeColour::BigOrange => 2,
-            ConeColour::Unknown => {
-                self.pale += u16::from(sighting.confidence <= 0.0 && self.pale < MOST_COLOURS);
-                return;
-            }
-        };
-        // Halved before it overflows, so that late votes count as well.
-        if self.colours[index] >= MOST_COLOURS {
-            self.colours = self.colours.map(|count| count / 2);
-        }
-        self.colours[index] += 1;
-    }
-
-    /// A cone that is seen for the first time.
-    fn new(position: Point, sighting: &Sighting, way: f64) -> Self {
-        let mut new = Self {
-            position,
-            seen: 1,
-            missed: 0,
-            colours: [0; 3],
-            pale: 0,
-            side: 0,
-            first: way,
-            last: way,
-            mean: way,
-        };
-        new.vote(sighting);
-        new
-    }
-
-    /// Takes in that it was seen again.
-    fn see(&mut self, place: Point, sighting: &Sighting, way: f64) {
-        self.seen = (self.seen + 1).min(MEMORY);
-        self.missed = 0;
-        self.vote(sighting);
-        let share = 1.0 / f64::from(self.seen);
-        self.position += (place - self.position) * share;
-        self.mean += (way - self.mean) * share;
-        self.last = way;
-    }
-
-    /// Takes in what was held to be another cone.
-    fn join(&mut self, other: &Self) {
-        let share = f64::from(other.seen) / f64::from(self.seen + other.seen);
-        self.position += (other.position - self.position) * share;
-        self.seen = (self.seen + other.seen).min(MEMORY);
-        self.missed = self.missed.min(other.missed);
-        for (mine, theirs) in self.colours.iter_mut().zip(other.colours) {
-            *mine = (*mine + theirs).min(MOST_COLOURS);
-        }
-        self.pale = (self.pale + other.pale).min(MOST_COLOURS);
-        self.side = (self.side + other.side).clamp(-MOST_VOTES, MOST_VOTES);
-        self.last = self.last.max(other.last);
     }
 }
 
@@ -160,17 +52,8 @@ pub struct ConeMap {
     fits: Option<bool>,
 }
 
-/// Times that a cone was seen in one colour, or in none, that are counted.
-const MOST_COLOURS: u16 = 1000;
-/// Looks of a camera that show no colour by which something has none, and how many cones there have to be with colours for each
-/// such thing.
-const PALE: u16 = 4;
+/// Cones with colours that there have to be for each thing that a camera shows to have none.
 const MANY: usize = 4;
-/// Votes for an edge by which a cone belongs to it, and votes that are counted.
-const SURE: i16 = 6;
-const MOST_VOTES: i16 = 30;
-/// Sightings after which a cone moves no more slowly.
-const MEMORY: u32 = 80;
 /// Metres from the sensor, and radians from straight ahead, within which a cone that is not seen is missed.
 const VIEW: (f64, f64) = (9.0, 0.8);
 /// Metres beside a thing within which it hides what is behind it, about.
@@ -361,7 +244,7 @@ impl ConeMap {
     pub(super) fn vote_side(&mut self, places: impl Iterator<Item = Point>, side: i16) {
         for place in places {
             if let Some(landmark) = self.landmarks.iter_mut().find(|landmark| landmark.position == place) {
-                landmark.side = (landmark.side + side).clamp(-MOST_VOTES, MOST_VOTES);
+                landmark.vote_side(side);
             }
         }
     }

@@ -28,6 +28,7 @@ mod fit;
 mod gap;
 mod generate;
 mod hold;
+mod landmark;
 mod lane;
 mod lap;
 mod legs;

@@ -1,6 +1,6 @@
 //! What the documentation of `Supervised` claims: how soon it answers what, whom it trusts, and how far it goes.
 
-use super::supervised_tests::{drive, mock, station};
+use super::supervised_tests::{drive, mock, station, stationed};
 use super::*;
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::sim::race::{Race, RaceCarSpec, RaceOptions, SharedRace};
@@ -158,19 +158,7 @@ fn a_program_that_only_reads_is_stopped_while_it_drives() {
     );
 }
 
-/// A car with a base station that looks by a clock of its own, which shows 100 s more; armed and started.
-fn stationed() -> Supervised<MockRobot, BaseStation> {
-    let mut car = Supervised::new(mock(), BaseStation::new(0.5), SupervisorParameters::default()).unwrap();
-    drive(&mut car, 0.1);
-    car.station_mut().panel.requests.arm = true;
-    drive(&mut car, 0.2);
-    car.station_mut().panel.requests.start = true;
-    drive(&mut car, 1.0);
-    assert_eq!(car.state(), SafetyState::Auto);
-    car
-}
-
-/// Drives for a second, while the station looks ten times by its own clock. Whether it orders a stop in the end.
+/// Drives for a second, while the station looks ten times by its own clock, which shows 100 s more. Whether it orders a stop in the end.
 fn drive_looked_at(car: &mut Supervised<MockRobot, BaseStation>) -> bool {
     for _ in 0..10 {
         drive(car, 0.1);

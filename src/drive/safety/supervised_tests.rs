@@ -32,6 +32,18 @@ pub(super) fn mock() -> MockRobot {
     MockRobot::new().with_ideal_drive()
 }
 
+/// A car with a base station, armed and started.
+pub(super) fn stationed() -> Supervised<MockRobot, BaseStation> {
+    let mut car = Supervised::new(mock(), BaseStation::new(0.5), SupervisorParameters::default()).unwrap();
+    drive(&mut car, 0.1);
+    car.station_mut().panel.requests.arm = true;
+    drive(&mut car, 0.2);
+    car.station_mut().panel.requests.start = true;
+    drive(&mut car, 1.0);
+    assert_eq!(car.state(), SafetyState::Auto);
+    car
+}
+
 #[test]
 fn nothing_drives_before_it_is_armed_and_started() {
     let never = |_: f64, beat: Beat| Panel { heartbeat: Some(beat.count), ..Panel::default() };
@@ -145,14 +157,7 @@ fn a_program_that_lives_steers_while_it_brakes_but_never_drives() {
 
 #[test]
 fn the_base_station_hears_and_is_heard() {
-    let base = BaseStation::new(0.5);
-    let mut car = Supervised::new(mock(), base, SupervisorParameters::default()).unwrap();
-    drive(&mut car, 0.1);
-    car.station_mut().panel.requests.arm = true;
-    drive(&mut car, 0.2);
-    car.station_mut().panel.requests.start = true;
-    drive(&mut car, 1.0);
-    assert_eq!(car.state(), SafetyState::Auto);
+    let mut car = stationed();
     car.station_mut().connect(false);
     drive(&mut car, 1.0);
     assert_eq!(car.state(), SafetyState::SafeStop);

@@ -1,4 +1,5 @@
 use super::*;
+use crate::drive::cones::landmark::SURE;
 
 fn sighting(x: f64, y: f64) -> Sighting {
     let position = Point::new(x, y);
