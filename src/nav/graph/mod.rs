@@ -1,7 +1,7 @@
 //! Shortest paths in graphs (book, section 10.6).
 //!
 //! [`shortest_path`] searches anything that can list the neighbours of a node; with the feature `petgraph`,
-//! [`petgraph_shortest_path`] searches any graph of that crate. Both are A\*, and Dijkstra's algorithm if the estimate is
+//! `petgraph_shortest_path` searches any graph of that crate. Both are A\*, and Dijkstra's algorithm if the estimate is
 //! 0. Costs are floating-point numbers, and handled with care: a cost that is no number or negative is an error that
 //! names it, and equal ones are taken in the order in which they were found.
 
