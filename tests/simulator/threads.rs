@@ -32,6 +32,17 @@ fn two_robots_of_one_thread_are_an_error_and_no_deadlock() {
 }
 
 #[test]
+fn a_robot_left_behind_in_the_thread_of_another_is_an_error_and_no_deadlock() {
+    let (_simulation, mut robots) = simulation(2, SimOptions::ideal());
+    let error = robots[0].wait(1.0).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Other);
+    assert!(error.to_string().contains("give each robot a thread of its own, or use a fleet"), "{error}");
+    // Whoever lets go of it drives on.
+    drop(robots.pop());
+    robots[0].wait(1.0).unwrap();
+}
+
+#[test]
 fn a_robot_can_be_taken_once() {
     let (simulation, mut robots) = simulation(2, SimOptions::ideal());
     let error = simulation.robot(0).unwrap_err();

@@ -1,5 +1,6 @@
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, ThreadId};
+use std::time::Duration;
 
 use super::engine::{Engine, no_robot};
 use crate::io::{Error, ErrorKind, Result};
@@ -27,7 +28,10 @@ struct Program {
     phase: Phase,
     /// The tick up to which the program lets the world advance.
     tick: u64,
+    /// The thread that used the robot last, or took it.
     thread: Option<ThreadId>,
+    /// Whether the robot has been used since it was taken.
+    used: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -49,7 +53,7 @@ impl State {
         }
     }
 
-    /// A robot that holds the world back and that only this thread could move on.
+    /// A robot that holds the world back, and that this thread was the last one to use or to take.
     fn blocked_by_own_thread(&self, index: usize) -> Option<usize> {
         let me = thread::current().id();
         let tick = self.engine.tick;
@@ -60,6 +64,18 @@ impl State {
                 && program.thread == Some(me)
         })
     }
+}
+
+/// How long a robot that was taken is waited for, in real time, by the thread that took it: a robot that no other thread
+/// uses until then has been left behind in this one.
+const FIRST_CALL: Duration = Duration::from_secs(5);
+
+fn driven_from_one_thread(index: usize, other: usize) -> Error {
+    let message = format!(
+        "robots {index} and {other} are driven from one thread and wait for each other; \
+         give each robot a thread of its own, or use a fleet"
+    );
+    Error::new(ErrorKind::Other, message)
 }
 
 impl Shared {
@@ -86,7 +102,7 @@ impl Shared {
                 format!("robot {index} is already being driven"),
             ));
         }
-        *program = Program { phase: Phase::Running, tick, thread: None };
+        *program = Program { phase: Phase::Running, tick, thread: Some(thread::current().id()), used: false };
         Ok(())
     }
 
@@ -96,6 +112,7 @@ impl Shared {
         let alone = state.programs.len() == 1;
         if !alone {
             state.programs[index].thread = Some(thread::current().id());
+            state.programs[index].used = true;
         }
         if state.engine.tick == tick {
             return Ok(state);
@@ -107,14 +124,21 @@ impl Shared {
             self.advanced.notify_all();
         }
         while state.engine.tick < tick {
-            if let Some(other) = state.blocked_by_own_thread(index) {
-                let message = format!(
-                    "robots {index} and {other} are driven from one thread and wait for each other; \
-                     give each robot a thread of its own, or use a fleet"
-                );
-                return Err(Error::new(ErrorKind::Other, message));
+            let Some(other) = state.blocked_by_own_thread(index) else {
+                state = self.advanced.wait(state).unwrap_or_else(PoisonError::into_inner);
+                continue;
+            };
+            if state.programs[other].used {
+                return Err(driven_from_one_thread(index, other));
             }
-            state = self.advanced.wait(state).unwrap_or_else(PoisonError::into_inner);
+            // Another thread may have been given the robot, and be about to use it.
+            let before = state.engine.tick;
+            let (woken, waited) =
+                self.advanced.wait_timeout(state, FIRST_CALL).unwrap_or_else(PoisonError::into_inner);
+            state = woken;
+            if waited.timed_out() && state.engine.tick == before && !state.programs[other].used {
+                return Err(driven_from_one_thread(index, other));
+            }
         }
         Ok(state)
     }
