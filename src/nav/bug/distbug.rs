@@ -71,8 +71,8 @@ impl Strategy for DistRule {
     }
 
     fn consider(&mut self, _body: &Body, sight: &Sight) -> Decision {
-        self.least_distance = self.least_distance.min(sight.boundary_distance());
-        if sight.at_boundary {
+        self.least_distance = self.least_distance.min(sight.corner_distance());
+        if !sight.is_open() {
             return Decision::Follow;
         }
         let free = sight.free.min(sight.distance) * (1.0 - self.doubt);

@@ -334,3 +334,15 @@ fn what_happens_is_told_in_order() {
         assert!(drive.true_path.iter().any(|place| (place - point).norm() < 0.1), "{point}");
     }
 }
+
+/// What the README shows is what its first command draws.
+#[test]
+fn the_readmes_picture_is_that_of_its_command() {
+    let file = folder("readme").join("distbug.svg");
+    let report = assert_arrived(&run(&["--picture", file.to_str().unwrap()]), 40.0);
+    assert_eq!(count(&report, "hit_points"), 4, "one for each obstacle on the way: {report}");
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/distbug.svg");
+    let [drawn, shown] = [file, kept].map(|file| fs::read_to_string(file).unwrap());
+    let command = "cargo run --release --example distbug -- --picture docs/distbug.svg";
+    assert!(drawn == shown, "the README shows another run than this one, which `{command}` draws");
+}
