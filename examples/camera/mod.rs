@@ -49,7 +49,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) images: u32,
 
-    /// Where the last image goes: .png, .ppm or .bmp [camera.png, unless --json].
+    /// Where the last image goes: .png, .ppm or .bmp [target/pictures/camera.png, unless --json].
     #[arg(long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
 
@@ -201,8 +201,8 @@ fn brightness(image: &RgbImage) -> Result<f64, Error> {
 
 /// Writes the last image, though never unasked where a program reads the report.
 fn save(args: &Args, run: &Run<Seen>) -> Result<Option<PathBuf>, Failure> {
-    let unasked = (!args.common.json).then(|| PathBuf::from("camera.png"));
-    let (Some(file), Ok(seen)) = (args.output.clone().or(unasked), &run.ending) else { return Ok(None) };
+    let unasked = || args.common.unnamed_file("camera.png");
+    let (Some(file), Ok(seen)) = (args.output.clone().or_else(unasked), &run.ending) else { return Ok(None) };
     write_image(&seen.image.clone().into(), &file).map_err(|error| {
         Failure::input(format!(
             "--output {}: {error}; expected a file ending in .png, .ppm or .bmp that can be written",

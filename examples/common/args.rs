@@ -8,7 +8,10 @@ use roverlab::geometry::Pose;
 use roverlab::io::wrappers::Fault;
 
 use super::values::{GoalOption, parse_goal, parse_noise, parse_picture, parse_pose, parse_seconds};
-use super::{Failure, Origin};
+use super::{Failure, Origin, is_same_file};
+
+/// The folder of files that no option names.
+const UNNAMED: &str = "target/pictures";
 
 /// The options that all examples have. Flatten it into an example's own.
 #[derive(Debug, Clone, clap::Args)]
@@ -90,13 +93,6 @@ impl CommonArgs {
     pub(crate) fn check(&self) -> Result<(), Failure> {
         if let Some(file) = &self.record {
             check_writable("--record", file)?;
-            let same = |other: &PathBuf| matches!((fs::canonicalize(file), fs::canonicalize(other)), (Ok(a), Ok(b)) if a == b);
-            if self.replay.as_ref().is_some_and(same) {
-                let file = file.display();
-                return Err(Failure::input(format!(
-                    "--record {file}: found the recording that is replayed; expected another file"
-                )));
-            }
         }
         match &self.robios {
             Some(library) if self.replay.is_some() => Err(Failure::input(format!(
@@ -172,6 +168,24 @@ impl CommonArgs {
     /// Fails if pictures cannot be written where the options ask for one, before a long run is in vain.
     pub(crate) fn check_picture(&self) -> Result<(), Failure> {
         self.picture.as_deref().map_or(Ok(()), |file| check_writable("--picture", file))
+    }
+
+    /// The picture's file: the one that `--picture` names, or one in the folder for what nobody named.
+    pub(crate) fn picture_file(&self, name: &str) -> Option<PathBuf> {
+        self.picture.clone().or_else(|| self.unnamed_file(name))
+    }
+
+    /// A file that no option names, in a folder of its own, if a person looks on; not in place of the picture.
+    pub(crate) fn unnamed_file(&self, name: &str) -> Option<PathBuf> {
+        if self.json {
+            return None;
+        }
+        let folder = Path::new(UNNAMED);
+        // If it cannot be made, then saving the file fails, and says why.
+        let _ = fs::create_dir_all(folder);
+        let file = folder.join(name);
+        let is_picture = self.picture.as_deref().is_some_and(|picture| is_same_file(picture, &file));
+        (!is_picture).then_some(file)
     }
 
     /// The faults to inject.

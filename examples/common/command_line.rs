@@ -8,6 +8,7 @@ use roverlab::io::log::Log;
 
 use super::files::recorded_name;
 use super::origin::Facts;
+use super::outputs::check_outputs;
 use super::{CommonArgs, Failure};
 
 /// Options that do not affect a run.
@@ -40,8 +41,8 @@ const UNRECORDED: [&str; 5] = ["campaign", "plan", "input", "compare", "steps"];
 pub(crate) enum Refusal {
     /// The parser says why, or shows its help.
     Parser(clap::Error),
-    /// The recording to replay is none.
-    Recording(Failure),
+    /// The recording to replay is none, or the files that it names do not go together.
+    Files(Failure),
 }
 
 /// Reads a command line. With `--replay`, the options of the recording come with it.
@@ -52,7 +53,7 @@ where
     let mut words: Vec<OsString> = command_line.into_iter().collect();
     let mut command = A::command();
     let log = replayed(&words).map(|file| recording(example, &command, &file));
-    let log = log.transpose().map_err(Refusal::Recording)?;
+    let log = log.transpose().map_err(Refusal::Files)?;
     if let Some(log) = &log {
         let given = words.split_off(1.min(words.len()));
         let recorded = log.header().options.iter().filter(|option| !repeats(option, &given));
@@ -60,10 +61,11 @@ where
         words.extend(given);
     }
     let mut matches = command.try_get_matches_from_mut(words).map_err(Refusal::Parser)?;
-    check_recorded(&matches).map_err(Refusal::Recording)?;
+    check_recorded(&matches).map_err(Refusal::Files)?;
+    check_outputs(&matches).map_err(Refusal::Files)?;
     let options = options(&command, &matches);
     if let Some(log) = &log {
-        check_met(&command, &options, &log.header().options).map_err(Refusal::Recording)?;
+        check_met(&command, &options, &log.header().options).map_err(Refusal::Files)?;
     }
     let args =
         A::from_arg_matches_mut(&mut matches).map_err(|error| Refusal::Parser(error.format(&mut command)))?;

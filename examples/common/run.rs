@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 
 use super::command_line::{self, Refusal};
+use super::outputs::check_outputs;
 use super::report::Header;
 use super::wall_clock::Stopwatch;
 use super::{CommonArgs, Failure, Report};
@@ -34,7 +35,7 @@ where
     let args = match command_line::parse(example, command_line) {
         Ok(args) => Ok(args),
         Err(Refusal::Parser(error)) => Err(error),
-        Err(Refusal::Recording(failure)) => return complain(err, &failure),
+        Err(Refusal::Files(failure)) => return complain(err, &failure),
     };
     run_parsed(args, out, err, |args: &A| {
         let common = args.as_ref();
@@ -74,7 +75,14 @@ pub(crate) fn run_printing<A: clap::Parser>(
     err: &mut dyn Write,
     work: impl FnOnce(&A) -> Result<Printed, Failure>,
 ) -> u8 {
-    run_parsed(A::try_parse_from(command_line), out, err, work)
+    let matches = match A::command().try_get_matches_from(command_line) {
+        Ok(matches) => matches,
+        Err(error) => return run_parsed(Err::<A, _>(error), out, err, work),
+    };
+    match check_outputs(&matches) {
+        Ok(()) => run_parsed(A::from_arg_matches(&matches), out, err, work),
+        Err(failure) => complain(err, &failure),
+    }
 }
 
 /// Does the work of a command line that has been read, or says what is wrong with it.

@@ -85,7 +85,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     };
     let stage = common.stage_race(&course.scene(), || world(&course, args, common.seed))?;
     let driven = drive(&course, args, &stage)?;
-    let file = common.picture.clone().or_else(|| (!common.json).then(|| PathBuf::from("cone_drive.svg")));
+    let file = common.picture_file("cone_drive.svg");
     let saved = file.as_ref().map(|file| picture(&course, &driven).save(file)).transpose();
     let trouble = saved.err().map(|error| error.to_string());
     Ok(Report { trouble, ..report(args, &course, driven).field("picture", file) })

@@ -13,7 +13,7 @@ use roverlab::drive::cones::{ClosedSpline, EventCourse, TrackFile, parse_track};
 use roverlab::geometry::{Point, Segment};
 use roverlab::io::sim::race::RaceCarSpec;
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, check_writable, rounded};
+use crate::common::{CommonArgs, Failure, Outcome, Report, check_writable, is_same_file, rounded};
 use crate::cones::{Course, Spoils, check_race, refuse};
 use race::{Ending, Settings};
 
@@ -339,7 +339,7 @@ fn check_pictures(args: &Args) -> Result<(), Failure> {
     args.common.check_picture()?;
     args.animation.as_deref().map_or(Ok(()), |file| check_writable("--animation", file))?;
     let (Some(still), Some(moving)) = pictures(args) else { return Ok(()) };
-    if place(&still) == place(&moving) {
+    if is_same_file(&still, &moving) {
         return Err(Failure::input(format!(
             "--picture and --animation: found the same file, {}; expected two",
             still.display()
@@ -348,18 +348,10 @@ fn check_pictures(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The folder and the name of a file, by which two are the same one.
-fn place(file: &Path) -> (Option<PathBuf>, Option<&std::ffi::OsStr>) {
-    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    (folder.canonicalize().ok(), file.file_name())
-}
-
-/// Where the still picture and the moving one are saved: where the options say, and in the present folder if a person looks on.
+/// Where the still picture and the moving one are saved: where the options say, or else if a person looks on.
 fn pictures(args: &Args) -> (Option<PathBuf>, Option<PathBuf>) {
-    let named = |file: &Option<PathBuf>, name: &str| {
-        file.clone().or_else(|| (!args.common.json).then(|| PathBuf::from(name)))
-    };
-    (named(&args.common.picture, "cone_race.svg"), named(&args.animation, "cone_race_moving.svg"))
+    let moving = args.animation.clone().or_else(|| args.common.unnamed_file("cone_race_moving.svg"));
+    (args.common.picture_file("cone_race.svg"), moving)
 }
 
 /// Saves the pictures.

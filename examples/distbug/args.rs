@@ -11,7 +11,7 @@ robot and its first marker), a .maz start and goal (the letters S and G), a .wld
 --start and --goal come before them. Other robots stand still.
 
 Without --time-limit, the time is generous for the size of the world. Without --picture, the run is drawn into
-distbug.svg, except with --json.
+target/pictures/distbug.svg, except with --json.
 
 JSON fields:
   goal                       [x, y] mm

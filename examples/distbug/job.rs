@@ -112,7 +112,7 @@ fn drawn(
     drive: &Drive,
     options: &Options,
 ) -> Result<Option<PathBuf>, Failure> {
-    let file = common.picture.clone().or_else(|| (!common.json).then(|| PathBuf::from(PICTURE)));
+    let file = common.picture_file(PICTURE);
     if let Some(file) = &file {
         picture::of(trip, drive, options).save(file)?;
         common.tell(format_args!("picture: {}", file.display()));

@@ -208,9 +208,7 @@ pub(crate) fn drawn(
     name: &str,
     picture: impl FnOnce() -> Picture,
 ) -> (Option<PathBuf>, Option<String>) {
-    let Some(file) = common.picture.clone().or_else(|| (!common.json).then(|| PathBuf::from(name))) else {
-        return (None, None);
-    };
+    let Some(file) = common.picture_file(name) else { return (None, None) };
     match save(&picture(), &file) {
         Ok(()) => {
             common.tell(format_args!("picture: {}", file.display()));

@@ -130,9 +130,9 @@ fn check(args: &Args) -> Result<(), Failure> {
     given.iter().find(|(_, given)| *given).map_or(Ok(()), |(option, _)| Err(refused(option)))
 }
 
-/// Saves the picture where the options say, and in the present folder if a person looks on.
+/// Saves the picture where the options say, or else if a person looks on.
 fn draw(common: &CommonArgs, picture: &Picture) -> (Option<PathBuf>, Option<String>) {
-    let file = common.picture.clone().or_else(|| (!common.json).then(|| PathBuf::from("genetic.svg")));
+    let file = common.picture_file("genetic.svg");
     let saved = file.as_ref().map(|file| picture.save(file)).transpose();
     (file, saved.err().map(|error| error.to_string()))
 }

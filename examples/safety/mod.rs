@@ -79,7 +79,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     for takeover in &driven.takeovers {
         common.tell(takeover);
     }
-    let file = common.picture.clone().or_else(|| (!common.json).then(|| PathBuf::from("safety.svg")));
+    let file = common.picture_file("safety.svg");
     let saved = file.as_ref().map(|file| picture(&course, &driven).save(file)).transpose();
     let trouble = saved.err().map(|error| error.to_string());
     Ok(Report { trouble, ..report(&course, &driven).field("picture", file) })

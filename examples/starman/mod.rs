@@ -87,8 +87,7 @@ fn keep_statistics(args: &Args, history: &[GenerationStatistics]) -> Result<(), 
 
 /// Draws a walk where the options say. Returns the file of the strip, and what went wrong.
 fn draw(args: &Args, walk: &strip::Walk) -> (Option<PathBuf>, Option<String>) {
-    let usual = || (!args.common.json).then(|| PathBuf::from("starman.svg"));
-    let strip = args.common.picture.clone().or_else(usual);
+    let strip = args.common.picture_file("starman.svg");
     let drawn = strip.as_ref().map(|file| strip::picture(args, walk).save(file)).transpose();
     let moved = args.animation.as_ref().map(|file| moving::save(file, walk)).transpose();
     if let Some(file) = &strip {

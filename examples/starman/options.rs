@@ -15,7 +15,7 @@ const LONGEST: f64 = 3600.0;
     about = "A round robot with five limbs learns to walk by a genetic algorithm",
     after_help = "\
 Fitness is 1 plus the millimetres that a gait brings the robot along the floor. The best gait's walk is drawn into
-starman.svg, except with --json.
+target/pictures/starman.svg, except with --json.
 
 Fitness counts from where the robot has come to rest at its gait's first control point. --statistics keeps a row of numbers
 or a chart of each generation.

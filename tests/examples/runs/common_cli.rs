@@ -91,6 +91,7 @@ fn all_options_are_understood() {
 }
 
 proptest! {
+    #![proptest_config(roverlab::testing::cases(256))]
     #[test]
     fn poses_survive_the_command_line(x in -1e6..1e6f64, y in -1e6..1e6f64, heading in -720.0..720.0f64) {
         let separate = parse(&["--start", &format!("{x},{y},{heading}")]);
@@ -236,6 +237,32 @@ fn pictures_that_cannot_be_written_are_refused_before_the_run() {
     }
     assert_eq!(check("free.svg"), Ok(()));
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1, "the check leaves nothing behind");
+}
+
+#[test]
+fn no_file_is_written_over_one_that_is_read_or_written() {
+    let same = std::env::current_dir().unwrap().join("a.svg");
+    let same = same.to_str().unwrap();
+    for (options, parts) in [
+        (vec!["--picture", "a.svg", "--record", same], ["--picture a.svg: ", "--record", "another one"]),
+        (vec!["--picture", "./a.svg", "--world", "a.svg"], ["--picture ./a.svg: ", "--world", "another one"]),
+        (vec!["--record", "a", "--robot", "src/../a"], ["--record a: ", "--robot", "another one"]),
+    ] {
+        assert_refused(&run_with(&options, never), &parts);
+    }
+    let apart = run_with(&["--picture", "a.svg", "--world", "src/a.svg"], |_| {
+        Ok(a_report(Outcome::verdict("reached")))
+    });
+    assert_eq!((apart.status, apart.err.as_str()), (0, ""));
+}
+
+#[test]
+fn files_that_nobody_named_go_into_a_folder_of_their_own_if_a_person_looks_on() {
+    let file = |options: &[&str]| parse(options).common.unnamed_file("run.png");
+    let own = PathBuf::from("target/pictures/run.png");
+    assert_eq!((file(&[]), file(&["--json"])), (Some(own.clone()), None));
+    let named = parse(&["--picture", "target/pictures/run.png"]).common;
+    assert_eq!((named.unnamed_file("run.png"), named.picture_file("run.png")), (None, Some(own)));
 }
 
 #[test]

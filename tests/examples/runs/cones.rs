@@ -106,7 +106,7 @@ fn options_without_effect_are_refused() {
         (vec!["--track", log, "--time-limit", "10"], "--time-limit: "),
         (vec!["--track", log, "--seed", "1"], "--seed: "),
         (vec!["--animation", "/nonexistent/x.svg"], "--animation /nonexistent/x.svg: "),
-        (vec!["--picture", "x.svg", "--animation", "./x.svg"], "--picture and --animation: "),
+        (vec!["--picture", "x.svg", "--animation", "./x.svg"], "--picture x.svg: "),
         (vec!["--animation", "x.png"], "invalid value 'x.png'"),
     ] {
         let (status, _, err) = race(&options);

@@ -1,0 +1,44 @@
+use std::path::{Path, PathBuf};
+
+use clap::ArgMatches;
+
+use super::Failure;
+
+/// Options whose files are written.
+const OUTPUTS: [&str; 9] =
+    ["picture", "animation", "record", "output", "lcd", "statistics", "checkpoint", "csv", "out"];
+
+/// Fails if a file that is to be written is also one that is read, or written for another option.
+pub(super) fn check_outputs(matches: &ArgMatches) -> Result<(), Failure> {
+    if let Some((_, matches)) = matches.subcommand() {
+        return check_outputs(matches);
+    }
+    let files: Vec<(&str, &PathBuf)> = matches
+        .ids()
+        .flat_map(|id| {
+            let files = matches.try_get_many::<PathBuf>(id.as_str()).ok().flatten();
+            files.into_iter().flatten().map(|file| (id.as_str(), file))
+        })
+        .collect();
+    for (output, file) in files.iter().filter(|(option, _)| OUTPUTS.contains(option)) {
+        let same = |(option, other): &&(&str, &PathBuf)| option != output && is_same_file(file, other);
+        if let Some((option, _)) = files.iter().find(same) {
+            let file = file.display();
+            return Err(Failure::input(format!(
+                "--{output} {file}: found the file of --{option}; expected another one"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Whether two names are those of one file, which need not be there yet.
+pub(crate) fn is_same_file(one: &Path, other: &Path) -> bool {
+    place(one).is_some_and(|place_of_one| Some(place_of_one) == place(other))
+}
+
+/// Where a file is or would be.
+fn place(file: &Path) -> Option<PathBuf> {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    file.canonicalize().ok().or_else(|| Some(folder.canonicalize().ok()?.join(file.file_name()?)))
+}
