@@ -42,6 +42,7 @@ pub type Behaviour<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<(
 /// let writer = LogWriter::new(Vec::new(), &Header::new("approach", [""; 0]))?;
 /// let mut recorded = writer.troop(Fleet::new(&scene, SimOptions::default())?);
 /// let pose = approach(&mut recorded)?;
+/// assert!(pose.x > 1.6, "it has driven to the wall: {pose:?}");
 /// drop(recorded);
 ///
 /// let log = Log::read(writer.finish()?)?;

@@ -31,7 +31,8 @@ use crate::world::Scene;
 ///     Ok(ControlFlow::Continue(()))
 /// })?;
 /// fleet.run_for(20.0)?;
-/// assert!((fleet.truth(0)?.pose.x - 1.735).abs() < 0.02);
+/// let truth = fleet.truth(0)?;
+/// assert!((truth.pose.x - 1.735).abs() < 0.02 && truth.contacts == 0);
 /// # Ok(())
 /// # }
 /// ```

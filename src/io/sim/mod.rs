@@ -18,6 +18,7 @@
 //! robot.straight(1.0, 0.3)?;
 //! robot.wait_done()?;
 //! assert!((robot.distance(Psd::FRONT)? - 0.435).abs() < 0.005);
+//! assert_eq!(simulation.truth().robot(0)?.contacts, 0);
 //! # Ok(())
 //! # }
 //! ```
