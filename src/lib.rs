@@ -82,7 +82,7 @@ pub mod nav;
 #[cfg(feature = "picture")]
 pub mod picture;
 pub mod random;
-#[cfg(feature = "testing")]
+#[cfg(any(test, feature = "testing"))]
 pub mod testing;
 pub mod vision;
 pub mod world;

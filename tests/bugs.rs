@@ -195,7 +195,7 @@ fn bounds_are_those_of_the_papers() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(3))]
+    #![proptest_config(roverlab::testing::cases(3))]
 
     #[test]
     fn verdicts_are_the_truth(seed in 0u64..1_000_000) {

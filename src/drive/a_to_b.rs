@@ -421,21 +421,36 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(100))]
+        #![proptest_config(crate::testing::cases(100))]
         #[test]
         fn every_method_arrives(
             x in -2.0..2.0f64, y in -2.0..2.0f64, heading in -3.0..3.0f64, at in -3.0..3.0f64, posed: bool,
         ) {
             let (start, place) = (Pose::new(0.2, -0.1, heading), Point::new(x, y));
-            let goal = Goal { position: place, heading: posed.then_some(at) };
-            for method in [Method::Turn, Method::Arc, Method::Dog, Method::Spline] {
-                let (end, _) = drive(method, goal, start);
-                prop_assert!(end.distance_to(place) < 1e-3, "{method:?}: {end:?}");
-                if posed {
-                    prop_assert!(angle_difference(end.heading, at).abs() < 2e-3, "{method:?}: {end:?}");
-                }
+            arrives(start, Goal { position: place, heading: posed.then_some(at) })?;
+        }
+    }
+
+    /// Drives to a goal by every method.
+    fn arrives(start: Pose, goal: Goal) -> std::result::Result<(), TestCaseError> {
+        for method in [Method::Turn, Method::Arc, Method::Dog, Method::Spline] {
+            let (end, _) = drive(method, goal, start);
+            prop_assert!(end.distance_to(goal.position) < 1e-3, "{method:?}: {end:?}");
+            if let Some(heading) = goal.heading {
+                prop_assert!(angle_difference(end.heading, heading).abs() < 2e-3, "{method:?}: {end:?}");
             }
         }
+        Ok(())
+    }
+
+    #[test]
+    fn a_near_goal_that_faces_back_is_arrived_at() {
+        let goal = Goal::pose(Pose::new(
+            -0.548_393_080_125_799_2,
+            0.027_724_735_621_608_75,
+            0.064_106_612_949_614_16,
+        ));
+        arrives(Pose::new(0.2, -0.1, 2.354_172_279_733_370_4), goal).unwrap();
     }
 
     #[test]

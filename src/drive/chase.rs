@@ -170,7 +170,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
+        #![proptest_config(crate::testing::cases(64))]
         /// The goal drives along a circle at less than half the robot's speed.
         #[test]
         fn a_slower_goal_is_caught(

@@ -117,6 +117,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn every_word_ends_at_the_goal(start in pose(), goal in pose(), radius in 0.2..1.0f64) {
             let local = start.to_local(goal.position());

@@ -282,7 +282,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(48))]
+        #![proptest_config(crate::testing::cases(48))]
         /// The robot ahead drives along a circle, more slowly than the follower can.
         #[test]
         fn the_gap_is_kept(curvature in -0.8..0.8f64, speed in 0.05..0.25f64, aside in -0.3..0.3f64) {

@@ -268,7 +268,7 @@ mod tests {
         [Steering::CrossTrack { reach: 0.1 }, Steering::PurePursuit { lookahead: 0.12 }];
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(32))]
+        #![proptest_config(crate::testing::cases(32))]
         #[test]
         fn splines_are_followed_to_their_ends(
             y in -1.0..1.0f64, heading in -1.0..1.0f64, aside in -0.05..0.05f64,

@@ -94,7 +94,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(48))]
+        #![proptest_config(crate::testing::cases(48))]
         #[test]
         fn the_place_is_kept(x in -0.8..-0.2f64, y in -0.5..0.5f64, curvature in -0.4..0.4f64) {
             let formation = Formation::at(Point::new(x, y));

@@ -242,6 +242,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn references_move_as_they_say(route in route(), spin in -1.0..1.0f64, share in 0.01..0.99f64) {
             let parameters = OmniParameters { spin, ..OmniParameters::default() };

@@ -290,6 +290,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn arcs_end_at_their_goal(heading in -3.0..3.0f64, x in -1.0..1.0f64, y in -1.0..1.0f64) {
             let start = Pose::new(0.5, -0.5, heading);

@@ -127,6 +127,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn outputs_stay_within_their_limits(
             gains in prop::array::uniform3(-10.0..10.0f64), measurements in prop::collection::vec(-5.0..5.0f64, 1..50),

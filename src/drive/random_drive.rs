@@ -201,6 +201,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn it_never_drives_at_something_near(x in 0.001..0.18f64, y in -0.05..0.05f64, others in prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64), 0..30)) {
             let mut points: Vec<Point> = others.into_iter().map(|(x, y)| Point::new(x, y)).collect();

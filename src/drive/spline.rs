@@ -104,6 +104,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn splines_start_and_end_as_told(a in pose(), b in pose(), scale in 0.5..3.0f64) {
             prop_assume!(a.distance_to(b.position()) > 0.01);

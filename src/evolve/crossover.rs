@@ -67,6 +67,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn every_gene_goes_to_one_of_the_children(length in 0..40_usize, seed: u64) {
             for crossover in [&OnePoint as &dyn Crossover<_>, &Uniform { probability: 0.5 }] {

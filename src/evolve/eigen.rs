@@ -62,6 +62,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn vectors_and_values_make_the_matrix_again(
             n in 1..7_usize,

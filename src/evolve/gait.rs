@@ -133,6 +133,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn near_the_middle_steps_are_small(step in 0..20_u8, points in 1..12_usize, seed: u64) {
             let bytes = Gait::near_middle(5, points, step, &mut Stream::new(seed));

@@ -85,7 +85,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(24))]
+        #![proptest_config(crate::testing::cases(24))]
 
         #[test]
         fn the_best_never_gets_worse_and_the_size_stays(population in 1..20_usize, seed: u64) {

@@ -87,6 +87,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn bytes_give_the_genome_back(bytes: Vec<u8>, numbers in prop::collection::vec(-1e9..1e9f64, 0..9)) {
             prop_assert_eq!(Vec::<u8>::from_bytes(&bytes.to_bytes()), Some(bytes));

@@ -100,6 +100,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn no_other_line_fits_better(
             points in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64), 3..20), turn in -0.3..0.3f64, shift in -0.1..0.1f64,

@@ -143,6 +143,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn composing_with_the_inverse_is_the_identity(p in pose()) {
             let id = p.compose(&p.inverse());

@@ -75,6 +75,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn an_arc_ends_where_it_should(x in -1.0..1.0f64, y in -1.0..1.0f64) {
             prop_assume!(x.hypot_plain(y) > 1e-3 && (x > 0.0 || y.abs() > 1e-3));

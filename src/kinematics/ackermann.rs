@@ -148,6 +148,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn forward_undoes_inverse(v in -2.0..2.0f64, share in -1.0..=1.0f64) {
             let twist = Twist::new(v, v * share * car().max_curvature());

@@ -54,6 +54,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn forward_undoes_inverse(v in -2.0..2.0f64, w in -6.0..6.0f64, track in 0.05..1.0f64) {
             let drive = Differential { track };

@@ -43,6 +43,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn two_halves_make_a_whole(
             x in -5.0..5.0f64, heading in -3.0..3.0f64, length in -2.0..2.0f64, angle in -3.0..3.0f64,

@@ -155,6 +155,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn forward_undoes_inverse(t in twist(), track in 0.1..0.5f64, wheelbase in 0.1..0.5f64) {
             let four = Omni::mecanum(track, wheelbase).unwrap();

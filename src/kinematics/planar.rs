@@ -121,6 +121,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn fine_integration_agrees(start in -3.0..3.0f64, m in motion()) {
             let exact = advance_planar(Pose::new(0.3, -0.2, start), m);

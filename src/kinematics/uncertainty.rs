@@ -187,6 +187,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn arcs_are_found_again(heading in -3.0..3.0f64, length in -0.5..0.5f64, angle in -2.0..2.0f64) {
             let start = Pose::new(1.0, 2.0, heading);

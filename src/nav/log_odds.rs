@@ -273,6 +273,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         /// Whatever comes in, probabilities stay within their bounds, and outside of beams nothing changes.
         #[test]
         fn odds_stay_within_bounds(

@@ -285,8 +285,34 @@ mod tests {
         (0..corners).map(|i| middle + direction(TAU * i as f64 / corners as f64) * radius).collect()
     }
 
+    /// Two robots whose cells are the same ones: those that a radius has by itself begin elsewhere, and the middle of the cell
+    /// that holds a point is then another place.
+    fn on_the_same_cells(world: &World, small: f64, large: f64) -> (Reachability, Reachability) {
+        let field = Clearance::new(world, 0.02, large.next_up()).unwrap();
+        (Reachability::from_clearance(&field, small), Reachability::from_clearance(&field, large))
+    }
+
+    #[test]
+    fn a_little_larger_robot_has_other_cells_and_on_the_same_ones_no_more_room() {
+        let mut world = World::walled(1.5, 1.5);
+        let (a, b) = (
+            Point::new(1.295_353_739_462_582, 1.302_823_508_322_175_3),
+            Point::new(0.227_983_789_037_898_76, 0.491_513_279_303_407_6),
+        );
+        world.walls.push(Wall::new(a, b));
+        let (point, large) = (
+            Point::new(1.009_324_555_896_596_6, 1.003_882_048_723_805_6),
+            RADIUS + 0.008_120_689_208_133_025,
+        );
+        let own =
+            [RADIUS, large].map(|radius| Reachability::new(&world, radius, 0.02).unwrap().is_free(point));
+        assert_eq!(own, [false, true]);
+        let (small, large) = on_the_same_cells(&world, RADIUS, large);
+        assert_eq!([small, large].map(|space| space.is_free(point)), [false, false]);
+    }
+
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(24))]
+        #![proptest_config(crate::testing::cases(24))]
 
         #[test]
         fn connection_and_length_are_symmetric(world in scattered_world(), a in point(), b in point()) {
@@ -305,8 +331,7 @@ mod tests {
 
         #[test]
         fn a_larger_robot_reaches_no_more(world in scattered_world(), a in point(), b in point(), more in 0.0..0.1) {
-            let small = Reachability::new(&world, RADIUS, 0.02).unwrap();
-            let large = Reachability::new(&world, RADIUS + more, 0.02).unwrap();
+            let (small, large) = on_the_same_cells(&world, RADIUS, RADIUS + more);
             prop_assert!(small.is_free(a) || !large.is_free(a));
             prop_assert!(small.connected(a, b) || !large.connected(a, b));
         }

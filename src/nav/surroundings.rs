@@ -118,6 +118,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn a_disc_moved_by_its_free_distance_just_touches(points in points(), angle in -3.1..3.1f64) {
             let (radius, unit) = (0.1, direction(angle));

@@ -77,6 +77,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn any_world_fits_the_room(width in 0.0..400.0f64, height in 0.0..400.0f64, x in -50.0..50.0) {
             let corner = Pixel::new(30.0, 60.0);

@@ -144,6 +144,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn names_neither_touch_nor_leave_the_page(points in prop::collection::vec(pixel(), 1..40)) {
             let mut labels = Labels::new(page());

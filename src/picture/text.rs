@@ -47,6 +47,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn a_fitted_text_fits(text in ".{0,60}", room in 12.0..400.0) {
             let short = fit(&text, 11.0, room);

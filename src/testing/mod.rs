@@ -20,6 +20,7 @@
 //! }).unwrap();
 //! ```
 
+mod cases;
 mod checks;
 mod lines;
 mod strategies;
@@ -27,6 +28,7 @@ mod strategies;
 mod tests;
 mod tracks;
 
+pub use cases::cases;
 pub use checks::{Movement, PlanWith, Violation, collision_free, complete, optimal, triangle_inequality};
 pub use strategies::{Maze, grid_queries, grids, mazes, worlds};
 pub use tracks::cone_tracks;

@@ -13,7 +13,7 @@ use crate::random::Stream;
 use crate::world::{BitGrid, GridCell};
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(crate::testing::cases(100))]
 
     #[test]
     fn the_librarys_planners_pass((grid, [a, b, c]) in grid_queries(1..40, 1..40)) {

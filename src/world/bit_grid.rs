@@ -354,6 +354,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn transposing_exchanges_columns_and_rows(
             width in 0..150usize, height in 0..150usize, seed in any::<u64>()

@@ -281,6 +281,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         /// Crossing an outline changes between occupied and not: the walls' length is that of all such edges.
         #[test]
         fn outlines_are_as_long_as_the_edges_between_cells(

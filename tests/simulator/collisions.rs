@@ -14,7 +14,7 @@ use roverlab::io::{Clock, Drive, Motors};
 use roverlab::random::Stream;
 use roverlab::world::{Footprint, Object, ObjectKind, RobotSpec, Scene, Shape, Wall, World};
 
-use crate::common::{brick, cases, cluttered, degrees_between, robots, start, with_robots};
+use crate::common::{brick, cluttered, degrees_between, robots, start, with_robots};
 
 /// An S4 that looks along x at a wall whose face is at x = 1.
 fn before_a_wall(distance: f64) -> Scene {
@@ -344,7 +344,7 @@ fn crowd(world: u64) -> Scene {
 }
 
 proptest! {
-    #![proptest_config(cases(24))]
+    #![proptest_config(roverlab::testing::cases(24))]
 
     #[test]
     fn nobody_is_ever_inside_anything(world in 0..1_000_000u64, seed: u64, noise in prop_oneof![Just(0.0), Just(1.0), 0.0..20.0f64]) {

@@ -2,18 +2,12 @@
 
 use std::sync::Arc;
 
-use proptest::prelude::ProptestConfig;
 use roverlab::geometry::{Aabb, Point, Pose, units};
 use roverlab::io::sim::{SimOptions, SimRobot, Simulation, Truth};
 use roverlab::random::Stream;
 use roverlab::world::{
     Colour, Footprint, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Shape, Wall, World,
 };
-
-/// A property test of so many cases that writes no files.
-pub(crate) fn cases(cases: u32) -> ProptestConfig {
-    ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
-}
 
 /// An S4's encoder tick on the floor, in metres.
 pub(crate) const ENCODER_TICK: f64 = std::f64::consts::PI * 0.054 / 1100.0;

@@ -9,7 +9,7 @@ use roverlab::io::{Clock, Drive, Encoders, Motors};
 use roverlab::kinematics::{Displacement, advance};
 use roverlab::world::{MotorSpec, RobotSpec, Scene, World};
 
-use crate::common::{ENCODER_TICK, cases, degrees_between, open_floor, start};
+use crate::common::{ENCODER_TICK, degrees_between, open_floor, start};
 
 const START: Pose = Pose::new(5.0, 5.0, 0.7);
 
@@ -73,7 +73,7 @@ fn give(robot: &mut SimRobot, command: &Command) {
 }
 
 proptest! {
-    #![proptest_config(cases(48))]
+    #![proptest_config(roverlab::testing::cases(48))]
 
     #[test]
     fn without_noise_the_truth_is_what_exact_odometry_says(

@@ -191,6 +191,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn a_solution_solves(
             rows in prop::collection::vec((0.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64), 4..30),

@@ -107,6 +107,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         /// The conditions of Karush, Kuhn and Tucker: inside, the gradient is zero; at a bound, it points out.
         #[test]
         fn nothing_better_is_near(

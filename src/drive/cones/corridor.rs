@@ -223,7 +223,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(20))]
+        #![proptest_config(crate::testing::cases(20))]
         #[test]
         fn a_loop_begins_where_it_is_told(seed in 0_u64..50, share in 0.0..1.0f64, aside in -1.0..1.0f64) {
             let corridor = generate(seed, &TrackOptions::drawn(seed)).unwrap().corridor;

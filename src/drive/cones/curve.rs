@@ -264,6 +264,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn a_curve_goes_along_its_way(curvature in -0.3..0.3f64) {
             let way = circle(curvature, 24);

@@ -363,6 +363,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn false_cones_do_not_move_a_lane(
             curvature in -0.12..0.12f64, aside in -0.03..0.03f64, at in 0.0..12.0f64, beyond in 1.2..2.5f64, left: bool,

@@ -188,7 +188,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(40))]
+        #![proptest_config(crate::testing::cases(40))]
         #[test]
         fn the_tyres_hold_everywhere(a in 8.0..60.0f64, b in 8.0..60.0f64) {
             let points: Vec<Point> =

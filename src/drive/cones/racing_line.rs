@@ -272,7 +272,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(40))]
+        #![proptest_config(crate::testing::cases(40))]
         #[test]
         fn no_line_nearby_bends_less(
             waves in 2_i32..7, height in 0.5..5.0f64, width in 1.2..4.0f64,

@@ -163,7 +163,7 @@ mod tests {
     const LOST: Expected = Expected { place: Point::new(0.0, 0.0), wrong: (6.0, 0.3) };
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(24))]
+        #![proptest_config(crate::testing::cases(24))]
         /// The cones around the start, shifted, a few of them missing: they are found, or nothing is.
         #[test]
         fn a_start_is_found_again(seed in 0..500_u64, x in -4.0..4.0f64, y in -2.0..2.0f64, turn in -0.2..0.2f64) {

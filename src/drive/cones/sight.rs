@@ -130,6 +130,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn a_cone_is_found_where_it_stands(x in 0.5..14.0f64, y in -8.0..8.0f64) {
             let found = sightings(&scan_of(&[Point::new(x, y)]));

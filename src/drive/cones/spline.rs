@@ -168,6 +168,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn it_goes_through_its_points_smoothly(a in 5.0..50.0f64, b in 5.0..50.0f64, n in 8_u32..40) {
             let points = ellipse(n, a, b);

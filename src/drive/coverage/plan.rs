@@ -164,7 +164,7 @@ mod tests {
     const START: Point = Point::new(0.2, 0.2);
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(12))]
+        #![proptest_config(crate::testing::cases(12))]
         #[test]
         fn plans_cover_the_floor_and_stay_on_it(
             width in 1.4..2.4f64, depth in 1.2..2.0f64, wall in 0.3..0.7f64, x in 0.3..0.8f64, y in 0.4..0.8f64, turn in 0.0..1.5f64,

@@ -97,6 +97,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         /// The model itself, stepped until next to nothing of the speed is left.
         #[test]
         fn no_vehicle_of_the_model_goes_further(

@@ -373,6 +373,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn values_survive(x: f64, n: i64, from: u32, data: Vec<u8>, peers: Vec<u32>) {
             prop_assume!(!x.is_nan());

@@ -230,6 +230,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn what_is_written_is_read(
             integer: u64, double: f64, text in ".{0,300}", list: Vec<i64>, numbers: Vec<f64>,

@@ -141,6 +141,7 @@ fn the_ideal_drive_refuses_what_is_no_motion() {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn how_a_wait_is_cut_does_not_matter(
         length in -2.0..2.0f64, angle in -3.0..3.0f64, cuts in proptest::collection::vec(0.01..1.0f64, 1..8),

@@ -238,6 +238,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn a_push_frees_from_two_faces_of_a_corner(
             angle in -3.0..3.0f64, between in 0.0..1.5f64, depths in (0.0..0.1f64, 0.0..0.1f64),

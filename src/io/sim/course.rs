@@ -85,6 +85,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn small_angles_are_exact(x in -SMALL..=SMALL) {
             let (sinc, cos) = small_sinc_cos(x);

@@ -159,7 +159,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
+        #![proptest_config(crate::testing::cases(64))]
         #[test]
         fn manoeuvres_end_where_they_should(
             length in -1.0..1.0f64, angle in -6.0..6.0f64, speed in 0.05..0.5f64, ideal: bool,

@@ -137,6 +137,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn floors_are_floors(x in -1e9..1e9f64) {
             prop_assert_eq!(floor(x) as f64, x.floor());

@@ -294,6 +294,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn text_comes_back(kind in kind(), at in 0.0..99.0f64, length in proptest::option::of(0.01..9.0f64)) {
             let fault = Fault { at, until: length.map(|length| at + length), kind };

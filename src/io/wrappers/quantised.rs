@@ -398,6 +398,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn numbers_are_whole_and_near(x in -50.0..50.0f64, heading in -10.0..10.0f64) {
             let rounded = pose(Pose::new(x, -x, heading));

@@ -54,6 +54,7 @@ fn planner() -> FastPlanner {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn recursion_sees_every_wall_that_can_be_seen(truth in mazes(9), early in any::<bool>()) {
         let mut explorer =

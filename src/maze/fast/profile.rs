@@ -48,6 +48,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn the_phases_cover_the_length(length in 0.0..3.0f64, entry in 0.0..1.0f64, exit in 0.0..1.0f64) {
             let (top, acceleration) = (1.5, 4.0);

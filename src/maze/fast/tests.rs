@@ -126,6 +126,7 @@ fn mirrored(maze: &Maze) -> Maze {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn plans_are_drivable_and_beat_stopping_at_turns(maze in mazes(12)) {
         let plan = plan(&maze);

@@ -25,6 +25,7 @@ fn plain(maze: &Maze) -> Maze {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn what_is_written_is_read_back(maze in partly_known(20)) {
         for format in [MazeFormat::Text, MazeFormat::Maze] {

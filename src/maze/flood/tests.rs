@@ -61,6 +61,7 @@ fn assert_all_agree(maze: &Maze, unknown: Unknown, flood: &mut FloodFill) {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn flood_fill_finds_what_breadth_first_search_and_dijkstra_find(
         maze in prop_oneof![partly_known(16), partly_known(32), partly_known(40)],

@@ -166,6 +166,7 @@ fn a_lidar_leads_round() {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn off_the_middle_is_what_the_walls_say(off in -0.02..0.02f64, left in any::<bool>(), right in any::<bool>()) {
         let spec = RobotSpec::s4();

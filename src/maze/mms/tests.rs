@@ -26,6 +26,7 @@ fn play(maze: Maze, interrupt: Option<u64>) -> (Referee, MmsMouse, Verdict) {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn our_mouse_proves_and_drives_the_shortest_way(truth in mazes(10), interrupt in prop::option::of(0u64..400)) {
         let mut truth = truth;

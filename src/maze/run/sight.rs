@@ -120,6 +120,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn a_ray_meets_the_wall_that_stands_in_the_world(
             maze in mazes(6), x in 0.1..0.9f64, y in 0.1..0.9f64, angle in -3.1..3.1f64, seed in any::<u64>(),

@@ -250,6 +250,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         /// Motors follow what they are told exponentially, and are told anew each period.
         #[test]
         fn an_approach_ends_where_it_should(

@@ -131,6 +131,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn free_ranges_are_those_of_single_directions_less_what_may_hide(
             places in prop::collection::vec((0.15..2.0f64, -3.1..3.1f64), 1..40), index in 0usize..360,

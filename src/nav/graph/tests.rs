@@ -69,6 +69,7 @@ fn truth(count: usize, edges: &[Edge], goal: usize) -> Vec<f64> {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     /// With no estimate, with the true one, and with one that is sound but inconsistent.
     #[test]
     fn the_cheapest_way_is_found(
@@ -131,6 +132,7 @@ mod petgraph {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         /// The same costs as petgraph's own algorithm, on its graphs with removed nodes too.
         #[test]
         fn costs_are_those_of_petgraph(

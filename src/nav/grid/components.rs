@@ -166,6 +166,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         /// Regions are what flooding from cell to cell finds.
         #[test]
         fn regions_are_flooded(width in 1..140usize, height in 1..20usize, seed in any::<u64>(), share in 0.3..0.9f64) {

@@ -128,6 +128,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         /// The distance is the least over all blocked cells, those around the map included.
         #[test]
         fn distances_are_the_least(width in 1..30usize, height in 1..30usize, share in 0.5..1.0f64, seed in any::<u64>()) {

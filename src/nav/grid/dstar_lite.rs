@@ -243,7 +243,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(150))]
+        #![proptest_config(crate::testing::cases(150))]
 
         /// After every move and every change the path is that of A*.
         #[test]

@@ -201,6 +201,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         /// Two ways to the same answer: bits moved and joined, and exact distances.
         #[test]
         fn discs_keep_their_distance(width in 1..150usize, height in 1..40usize, radius in 0.0..9.0f64, seed in any::<u64>()) {

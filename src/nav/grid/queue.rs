@@ -80,6 +80,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn nodes_leave_by_bucket(costs in proptest::collection::vec(0..1u64 << 20, 0..200)) {
             let mut queue = BucketQueue::default();

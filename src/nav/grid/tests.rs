@@ -112,7 +112,7 @@ fn assert_optimal(grid: &BitGrid, queries: usize, seed: u64) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(crate::testing::cases(300))]
 
     #[test]
     fn all_planners_find_the_shortest_paths(

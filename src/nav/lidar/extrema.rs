@@ -106,6 +106,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn peaks_and_dips_alternate(ranges in prop::collection::vec(0.1..5.0f64, 3..200), all_round: bool) {
             let extrema = local_extrema(&scan(ranges, if all_round { TAU } else { 3.0 }), 1, 0.3);

@@ -242,18 +242,32 @@ mod tests {
         assert!(right >= 74 && wrong <= 8, "{right} of 80 corners, {wrong} that are none");
     }
 
+    /// The number of walls seen in the notched room, and how far their ends are from true walls at most.
+    fn walls_and_widest_gap(pose: Pose, seed: u64) -> (usize, f64) {
+        let (world, mut widest) = (notched(), 0.0_f64);
+        let found = features(&world, pose, 1.0, seed);
+        for place in found.walls.iter().flat_map(|wall| wall.ends).map(|end| pose.to_world(end)) {
+            let gaps = world.walls.iter().map(|wall| wall.line.distance_to(place));
+            widest = widest.max(gaps.fold(f64::INFINITY, f64::min));
+        }
+        (found.walls.len(), widest)
+    }
+
+    #[test]
+    fn a_wall_seen_aslant_may_end_some_deviations_too_early() {
+        let pose = Pose::new(2.148_350_379_165_891_8, 0.4, 2.243_341_181_737_291_5);
+        let (_, gap) = walls_and_widest_gap(pose, 14_271_856_299_766_098_168);
+        assert!(gap > 0.04 && gap < 0.05, "{gap}");
+    }
+
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(32))]
+        #![proptest_config(crate::testing::cases(32))]
         #[test]
         fn walls_lie_where_walls_are(x in 0.4..2.6f64, y in 0.4..1.4f64, heading in -3.1..3.1f64, seed: u64) {
-            let (world, pose) = (notched(), Pose::new(x, y, heading));
-            let found = features(&world, pose, 1.0, seed);
-            prop_assert!(found.walls.len() >= 4);
-            for point in found.walls.iter().flat_map(|wall| wall.ends) {
-                let place = pose.to_world(point);
-                let gap = world.walls.iter().map(|wall| wall.line.distance_to(place)).fold(f64::INFINITY, f64::min);
-                prop_assert!(gap < 0.04, "{}: {}", place, gap);
-            }
+            let (walls, gap) = walls_and_widest_gap(Pose::new(x, y, heading), seed);
+            prop_assert!(walls >= 4);
+            // Six standard deviations of a range: along a wall that is seen aslant, it is one reading that says where it ends.
+            prop_assert!(gap < 0.06, "{}", gap);
         }
 
         #[test]

@@ -151,6 +151,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         /// Points spread over a free line lie in free cells, and a line that is not free has one that does not, or nearly so.
         #[test]
         fn lines_are_free_if_their_cells_are(seed in any::<u64>()) {

@@ -82,6 +82,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         /// Whatever is wished, the outline does not sweep over what is seen before the robot can stop.
         #[test]
         fn what_is_told_can_be_stopped(

@@ -160,6 +160,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         /// Moved step by step, the outline is free until the time that is told, and touches then.
         #[test]
         fn contact_is_when_it_is_told(

@@ -30,7 +30,7 @@ fn hills(light: f64, seed: u64) -> GrayImage {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(crate::testing::cases(40))]
 
     #[test]
     fn noise_and_exposure_are_no_motion(seed in 0..1_000_000_u64, light in 0.9..1.1f64) {

@@ -75,6 +75,7 @@ fn contains(range: HueRange, hue: u8) -> bool {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn gray_is_its_definition(image in images::<3>()) {
         let robios = image.map(|x, y| {

@@ -37,6 +37,7 @@ fn scales() -> impl Strategy<Value = (SobelScale, i32)> {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn laplace_is_its_definition(image in images::<1>(), border in borders()) {
         let sum = |at: &dyn Fn(isize, isize) -> i32| at(0, -1) + at(0, 1) + at(-1, 0) + at(1, 0) - 4 * at(0, 0);

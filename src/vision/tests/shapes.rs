@@ -45,6 +45,7 @@ fn naive_blobs(image: &Image<1>, min_area: usize) -> Vec<Blob> {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn blobs_are_what_flooding_finds(image in images::<1>(), density in 1_u8..255, min_area in 0_usize..6) {
         let mut mask = image;
@@ -112,6 +113,7 @@ fn naive_lines(edges: &Image<1>, rho: f64, angles: usize, threshold: u32) -> Vec
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn lines_are_the_peaks_of_all_votes(
         image in images::<1>(), density in 100_u8..255, threshold in 0_u32..6, angles in 1_usize..40,

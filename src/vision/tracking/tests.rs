@@ -26,6 +26,7 @@ fn red_at(columns: std::ops::Range<u32>, rows: std::ops::Range<u32>) -> RgbImage
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn both_methods_find_the_middle(left in 0_u32..150, top in 0_u32..100, width in 4_u32..40, height in 6_u32..40) {
         let (right, bottom) = ((left + width).min(160), (top + height).min(120));

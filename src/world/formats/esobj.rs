@@ -284,6 +284,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn what_is_printed_reads_back(kind in kind()) {
             let parsed = parse(&print(&kind), "x.esObj").unwrap();

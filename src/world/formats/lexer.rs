@@ -188,6 +188,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn quoted_words_read_back(word in "[^\"\n\r]{0,20}|[^'\n\r]{0,20}") {
             let text = format!("name {} end", quote(&word));

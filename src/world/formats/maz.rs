@@ -468,6 +468,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn what_is_printed_reads_back(maze in maze()) {
             let parsed = parse_maze(&print(&maze), "m.maz").unwrap();

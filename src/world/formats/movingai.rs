@@ -429,6 +429,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn no_text_panics(text in "(type octile|height 3|width 2|map|[.@TG]{0,4}|\\PC{0,9}|\n|\r| ){0,20}") {
             let _ = parse_map(&text, "m");

@@ -142,6 +142,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn any_number_survives_in_millimetres(value in proptest::num::f64::NORMAL | proptest::num::f64::ZERO) {
             prop_assert_eq!(parse(&millimetres(value), MILLI), Some(value));

@@ -146,6 +146,7 @@ prop_compose! {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn what_is_printed_reads_back(map in map()) {
         let files = BTreeMap::from([(map.image.clone(), print_image(&map).unwrap())]);

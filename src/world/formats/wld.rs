@@ -363,6 +363,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn what_is_printed_reads_back(world in any_world()) {
             let parsed = parse(&print(&world), "w.wld").unwrap();

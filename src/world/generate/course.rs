@@ -211,7 +211,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(24))]
+        #![proptest_config(crate::testing::cases(24))]
 
         #[test]
         fn planners_for_both_radii_agree_with_the_answer(seed: u64) {

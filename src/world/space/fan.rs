@@ -175,6 +175,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn rough_angles_are_near_the_true_ones(x in -10.0..10.0f64, y in -10.0..10.0f64) {
             let error = rough_angle(Vector::new(x, y)) - math::atan2(y, x);

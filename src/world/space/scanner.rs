@@ -320,7 +320,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(32))]
+        #![proptest_config(crate::testing::cases(32))]
 
         #[test]
         fn a_tilted_beam_ends_where_a_walk_along_it_first_enters_something(

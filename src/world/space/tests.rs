@@ -156,7 +156,7 @@ fn agrees(range: f64, angle: f64, max_range: f64, cast: impl Fn(Vector) -> f64) 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(96))]
+    #![proptest_config(crate::testing::cases(96))]
 
     #[test]
     fn a_scan_equals_as_many_rays(

@@ -284,7 +284,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(32))]
+        #![proptest_config(crate::testing::cases(32))]
         #[test]
         fn a_skidpad_is_found_from_its_start(
             apart in 9.0..9.3f64, thin in 1.5..1.65f64, wide in 1.4..1.65f64,

@@ -140,7 +140,7 @@ fn every_flipped_bit_is_found_out_or_harmless() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(crate::testing::cases(64))]
 
     #[test]
     fn no_bytes_break_the_reader(mut tail: Vec<u8>, at in 0..4000_usize, length in 0..4000_usize) {

@@ -328,7 +328,7 @@ fn the_same_seed_gives_the_same_bytes() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(crate::testing::cases(64))]
 
     /// Whatever stands wherever, also across the lens, a picture comes out, and from outside of everything the floor
     /// begins below the sky.

@@ -241,6 +241,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn circles_are_those_of_embedded_graphics(
             x in -10..74i32, y in -10..58i32, diameter in 0..90i32, solid: bool,

@@ -18,6 +18,7 @@ fn wild() -> impl Strategy<Value = i32> {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn nothing_panics_wherever_it_is_drawn(
         a in (wild(), wild()), b in (wild(), wild()), size in wild(), solid: bool, text in ".{0,60}",

@@ -216,6 +216,7 @@ fn several_faults_act_together() {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn a_fault_of_one_sensor_leaves_the_others(numbers in proptest::collection::vec(0..CALLS, 0..30)) {
         let about = Sensor::Psd(Psd(77));

@@ -21,7 +21,7 @@ fn assert_identity<W: RobotIo>(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(crate::testing::cases(48))]
 
     #[test]
     fn no_noise_changes_nothing(numbers in vec(0..CALLS, 0..60), seed: u64) {

@@ -16,6 +16,7 @@ fn speeds(robot: &MockRobot) -> Vec<Twist> {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn speeds_are_kept_with_their_curvature(v in -2.0..2.0f64, w in -6.0..6.0f64, linear in 0.05..1.0f64, angular in 0.1..3.0f64) {
         let mut robot = limited(Limits { linear, angular, ..Limits::default() });

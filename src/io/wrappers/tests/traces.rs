@@ -25,7 +25,7 @@ fn fnv_1a(bytes: &[u8]) -> u64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(crate::testing::cases(48))]
 
     #[test]
     fn equal_runs_give_equal_bytes(numbers in proptest::collection::vec(0..CALLS, 0..60)) {

@@ -110,7 +110,7 @@ fn assert_sound(grid: &BitGrid, points: &[crate::geometry::Point]) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(crate::testing::cases(400))]
 
     #[test]
     fn sight_is_as_defined(

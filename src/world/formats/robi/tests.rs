@@ -262,6 +262,7 @@ prop_compose! {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn what_is_printed_reads_back(spec in spec()) {
         prop_assert_eq!(robot(&print(&spec)), spec);

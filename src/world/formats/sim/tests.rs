@@ -246,6 +246,7 @@ fn statement() -> impl Strategy<Value = Statement> {
 }
 
 proptest! {
+    #![proptest_config(crate::testing::cases(256))]
     #[test]
     fn what_is_printed_reads_back(statements in proptest::collection::vec(statement(), 0..6)) {
         let script = SimFile { statements, ..SimFile::default() };
