@@ -4,7 +4,12 @@
 #![allow(clippy::unnecessary_wraps, reason = "the table holds functions of one type")]
 
 mod bugs;
+mod cameras;
+mod pictures;
+mod recordings;
 mod simulator;
+mod worlds;
+mod wrappers;
 
 use std::fmt::{Debug, Write as _};
 use std::sync::Arc;
@@ -57,7 +62,15 @@ impl Scenario {
 
 /// All scenarios, in the order of the file of digests.
 pub(crate) fn scenarios() -> impl Iterator<Item = &'static Scenario> {
-    let wings = [simulator::SCENARIOS, bugs::SCENARIOS];
+    let wings = [
+        simulator::SCENARIOS,
+        cameras::SCENARIOS,
+        wrappers::SCENARIOS,
+        recordings::SCENARIOS,
+        worlds::SCENARIOS,
+        bugs::SCENARIOS,
+        pictures::SCENARIOS,
+    ];
     wings.into_iter().flatten()
 }
 
