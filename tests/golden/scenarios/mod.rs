@@ -5,9 +5,13 @@
 
 mod bugs;
 mod cameras;
+mod driving;
 mod pictures;
 mod recordings;
+mod safety;
 mod simulator;
+mod swarms;
+mod walls;
 mod worlds;
 mod wrappers;
 
@@ -68,6 +72,10 @@ pub(crate) fn scenarios() -> impl Iterator<Item = &'static Scenario> {
         wrappers::SCENARIOS,
         recordings::SCENARIOS,
         worlds::SCENARIOS,
+        driving::SCENARIOS,
+        walls::SCENARIOS,
+        swarms::SCENARIOS,
+        safety::SCENARIOS,
         bugs::SCENARIOS,
         pictures::SCENARIOS,
     ];
