@@ -6,9 +6,12 @@
 mod bugs;
 mod cameras;
 mod driving;
+mod grids;
+mod mazes;
 mod pictures;
 mod recordings;
 mod safety;
+mod scans;
 mod simulator;
 mod swarms;
 mod walls;
@@ -77,6 +80,9 @@ pub(crate) fn scenarios() -> impl Iterator<Item = &'static Scenario> {
         swarms::SCENARIOS,
         safety::SCENARIOS,
         bugs::SCENARIOS,
+        grids::SCENARIOS,
+        scans::SCENARIOS,
+        mazes::SCENARIOS,
         pictures::SCENARIOS,
     ];
     wings.into_iter().flatten()
