@@ -9,11 +9,13 @@ mod driving;
 mod grids;
 mod mazes;
 mod pictures;
+mod races;
 mod recordings;
 mod safety;
 mod scans;
 mod simulator;
 mod swarms;
+mod tracks;
 mod walls;
 mod worlds;
 mod wrappers;
@@ -83,6 +85,8 @@ pub(crate) fn scenarios() -> impl Iterator<Item = &'static Scenario> {
         grids::SCENARIOS,
         scans::SCENARIOS,
         mazes::SCENARIOS,
+        tracks::SCENARIOS,
+        races::SCENARIOS,
         pictures::SCENARIOS,
     ];
     wings.into_iter().flatten()
