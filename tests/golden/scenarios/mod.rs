@@ -6,6 +6,7 @@
 mod bugs;
 mod cameras;
 mod driving;
+mod evolution;
 mod grids;
 mod mazes;
 mod pictures;
@@ -16,6 +17,7 @@ mod scans;
 mod simulator;
 mod swarms;
 mod tracks;
+mod vision;
 mod walls;
 mod worlds;
 mod wrappers;
@@ -87,6 +89,8 @@ pub(crate) fn scenarios() -> impl Iterator<Item = &'static Scenario> {
         mazes::SCENARIOS,
         tracks::SCENARIOS,
         races::SCENARIOS,
+        vision::SCENARIOS,
+        evolution::SCENARIOS,
         pictures::SCENARIOS,
     ];
     wings.into_iter().flatten()
