@@ -8,6 +8,7 @@ mod cameras;
 mod driving;
 mod evolution;
 mod grids;
+mod loops;
 mod mazes;
 mod pictures;
 mod races;
@@ -91,6 +92,7 @@ pub(crate) fn scenarios() -> impl Iterator<Item = &'static Scenario> {
         races::SCENARIOS,
         vision::SCENARIOS,
         evolution::SCENARIOS,
+        loops::SCENARIOS,
         pictures::SCENARIOS,
     ];
     wings.into_iter().flatten()
