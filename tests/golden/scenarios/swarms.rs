@@ -10,7 +10,7 @@ use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::Fleet;
 use roverlab::io::wrappers::Traced;
 use roverlab::io::{Clock, Drive, Lidar, LidarScan, Radio, Result};
-use roverlab::world::{Footprint, RobotPlacement, RobotSpec, Scene, World};
+use roverlab::world::{Footprint, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
 
 use super::{Scenario, noise, note, note_truth, other};
 
@@ -25,9 +25,14 @@ enum Follows {
     ByRadio,
 }
 
-/// A leader that goes round a hall, with three robots behind it.
+/// A leader in a hall with two cans on its way, and three robots behind it.
 fn hall() -> Scene {
     let mut scene = Scene::new(World::walled(5.0, 4.0));
+    let can = ObjectKind::predefined("can").expect("the kind is predefined");
+    let can = Arc::new(ObjectKind { fixed: true, ..can });
+    for (x, y) in [(3.3, 1.05), (4.05, 2.2)] {
+        scene.world.objects.push(Object::new(Arc::clone(&can), Pose::new(x, y, 0.0)));
+    }
     let leader = Pose::new(2.4, 1.0, 0.0);
     scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::labbot()), leader));
     let follower = Arc::new(RobotSpec::s4());
