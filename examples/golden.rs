@@ -1,20 +1,20 @@
 //! Prints the digests of the runs that `tests/golden` keeps, one line each: `cargo run --example golden`. With a
 //! scenario's name, prints that run's log: `cargo run --example golden -- arcs`. For platforms without a test harness.
 
-#[path = "../tests/golden/scenarios.rs"]
+#[path = "../tests/golden/scenarios/mod.rs"]
 mod scenarios;
 
 use std::process::ExitCode;
 
-use scenarios::{SCENARIOS, Scenario, digest};
+use scenarios::{Scenario, digest, scenarios};
 
 fn main() -> ExitCode {
     let name = std::env::args().nth(1);
     let asked = |scenario: &&Scenario| name.as_ref().is_none_or(|name| name == scenario.name);
-    let mut status = if SCENARIOS.iter().any(|scenario| asked(&scenario)) { 0 } else { 2 };
-    for scenario in SCENARIOS.iter().filter(asked) {
-        if !scenario.runs_here() {
-            eprintln!("{}: left out, there are no threads on this platform", scenario.name);
+    let mut status = if scenarios().any(|scenario| asked(&scenario)) { 0 } else { 2 };
+    for scenario in scenarios().filter(asked) {
+        if let Some(reason) = scenario.lacks() {
+            eprintln!("{}: left out, {reason}", scenario.name);
             continue;
         }
         match scenario.log() {
@@ -27,7 +27,7 @@ fn main() -> ExitCode {
         }
     }
     if status == 2 {
-        let names: Vec<&str> = SCENARIOS.iter().map(|scenario| scenario.name).collect();
+        let names: Vec<&str> = scenarios().map(|scenario| scenario.name).collect();
         eprintln!("no such scenario; expected one of {}", names.join(", "));
     }
     ExitCode::from(status)

@@ -1,5 +1,6 @@
 //! The same seed gives the same log, byte for byte: in debug and release, on every platform, and for robots in threads
-//! however these are scheduled. The digests of ten whole runs stand in `digests.txt`.
+//! however these are scheduled. The digests of whole runs of every system stand in
+//! `digests.txt`.
 //!
 //! `REGENERATE=1 cargo test --test golden` writes that file anew, after a change that is meant to change runs.
 //! `cargo run --example golden NAME` prints a run's log, to see where two of them part.
@@ -12,12 +13,12 @@ use std::fs;
 use std::time::Duration;
 
 use roverlab::random::Stream;
-use scenarios::{SCENARIOS, digest, threads};
+use scenarios::{digest, scenarios, threads};
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/digests.txt");
 
 const HEADER: &str =
-    "# FNV-1a digests of the logs of scenarios.rs. Written by REGENERATE=1 cargo test --test golden.\n";
+    "# FNV-1a digests of the logs of scenarios. Written by REGENERATE=1 cargo test --test golden.\n";
 
 /// The digests of a file by their names.
 fn parse(text: &str) -> BTreeMap<&str, &str> {
@@ -30,7 +31,7 @@ fn parse(text: &str) -> BTreeMap<&str, &str> {
 /// The lines of a file for the runs as they are on this platform.
 fn found() -> String {
     let mut text = HEADER.to_owned();
-    for scenario in SCENARIOS.iter().filter(|scenario| scenario.runs_here()) {
+    for scenario in scenarios().filter(|scenario| scenario.lacks().is_none()) {
         let log = scenario.log().unwrap_or_else(|error| panic!("{}: {error}", scenario.name));
         writeln!(text, "{} {:016x}", scenario.name, digest(&log)).unwrap();
     }
@@ -64,6 +65,12 @@ fn logs_have_their_golden_digests() {
         "logs have changed:\n{}\nIf they were meant to: REGENERATE=1 cargo test --test golden",
         differences.join("\n")
     );
+}
+
+#[test]
+fn every_scenario_has_a_name_of_its_own() {
+    let names: Vec<&str> = scenarios().map(|scenario| scenario.name).collect();
+    assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len(), "{names:?}");
 }
 
 #[test]

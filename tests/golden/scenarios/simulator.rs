@@ -1,135 +1,33 @@
-//! Ten whole runs and the logs that they leave. No test harness is needed, so that a plain program can run them on any
-//! platform.
+//! The simulator and its robots: driving, contacts, sensors, threads and fleets.
 
-use std::fmt::{Debug, Write as _};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use roverlab::geometry::{Point, Pose, Twist, units};
-use roverlab::io::sim::{Fleet, NoiseModel, RobotTruth, SimOptions, SimRobot, Simulation};
-use roverlab::io::wrappers::Traced;
+use roverlab::geometry::{Pose, Twist, units};
+use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, SimRobot, Simulation};
+use roverlab::io::wrappers::{Stamp, Traced};
 use roverlab::io::{
     Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Lidar, LidarSettings, Motors, Psd, Radio,
     Result,
 };
-use roverlab::nav::{DistBug, DistBugParameters};
 use roverlab::random::Stream;
 use roverlab::world::generate::{CourseOptions, obstacle_course};
-use roverlab::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Wall, World};
+use roverlab::world::{RobotPlacement, RobotSpec, Scene, World};
 
-/// A named run.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Scenario {
-    /// What the file of digests calls it.
-    pub(crate) name: &'static str,
-    /// Whether it drives robots from several threads.
-    threads: bool,
-    run: fn() -> Result<String>,
-}
+use super::bugs::distbug;
+use super::{Scenario, drive, in_room, noise, note, note_truth, other, text, textbook};
 
-impl Scenario {
-    /// Whether this platform can run it: WebAssembly starts no threads.
-    pub(crate) fn runs_here(&self) -> bool {
-        !(self.threads && cfg!(target_family = "wasm"))
-    }
-
-    /// The run's log: each call of each robot with its result, and then what is true about the robots.
-    pub(crate) fn log(&self) -> Result<String> {
-        (self.run)()
-    }
-}
-
-/// All scenarios, in the order of the file of digests.
-pub(crate) const SCENARIOS: [Scenario; 10] = [
-    single("straight-and-turn", straight_and_turn),
-    single("arcs", arcs),
-    single("wall-bump", wall_bump),
-    single("wandering", wandering),
-    single("lidar", lidar),
-    single("distbug-ideal", distbug_ideal),
-    single("distbug-noise", distbug_noise),
-    single("generated-course", generated_course),
-    Scenario { name: "threads-and-radio", threads: true, run: threads_and_radio },
-    single("fleet-of-50", fleet_of_50),
+pub(super) const SCENARIOS: &[Scenario] = &[
+    Scenario::new("straight-and-turn", straight_and_turn),
+    Scenario::new("arcs", arcs),
+    Scenario::new("wall-bump", wall_bump),
+    Scenario::new("wandering", wandering),
+    Scenario::new("lidar", lidar),
+    Scenario::new("pushing", pushing),
+    Scenario::new("generated-course", generated_course),
+    Scenario::threaded("threads-and-radio", threads_and_radio),
+    Scenario::new("fleet-of-50", fleet_of_50),
 ];
-
-const fn single(name: &'static str, run: fn() -> Result<String>) -> Scenario {
-    Scenario { name, threads: false, run }
-}
-
-/// The 64-bit FNV-1a digest of a log.
-pub(crate) fn digest(log: &str) -> u64 {
-    log.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
-}
-
-/// The simulated robot that the programs below talk to.
-type Robot = Traced<SimRobot, Vec<u8>>;
-
-/// Lets one robot's program run and returns its log. A scan is in it with every range.
-fn drive(
-    scene: &Scene,
-    options: SimOptions,
-    program: impl FnOnce(&mut Robot) -> Result<()>,
-) -> Result<String> {
-    let simulation = Simulation::new(scene, options)?;
-    let mut robot = Traced::new(simulation.robot(0)?, Vec::new()).whole_scans();
-    program(&mut robot)?;
-    let mut log = text(robot)?;
-    note_truth(&mut log, &simulation.truth().robot(0)?);
-    Ok(log)
-}
-
-/// Ends a robot's program and returns its trace.
-fn text<R>(robot: Traced<R, Vec<u8>>) -> Result<String> {
-    let (_robot, written) = robot.finish();
-    written.map_err(other).and_then(|bytes| String::from_utf8(bytes).map_err(other))
-}
-
-fn note_truth(log: &mut String, truth: &RobotTruth) {
-    let RobotTruth { pose, odometry, contacts, contact_places, path_length, trail } = truth;
-    note(log, "pose", pose);
-    note(log, "odometry", odometry);
-    note(log, "contacts", contacts);
-    note(log, "contact places", contact_places);
-    note(log, "path length", path_length);
-    note(log, "trail", trail);
-}
-
-/// Adds a line. Numbers are written with all their digits.
-fn note(log: &mut String, what: &str, value: &dyn Debug) {
-    // Writing to a string cannot fail.
-    let _ = writeln!(log, "{what}: {value:?}");
-}
-
-fn other(error: impl std::error::Error) -> Error {
-    Error::new(ErrorKind::Other, error.to_string())
-}
-
-fn noise(factor: f64, seed: u64) -> SimOptions {
-    SimOptions { trail_interval: Some(0.5), ..SimOptions::with_noise(factor, seed) }
-}
-
-fn textbook(seed: u64) -> SimOptions {
-    SimOptions { noise: NoiseModel::textbook(), ..noise(0.0, seed) }
-}
-
-/// A room of 3 m by 2 m with a wall in its middle, a crate, a can and a ball.
-fn room() -> World {
-    let mut world = World::walled(3.0, 2.0);
-    world.walls.push(Wall::new(Point::new(1.4, 0.7), Point::new(1.7, 1.2)));
-    for (name, x, y, heading) in [("crate", 2.3, 0.5, 0.4), ("can", 0.7, 1.5, 0.0), ("soccer", 2.2, 1.5, 0.0)]
-    {
-        let kind = ObjectKind::predefined(name).expect("the kind is predefined");
-        world.objects.push(Object::new(Arc::new(kind), Pose::new(x, y, heading)));
-    }
-    world
-}
-
-fn in_room(x: f64, y: f64, heading: f64) -> Scene {
-    Scene::with_robot(room(), RobotSpec::s4(), Pose::new(x, y, heading))
-}
 
 /// The smallest program, without noise, with the real robot's and with the book's.
 fn straight_and_turn() -> Result<String> {
@@ -249,35 +147,39 @@ fn lidar() -> Result<String> {
     })
 }
 
-/// A room with a cove that opens towards the start, and a slanted bar behind it.
-fn cove() -> Scene {
-    let mut world = World::walled(3.0, 2.0);
-    let corners = [(1.0, 0.6), (1.6, 0.6), (1.6, 1.4), (1.0, 1.4)].map(|(x, y): (f64, f64)| Point::new(x, y));
-    world.walls.extend(corners.windows(2).map(|pair| Wall::new(pair[0], pair[1])));
-    world.walls.push(Wall::new(Point::new(2.0, 1.2), Point::new(2.3, 0.6)));
-    Scene::with_robot(world, RobotSpec::s4(), Pose::new(0.4, 1.0, 0.0))
-}
-
-/// DistBug to a goal relative to the start, and what it comes to.
-fn distbug(scene: &Scene, options: SimOptions, goal: Point, time_limit: f64) -> Result<String> {
-    let mut verdict = String::new();
-    let log = drive(scene, options, |robot| {
-        let mut behaviour = DistBug::new(goal, DistBugParameters::default())?;
-        let outcome = behaviour.run(robot, time_limit, |_, _| {})?;
-        note(&mut verdict, "outcome", &outcome);
-        note(&mut verdict, "events", &behaviour.take_events());
-        note(&mut verdict, "pose as the robot sees it", &behaviour.pose());
-        Ok(())
-    })?;
-    Ok(log + &verdict)
-}
-
-fn distbug_ideal() -> Result<String> {
-    distbug(&cove(), noise(0.0, 16), Point::new(2.2, 0.1), 40.0)
-}
-
-fn distbug_noise() -> Result<String> {
-    distbug(&cove(), noise(1.0, 17), Point::new(2.2, 0.1), 40.0)
+/// Things that are pushed, and robots and things that a hand moves, under options that no other run has.
+fn pushing() -> Result<String> {
+    let mut scene = in_room(0.5, 0.5, 0.0);
+    scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::labbot()), Pose::new(0.6, 1.5, 0.0)));
+    let options = SimOptions { pushing: true, ideal_encoders: true, call_duration: 0.002, ..noise(1.0, 21) };
+    let simulation = Simulation::new(&scene, options)?;
+    let truth = simulation.truth();
+    let mut log = String::new();
+    let mut robot = Traced::new(simulation.robot(0)?, Vec::new()).with_stamp(Stamp::LastKnown);
+    for (round, angular) in [0.0, 0.6, -0.9, 0.3].into_iter().enumerate() {
+        // The can or the ball is put before the robot.
+        let ahead = truth.pose(0)?.compose(&Pose::new(0.25, 0.02, 0.0));
+        truth.set_object(1 + round % 2, ahead)?;
+        robot.set_speed(Twist::new(0.3, angular))?;
+        for _ in 0..8 {
+            robot.wait(0.3)?;
+            robot.pose()?;
+            robot.encoder(1)?;
+            robot.distance(Psd::FRONT)?;
+            robot.is_stalled()?;
+            let objects = (0..3).map(|object| truth.object(object)).collect::<Result<Vec<_>>>()?;
+            note(&mut log, "objects", &(truth.time(), objects));
+        }
+        match round {
+            0 => truth.move_robot(0, 1, Pose::new(0.7, 1.2, 1.0))?,
+            1 => truth.move_object(0, 0, Pose::new(2.8, 0.2, 0.0))?,
+            _ => truth.set_pose(0, Pose::new(1.9, 0.5, 0.2))?,
+        }
+    }
+    log += &text(robot)?;
+    note_truth(&mut log, &truth.robot(0)?);
+    note_truth(&mut log, &truth.robot(1)?);
+    Ok(log)
 }
 
 /// A drawn course, and the first twenty seconds on the way to its goal.

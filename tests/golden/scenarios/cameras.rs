@@ -1,0 +1,180 @@
+//! The camera, behaviours that use it, and the display.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use roverlab::geometry::{Pose, Twist};
+use roverlab::io::sim::{Fleet, Lcd, SimOptions, Simulation};
+use roverlab::io::wrappers::Traced;
+use roverlab::io::{
+    Camera, Clock, Display, DisplayOption, Drive, Fill, Font, Key, Keys, Resolution, Result, Servos, Viewport,
+};
+use roverlab::vision::motion::{MotionWatch, WatchParameters};
+use roverlab::vision::tracking::{
+    CameraGeometry, ColourFinder, ColourTracker, FindMethod, HomeParameters, PushHome, TrackerParameters,
+    teach_hue,
+};
+use roverlab::vision::{HueScale, hue};
+use roverlab::world::{Colour, RobotPlacement, RobotSpec, Scene, World};
+
+use super::{Scenario, fnv, in_room, noise, note, note_truth, other, ride, room, text};
+
+pub(super) const SCENARIOS: &[Scenario] = &[
+    Scenario::new("camera", camera),
+    Scenario::new("colour-tracking", tracking),
+    Scenario::new("colour-push-home", push_home),
+    Scenario::new("motion-watch", watch),
+    Scenario::new("display-and-keys", display),
+];
+
+/// Images of three sizes, straight ahead and with the camera turned, in good and in poor light.
+fn camera() -> Result<String> {
+    let mut log = String::new();
+    for light in [1.0, 0.4] {
+        let options = SimOptions { light, ..noise(1.0, 121) };
+        log += &ride(&in_room(0.5, 0.5, 0.6), options, |robot| {
+            for resolution in [Resolution::Qqvga, Resolution::Qvga, Resolution::Vga] {
+                robot.set_resolution(resolution)?;
+                robot.image()?;
+                robot.gray_image()?;
+            }
+            robot.set_speed(Twist::new(0.1, 0.6))?;
+            for servo in [1, 2] {
+                robot.set_servo(servo, 0.8)?;
+                robot.wait(0.7)?;
+                robot.image()?;
+            }
+            Ok(())
+        })?;
+    }
+    Ok(log)
+}
+
+/// A room with high walls, and the geometry of the robot's camera.
+fn coloured() -> (Scene, CameraGeometry) {
+    let mut world = room();
+    for wall in &mut world.walls {
+        wall.height = 0.3;
+    }
+    let spec = RobotSpec::s4();
+    let geometry = CameraGeometry::from(&spec.camera.expect("the robot has a camera"));
+    (Scene::with_robot(world, spec, Pose::new(0.5, 0.4, -0.6)), geometry)
+}
+
+/// A finder for a can's red.
+fn finder(method: FindMethod, geometry: CameraGeometry) -> Result<ColourFinder> {
+    let red = hue([200, 24, 24], HueScale::Robios, ColourFinder::LIMITS);
+    ColourFinder::new(red, 10, method, geometry).map_err(other)
+}
+
+fn tracking() -> Result<String> {
+    let (scene, geometry) = coloured();
+    let mut log = String::new();
+    for method in [FindMethod::Blob, FindMethod::Histogram] {
+        let mut seen = String::new();
+        log += &ride(&scene, noise(1.0, 122), |robot| {
+            let image = robot.image()?;
+            note(&mut seen, "taught", &teach_hue(&image, ColourFinder::LIMITS).map_err(other)?);
+            let mut tracker = ColourTracker::new(finder(method, geometry)?, TrackerParameters::default());
+            let outcome = tracker.run(robot, 25.0, |_, tracker, _| {
+                note(&mut seen, "seen", &(tracker.phase(), tracker.sighting(), tracker.target()));
+                Ok(())
+            })?;
+            note(&mut seen, "outcome", &outcome);
+            Ok(())
+        })?;
+        log += &seen;
+    }
+    Ok(log)
+}
+
+fn push_home() -> Result<String> {
+    let (scene, geometry) = coloured();
+    let mut seen = String::new();
+    let log = ride(&scene, SimOptions { pushing: true, ..noise(0.5, 123) }, |robot| {
+        let home = robot.pose()?.position();
+        let mut push = PushHome::new(finder(FindMethod::Blob, geometry)?, home, HomeParameters::default());
+        let outcome = push.run(robot, 40.0, |_, push, _| {
+            note(&mut seen, "seen", &(push.phase(), push.object()));
+            Ok(())
+        })?;
+        note(&mut seen, "outcome", &outcome);
+        Ok(())
+    })?;
+    Ok(log + &seen)
+}
+
+/// A robot that watches another one drive in circles.
+fn watch() -> Result<String> {
+    let (mut scene, geometry) = coloured();
+    scene.robots[0].pose = Pose::new(0.5, 1.0, 0.0);
+    scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::s4()), Pose::new(1.1, 0.8, 1.0)));
+    let mut watch = MotionWatch::new(WatchParameters::new(geometry.field_of_view)).map_err(other)?;
+    let (mut trace, mut seen) = (Vec::new(), String::new());
+    let mut fleet = Fleet::new(&scene, noise(1.0, 124))?;
+    fleet.control(0, 0.1, |robot| {
+        let mut robot = Traced::new(robot, &mut trace);
+        let (time, image, pose) = (robot.now()?, robot.gray_image()?, robot.pose()?);
+        let twist = watch.step(time, &image, pose).map_err(other)?;
+        note(&mut seen, "motion", &watch.motion());
+        robot.set_speed(twist)?;
+        Ok(ControlFlow::Continue(()))
+    })?;
+    fleet.control(1, 0.5, |robot| {
+        robot.set_speed(Twist::new(0.2, 0.8))?;
+        Ok(ControlFlow::Continue(()))
+    })?;
+    fleet.run_for(8.0)?;
+    let truth = fleet.truth(0)?;
+    drop(fleet);
+    let mut log = String::from_utf8(trace).map_err(other)? + &seen;
+    note_truth(&mut log, &truth);
+    Ok(log)
+}
+
+/// All that a display draws, and keys that are pressed meanwhile.
+fn display() -> Result<String> {
+    let scene = Scene::with_robot(World::walled(1.0, 1.0), RobotSpec::s4(), Pose::new(0.5, 0.5, 0.0));
+    let simulation = Simulation::new(&scene, SimOptions::ideal())?;
+    simulation.press_key(0, 0.5, Key::Key2)?;
+    simulation.press_key(0, 0.9, Key::Key4)?;
+    let mut robot = Traced::new(simulation.robot(0)?, Vec::new());
+    let mut frames = String::new();
+    let mut shown = |robot: &mut Traced<_, _>| -> Result<()> {
+        let image = Display::screenshot(robot)?;
+        note(&mut frames, "frame", &fnv(image.as_raw().iter().copied()));
+        Ok(())
+    };
+    robot.print("Hello, world\n\tand others\n")?;
+    robot.set_text_colours(Colour::GREEN, Colour::BLUE)?;
+    robot.set_font(Font::default())?;
+    robot.print_at(5, 7, "there")?;
+    shown(&mut robot)?;
+    robot.draw_line((3, 200), (300, 20), Colour::GREEN)?;
+    robot.draw_rectangle((20, 60), (90, 130), Colour::RED, Fill::Outline)?;
+    robot.draw_rectangle((30, 70), (60, 100), Colour::RED, Fill::Solid)?;
+    robot.draw_circle((200, 120), 71, Colour::BLUE, Fill::Outline)?;
+    robot.draw_circle((200, 120), 40, Colour::WHITE, Fill::Solid)?;
+    shown(&mut robot)?;
+    let image = robot.image()?;
+    robot.draw_image((&image).into(), Viewport::new((100, 50), 120, 90))?;
+    robot.set_menu(["GO", "", "LEFT", "END"])?;
+    robot.set_menu_label(Key::Key2, "STOP", Colour::WHITE, Colour::RED)?;
+    robot.set_display_option(DisplayOption::AutoRefresh, false)?;
+    robot.set_pixel((319, 0), Colour::RED)?;
+    robot.pixel((319, 0))?;
+    robot.cursor()?;
+    robot.display_size()?;
+    shown(&mut robot)?;
+    robot.refresh()?;
+    robot.read_key()?;
+    robot.wait_key()?;
+    robot.wait_key()?;
+    robot.read_touch()?;
+    robot.clear_display()?;
+    shown(&mut robot)?;
+    let sizes = Lcd::new().text_size();
+    let mut log = text(robot)? + &frames;
+    note(&mut log, "text", &sizes);
+    Ok(log)
+}

@@ -1,0 +1,294 @@
+//! Driving to goals, along paths and over a whole floor; kinematics, controllers and landmarks.
+
+use roverlab::drive::{
+    AToB, AToBParameters, CarDriver, CarParameters, CarToB, Chase, ChaseParameters, CoverageMap,
+    CoverageParameters, CoveragePlan, FollowerParameters, Goal, Landmark, LandmarkFilter, Method, OmniDriver,
+    OmniParameters, OmniTracker, Path, PathFollower, Pid, PidParameters, RandomDrive, RandomDriveParameters,
+    RelayTuner, Steering, Tour, TourParameters, Waypoint,
+};
+use roverlab::geometry::{Point, Pose, Twist};
+use roverlab::io::{Clock, Drive, Lidar, LidarScan, Result};
+use roverlab::kinematics::{
+    Ackermann, CarState, Differential, Displacement, OdometryErrors, OdometryUncertainty, Omni, PlanarTwist,
+    WheelSpeeds, advance, advance_planar,
+};
+use roverlab::random::Stream;
+use roverlab::world::{DriveSpec, ObjectKind, RobotSpec, Scene, Shape, World};
+
+use super::{Scenario, in_room, noise, note, other, ride, room};
+
+pub(super) const SCENARIOS: &[Scenario] = &[
+    Scenario::new("kinematics", kinematics),
+    Scenario::new("paths", paths),
+    Scenario::new("controllers", controllers),
+    Scenario::new("a-to-b", a_to_b),
+    Scenario::new("chase", chase),
+    Scenario::new("ackermann", ackermann),
+    Scenario::new("mecanum", mecanum),
+    Scenario::new("random-drive", random_drive),
+    Scenario::new("coverage", coverage),
+    Scenario::new("landmarks", landmarks),
+];
+
+const METHODS: [Method; 4] = [Method::Turn, Method::Arc, Method::Dog, Method::Spline];
+
+/// Each drive's forward and inverse kinematics, and what their odometry comes to.
+fn kinematics() -> Result<String> {
+    let mut log = String::new();
+    let two = Differential { track: 0.09 };
+    let car = Ackermann::new(0.2, 0.15, 0.5).map_err(other)?;
+    let mecanum = Omni::mecanum(0.2, 0.25).map_err(other)?;
+    let three = [Omni::three_wheels(0.1), Omni::three_mecanum_wheels(0.1)];
+    let errors = OdometryErrors { wheel_scale: 0.01, wheel_mismatch: 0.004, track: 0.02, slip: 0.003 };
+    let mut uncertainty = OdometryUncertainty::new(Pose::default(), two, errors);
+    let (mut pose, mut slid) = (Pose::default(), Pose::default());
+    for (linear, left, angular) in [(0.3, 0.1, 0.7), (-0.2, 0.0, 1e-9), (0.0, -0.3, -2.5), (0.4, 0.05, 9.0)] {
+        let twist = Twist::new(linear, angular);
+        let wheels = two.inverse(twist);
+        note(&mut log, "wheels", &(wheels, two.inverse_limited(twist, 0.3), two.forward(wheels)));
+        let rolled = two.displacement(0.1 * wheels.left, 0.1 * wheels.right);
+        uncertainty.advance(rolled);
+        note(&mut log, "odometry", &(uncertainty.pose(), uncertainty.covariance()));
+        let state = car.inverse_limited(twist, 0.25);
+        note(&mut log, "car", &(car.inverse(twist), state, car.forward(state), car.wheels(state)));
+        note(&mut log, "steering", &(car.wheel_angles(0.3 * angular), car.displacement(linear, 0.2)));
+        let planar = PlanarTwist::new(linear, left, angular);
+        note(&mut log, "mecanum", &(mecanum.inverse(planar), mecanum.inverse_limited(planar, 0.2)));
+        note(&mut log, "rolled", &mecanum.displacement(mecanum.inverse(planar)));
+        for drive in three.iter().flatten() {
+            note(&mut log, "three wheels", &drive.inverse(planar));
+        }
+        pose = advance(pose, Displacement { length: linear, angle: angular });
+        slid = advance_planar(slid, planar.during(0.7));
+        note(&mut log, "poses", &(pose, slid));
+    }
+    note(&mut log, "forward", &two.forward(WheelSpeeds { left: 0.1, right: 0.3 }));
+    note(&mut log, "turning circle", &(car.turning_radius(), car.steering_for(2.0), car.curvature(0.3)));
+    Ok(log)
+}
+
+/// Each kind of path, and an ideal robot that follows it from beside its beginning, forwards and in reverse.
+fn paths() -> Result<String> {
+    let goal = Pose::new(1.0, 0.6, 2.0);
+    let points = [(0.0, 0.0), (0.5, 0.3), (0.9, -0.1), (1.4, 0.2)];
+    let waypoints = points.map(|(x, y)| Waypoint { position: Point::new(x, y), heading: None });
+    let mut log = String::new();
+    for path in [
+        Path::straight(Point::origin(), goal.position())?,
+        Path::arc(Pose::default(), goal.position())?,
+        Path::hermite(Pose::default(), goal, 1.5)?,
+        Path::through(&waypoints)?,
+        Path::of_arcs(Pose::default(), &[(0.4, 1.0), (0.3, -2.0), (0.2, 0.0)])?,
+        Path::dubins(Pose::default(), goal, 0.25)?,
+        Path::dubins_to_point(Pose::default(), Point::new(-0.1, 0.2), 0.25)?,
+    ] {
+        let sampled: Vec<_> = (0..=10).map(|k| path.at(0.1 * f64::from(k) * path.length())).collect();
+        note(&mut log, "path", &(path.length(), path.max_curvature(), path.sharpest_turn(), sampled));
+        let cross_track = Steering::CrossTrack { reach: 0.1 };
+        for (steering, is_reverse) in
+            [(Steering::PurePursuit { lookahead: 0.12 }, false), (cross_track, false), (cross_track, true)]
+        {
+            let parameters = FollowerParameters { steering, ..FollowerParameters::default() };
+            let mut follower = PathFollower::new(path.clone(), parameters)?;
+            if is_reverse {
+                follower = follower.reversed();
+            }
+            let mut pose = path.start().compose(&Pose::new(0.0, 0.03, 0.2));
+            for step in 0..200 {
+                let twist = follower.step(pose);
+                pose =
+                    advance(pose, Displacement { length: 0.05 * twist.linear, angle: 0.05 * twist.angular });
+                if step % 5 == 0 {
+                    let errors = (follower.cross_track_error(), follower.heading_error(), follower.rest());
+                    note(&mut log, "step", &(twist, pose, errors));
+                }
+            }
+        }
+    }
+    Ok(log)
+}
+
+/// A PID controller on a slow process, with the gains that a relay experiment finds for it.
+fn controllers() -> Result<String> {
+    const STEP: f64 = 0.01;
+    let mut log = String::new();
+    let mut lags = [0.0_f64; 3];
+    let mut respond = |output: f64| {
+        let inputs = [output, lags[0], lags[1]];
+        lags.iter_mut().zip(inputs).for_each(|(lag, input)| *lag += STEP / 0.2 * (input - *lag));
+        lags[2]
+    };
+    let mut tuner = RelayTuner::new(1.0, 0.01)?;
+    let mut process = 0.0;
+    let gain = loop {
+        process = respond(tuner.step(0.3 - process, STEP)?);
+        if let Some(result) = tuner.result() {
+            break result;
+        }
+    };
+    let tuned = [gain.ziegler_nichols(), gain.tyreus_luyben()];
+    note(&mut log, "gains", &(gain, tuned));
+    for gains in tuned {
+        let gains = PidParameters { derivative_filter: 0.05, limits: [-1.0, 2.0], ..gains };
+        let mut pid = Pid::new(gains)?;
+        for step in 0..400 {
+            let output = pid.step(0.8, process, STEP)?;
+            process = respond(output);
+            if step % 10 == 0 {
+                note(&mut log, "response", &(output, process, pid.integral()));
+            }
+        }
+    }
+    Ok(log)
+}
+
+fn a_to_b() -> Result<String> {
+    let scene = Scene::with_robot(World::empty(3.0, 3.0), RobotSpec::s4(), Pose::new(1.0, 1.0, 0.4));
+    let goals = [Goal::pose(Pose::new(0.7, 0.4, -0.5)), Goal::point(Point::new(-0.3, 0.5))];
+    let mut log = String::new();
+    for (method, goal) in METHODS.into_iter().flat_map(|method| goals.map(|goal| (method, goal))) {
+        let mut behaviour = AToB::new(method, goal, AToBParameters::default())?;
+        if method == Method::Spline {
+            behaviour = behaviour.via(vec![Point::new(0.3, -0.1)])?;
+        }
+        let mut verdict = String::new();
+        log += &ride(&scene, noise(1.0, 21), |robot| {
+            let plan = behaviour.plan(Pose::default())?;
+            note(&mut verdict, "plan", &plan.map(|path| (path.length(), path.end(), path.max_curvature())));
+            let outcome = behaviour.run(robot, 30.0, |_, _| {})?;
+            note(&mut verdict, "outcome", &(method, outcome));
+            Ok(())
+        })?;
+        log += &verdict;
+    }
+    Ok(log)
+}
+
+/// A goal that drives away on an arc.
+fn chase() -> Result<String> {
+    let scene = Scene::with_robot(World::empty(4.0, 4.0), RobotSpec::s4(), Pose::new(1.0, 1.0, 0.0));
+    let quarry = |time: f64| {
+        advance(Pose::new(0.5, 0.4, 0.3), Displacement { length: 0.08 * time, angle: 0.1 * time })
+    };
+    let mut log = String::new();
+    for method in METHODS {
+        let mut outcome = None;
+        log += &ride(&scene, noise(1.0, 22), |robot| {
+            let mut behaviour = Chase::new(method, ChaseParameters::default())?;
+            outcome = Some(behaviour.run(robot, 12.0, |_, time| Ok(quarry(time)), |_, _| {})?);
+            Ok(())
+        })?;
+        note(&mut log, "outcome", &(method, outcome));
+    }
+    Ok(log)
+}
+
+/// A car by every method, within its turning circle.
+fn ackermann() -> Result<String> {
+    let scene = Scene::with_robot(World::empty(5.0, 5.0), RobotSpec::car(), Pose::new(1.5, 1.5, 0.0));
+    let DriveSpec::Ackermann { wheel_diameter, track, wheelbase, max_steering, max_wheel_speed, .. } =
+        scene.robots[0].spec.drive
+    else {
+        unreachable!("a car has Ackermann steering")
+    };
+    let kinematics = Ackermann::new(wheelbase, track, max_steering).map_err(other)?;
+    let driver = CarDriver { kinematics, full_speed: 0.5 * wheel_diameter * max_wheel_speed };
+    let goal = Goal::pose(Pose::new(1.2, 0.9, 1.4));
+    let mut log = String::new();
+    note(&mut log, "command", &driver.command(CarState { speed: 0.2, steering: -0.1 }));
+    for method in METHODS {
+        let mut behaviour = CarToB::new(method, goal, driver, CarParameters::default())?;
+        let mut outcome = None;
+        log += &ride(&scene, noise(1.0, 23), |robot| {
+            outcome = Some(behaviour.run(robot, 25.0, |_, _| {})?);
+            Ok(())
+        })?;
+        note(&mut log, "outcome", &(method, outcome));
+    }
+    Ok(log)
+}
+
+/// A square without turning, and a straight line while spinning, on Mecanum wheels.
+fn mecanum() -> Result<String> {
+    let scene = Scene::with_robot(World::empty(2.0, 2.0), RobotSpec::omni(), Pose::new(0.5, 0.5, 0.2));
+    let DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, .. } =
+        scene.robots[0].spec.drive
+    else {
+        unreachable!("the robot has Mecanum wheels")
+    };
+    let kinematics = Omni::mecanum(track, wheelbase).map_err(other)?;
+    let driver = OmniDriver { kinematics, full_speed: 0.5 * wheel_diameter * max_wheel_speed };
+    let square = [(0.4, 0.0), (0.4, 0.4), (0.0, 0.4), (0.0, 0.0)].map(|(x, y)| Point::new(x, y));
+    let mut log = String::new();
+    for (route, spin) in [(&square[..], 0.0), (&square[1..2], 1.5)] {
+        let parameters = OmniParameters { spin, ..OmniParameters::default() };
+        log += &ride(&scene, noise(1.0, 24), |robot| {
+            let tracker = OmniTracker::new(robot.pose()?, route, parameters)?;
+            tracker.run(robot, &driver, |_, _| {})
+        })?;
+    }
+    Ok(log)
+}
+
+fn random_drive() -> Result<String> {
+    let mut turns = 0;
+    let mut log = ride(&in_room(0.5, 0.5, 0.3), noise(1.0, 25), |robot| {
+        let mut behaviour = RandomDrive::new(RandomDriveParameters::default(), Stream::new(25))?;
+        behaviour.run(robot, 40.0, |_| {})?;
+        turns = behaviour.turns();
+        Ok(())
+    })?;
+    note(&mut log, "turns", &turns);
+    Ok(log)
+}
+
+/// The plan over a floor, the first part of the tour, and what it covers.
+fn coverage() -> Result<String> {
+    let (world, start) = (room(), Pose::new(0.3, 0.3, 0.0));
+    let mut map = CoverageMap::new(&world, start.position(), CoverageParameters::default())?;
+    let plan = CoveragePlan::new(&map, start.position())?;
+    let mut tour = Tour::new(plan.points(), TourParameters::default())?;
+    let mut log = ride(&Scene::with_robot(world, RobotSpec::s4(), start), noise(0.0, 26), |robot| {
+        for _ in 0..500 {
+            let place = start.compose(&robot.pose()?);
+            map.cover(place.position());
+            let Some(twist) = tour.step(place) else { break };
+            robot.set_speed(twist)?;
+            robot.wait(0.05)?;
+        }
+        Ok(())
+    })?;
+    note(&mut log, "plan", &(plan.length(), plan.share(), plan.points()));
+    note(&mut log, "covered", &(map.share(), map.area(), tour.progress()));
+    plan.points().windows(2).for_each(|ends| map.cover_line(ends[0], ends[1], 0.01));
+    note(&mut log, "covered by the plan", &(map.share(), map.cells(false).collect::<Vec<_>>()));
+    Ok(log)
+}
+
+/// A robot that corrects its odometry by the cans that its lidar sees.
+fn landmarks() -> Result<String> {
+    let scene = in_room(0.5, 0.5, 0.3);
+    let can = ObjectKind::predefined("can").expect("the kind is predefined");
+    let Shape::Cylinder { radius, .. } = can.shape else { unreachable!("a can is round") };
+    let start = scene.robots[0].pose;
+    let seen = scene.world.objects.iter().filter(|object| object.kind.name == "can");
+    let landmarks: Vec<_> =
+        seen.map(|object| Landmark { position: object.pose.position(), radius }).collect();
+    let errors = OdometryErrors { wheel_scale: 0.01, wheel_mismatch: 0.01, track: 0.02, slip: 0.002 };
+    let drive = Differential { track: 0.09 };
+    let mut filter = LandmarkFilter::new(start, Pose::default(), landmarks, drive, errors, 0.005)?;
+    let mut verdict = String::new();
+    let log = ride(&scene, noise(2.0, 27), |robot| {
+        let mut scan = LidarScan::default();
+        robot.set_speed(Twist::new(0.1, 0.4))?;
+        for _ in 0..40 {
+            robot.wait(0.2)?;
+            filter.predict(robot.pose()?);
+            robot.scan_into(&mut scan)?;
+            let used = filter.correct(&scan);
+            note(&mut verdict, "filter", &(used, filter.pose(), filter.covariance()));
+        }
+        Ok(())
+    })?;
+    Ok(log + &verdict)
+}

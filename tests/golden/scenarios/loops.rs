@@ -1,0 +1,241 @@
+//! How the loops that run behaviours begin and end: at the time limit, blocked, with a sensor, link or clock that fails,
+//! and at the end of the simulation.
+
+use std::ops::ControlFlow;
+
+use roverlab::drive::cones::{EventParameters, EventRacer, GapDriver, Racer, RacerParameters};
+use roverlab::drive::{
+    AToB, AToBParameters, CarDriver, CarParameters, CarToB, Chase, ChaseParameters, Goal, LidarWallFollower,
+    LidarWallParameters, Method, OmniDriver, OmniParameters, OmniTracker, RandomDrive, RandomDriveParameters,
+    WallFollower, WallFollowerParameters, run_along_wall,
+};
+use roverlab::evolve::Gait;
+use roverlab::geometry::{Point, Pose, Twist};
+use roverlab::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions, SharedRace};
+use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
+use roverlab::io::wrappers::{Faulty, Traced};
+use roverlab::io::{Clock, Display, Drive, Encoders, Keys, Lidar, Radio, Result, RobotIo};
+use roverlab::kinematics::{Ackermann, Omni};
+use roverlab::maze::{Direction, LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters};
+use roverlab::nav::{BugKind, BugParameters, DistBug, NavigateParameters, Navigator, run_bug};
+use roverlab::random::Stream;
+use roverlab::vision::motion::{MotionWatch, WatchParameters};
+use roverlab::vision::tracking::{
+    CameraGeometry, ColourFinder, ColourTracker, FindMethod, HomeParameters, PushHome, TrackerParameters,
+};
+use roverlab::world::{Colour, RobotSpec, Scene, World};
+
+use super::{Scenario, noise, note, note_truth, other, room, text};
+
+pub(super) const SCENARIOS: &[Scenario] = &[
+    Scenario::new("run-loops", robots),
+    Scenario::new("race-run-loops", cars),
+    Scenario::new("race-shared", shared),
+];
+
+/// The robot that the loops run.
+type Robot = Traced<Faulty<SimRobot>, Vec<u8>>;
+
+/// A loop, and what it gives back.
+type Loop = (&'static str, fn() -> RobotSpec, fn(&mut Robot) -> Result<String>);
+
+/// A fault, a world, and the seconds that it lasts.
+type Circumstance = (&'static str, fn() -> World, f64);
+
+/// Seconds that loops are given, and where to they drive.
+const LIMIT: f64 = 2.5;
+const GOAL: Point = Point::new(1.0, 0.4);
+
+const LOOPS: [Loop; 20] = [
+    ("turn", RobotSpec::s4, |robot| a_to_b(Method::Turn, robot)),
+    ("spline", RobotSpec::s4, |robot| a_to_b(Method::Spline, robot)),
+    ("by another estimate", RobotSpec::s4, |robot| {
+        let mut behaviour = AToB::new(Method::Arc, Goal::point(GOAL), AToBParameters::default())?;
+        let estimate = |robot: &mut Robot| Ok(robot.pose()?.compose(&Pose::new(0.01, 0.0, 0.0)));
+        said(behaviour.run_with(robot, LIMIT, estimate, |_, _| {})?)
+    }),
+    ("chase", RobotSpec::s4, |robot| {
+        let mut behaviour = Chase::new(Method::Dog, ChaseParameters::default())?;
+        let goal = |_: &mut Robot, time| Ok(Pose::new(0.4 + 0.1 * time, 0.2, 0.0));
+        said(behaviour.run(robot, LIMIT, goal, |_, _| {})?)
+    }),
+    ("car", RobotSpec::car, |robot| {
+        let kinematics = Ackermann::new(0.12, 0.1, 0.5).map_err(other)?;
+        let driver = CarDriver { kinematics, full_speed: 0.5 };
+        let mut behaviour = CarToB::new(Method::Arc, Goal::point(GOAL), driver, CarParameters::default())?;
+        said(behaviour.run(robot, LIMIT, |_, _| {})?)
+    }),
+    ("Mecanum", RobotSpec::omni, |robot| {
+        let kinematics = Omni::mecanum(0.2, 0.2).map_err(other)?;
+        let tracker = OmniTracker::new(robot.pose()?, &[GOAL], OmniParameters::default())?;
+        said(tracker.run(robot, &OmniDriver { kinematics, full_speed: 0.5 }, |_, _| {})?)
+    }),
+    ("wall", RobotSpec::s4, |robot| {
+        let mut follower = WallFollower::new(WallFollowerParameters::default())?;
+        said(run_along_wall(robot, &mut follower, LIMIT, |_, _| ControlFlow::Continue(()))?)
+    }),
+    ("wall, stopped", RobotSpec::s4, |robot| {
+        let mut follower = LidarWallFollower::new(LidarWallParameters::default())?;
+        let watch = |time, _: &_| if time > 1.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+        said(run_along_wall(robot, &mut follower, LIMIT, watch)?)
+    }),
+    ("random", RobotSpec::s4, |robot| {
+        let mut behaviour = RandomDrive::new(RandomDriveParameters::default(), Stream::new(181))?;
+        said(behaviour.run(robot, LIMIT, |_| {})?)
+    }),
+    ("left hand", RobotSpec::s4, |robot| {
+        let rule = LeftHand::new(LeftHandParameters::as_printed())?;
+        said(rule.run(robot, Direction::North, |(x, y), _| x.abs() + y.abs() > 1, || ())?)
+    }),
+    ("left by lidar", RobotSpec::s4, |robot| {
+        let mut follower = LidarLeft::new(LidarLeftParameters::for_corridor(0.36))?;
+        said(follower.run(robot, |pose, _| pose.x * pose.x + pose.y * pose.y > 0.04)?)
+    }),
+    ("bug", RobotSpec::s4, |robot| {
+        let mut bug = BugKind::Bug2.with(GOAL, BugParameters::default())?;
+        said(run_bug(bug.as_mut(), robot, LIMIT, |_, _| {})?)
+    }),
+    ("DistBug", RobotSpec::s4, |robot| {
+        said(DistBug::new(GOAL, BugParameters::default())?.run(robot, LIMIT, |_, _| {})?)
+    }),
+    ("navigate", RobotSpec::s4, |robot| {
+        let goal = Point::new(1.4, 0.9);
+        let mut navigator = Navigator::new(&room(), START, goal, NavigateParameters::default())?;
+        said(navigator.run(robot, LIMIT, |_, _| {})?)
+    }),
+    ("colour", RobotSpec::s4, |robot| {
+        said(
+            ColourTracker::new(finder()?, TrackerParameters::default()).run(
+                robot,
+                LIMIT,
+                |_, _, _| Ok(()),
+            )?,
+        )
+    }),
+    ("home", RobotSpec::s4, |robot| {
+        let mut push = PushHome::new(finder()?, Point::origin(), HomeParameters::default());
+        said(push.run(robot, LIMIT, |_, _, _| Ok(()))?)
+    }),
+    ("motion", RobotSpec::s4, |robot| {
+        let mut watch = MotionWatch::new(WatchParameters::new(1.0)).map_err(other)?;
+        said(watch.run(robot, LIMIT, |_, _, _| Ok(()))?)
+    }),
+    ("gait", RobotSpec::s4, |robot| {
+        let gait = Gait::from_bytes(&[30, 128, 200, 40, 128, 90], 2, 1)?;
+        gait.settle(robot)?;
+        said(gait.walk(robot, LIMIT)?)
+    }),
+    ("gap", RobotSpec::car, |robot| said(GapDriver::default().run(robot, 0.2, LIMIT)?)),
+    ("racer", RobotSpec::s4, |robot| {
+        said(Racer::new(RacerParameters::default()).run(robot, LIMIT, |_, _| {})?)
+    }),
+];
+
+const START: Pose = Pose::new(0.5, 0.5, 0.3);
+
+fn said(outcome: impl std::fmt::Debug) -> Result<String> {
+    Ok(format!("{outcome:?}"))
+}
+
+fn a_to_b(method: Method, robot: &mut Robot) -> Result<String> {
+    let mut behaviour = AToB::new(method, Goal::point(GOAL), AToBParameters::default())?;
+    said(behaviour.run(robot, LIMIT, |_, _| {})?)
+}
+
+fn finder() -> Result<ColourFinder> {
+    let camera = RobotSpec::s4().camera.expect("the robot has a camera");
+    ColourFinder::new(42, 10, FindMethod::Blob, CameraGeometry::from(&camera)).map_err(other)
+}
+
+/// Every loop under every circumstance, begun when the robot's clock has gone on a little.
+fn robots() -> Result<String> {
+    let free = || room();
+    let tight = || World::walled(0.24, 0.24);
+    let circumstances: [Circumstance; 6] = [
+        ("", free, 12.0),
+        ("", tight, 12.0),
+        ("clock@1", free, 6.0),
+        ("lost:all@1", free, 6.0),
+        ("link@1-1.5", free, 6.0),
+        ("", free, 1.3),
+    ];
+    let mut log = String::new();
+    for (name, spec, run) in LOOPS {
+        for (fault, world, time_limit) in &circumstances {
+            let world = world();
+            let middle = world.floor.min + 0.5 * world.floor.size();
+            let place = if world.floor.size().x < 1.0 { Pose::new(middle.x, middle.y, 0.3) } else { START };
+            let options = SimOptions { time_limit: Some(*time_limit), ..noise(1.0, 182) };
+            let simulation = Simulation::new(&Scene::with_robot(world, spec(), place), options)?;
+            let faults = if fault.is_empty() { Vec::new() } else { vec![fault.parse()?] };
+            let mut robot = Traced::new(Faulty::new(simulation.robot(0)?, faults), Vec::new());
+            robot.wait(0.37)?;
+            let outcome = run(&mut robot).map_err(|error| (error.kind(), error.to_string()));
+            log += &text(robot)?;
+            note(&mut log, name, &(fault, outcome));
+            note_truth(&mut log, &simulation.truth().robot(0)?);
+        }
+    }
+    Ok(log)
+}
+
+/// Two rows of cones.
+fn lane() -> Vec<RaceCone> {
+    let rows = (0..30).flat_map(|k| [1.7, -1.7].map(|y| Point::new(3.5 * f64::from(k), y)));
+    rows.map(|place| RaceCone::new(place, Colour::BLUE)).collect()
+}
+
+/// The loops of racing cars.
+fn cars() -> Result<String> {
+    let start = [(RaceCarSpec::default(), Pose::new(-2.0, 0.2, 0.0))];
+    let mut log = String::new();
+    for index in 0..3 {
+        let mut race = Race::new(&lane(), &start, RaceOptions { seed: 183, ..RaceOptions::default() })?;
+        let mut car = Traced::new(race.car(0)?, Vec::new());
+        car.wait(0.37)?;
+        let (mut watched, limit) = (0, 6.0);
+        let outcome = match index {
+            0 => said(Racer::new(RacerParameters::default()).run(&mut car, limit, |_, _| watched += 1)?),
+            1 => {
+                let mut racer = EventRacer::acceleration(EventParameters::default());
+                said(racer.run(&mut car, limit, |_, _| watched += 1)?)
+            }
+            _ => said(GapDriver::default().run(&mut car, 0.2, limit)?),
+        };
+        log += &text(car)?;
+        note(&mut log, "outcome", &(outcome?, watched));
+        let truth = race.truth(0).map(|truth| (truth.pose, truth.distance, truth.hits));
+        note(&mut log, "truth", &truth);
+    }
+    Ok(log)
+}
+
+/// Two cars of one race as robots of their own. Capabilities that they lack are errors.
+fn shared() -> Result<String> {
+    let cars = [0.4, -0.6].map(|y| (RaceCarSpec::default(), Pose::new(-2.0 - 4.0 * y, y, 0.05)));
+    let options = RaceOptions { seed: 184, ..RaceOptions::default() };
+    let race = SharedRace::new(Race::new(&lane(), &cars, options)?);
+    let mut log = String::new();
+    let mut robots: Vec<_> = Vec::new();
+    for index in 0..2 {
+        let car: Box<dyn RobotIo> = Box::new(race.car(index)?);
+        robots.push(Traced::new(car, Vec::new()));
+    }
+    for step in 0..80_u32 {
+        for (robot, speed) in robots.iter_mut().zip([7.0, 3.0]) {
+            robot.set_speed(Twist::new(speed, 0.2 * (f64::from(step % 7) - 3.0)))?;
+            robot.pose()?;
+            robot.scan()?;
+            robot.wait(0.05)?;
+        }
+    }
+    for mut robot in robots {
+        let _ = (robot.radio_id(), robot.read_key(), robot.print("x"), robot.encoder(1));
+        log += &text(robot)?;
+    }
+    for index in 0..2 {
+        note(&mut log, "time", &race.time());
+        note_truth(&mut log, &race.robot(index)?);
+    }
+    Ok(log)
+}

@@ -1,0 +1,145 @@
+//! Robots that follow one another: in a chain by lidar, and in a formation by the leader's radio messages.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use roverlab::drive::{
+    Cruise, CruiseParameters, FollowMeObservation, FollowMeParameters, Follower, Formation, robots_in,
+};
+use roverlab::geometry::{Point, Pose};
+use roverlab::io::sim::Fleet;
+use roverlab::io::wrappers::Traced;
+use roverlab::io::{Clock, Drive, Lidar, LidarScan, Radio, Result};
+use roverlab::world::{Footprint, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
+
+use super::{Scenario, noise, note, note_truth, other};
+
+pub(super) const SCENARIOS: &[Scenario] = &[
+    Scenario::new("chain", || troop(Follows::TheOneBefore, 41)),
+    Scenario::new("formation", || troop(Follows::ByRadio, 42)),
+];
+
+#[derive(Clone, Copy, PartialEq)]
+enum Follows {
+    TheOneBefore,
+    ByRadio,
+}
+
+/// A leader in a hall with two cans on its way, and three robots behind it.
+fn hall() -> Scene {
+    let mut scene = Scene::new(World::walled(5.0, 4.0));
+    let can = ObjectKind::predefined("can").expect("the kind is predefined");
+    let can = Arc::new(ObjectKind { fixed: true, ..can });
+    for (x, y) in [(3.3, 1.05), (4.05, 2.2)] {
+        scene.world.objects.push(Object::new(Arc::clone(&can), Pose::new(x, y, 0.0)));
+    }
+    let leader = Pose::new(2.4, 1.0, 0.0);
+    scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::labbot()), leader));
+    let follower = Arc::new(RobotSpec::s4());
+    for (back, aside, turned) in [(0.45, 0.0, 0.1), (0.8, 0.1, -0.1), (1.15, -0.1, 0.05)] {
+        let place = leader.compose(&Pose::new(-back, aside, turned));
+        scene.robots.push(RobotPlacement::new(Arc::clone(&follower), place));
+    }
+    scene
+}
+
+fn radius(spec: &RobotSpec) -> f64 {
+    match spec.footprint {
+        Footprint::Disc { radius } => radius,
+        _ => spec.footprint.bounding_radius(),
+    }
+}
+
+/// A drive round the hall: every robot's readings, messages and commands, and its true path.
+fn troop(follows: Follows, seed: u64) -> Result<String> {
+    let scene = hall();
+    let mut traces = vec![Vec::new(); scene.robots.len()];
+    let mut fleet = Fleet::new(&scene, noise(1.0, seed))?;
+    for (index, trace) in traces.iter_mut().enumerate() {
+        let start = scene.robots[index].pose;
+        let mut scan = LidarScan::default();
+        let mut step: Step = match (index, follows) {
+            (0, _) => {
+                let waypoints = [(4.0, 1.0), (4.0, 3.0), (1.0, 3.0)].map(|(x, y)| Point::new(x, y));
+                let local = waypoints.iter().map(|place| start.to_local(*place)).collect();
+                let radius = radius(&scene.robots[0].spec);
+                let mut cruise =
+                    Cruise::new(local, CruiseParameters { radius, ..CruiseParameters::default() })?;
+                Box::new(move |robot| lead(robot, &mut cruise, start, &mut scan))
+            }
+            (_, Follows::TheOneBefore) => {
+                let leader_radius = radius(&scene.robots[index - 1].spec);
+                let parameters = FollowMeParameters {
+                    gap: 0.36,
+                    leader_radius,
+                    radius: radius(&scene.robots[index].spec),
+                    ..FollowMeParameters::default()
+                };
+                let mut follower = Follower::new(parameters)?;
+                Box::new(move |robot| {
+                    robot.scan_into(&mut scan)?;
+                    let (time, pose) = (robot.now()?, robot.pose()?);
+                    let candidates = robots_in(&scan, leader_radius);
+                    let obstacles: Vec<Point> = scan.points().collect();
+                    let seen =
+                        FollowMeObservation { time, pose, candidates: &candidates, obstacles: &obstacles };
+                    let twist = follower.step(&seen)?;
+                    robot.set_speed(twist)
+                })
+            }
+            (_, Follows::ByRadio) => {
+                let place = scene.robots[0].pose.to_local(start.position());
+                let formation =
+                    Formation { radius: radius(&scene.robots[index].spec), ..Formation::at(place) };
+                let mut leader = None;
+                Box::new(move |robot| {
+                    robot.scan_into(&mut scan)?;
+                    while let Some(message) = robot.receive()? {
+                        leader = Some(Formation::read(&message.data)?);
+                    }
+                    let Some((place, speed)) = leader else { return Ok(()) };
+                    let obstacles: Vec<Point> = scan.points().collect();
+                    let pose = start.compose(&robot.pose()?);
+                    robot.set_speed(formation.step(pose, place, speed, &obstacles))
+                })
+            }
+        };
+        fleet.control(index, 0.1, move |robot| {
+            step(&mut Traced::new(robot, &mut *trace))?;
+            Ok(ControlFlow::Continue(()))
+        })?;
+    }
+    fleet.run_for(20.0)?;
+    let truths = (0..scene.robots.len()).map(|index| fleet.truth(index)).collect::<Result<Vec<_>>>()?;
+    drop(fleet);
+    let mut log = String::new();
+    note(&mut log, "hall", &scene.robots.iter().map(|robot| robot.pose).collect::<Vec<_>>());
+    for (trace, truth) in traces.into_iter().zip(&truths) {
+        log += &String::from_utf8(trace).map_err(other)?;
+        note_truth(&mut log, truth);
+    }
+    Ok(log)
+}
+
+/// One step of a robot.
+type Step = Box<dyn FnMut(&mut dyn Member) -> Result<()>>;
+
+/// The capabilities of a robot in a troop.
+trait Member: Clock + Drive + Lidar + Radio {}
+
+impl<R: Clock + Drive + Lidar + Radio> Member for R {}
+
+/// One step of the leader, which tells all others where it is.
+fn lead(robot: &mut dyn Member, cruise: &mut Cruise, start: Pose, scan: &mut LidarScan) -> Result<()> {
+    robot.scan_into(scan)?;
+    let pose = robot.pose()?;
+    // What is behind follows, and does not matter.
+    let ahead: Vec<Point> = scan.points().filter(|point| point.x > -0.05).collect();
+    let twist = cruise.step(pose, &ahead)?;
+    robot.set_speed(twist)?;
+    let own = robot.radio_id()?;
+    for peer in robot.radio_peers()?.into_iter().filter(|&peer| peer != own) {
+        robot.send(peer, &Formation::message(start.compose(&pose), twist.linear))?;
+    }
+    Ok(())
+}
