@@ -175,7 +175,8 @@ impl CommonArgs {
         self.picture.clone().or_else(|| self.unnamed_file(name))
     }
 
-    /// A file that no option names, in a folder of its own, if a person looks on; not in place of the picture.
+    /// The file for an output that no option names: in a folder of its own, and only without `--json`. `None` if an option names
+    /// that very file for something else.
     pub(crate) fn unnamed_file(&self, name: &str) -> Option<PathBuf> {
         if self.json {
             return None;
@@ -184,8 +185,9 @@ impl CommonArgs {
         // If it cannot be made, then saving the file fails, and says why.
         let _ = fs::create_dir_all(folder);
         let file = folder.join(name);
-        let is_picture = self.picture.as_deref().is_some_and(|picture| is_same_file(picture, &file));
-        (!is_picture).then_some(file)
+        let named = [&self.picture, &self.record, &self.replay, &self.world, &self.robot];
+        let is_named = named.into_iter().flatten().any(|other| is_same_file(other, &file));
+        (!is_named).then_some(file)
     }
 
     /// The faults to inject.

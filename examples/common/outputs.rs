@@ -23,13 +23,18 @@ pub(super) fn check_outputs(matches: &ArgMatches) -> Result<(), Failure> {
     for (output, file) in files.iter().filter(|(option, _)| OUTPUTS.contains(option)) {
         let same = |(option, other): &&(&str, &PathBuf)| option != output && is_same_file(file, other);
         if let Some((option, _)) = files.iter().find(same) {
-            let file = file.display();
+            let (file, output, option) = (file.display(), shown(output), shown(option));
             return Err(Failure::input(format!(
-                "--{output} {file}: found the file of --{option}; expected another one"
+                "{output} {file}: found the file of {option}; expected another one"
             )));
         }
     }
     Ok(())
+}
+
+/// An option, or what stands in its place, as the help shows it.
+fn shown(id: &str) -> String {
+    if ["file", "out"].contains(&id) { format!("<{}>", id.to_uppercase()) } else { format!("--{id}") }
 }
 
 /// Whether two names are those of one file, which need not be there yet.

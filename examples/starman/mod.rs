@@ -16,7 +16,7 @@ use clap::ValueEnum;
 use roverlab::evolve::{GenerationStatistics, chart, serve, table};
 use roverlab::geometry::units;
 
-use crate::common::{Failure, Outcome, Report, rounded};
+use crate::common::{Failure, Outcome, Report, is_same_file, rounded};
 pub(crate) use options::Args;
 use options::Figure;
 
@@ -87,7 +87,8 @@ fn keep_statistics(args: &Args, history: &[GenerationStatistics]) -> Result<(), 
 
 /// Draws a walk where the options say. Returns the file of the strip, and what went wrong.
 fn draw(args: &Args, walk: &strip::Walk) -> (Option<PathBuf>, Option<String>) {
-    let strip = args.common.picture_file("starman.svg");
+    let moving = |file: &PathBuf| args.animation.as_ref().is_some_and(|other| is_same_file(other, file));
+    let strip = args.common.picture_file("starman.svg").filter(|file| !moving(file));
     let drawn = strip.as_ref().map(|file| strip::picture(args, walk).save(file)).transpose();
     let moved = args.animation.as_ref().map(|file| moving::save(file, walk)).transpose();
     if let Some(file) = &strip {

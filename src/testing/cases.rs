@@ -2,11 +2,15 @@ use std::env;
 
 use proptest::test_runner::{Config, RngSeed};
 
-/// The configuration of a property test that draws so many cases, the same ones in every run and on every machine.
+/// The configuration of a property test with a number of cases, the same ones in every run and on every machine.
 ///
 /// The environment variable `PROPTEST_RNG_SEED`, a whole number, draws other cases. `PROPTEST_CASES` draws more of them: it is
 /// the number for a property of 256, and changes that of every other one in proportion. A failing case is printed, and written to
 /// no file.
+///
+/// # Panics
+///
+/// If `PROPTEST_RNG_SEED` is no whole number: cases that nobody can draw again would be of no use.
 ///
 /// ```
 /// use proptest::prelude::*;
@@ -23,13 +27,21 @@ use proptest::test_runner::{Config, RngSeed};
 /// # a_sum_does_not_depend_on_the_order();
 /// ```
 pub fn cases(cases: u32) -> Config {
-    let mut config = Config { failure_persistence: None, ..Config::default() };
-    if env::var_os("PROPTEST_RNG_SEED").is_none() {
-        config.rng_seed = RngSeed::Fixed(1);
+    let seed = env::var_os("PROPTEST_RNG_SEED").map_or(1, |seed| {
+        let number = seed.to_str().and_then(|seed| seed.parse().ok());
+        number.unwrap_or_else(|| panic!("PROPTEST_RNG_SEED is {}; expected a whole number", seed.display()))
+    });
+    let usual = Config::default();
+    let wanted = u64::from(cases) * u64::from(usual.cases) / u64::from(USUAL_CASES);
+    let cases = u32::try_from(wanted.max(1)).unwrap_or(u32::MAX);
+    Config {
+        cases,
+        rng_seed: RngSeed::Fixed(seed),
+        // Properties that leave out many cases do so in proportion.
+        max_global_rejects: usual.max_global_rejects.max(cases.saturating_mul(4)),
+        failure_persistence: None,
+        ..usual
     }
-    let wanted = u64::from(cases) * u64::from(config.cases) / u64::from(USUAL_CASES);
-    config.cases = u32::try_from(wanted.max(1)).unwrap_or(u32::MAX);
-    config
 }
 
 /// The number of cases that `proptest` draws unless it is told otherwise.

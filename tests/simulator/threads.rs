@@ -2,10 +2,11 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread;
+use std::time::Duration;
 
 use roverlab::geometry::{Pose, Twist};
 use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
-use roverlab::io::{Clock, Drive, ErrorKind, Radio};
+use roverlab::io::{Clock, Drive, Error, ErrorKind, Radio};
 use roverlab::world::World;
 
 use crate::common::robots;
@@ -17,15 +18,19 @@ fn simulation(number: usize, options: SimOptions) -> (Simulation, Vec<SimRobot>)
     (simulation, robots)
 }
 
+fn assert_held_back(error: &Error) {
+    assert_eq!(error.kind(), ErrorKind::Other);
+    assert!(error.to_string().contains("robot 0 waits for robot 1"), "{error}");
+    assert!(error.to_string().contains("give each robot a thread of its own, or use a fleet"), "{error}");
+}
+
 #[test]
 fn two_robots_of_one_thread_are_an_error_and_no_deadlock() {
     let (_simulation, mut robots) = simulation(2, SimOptions::ideal());
     let [a, b] = robots.get_disjoint_mut([0, 1]).unwrap();
     a.straight(1.0, 0.3).unwrap();
     b.straight(1.0, 0.3).unwrap();
-    let error = a.wait_done().unwrap_err();
-    assert_eq!(error.kind(), ErrorKind::Other);
-    assert!(error.to_string().contains("robots 0 and 1 are driven from one thread"), "{error}");
+    assert_held_back(&a.wait_done().unwrap_err());
     // In turns they may be driven, as far as neither runs ahead.
     drop(robots.pop());
     robots[0].wait_done().unwrap();
@@ -34,12 +39,32 @@ fn two_robots_of_one_thread_are_an_error_and_no_deadlock() {
 #[test]
 fn a_robot_left_behind_in_the_thread_of_another_is_an_error_and_no_deadlock() {
     let (_simulation, mut robots) = simulation(2, SimOptions::ideal());
-    let error = robots[0].wait(1.0).unwrap_err();
-    assert_eq!(error.kind(), ErrorKind::Other);
-    assert!(error.to_string().contains("give each robot a thread of its own, or use a fleet"), "{error}");
+    assert_held_back(&robots[0].wait(1.0).unwrap_err());
     // Whoever lets go of it drives on.
     drop(robots.pop());
     robots[0].wait(1.0).unwrap();
+}
+
+#[test]
+fn nor_is_one_that_was_taken_in_a_third_thread_and_never_used() {
+    let (_simulation, mut robots) = simulation(2, SimOptions::ideal());
+    thread::scope(|scope| {
+        scope.spawn(|| assert_held_back(&robots[0].wait(1.0).unwrap_err()));
+    });
+}
+
+#[test]
+fn a_robot_used_here_and_given_to_a_thread_that_begins_later_is_waited_for() {
+    let (_simulation, mut robots) = simulation(2, SimOptions::ideal());
+    let (mut b, mut a) = (robots.pop().unwrap(), robots.pop().unwrap());
+    b.set_speed(Twist::new(0.1, 0.0)).unwrap();
+    thread::scope(|scope| {
+        scope.spawn(move || {
+            thread::sleep(Duration::from_millis(200));
+            b.wait(1.0).unwrap();
+        });
+        a.wait(1.0).unwrap();
+    });
 }
 
 #[test]

@@ -28,10 +28,8 @@ struct Program {
     phase: Phase,
     /// The tick up to which the program lets the world advance.
     tick: u64,
-    /// The thread that used the robot last, or took it.
+    /// The thread that used the robot last; none has since it was taken.
     thread: Option<ThreadId>,
-    /// Whether the robot has been used since it was taken.
-    used: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -53,27 +51,27 @@ impl State {
         }
     }
 
-    /// A robot that holds the world back, and that this thread was the last one to use or to take.
-    fn blocked_by_own_thread(&self, index: usize) -> Option<usize> {
+    /// A robot that holds the world back and that nobody may be about to use: this thread was the last one, or none has been.
+    fn held_back_by(&self, index: usize) -> Option<usize> {
         let me = thread::current().id();
         let tick = self.engine.tick;
         self.programs.iter().enumerate().position(|(other, program)| {
             other != index
                 && program.phase == Phase::Running
                 && program.tick == tick
-                && program.thread == Some(me)
+                && program.thread.is_none_or(|thread| thread == me)
         })
     }
 }
 
-/// How long a robot that was taken is waited for, in real time, by the thread that took it: a robot that no other thread
-/// uses until then has been left behind in this one.
-const FIRST_CALL: Duration = Duration::from_secs(5);
+/// The real time in which another thread must have begun to use a robot that holds the world back.
+const PATIENCE: Duration = Duration::from_secs(10);
 
-fn driven_from_one_thread(index: usize, other: usize) -> Error {
+fn held_back(index: usize, other: usize) -> Error {
     let message = format!(
-        "robots {index} and {other} are driven from one thread and wait for each other; \
-         give each robot a thread of its own, or use a fleet"
+        "robot {index} waits for robot {other}, which no other thread has used for {} s of real time; \
+         give each robot a thread of its own, or use a fleet",
+        PATIENCE.as_secs()
     );
     Error::new(ErrorKind::Other, message)
 }
@@ -102,7 +100,7 @@ impl Shared {
                 format!("robot {index} is already being driven"),
             ));
         }
-        *program = Program { phase: Phase::Running, tick, thread: Some(thread::current().id()), used: false };
+        *program = Program { phase: Phase::Running, tick, thread: None };
         Ok(())
     }
 
@@ -112,7 +110,6 @@ impl Shared {
         let alone = state.programs.len() == 1;
         if !alone {
             state.programs[index].thread = Some(thread::current().id());
-            state.programs[index].used = true;
         }
         if state.engine.tick == tick {
             return Ok(state);
@@ -124,20 +121,17 @@ impl Shared {
             self.advanced.notify_all();
         }
         while state.engine.tick < tick {
-            let Some(other) = state.blocked_by_own_thread(index) else {
+            let Some(other) = state.held_back_by(index) else {
                 state = self.advanced.wait(state).unwrap_or_else(PoisonError::into_inner);
                 continue;
             };
-            if state.programs[other].used {
-                return Err(driven_from_one_thread(index, other));
-            }
-            // Another thread may have been given the robot, and be about to use it.
             let before = state.engine.tick;
             let (woken, waited) =
-                self.advanced.wait_timeout(state, FIRST_CALL).unwrap_or_else(PoisonError::into_inner);
+                self.advanced.wait_timeout(state, PATIENCE).unwrap_or_else(PoisonError::into_inner);
             state = woken;
-            if waited.timed_out() && state.engine.tick == before && !state.programs[other].used {
-                return Err(driven_from_one_thread(index, other));
+            let still = state.engine.tick == before && state.held_back_by(index) == Some(other);
+            if waited.timed_out() && still {
+                return Err(held_back(index, other));
             }
         }
         Ok(state)

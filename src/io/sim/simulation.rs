@@ -11,8 +11,8 @@ use crate::world::Scene;
 /// One robot needs no thread. Of several, each gets a thread of its own; take all of them with
 /// [`robot`](Simulation::robot) before the first one drives, because the world waits for those that are taken, from
 /// the start. A robot that nobody takes stands still; one whose handle is dropped keeps its last command. A thread
-/// that drives one robot and keeps another one gets an error instead of waiting for itself: at once if it has used both,
-/// else after five seconds, in case another thread is about to use the other one.
+/// that waits ten seconds of real time for a robot that no other thread uses gets an error instead of waiting for ever: so it
+/// is with two robots in one thread. A program that thinks longer than that before its first call asks for the time first.
 #[derive(Debug, Clone)]
 pub struct Simulation {
     shared: Arc<Shared>,

@@ -69,6 +69,7 @@ impl Localisation {
 /// let found = localiser.localisation();
 /// assert_eq!(found.count(), 1);
 /// assert!(found.best().unwrap().pose.distance_to(start.position()) < 0.02);
+/// assert_eq!(simulation.truth().robot(0)?.contacts, 0);
 /// # Ok(())
 /// # }
 /// ```

