@@ -53,8 +53,8 @@
 //! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search, any-angle paths, quadtrees | [`nav::grid`], [`world`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
 //! | 12 Evolution | genetic algorithms, evolution strategy with covariance adaptation | [`evolve`] |
-//! | 14 Formula SAE | tracks of cones, the way between them, racing lines, referee; racing cars | [`drive::cones`], [`io::sim::race`] |
-//! | 14 Formula SAE | the safety system's state machine, monitors, stopping distance | [`drive::safety`] |
+//! | 14 Formula SAE | tracks of cones, the way between them, racing lines, referee; racing cars | [`race`], [`io::sim::race`] |
+//! | 14 Formula SAE | the safety system's state machine, monitors, stopping distance | [`safety`] |
 //!
 //! Beside the chapters: [`geometry`] has poses, angles and units; [`random`] seeded random streams; [`world`] what a
 //! world and a robot are, with random courses in [`world::generate`]; `picture` (with the feature of that name) draws
@@ -81,7 +81,9 @@ pub mod maze;
 pub mod nav;
 #[cfg(feature = "picture")]
 pub mod picture;
+pub mod race;
 pub mod random;
+pub mod safety;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;
 pub mod vision;

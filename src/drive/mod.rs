@@ -16,15 +16,12 @@
 //!   (chapter 5);
 //! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6); [`PidWallFollower`],
 //!   [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`] beside it;
-//! - [`cones`]: racing between cones (chapter 14): tracks, the way between cones, racing lines, speed profiles;
-//! - [`safety`]: the safety system of a car that drives by wire (chapter 14);
 //! - [`Pid`] and [`RelayTuner`]: a PID controller and how to find its gains.
 
 mod a_to_b;
 mod a_to_b_run;
 mod car;
 mod chase;
-pub mod cones;
 mod coverage;
 mod cruise;
 mod dubins;
@@ -37,7 +34,6 @@ mod path;
 mod pid;
 mod random_drive;
 mod relay;
-pub mod safety;
 mod spline;
 mod wall_following;
 mod way;
