@@ -44,12 +44,12 @@
 //! | 1 Robots and simulation | EyeSim's files: `.sim`, `.wld`, `.maz`, `.robi`, `.esObj` | [`world::formats`] |
 //! | 2 Sensors and programs | what a robot can be asked: distance sensors, camera, keys, display, radio | [`io`] |
 //! | 3 Driving | the v-omega drive, encoders; random drive, coverage, from A to B, path followers, PID | [`io`], [`drive`] |
-//! | 4 Lidar | scans, what they show, and taking their noise out; localisation in a known world | [`io`], [`nav`] |
+//! | 4 Lidar | scans, what they show, and taking their noise out; localisation in a known world | [`io`], [`scan`] |
 //! | 5 Swarms | any number of robots in one world; followers, chains, formations | [`io::sim`], [`drive`] |
 //! | 6 Wall following | walls of any shape, by distance sensors, PID or lidar | [`drive`] |
 //! | 7 Alternative drives | cars and wheels with rollers: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
 //! | 9 Mazes | models and files, flood fill, exploration, time-optimal runs | [`maze`] |
-//! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`world::formats`] |
+//! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`scan`], [`world::formats`] |
 //! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search, any-angle paths, quadtrees | [`nav::grid`], [`world`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
 //! | 12 Evolution | genetic algorithms, evolution strategy with covariance adaptation | [`evolve`] |
@@ -84,6 +84,7 @@ pub mod picture;
 pub mod race;
 pub mod random;
 pub mod safety;
+pub mod scan;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;
 pub mod vision;

@@ -9,7 +9,6 @@
 //! - [`Chase`]: the same four towards a goal that moves;
 //! - [`CarToB`]: the same for a car, within its turning circle (chapter 7);
 //! - [`OmniTracker`]: along any path with any heading on wheels with rollers (chapter 7);
-//! - [`LandmarkFilter`]: odometry corrected by what a lidar sees of known landmarks;
 //! - [`RandomDrive`]: straight on, and a random turn where something is ahead (chapter 3);
 //! - [`CoveragePlan`], [`Tour`] and [`CoverageMap`]: over the whole floor in lanes (chapters 3 and 6);
 //! - [`Follower`], [`Formation`] and [`Cruise`]: robots behind a robot, by what they see or by radio, and the one that leads
@@ -28,7 +27,6 @@ mod dubins;
 mod follow_me;
 mod follower;
 mod formation;
-mod landmark;
 mod omni;
 mod path;
 mod pid;
@@ -46,7 +44,6 @@ pub use cruise::{Cruise, CruiseParameters};
 pub use follow_me::{FollowMeObservation, FollowMeParameters, Follower, robots_in};
 pub use follower::{FollowerParameters, PathFollower, Steering};
 pub use formation::Formation;
-pub use landmark::{Landmark, LandmarkFilter};
 pub use omni::{OmniDriver, OmniParameters, OmniReference, OmniTracker};
 pub use path::{Path, PathPoint, Waypoint};
 pub use pid::{Pid, PidParameters};

@@ -8,7 +8,7 @@ use super::tracker::OBJECT;
 use super::{ColourFinder, ColourObservation, ColourTracker, TrackerParameters};
 use crate::geometry::{Point, Pose, Twist, Vector, angle_difference, direction, math, normalize_angle};
 use crate::io::{self, Camera, Clock, Drive, ErrorKind, Lidar, LidarScan, Resolution};
-use crate::nav::ScanMatcher;
+use crate::scan::ScanMatcher;
 
 /// How a [`PushHome`] drives.
 #[derive(Debug, Clone, Copy, PartialEq)]

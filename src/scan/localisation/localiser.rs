@@ -50,7 +50,7 @@ impl Localisation {
 /// use roverlab::geometry::{Point, Pose};
 /// use roverlab::io::{Drive, Lidar, Clock};
 /// use roverlab::io::sim::{SimOptions, Simulation};
-/// use roverlab::nav::{Localiser, LocaliserParameters, LocalisationMap};
+/// use roverlab::scan::{Localiser, LocaliserParameters, LocalisationMap};
 /// use roverlab::world::{RobotSpec, Scene, Wall, World};
 /// # fn main() -> roverlab::io::Result<()> {
 /// let mut world = World::walled(2.0, 3.0);

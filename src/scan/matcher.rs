@@ -1,6 +1,6 @@
 use nalgebra::{Matrix5, Vector2, Vector5};
 
-use super::scan_reference::{Evidence, Reference};
+use super::reference::{Evidence, Reference};
 use crate::geometry::{Point, Pose, math, normalize_angle};
 
 /// Corrects odometry by matching scans against earlier ones.
@@ -144,7 +144,7 @@ impl ScanMatcher {
     }
 
     /// Takes in what is to be seen from a pose by what is known of the world, in place of all earlier references.
-    pub(super) fn know(&mut self, pose: Pose, points: &[Point]) {
+    pub(crate) fn know(&mut self, pose: Pose, points: &[Point]) {
         self.references.clear();
         self.references.push(Reference::new(pose, points));
         self.active.clear();

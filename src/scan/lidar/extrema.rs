@@ -29,7 +29,7 @@ pub enum ExtremumKind {
 /// has no ends; in any other the first and the last beam may be extrema.
 ///
 /// ```
-/// use roverlab::nav::{ExtremumKind, local_extrema};
+/// use roverlab::scan::{ExtremumKind, local_extrema};
 /// use roverlab::io::LidarScan;
 /// let ranges = (0..360).map(|i| 1.0 + 0.3 * f64::from(i % 90 - 45).abs() / 45.0).collect();
 /// let scan = LidarScan { angle_min: 0.0, angle_increment: std::f64::consts::TAU / 360.0, range_max: 5.0, ranges,

@@ -48,7 +48,7 @@ pub enum LogOddsError {
 /// ```
 /// use roverlab::geometry::Pose;
 /// use roverlab::io::LidarScan;
-/// use roverlab::nav::{LogOddsMap, LogOddsParameters};
+/// use roverlab::scan::{LogOddsMap, LogOddsParameters};
 /// use roverlab::world::Cell;
 /// let mut map = LogOddsMap::new(20, 10, 0.1, Pose::default(), LogOddsParameters::default()).unwrap();
 /// let scan = LidarScan { range_max: 3.0, angle_increment: 0.01, ranges: vec![1.0], ..LidarScan::default() };

@@ -310,7 +310,7 @@ fn merge(a: Beam, b: Beam) -> Beam {
 
 /// Fails unless a scan covers a full turn.
 /// Fails for odometry that is no place, and for a scan without a single number.
-pub(super) fn check_measured(odometry: &Pose, scan: &LidarScan) -> Result<()> {
+pub(crate) fn check_measured(odometry: &Pose, scan: &LidarScan) -> Result<()> {
     if !odometry.is_finite() {
         let Pose { x, y, heading } = odometry;
         let found = format!("{x} m, {y} m, {heading} rad");

@@ -59,7 +59,7 @@ pub struct ScanFeatures {
 /// use roverlab::geometry::Pose;
 /// use roverlab::io::Lidar;
 /// use roverlab::io::sim::{SimOptions, Simulation};
-/// use roverlab::nav::{ExtractionParameters, extract_features};
+/// use roverlab::scan::{ExtractionParameters, extract_features};
 /// use roverlab::world::{RobotSpec, Scene, World};
 /// # fn main() -> roverlab::io::Result<()> {
 /// let scene = Scene::with_robot(World::walled(2.0, 1.5), RobotSpec::s4(), Pose::new(0.8, 0.6, 0.3));
