@@ -15,18 +15,21 @@
 //!   (chapter 5);
 //! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6); [`PidWallFollower`],
 //!   [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`] beside it;
+//! - [`colour`]: to what has a taught colour, and home with it; [`motion_watch`]: turning to what moves (chapter 11);
 //! - [`Pid`] and [`RelayTuner`]: a PID controller and how to find its gains.
 
 mod a_to_b;
 mod a_to_b_run;
 mod car;
 mod chase;
+pub mod colour;
 mod coverage;
 mod cruise;
 mod dubins;
 mod follow_me;
 mod follower;
 mod formation;
+pub mod motion_watch;
 mod omni;
 mod path;
 mod pid;

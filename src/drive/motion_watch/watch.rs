@@ -1,8 +1,8 @@
 use image::GrayImage;
 
-use super::{Motion, MotionDetector, MotionParameters, TurnCompensator};
 use crate::geometry::{Pose, Twist, angle_difference};
 use crate::io::{self, Camera, Clock, Drive, ErrorKind, Resolution};
+use crate::vision::motion::{Motion, MotionDetector, MotionParameters, TurnCompensator};
 use crate::vision::{Error, GrayView};
 
 /// How a [`MotionWatch`] looks and turns.

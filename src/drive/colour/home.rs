@@ -5,10 +5,11 @@ use image::RgbImage;
 use super::scan_memory::ScanMemory;
 use super::steering::{Exempt, Steering, directions, nearest, obstacles};
 use super::tracker::OBJECT;
-use super::{ColourFinder, ColourObservation, ColourTracker, TrackerParameters};
+use super::{ColourObservation, ColourTracker, TrackerParameters};
 use crate::geometry::{Point, Pose, Twist, Vector, angle_difference, direction, math, normalize_angle};
 use crate::io::{self, Camera, Clock, Drive, ErrorKind, Lidar, LidarScan, Resolution};
 use crate::scan::ScanMatcher;
+use crate::vision::ColourFinder;
 
 /// How a [`PushHome`] drives.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,10 +2,11 @@ use std::f64::consts::{PI, TAU};
 
 use image::RgbImage;
 
+use super::ColourObservation;
 use super::steering::{Exempt, Steering, nearest, obstacles};
-use super::{ColourFinder, ColourObservation, Sighting};
 use crate::geometry::{Point, Twist, angle_difference, math};
 use crate::io::{self, Camera, Clock, Drive, ErrorKind, Lidar, LidarScan, Resolution};
+use crate::vision::{ColourFinder, Sighting};
 
 /// How a [`ColourTracker`] drives.
 #[derive(Debug, Clone, Copy, PartialEq)]

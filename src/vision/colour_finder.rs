@@ -1,11 +1,10 @@
 use image::{GrayImage, RgbImage};
 
-use super::CameraGeometry;
-use crate::geometry::Point;
-use crate::vision::{
-    Components, Error, HueLimits, HueRange, HueScale, NO_HUE, RgbView, hue, hue_histogram_into,
-    hue_match_into, maximum,
+use super::{
+    CameraGeometry, Components, Error, HueLimits, HueRange, HueScale, NO_HUE, RgbView, hue,
+    hue_histogram_into, hue_match_into, maximum,
 };
+use crate::geometry::Point;
 
 /// How a colour is found in an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
