@@ -44,17 +44,17 @@
 //! | 1 Robots and simulation | EyeSim's files: `.sim`, `.wld`, `.maz`, `.robi`, `.esObj` | [`world::formats`] |
 //! | 2 Sensors and programs | what a robot can be asked: distance sensors, camera, keys, display, radio | [`io`] |
 //! | 3 Driving | the v-omega drive, encoders; random drive, coverage, from A to B, path followers, PID | [`io`], [`drive`] |
-//! | 4 Lidar | scans, what they show, and taking their noise out; localisation in a known world | [`io`], [`nav`] |
+//! | 4 Lidar | scans, what they show, and taking their noise out; localisation in a known world | [`io`], [`scan`] |
 //! | 5 Swarms | any number of robots in one world; followers, chains, formations | [`io::sim`], [`drive`] |
 //! | 6 Wall following | walls of any shape, by distance sensors, PID or lidar | [`drive`] |
 //! | 7 Alternative drives | cars and wheels with rollers: kinematics, control, simulation | [`kinematics`], [`drive`], [`io::sim`] |
 //! | 9 Mazes | models and files, flood fill, exploration, time-optimal runs | [`maze`] |
-//! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`world::formats`] |
+//! | 10 Navigation | DistBug, scan matching, which goals can be reached; ROS maps | [`nav`], [`scan`], [`world::formats`] |
 //! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search, any-angle paths, quadtrees | [`nav::grid`], [`world`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
 //! | 12 Evolution | genetic algorithms, evolution strategy with covariance adaptation | [`evolve`] |
-//! | 14 Formula SAE | tracks of cones, the way between them, racing lines, referee; racing cars | [`drive::cones`], [`io::sim::race`] |
-//! | 14 Formula SAE | the safety system's state machine, monitors, stopping distance | [`drive::safety`] |
+//! | 14 Formula SAE | tracks of cones, the way between them, racing lines, referee; racing cars | [`race`], [`io::sim::race`] |
+//! | 14 Formula SAE | the safety system's state machine, monitors, stopping distance | [`safety`] |
 //!
 //! Beside the chapters: [`geometry`] has poses, angles and units; [`random`] seeded random streams; [`world`] what a
 //! world and a robot are, with random courses in [`world::generate`]; `picture` (with the feature of that name) draws
@@ -81,7 +81,10 @@ pub mod maze;
 pub mod nav;
 #[cfg(feature = "picture")]
 pub mod picture;
+pub mod race;
 pub mod random;
+pub mod safety;
+pub mod scan;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;
 pub mod vision;

@@ -5,11 +5,11 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use roverlab::drive::safety::{
-    BaseStation, Beat, Causes, Panel, Requests, SafetyState, Station, Supervised, SupervisorParameters,
-};
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::{Clock, DistanceSensors, Drive, Lidar, LidarScan, LidarSettings, Psd, Result};
+use roverlab::safety::{
+    BaseStation, Beat, Causes, Panel, Requests, SafetyState, Station, Supervised, SupervisorParameters,
+};
 
 /// Counts what the present thread allocates.
 struct Counting;

@@ -6,9 +6,8 @@ use roverlab::geometry::{Point, Pose, Twist, Vector, angle_difference};
 use roverlab::io::sim::{NoiseModel, SimOptions, SimRobot, Simulation, Truth};
 use roverlab::io::wrappers::{Fault, Faulty};
 use roverlab::io::{Clock, Drive, ErrorKind, Lidar, LidarScan};
-use roverlab::nav::{
-    DistBug, DistBugEvent, DistBugObservation, DistBugOutcome, DistBugParameters, ScanFilter, ScanMatcher,
-};
+use roverlab::nav::{DistBug, DistBugEvent, DistBugObservation, DistBugOutcome, DistBugParameters};
+use roverlab::scan::{ScanFilter, ScanMatcher};
 use roverlab::world::{RobotSpec, Scene, Wall, World};
 
 /// A room with a block in it.

@@ -6,7 +6,7 @@ use std::{env, fs};
 
 #[test]
 fn the_safety_core_compiles_alone() {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/drive/safety");
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/safety");
     let folder = env::temp_dir().join(format!("roverlab-no-std-{}", std::process::id()));
     fs::create_dir_all(&folder).unwrap();
     let modules = ["cause", "machine", "monitor", "stopping"].map(|name| {

@@ -6,11 +6,11 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use roverlab::drive::cones::{
+use roverlab::geometry::{Point, Pose, Vector, math};
+use roverlab::race::{
     CarLimits, CentreLine, CentreLineParameters, Cone, GeneratedTrack, Lane, LaneParameters, LineSolver,
     RacingLineParameters, SpeedProfile, TrackOptions, generate, lane,
 };
-use roverlab::geometry::{Point, Pose, Vector, math};
 
 /// A map without colours, where the car is, and a way that was driven.
 struct Map {

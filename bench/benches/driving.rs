@@ -18,11 +18,11 @@ use roverlab::io::{Lidar, LidarScan};
 use roverlab::kinematics::{
     Ackermann, Differential, Displacement, OdometryErrors, OdometryUncertainty, Omni, PlanarTwist,
 };
-use roverlab::nav::{
+use roverlab::random::Stream;
+use roverlab::scan::{
     ExtractionParameters, Localisation, LocalisationMap, Localiser, LocaliserParameters, extract_features,
     local_extrema,
 };
-use roverlab::random::Stream;
 use roverlab::world::{RobotSpec, Scene, Wall, World};
 
 const GOAL: Pose = Pose::new(1.45, 0.65, 0.0);

@@ -1,7 +1,8 @@
-use roverlab::drive::{AToB, AToBOutcome, AToBParameters, Goal, Landmark, LandmarkFilter, Method, Path};
+use roverlab::drive::{AToB, AToBOutcome, AToBParameters, Goal, Method, Path};
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::{self, Clock, Drive, Lidar, LidarScan};
 use roverlab::kinematics::{Differential, OdometryErrors, OdometryUncertainty};
+use roverlab::scan::{Landmark, LandmarkFilter};
 
 /// Where to drive, and how. All places are in the frame of odometry.
 #[derive(Debug, Clone)]

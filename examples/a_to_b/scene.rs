@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
-use roverlab::drive::Landmark;
 use roverlab::geometry::{Point, Pose, direction, units};
+use roverlab::scan::Landmark;
 use roverlab::world::{Colour, Marker, Object, ObjectKind, RobotSpec, Scene, Shape, World};
 
 use crate::common::GoalOption;

@@ -1,4 +1,4 @@
-use roverlab::vision::tracking::FindMethod;
+use roverlab::vision::FindMethod;
 
 use crate::common::CommonArgs;
 

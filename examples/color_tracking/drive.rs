@@ -1,10 +1,10 @@
 use image::RgbImage;
+use roverlab::drive::colour::{
+    ColourOutcome, ColourTracker, HomeParameters, PushHome, PushOutcome, TrackerParameters,
+};
 use roverlab::geometry::Point;
 use roverlab::io::{self, Camera, Clock, Display, Drive, ErrorKind, Lidar, Picture, Pixel, Viewport};
-use roverlab::vision::tracking::{
-    CameraGeometry, ColourFinder, ColourOutcome, ColourTracker, FindMethod, HomeParameters, PushHome,
-    PushOutcome, Sighting, TrackerParameters, teach_hue,
-};
+use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod, Sighting, teach_hue};
 use roverlab::world::Colour;
 
 use super::Job;

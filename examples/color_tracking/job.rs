@@ -1,6 +1,6 @@
 use roverlab::io::Key;
 use roverlab::picture::{Mark, Picture};
-use roverlab::vision::tracking::{CameraGeometry, ColourFinder};
+use roverlab::vision::{CameraGeometry, ColourFinder};
 use roverlab::vision::{HueRange, HueScale, hue};
 use roverlab::world::{Colour, Footprint, Object, Scene};
 

@@ -6,7 +6,6 @@ use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use roverlab::drive::safety::{SpeedError, StoppingModel};
 use roverlab::geometry::Pose;
 use roverlab::io::log::{Attachment, Header, LogError, LogWriter, Player, Troop, Witness};
 use roverlab::io::robios::{RobiosRobot, RobiosTruth};
@@ -14,6 +13,7 @@ use roverlab::io::sim::race::{Race, RaceCarSpec, SharedRace};
 use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, Simulation};
 use roverlab::io::wrappers::{Deadman, Fault, Faulty, Quantised};
 use roverlab::io::{self, Key, RobotIo};
+use roverlab::safety::{SpeedError, StoppingModel};
 use roverlab::world::{MotorSpec, Scene, formats};
 
 use super::supervision::{DEADMAN, Stops, guarded};

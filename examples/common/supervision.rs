@@ -3,9 +3,6 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ambassador::Delegate;
-use roverlab::drive::safety::{
-    Beat, Causes, Panel, Requests, SafetyState, StopRecord, StoppingModel, Supervised, SupervisorParameters,
-};
 use roverlab::geometry::{Pose, Twist, angle_difference};
 use roverlab::io::delegate::{
     GrayImage, RgbImage, ambassador_impl_Camera, ambassador_impl_Clock, ambassador_impl_Display,
@@ -16,6 +13,9 @@ use roverlab::io::{
     Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys, Lidar,
     LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos,
     Viewport,
+};
+use roverlab::safety::{
+    Beat, Causes, Panel, Requests, SafetyState, StopRecord, StoppingModel, Supervised, SupervisorParameters,
 };
 use roverlab::world::Colour;
 use serde_json::{Value, json};

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use roverlab::drive::cones::{GapDriver, Verdict};
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
 use roverlab::io::sim::{NoiseModel, RobotTruth};
 use roverlab::io::{self, LidarScan, LidarSettings, RobotIo};
 use roverlab::picture::{Picture, Style};
+use roverlab::race::{GapDriver, Verdict};
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, Stage, rounded};
 use crate::cones::{Course, Judge, check_campaign, check_race, colour, pass};

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use roverlab::drive::cones::{Cone, Event, EventCourse};
 use roverlab::geometry::{Point, Pose, units};
 use roverlab::picture::{Picture, Style};
+use roverlab::race::{Cone, Event, EventCourse};
 use roverlab::world::Colour;
 use svg::Document;
 use svg::node::element::{Animate, AnimateTransform, Circle, Polygon, Polyline};

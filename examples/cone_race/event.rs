@@ -1,9 +1,9 @@
 //! One run of an acceleration or a skidpad.
 
-use roverlab::drive::cones::{EventCourse, EventParameters, EventPhase, EventRacer, EventShape};
 use roverlab::geometry::Point;
 use roverlab::io::sim::race::RaceCarSpec;
 use roverlab::io::{self, Resolution, RobotIo};
+use roverlab::race::{EventCourse, EventParameters, EventPhase, EventRacer, EventShape};
 
 use super::Sensors;
 use super::race::{Ending, Eyes, Outcome, Settings, limits};

@@ -1,8 +1,8 @@
 //! Lanes in the log of another car's drive.
 
-use roverlab::drive::cones::{Cone, ConeColour, ConeFrame, Lane, LaneFinder, LaneParameters};
 use roverlab::geometry::{Aabb, Point, Segment};
 use roverlab::picture::{Picture, Style};
+use roverlab::race::{Cone, ConeColour, ConeFrame, Lane, LaneFinder, LaneParameters};
 use roverlab::world::World;
 
 use super::{Args, Sensors};

@@ -1,14 +1,14 @@
 //! One race.
 
 use image::RgbImage;
-use roverlab::drive::cones::{
-    CameraMount, CameraSight, CarLimits, Cone, ConeMap, Hold, LaneFinder, LineTracker, RacePhase, Racer,
-    Sighting, SpeedProfile, Tyres, Verdict, sightings,
-};
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
 use roverlab::io::sim::{NoiseModel, RobotTruth};
 use roverlab::io::{self, Clock, LidarScan, RobotIo};
+use roverlab::race::{
+    CameraMount, CameraSight, CarLimits, Cone, ConeMap, Hold, LaneFinder, LineTracker, RacePhase, Racer,
+    Sighting, SpeedProfile, Tyres, Verdict, sightings,
+};
 
 use super::Sensors;
 use super::event;

@@ -3,13 +3,13 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use roverlab::drive::cones::{
-    CarOutline, CentreLine, CentreLineParameters, Cone, ConeColour, ConeTrack, Corridor, EventCourse,
-    GeneratedTrack, LaneParameters, RacerParameters, TrackFile, TrackOptions, generate, lined, parse_track,
-};
 use roverlab::geometry::{Aabb, Point, Pose, math};
 use roverlab::io::Resolution;
 use roverlab::io::sim::race::{RaceCarSpec, RaceCone};
+use roverlab::race::{
+    CarOutline, CentreLine, CentreLineParameters, Cone, ConeColour, ConeTrack, Corridor, EventCourse,
+    GeneratedTrack, LaneParameters, RacerParameters, TrackFile, TrackOptions, generate, lined, parse_track,
+};
 use roverlab::random::Stream;
 use roverlab::world::{Colour, Object, ObjectKind, Scene, Settings, Shape, World};
 

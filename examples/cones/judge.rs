@@ -1,9 +1,9 @@
 //! Who watches a car: the referee, with what is true about it.
 
-use roverlab::drive::cones::{EventReferee, Referee, Verdict};
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::{RobotTruth, TICK};
 use roverlab::io::{self, Clock};
+use roverlab::race::{EventReferee, Referee, Verdict};
 
 use super::course::Course;
 use crate::common::StageTruth;

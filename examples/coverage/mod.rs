@@ -15,9 +15,9 @@ use roverlab::drive::{
 use roverlab::geometry::{Point, Pose, units};
 use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
 use roverlab::io::{self, Clock, Drive, Lidar, LidarScan};
-use roverlab::nav::{LocalisationMap, Localiser, LocaliserParameters};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
+use roverlab::scan::{LocalisationMap, Localiser, LocaliserParameters};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};

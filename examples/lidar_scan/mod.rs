@@ -7,10 +7,10 @@ use image::RgbImage;
 use roverlab::geometry::{Point, Pose, units};
 use roverlab::io::sim::NoiseModel;
 use roverlab::io::{self, Clock, Display, Lidar, LidarScan};
-use roverlab::nav::{
+use roverlab::picture::{Picture, Style};
+use roverlab::scan::{
     ExtractionParameters, Extremum, ExtremumKind, ScanFeatures, extract_features, local_extrema, plot_scan,
 };
-use roverlab::picture::{Picture, Style};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, World};
 use serde_json::{Value, json};
 

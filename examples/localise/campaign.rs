@@ -1,7 +1,7 @@
 use std::fmt::Write as _;
 
 use roverlab::geometry::units::{to_deg, to_mm};
-use roverlab::nav::Localisation;
+use roverlab::scan::Localisation;
 use roverlab::world::{RobotSpec, Scene};
 use serde_json::{Value, json};
 

@@ -1,8 +1,8 @@
 use roverlab::drive::{RandomDrive, RandomDriveParameters};
 use roverlab::geometry::Twist;
 use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar, LidarScan};
-use roverlab::nav::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
 use roverlab::random::Stream;
+use roverlab::scan::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
 
 /// What the robot knows and is told.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 use roverlab::drive::RandomDriveParameters;
 use roverlab::geometry::{angle_difference, units};
 use roverlab::io::sim::NoiseModel;
-use roverlab::nav::{Localisation, LocalisationMap, LocaliserParameters};
+use roverlab::scan::{Localisation, LocalisationMap, LocaliserParameters};
 use roverlab::world::{RobotSpec, Scene};
 use serde_json::{Value, json};
 
@@ -135,7 +135,7 @@ fn report(run: &Run<Finding>) -> Report {
 }
 
 fn places(finding: &Finding) -> Vec<Value> {
-    let place = |hypothesis: &roverlab::nav::Hypothesis| {
+    let place = |hypothesis: &roverlab::scan::Hypothesis| {
         json!({
             "x_mm": millimetres(hypothesis.pose.x),
             "y_mm": millimetres(hypothesis.pose.y),

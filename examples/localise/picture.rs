@@ -1,6 +1,6 @@
 use roverlab::geometry::units;
-use roverlab::nav::Localisation;
 use roverlab::picture::{Mark, Picture, Style};
+use roverlab::scan::Localisation;
 use roverlab::world::{Colour, Scene};
 
 use super::Finding;

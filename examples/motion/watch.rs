@@ -1,7 +1,7 @@
+use roverlab::drive::motion_watch::{MotionWatch, WatchParameters};
 use roverlab::geometry::{Twist, angle_difference, math, units};
 use roverlab::io::{self, Display, Picture, Viewport};
 use roverlab::picture::Picture as Drawing;
-use roverlab::vision::motion::{MotionWatch, WatchParameters};
 
 use super::{Args, campaign, scene};
 use crate::common::{Failure, Outcome, Report, rounded};

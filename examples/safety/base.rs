@@ -1,7 +1,7 @@
 //! The other end of the radio link: the base station with its crew, and a camera that sees how far the car truly goes.
 
-use roverlab::drive::safety::{BaseStation, Beat, Causes, Panel, SafetyState, Station};
 use roverlab::geometry::Pose;
+use roverlab::safety::{BaseStation, Beat, Causes, Panel, SafetyState, Station};
 
 use super::crew::{Crew, Event};
 use crate::common::{DEADMAN, StageTruth};

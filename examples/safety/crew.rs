@@ -1,6 +1,6 @@
 //! The people around the car: they arm and start it, let something happen, and set it going again.
 
-use roverlab::drive::safety::{BaseStation, SafetyState, SupervisorParameters};
+use roverlab::safety::{BaseStation, SafetyState, SupervisorParameters};
 
 /// Something that happens while the car drives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

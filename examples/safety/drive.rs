@@ -2,15 +2,13 @@
 
 use std::fmt;
 
-use roverlab::drive::cones::{Racer, RacerParameters, sightings};
-use roverlab::drive::safety::{
-    Causes, SafetyState, SpeedError, StoppingModel, Supervised, SupervisorParameters,
-};
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::NoiseModel;
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
 use roverlab::io::wrappers::{Fault, FaultKind};
 use roverlab::io::{self, Clock, Drive, Lidar, LidarScan};
+use roverlab::race::{Racer, RacerParameters, sightings};
+use roverlab::safety::{Causes, SafetyState, SpeedError, StoppingModel, Supervised, SupervisorParameters};
 use serde_json::{Value, json};
 
 use super::Args;

@@ -9,35 +9,32 @@
 //! - [`Chase`]: the same four towards a goal that moves;
 //! - [`CarToB`]: the same for a car, within its turning circle (chapter 7);
 //! - [`OmniTracker`]: along any path with any heading on wheels with rollers (chapter 7);
-//! - [`LandmarkFilter`]: odometry corrected by what a lidar sees of known landmarks;
 //! - [`RandomDrive`]: straight on, and a random turn where something is ahead (chapter 3);
 //! - [`CoveragePlan`], [`Tour`] and [`CoverageMap`]: over the whole floor in lanes (chapters 3 and 6);
 //! - [`Follower`], [`Formation`] and [`Cruise`]: robots behind a robot, by what they see or by radio, and the one that leads
 //!   (chapter 5);
 //! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6); [`PidWallFollower`],
 //!   [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`] beside it;
-//! - [`cones`]: racing between cones (chapter 14): tracks, the way between cones, racing lines, speed profiles;
-//! - [`safety`]: the safety system of a car that drives by wire (chapter 14);
+//! - [`colour`]: to what has a taught colour, and home with it; [`motion_watch`]: turning to what moves (chapter 11);
 //! - [`Pid`] and [`RelayTuner`]: a PID controller and how to find its gains.
 
 mod a_to_b;
 mod a_to_b_run;
 mod car;
 mod chase;
-pub mod cones;
+pub mod colour;
 mod coverage;
 mod cruise;
 mod dubins;
 mod follow_me;
 mod follower;
 mod formation;
-mod landmark;
+pub mod motion_watch;
 mod omni;
 mod path;
 mod pid;
 mod random_drive;
 mod relay;
-pub mod safety;
 mod spline;
 mod wall_following;
 mod way;
@@ -50,7 +47,6 @@ pub use cruise::{Cruise, CruiseParameters};
 pub use follow_me::{FollowMeObservation, FollowMeParameters, Follower, robots_in};
 pub use follower::{FollowerParameters, PathFollower, Steering};
 pub use formation::Formation;
-pub use landmark::{Landmark, LandmarkFilter};
 pub use omni::{OmniDriver, OmniParameters, OmniReference, OmniTracker};
 pub use path::{Path, PathPoint, Waypoint};
 pub use pid::{Pid, PidParameters};

@@ -5,14 +5,8 @@ mod boundary;
 mod bug;
 pub mod graph;
 pub mod grid;
-mod lidar;
-mod localisation;
-mod log_odds;
 mod navigate;
 mod reachability;
-mod scan_filter;
-mod scan_matcher;
-mod scan_reference;
 mod surroundings;
 
 pub use boundary::WallSide;
@@ -21,15 +15,7 @@ pub use bug::{
     Class1, DistBug, DistBugEvent, DistBugObservation, DistBugOutcome, DistBugParameters, DistBugPhase,
     Guarantee, LeaveBug, OneBug, PathBound, Rev1, Rev2, TangentBug, UnknownBug, run_bug,
 };
-pub use lidar::{
-    ExtractionParameters, Extremum, ExtremumKind, ScanCorner, ScanFeatures, ScanObject, ScanWall,
-    extract_features, local_extrema, plot_scan,
-};
-pub use localisation::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
-pub use log_odds::{LogOddsError, LogOddsMap, LogOddsParameters};
 pub use navigate::{
     NavigateEvent, NavigateObservation, NavigateOutcome, NavigateParameters, NavigatePhase, Navigator,
 };
 pub use reachability::Reachability;
-pub use scan_filter::ScanFilter;
-pub use scan_matcher::ScanMatcher;

@@ -1,6 +1,6 @@
 use proptest::prelude::*;
 
-use crate::drive::cones::{GeneratedTrack, TrackOptions, generate};
+use crate::race::{GeneratedTrack, TrackOptions, generate};
 
 /// Closed tracks of cones, legal by the rules of Formula Student: of all lengths, widths, distances of cones, and with up to
 /// three hairpins.
@@ -13,7 +13,7 @@ pub fn cone_tracks() -> impl Strategy<Value = GeneratedTrack> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drive::cones::{CentreLine, CentreLineParameters, RacingLineParameters, minimum_curvature};
+    use crate::race::{CentreLine, CentreLineParameters, RacingLineParameters, minimum_curvature};
 
     proptest! {
         #![proptest_config(crate::testing::cases(12))]

@@ -16,7 +16,7 @@
 //! # }
 //! ```
 //!
-//! [`tracking`] and [`motion`] have the robots that use them.
+//! [`motion`] has what moves in an image. The robots that drive by what they see are in [`drive`](crate::drive).
 //!
 //! The functions in `_into` write into memory of the caller's and allocate nothing. The loops are plain Rust that the
 //! compiler vectorises for several generations of processors; the best one that the processor has is chosen at run
@@ -31,7 +31,9 @@
 
 mod blocks;
 mod border;
+mod camera_geometry;
 mod canny;
+mod colour_finder;
 mod combine;
 mod components;
 mod difference;
@@ -57,11 +59,12 @@ mod segment_order;
 mod sobel;
 #[cfg(test)]
 mod tests;
-pub mod tracking;
 mod view;
 
 pub use border::Border;
+pub use camera_geometry::CameraGeometry;
 pub use canny::{Canny, CannyThresholds};
+pub use colour_finder::{ColourFinder, FindMethod, Sighting, teach_hue};
 pub use combine::{overlay_gray_into, overlay_into, threshold_into};
 pub use components::{Blob, Components};
 pub use difference::{absolute_difference_into, mean_difference, sector_differences};

@@ -4,9 +4,9 @@ use super::wall_ends::{WallEnds, overhangs};
 use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math};
 use crate::io::{Error, Result};
 use crate::nav::boundary::{WallSide, nearer_side};
-use crate::nav::scan_filter::check_measured;
 use crate::nav::surroundings::Surroundings;
-use crate::nav::{ScanFilter, ScanMatcher};
+use crate::scan::check_measured;
+use crate::scan::{ScanFilter, ScanMatcher};
 
 /// What all bugs have in common: where they are, what they see, and how they steer.
 ///

@@ -1,6 +1,6 @@
 use crate::geometry::{Point, Pose};
 use crate::io::LidarScan;
-use crate::nav::ScanMatcher;
+use crate::scan::ScanMatcher;
 use crate::world::World;
 use crate::world::space::{Scanner, Solid, Space};
 

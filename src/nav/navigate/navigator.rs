@@ -7,9 +7,9 @@ use super::steering::Steering;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::beat::Beat;
 use crate::io::{Clock, Drive, Error, Lidar, LidarScan, Result};
-use crate::nav::ScanFilter;
-use crate::nav::scan_filter::check_measured;
 use crate::nav::surroundings::Surroundings;
+use crate::scan::ScanFilter;
+use crate::scan::check_measured;
 use crate::world::{GridCell, World};
 
 /// Drives to a goal through a known world, of which something may have changed (book, section 10.3 and after).

@@ -6,8 +6,6 @@ mod range;
 #[cfg(test)]
 mod tests;
 mod turning;
-mod watch;
 
 pub use detector::{Motion, MotionDetector, MotionParameters};
 pub use turning::{TurnCompensator, Turned};
-pub use watch::{MotionWatch, WatchParameters};

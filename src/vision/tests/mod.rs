@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod colour;
+mod colour_finder;
 mod gradients;
 mod naive;
 mod shapes;

@@ -6,8 +6,8 @@ use std::fs;
 use std::path::PathBuf;
 
 use crate::{common, cone_drive, cone_race};
-use roverlab::drive::cones::{Cone, ConeColour, ConeTrack, write_eufs, write_fssim};
 use roverlab::geometry::{Point, Pose, direction};
+use roverlab::race::{Cone, ConeColour, ConeTrack, write_eufs, write_fssim};
 use serde_json::Value;
 
 /// Runs the example with `--json`. Returns its status and its report, and what it said on standard error.

@@ -3,17 +3,15 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use roverlab::drive::colour::{ColourTracker, HomeParameters, PushHome, TrackerParameters};
+use roverlab::drive::motion_watch::{MotionWatch, WatchParameters};
 use roverlab::geometry::{Pose, Twist};
 use roverlab::io::sim::{Fleet, Lcd, SimOptions, Simulation};
 use roverlab::io::wrappers::Traced;
 use roverlab::io::{
     Camera, Clock, Display, DisplayOption, Drive, Fill, Font, Key, Keys, Resolution, Result, Servos, Viewport,
 };
-use roverlab::vision::motion::{MotionWatch, WatchParameters};
-use roverlab::vision::tracking::{
-    CameraGeometry, ColourFinder, ColourTracker, FindMethod, HomeParameters, PushHome, TrackerParameters,
-    teach_hue,
-};
+use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod, teach_hue};
 use roverlab::vision::{HueScale, hue};
 use roverlab::world::{Colour, RobotPlacement, RobotSpec, Scene, World};
 

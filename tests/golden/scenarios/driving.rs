@@ -2,9 +2,9 @@
 
 use roverlab::drive::{
     AToB, AToBParameters, CarDriver, CarParameters, CarToB, Chase, ChaseParameters, CoverageMap,
-    CoverageParameters, CoveragePlan, FollowerParameters, Goal, Landmark, LandmarkFilter, Method, OmniDriver,
-    OmniParameters, OmniTracker, Path, PathFollower, Pid, PidParameters, RandomDrive, RandomDriveParameters,
-    RelayTuner, Steering, Tour, TourParameters, Waypoint,
+    CoverageParameters, CoveragePlan, FollowerParameters, Goal, Method, OmniDriver, OmniParameters,
+    OmniTracker, Path, PathFollower, Pid, PidParameters, RandomDrive, RandomDriveParameters, RelayTuner,
+    Steering, Tour, TourParameters, Waypoint,
 };
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::{Clock, Drive, Lidar, LidarScan, Result};
@@ -13,6 +13,7 @@ use roverlab::kinematics::{
     WheelSpeeds, advance, advance_planar,
 };
 use roverlab::random::Stream;
+use roverlab::scan::{Landmark, LandmarkFilter};
 use roverlab::world::{DriveSpec, ObjectKind, RobotSpec, Scene, Shape, World};
 
 use super::{Scenario, in_room, noise, note, other, ride, room};

@@ -3,7 +3,8 @@
 
 use std::ops::ControlFlow;
 
-use roverlab::drive::cones::{EventParameters, EventRacer, GapDriver, Racer, RacerParameters};
+use roverlab::drive::colour::{ColourTracker, HomeParameters, PushHome, TrackerParameters};
+use roverlab::drive::motion_watch::{MotionWatch, WatchParameters};
 use roverlab::drive::{
     AToB, AToBParameters, CarDriver, CarParameters, CarToB, Chase, ChaseParameters, Goal, LidarWallFollower,
     LidarWallParameters, Method, OmniDriver, OmniParameters, OmniTracker, RandomDrive, RandomDriveParameters,
@@ -18,11 +19,9 @@ use roverlab::io::{Clock, Display, Drive, Encoders, Keys, Lidar, Radio, Result, 
 use roverlab::kinematics::{Ackermann, Omni};
 use roverlab::maze::{Direction, LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters};
 use roverlab::nav::{BugKind, BugParameters, DistBug, NavigateParameters, Navigator, run_bug};
+use roverlab::race::{EventParameters, EventRacer, GapDriver, Racer, RacerParameters};
 use roverlab::random::Stream;
-use roverlab::vision::motion::{MotionWatch, WatchParameters};
-use roverlab::vision::tracking::{
-    CameraGeometry, ColourFinder, ColourTracker, FindMethod, HomeParameters, PushHome, TrackerParameters,
-};
+use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
 use roverlab::world::{Colour, RobotSpec, Scene, World};
 
 use super::{Scenario, noise, note, note_truth, other, room, text};

@@ -2,17 +2,17 @@
 
 use std::f64::consts::TAU;
 
-use roverlab::drive::cones::{
-    CameraMount, CameraSight, Cone, ConeColour, ConeMap, ConeTrack, EventCourse, EventParameters, EventRacer,
-    EventReferee, GapDriver, GeneratedTrack, LaneFinder, Racer, RacerParameters, Referee, TrackOptions,
-    generate, sightings,
-};
 use roverlab::geometry::{Point, Pose, Twist, direction};
 use roverlab::io::sim::NoiseModel;
 use roverlab::io::sim::race::{CarModel, Race, RaceCarSpec, RaceCone, RaceOptions};
 use roverlab::io::wrappers::Traced;
 use roverlab::io::{
     Camera, Clock, Drive, Lidar, LidarScan, LidarSettings, Motors, Resolution, Result, Servos,
+};
+use roverlab::race::{
+    CameraMount, CameraSight, Cone, ConeColour, ConeMap, ConeTrack, EventCourse, EventParameters, EventRacer,
+    EventReferee, GapDriver, GeneratedTrack, LaneFinder, Racer, RacerParameters, Referee, TrackOptions,
+    generate, sightings,
 };
 use roverlab::world::Colour;
 

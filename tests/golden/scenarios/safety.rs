@@ -1,16 +1,16 @@
 //! Supervision: the state machine, the monitors, and vehicles that are stopped.
 
-use roverlab::drive::cones::GapDriver;
-use roverlab::drive::safety::{
-    BaseStation, Beat, Causes, Deadline, Debounce, Panel, Requests, SafetyCore, SafetyInputs, SafetyState,
-    SignalLimits, SignalMonitor, Station, Supervised, SupervisorParameters, is_inside,
-};
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions};
 use roverlab::io::sim::{NoiseModel, Simulation};
 use roverlab::io::wrappers::{Fault, Faulty, Traced};
 use roverlab::io::{Clock, Drive, Lidar, MockRobot, Motors, Result, Servos};
+use roverlab::race::GapDriver;
 use roverlab::random::Stream;
+use roverlab::safety::{
+    BaseStation, Beat, Causes, Deadline, Debounce, Panel, Requests, SafetyCore, SafetyInputs, SafetyState,
+    SignalLimits, SignalMonitor, Station, Supervised, SupervisorParameters, is_inside,
+};
 use roverlab::world::Colour;
 
 use super::{Scenario, in_room, noise, note, text};

@@ -6,12 +6,12 @@ use roverlab::drive::{RandomDrive, RandomDriveParameters};
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::sim::Lcd;
 use roverlab::io::{Clock, Drive, Lidar, LidarScan, Result};
-use roverlab::nav::{
-    ExtractionParameters, Localisation, LocalisationMap, Localiser, LocaliserParameters, LogOddsMap,
-    LogOddsParameters, NavigateParameters, Navigator, ScanFilter, ScanMatcher, extract_features,
-    local_extrema, plot_scan,
-};
+use roverlab::nav::{NavigateParameters, Navigator};
 use roverlab::random::Stream;
+use roverlab::scan::{
+    ExtractionParameters, Localisation, LocalisationMap, Localiser, LocaliserParameters, LogOddsMap,
+    LogOddsParameters, ScanFilter, ScanMatcher, extract_features, local_extrema, plot_scan,
+};
 use roverlab::world::{Object, ObjectKind, RobotSpec, Scene};
 
 use super::{Scenario, fnv, in_room, noise, note, other, ride, room};

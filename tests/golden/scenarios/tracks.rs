@@ -1,14 +1,14 @@
 //! The parts of a race: tracks and their files, the lane between cones, the centre line, the racing line and its speeds.
 
-use roverlab::drive::cones::{
+use roverlab::geometry::{Point, Pose};
+use roverlab::io::Result;
+use roverlab::kinematics::{Displacement, advance};
+use roverlab::race::{
     CarLimits, CentreLine, CentreLineParameters, ClosedSpline, Cone, ConeColour, Corridor, EventCourse, Hold,
     LaneFinder, LaneParameters, LineTracker, RacerParameters, RacingLineParameters, SpeedProfile, TrackFile,
     TrackOptions, TrackerParameters, Tyres, generate, lined, minimum_curvature, parse_track, write_eufs,
     write_fssim, write_tum,
 };
-use roverlab::geometry::{Point, Pose};
-use roverlab::io::Result;
-use roverlab::kinematics::{Displacement, advance};
 
 use super::races::{skidpad, strip};
 use super::{Scenario, note, other};

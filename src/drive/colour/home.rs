@@ -1,0 +1,299 @@
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use image::RgbImage;
+
+use super::scan_memory::ScanMemory;
+use super::steering::{Exempt, Steering, directions, nearest, obstacles};
+use super::tracker::OBJECT;
+use super::{ColourObservation, ColourTracker, TrackerParameters};
+use crate::geometry::{Point, Pose, Twist, Vector, angle_difference, direction, math, normalize_angle};
+use crate::io::{self, Camera, Clock, Drive, ErrorKind, Lidar, LidarScan, Resolution};
+use crate::scan::ScanMatcher;
+use crate::vision::ColourFinder;
+
+/// How a [`PushHome`] drives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HomeParameters {
+    /// How it finds the object and drives to it.
+    pub tracker: TrackerParameters,
+    /// Metres from the object's middle at which the robot goes round it.
+    pub round: f64,
+    /// Metres per second while it pushes.
+    pub push_speed: f64,
+    /// How fast a wrong direction of the push is to fall, in 1/s.
+    pub correction: f64,
+    /// The object is home when its middle is so near, in metres.
+    pub near: f64,
+    /// Metres that are kept free beside robot and object while it pushes.
+    pub clearance: f64,
+    /// Metres ahead of the object that are looked at for what is in the way.
+    pub foresight: f64,
+}
+
+impl Default for HomeParameters {
+    fn default() -> Self {
+        // Farther from the object than for reaching it alone: there has to be room to go round.
+        let tracker = TrackerParameters { gap: 0.14, ..TrackerParameters::default() };
+        Self {
+            tracker,
+            round: 0.24,
+            push_speed: 0.10,
+            correction: 1.0,
+            near: 0.08,
+            clearance: 0.05,
+            foresight: 0.5,
+        }
+    }
+}
+
+/// What a [`PushHome`] is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HomePhase {
+    /// It looks for the object and drives to it.
+    Finding,
+    /// It drives round to the far side.
+    Rounding,
+    /// It turns to the object.
+    Turning,
+    /// It pushes.
+    Pushing,
+}
+
+/// How pushing something home ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PushOutcome {
+    /// The object is home.
+    Home,
+    /// Time was over.
+    TimedOut,
+    /// The drive stalled.
+    Blocked,
+}
+
+/// Finds what has a taught colour, drives round it and pushes it home (book, section 11.6).
+///
+/// A round robot that pushes a round thing turns it out of the way as soon as the push goes past its middle. The lidar
+/// keeps the thing where the push needs it: with `r` metres from the robot's middle to the thing's and the heading `e`
+/// to the left of the line between them, that line turns by `-v sin(e) / r` radians a second, so a wrong direction
+/// `d` falls as `-k d` where `sin(e) = r k d / v`.
+///
+/// What stands in the way is passed, also while the thing hides it: what the lidar has met is remembered. Where home is, is
+/// told by matching scans, since odometry is lost on a robot that turns and pushes so much.
+#[derive(Debug, Clone)]
+pub struct PushHome {
+    parameters: HomeParameters,
+    tracker: ColourTracker,
+    home: Point,
+    phase: HomePhase,
+    /// Where the object is, in odometry's frame of the beginning.
+    object: Point,
+    /// Metres from the object's middle to what the lidar meets.
+    size: f64,
+    lost: f64,
+    memory: ScanMemory,
+    /// What knows better than odometry where the robot is.
+    matcher: ScanMatcher,
+    points: Vec<Point>,
+}
+
+impl PushHome {
+    /// A behaviour that brings what `finder` finds to a place in odometry's frame.
+    pub fn new(finder: ColourFinder, home: Point, parameters: HomeParameters) -> Self {
+        Self {
+            parameters,
+            tracker: ColourTracker::new(finder, parameters.tracker),
+            home,
+            phase: HomePhase::Finding,
+            object: home,
+            size: 0.03,
+            lost: 0.0,
+            memory: ScanMemory::default(),
+            matcher: ScanMatcher::new(),
+            points: Vec::new(),
+        }
+    }
+
+    /// What it is doing.
+    pub fn phase(&self) -> HomePhase {
+        self.phase
+    }
+
+    /// Where it takes the object to be, in the frame that odometry began with, once it has found it.
+    pub fn object(&self) -> Option<Point> {
+        (self.phase != HomePhase::Finding).then_some(self.object)
+    }
+
+    /// The speed for an observation; `None` when the object is home.
+    pub fn step(&mut self, seen: &ColourObservation<'_>) -> Result<Option<Twist>, crate::vision::Error> {
+        let seen = &ColourObservation { pose: self.localise(seen), ..*seen };
+        if self.phase == HomePhase::Finding {
+            let twist = self.tracker.step(seen)?;
+            let Some(target) = self.tracker.target().filter(|_| twist.is_none()) else { return Ok(twist) };
+            (self.object, self.lost) = (target, 0.0);
+            self.phase = HomePhase::Rounding;
+        }
+        if !self.look(seen) {
+            self.phase = HomePhase::Finding;
+            self.tracker = self.tracker.anew();
+            return Ok(Some(Twist::STOP));
+        }
+        let exempt = Exempt { place: self.object, reach: OBJECT };
+        self.memory.see(seen.scan, seen.pose, seen.time, exempt);
+        if (self.object - self.home).norm() <= self.parameters.near {
+            return Ok(None);
+        }
+        Ok(Some(match self.phase {
+            HomePhase::Rounding => self.round(seen),
+            HomePhase::Turning => self.turn(seen),
+            _ => self.push(seen),
+        }))
+    }
+
+    /// Where the robot is by odometry and by what stands still around it.
+    fn localise(&mut self, seen: &ColourObservation<'_>) -> Pose {
+        let place = self.matcher.corrected(seen.pose).to_local(self.object);
+        let moves = (self.phase != HomePhase::Finding).then_some(Exempt { place, reach: OBJECT });
+        obstacles(seen.scan, moves, &mut self.points);
+        let pose = self.matcher.update(seen.pose, &self.points);
+        self.matcher.learn(&self.points);
+        pose
+    }
+
+    /// Looks by lidar where the object is now. `false` when it has not been there for a second.
+    fn look(&mut self, seen: &ColourObservation<'_>) -> bool {
+        let place = seen.pose.to_local(self.object);
+        let bearing = math::atan2(place.y, place.x);
+        let half = math::asin((0.06 / place.coords.norm()).min(1.0));
+        // Noise may put what is touched right into the robot's middle, which is in no direction.
+        let unit = |point: Point| point.coords.try_normalize(f64::MIN_POSITIVE);
+        let cluster = |near: Point| {
+            let points = seen.scan.points().filter(|point| (point - near).norm() < 0.05);
+            let sum: Vector = points.filter_map(unit).sum();
+            sum.try_normalize(f64::MIN_POSITIVE).map(|towards| (near.coords.norm(), towards))
+        };
+        let met = nearest(seen.scan, bearing, half.max(0.15)).filter(|met| (met - place).norm() < 0.12);
+        match met.and_then(cluster) {
+            Some((range, towards)) => {
+                let middle = Point::origin() + towards * (range + self.size);
+                self.object = seen.pose.to_world(middle);
+                self.lost = 0.0;
+            }
+            None => self.lost += self.parameters.tracker.period,
+        }
+        self.lost <= 1.0
+    }
+
+    fn steering(&self) -> Steering {
+        let TrackerParameters { radius, margin, speed, turn_speed, .. } = self.parameters.tracker;
+        Steering { radius, margin, speed, turn_speed }
+    }
+
+    /// Where the object is to go next: home, or past what is in the way, and so that there is room for the robot behind it.
+    fn direction_home(&mut self) -> f64 {
+        let way = self.home - self.object;
+        let straight = math::atan2(way.y, way.x);
+        let margin = self.parameters.clearance;
+        let steering = Steering { margin, ..self.steering() };
+        self.memory.from(self.object, &mut self.points);
+        let (ahead, behind) = (way.norm().min(self.parameters.foresight), self.parameters.round);
+        let is_free = |angle: f64, reach| steering.free(&self.points, angle, reach) >= reach;
+        let mut free =
+            directions(straight).filter(|&angle| is_free(angle, ahead) && is_free(angle + PI, behind));
+        free.next().unwrap_or(straight)
+    }
+
+    /// Goes round the object to the side that is away from where it is to go.
+    fn round(&mut self, seen: &ColourObservation<'_>) -> Twist {
+        let wanted = normalize_angle(self.direction_home() + PI);
+        let mine = seen.pose.position() - self.object;
+        let present = math::atan2(mine.y, mine.x);
+        let left = angle_difference(wanted, present);
+        if left.abs() < 0.12 && (mine.norm() - self.parameters.round).abs() < 0.06 {
+            self.phase = HomePhase::Turning;
+            return Twist::STOP;
+        }
+        let next = present + left.clamp(-0.5, 0.5);
+        let place = seen.pose.to_local(self.object + direction(next) * self.parameters.round);
+        let (distance, bearing) = (place.coords.norm(), math::atan2(place.y, place.x));
+        obstacles(seen.scan, None, &mut self.points);
+        match self.steering().way(&self.points, bearing, distance.clamp(0.02, 0.12)) {
+            Some(way) => self.steering().towards(way, 0.5 * self.parameters.tracker.speed),
+            None => Twist::new(0.0, 0.5),
+        }
+    }
+
+    /// Turns to the object.
+    fn turn(&mut self, seen: &ColourObservation<'_>) -> Twist {
+        let place = seen.pose.to_local(self.object);
+        let bearing = math::atan2(place.y, place.x);
+        if bearing.abs() < 0.05 {
+            self.phase = HomePhase::Pushing;
+        }
+        let fastest = self.parameters.tracker.turn_speed;
+        Twist::new(0.0, (3.0 * bearing).clamp(-fastest, fastest))
+    }
+
+    /// Drives to the object and pushes it.
+    fn push(&mut self, seen: &ColourObservation<'_>) -> Twist {
+        let HomeParameters { push_speed, correction, .. } = self.parameters;
+        let place = seen.pose.to_local(self.object);
+        let (distance, bearing) = (place.coords.norm(), math::atan2(place.y, place.x));
+        let line = normalize_angle(seen.pose.heading + bearing);
+        let wrong = angle_difference(line, self.direction_home());
+        if wrong.abs() > 0.9 || bearing.abs() > FRAC_PI_2 {
+            self.phase = HomePhase::Rounding;
+            return Twist::new(-push_speed, 0.0);
+        }
+        let touching = distance < self.parameters.tracker.radius + self.size + 0.015;
+        let wanted = if touching {
+            -math::asin((distance * correction * wrong / push_speed).clamp(-0.55, 0.55))
+        } else {
+            0.0
+        };
+        let angular = (4.0 * (bearing - wanted)).clamp(-1.5, 1.5);
+        Twist::new(push_speed * (1.0 - bearing.abs() / PI), angular)
+    }
+
+    /// Drives until the object is home or time is over. `observe` is called at each step.
+    pub fn run<R: Camera + Clock + Drive + Lidar + ?Sized>(
+        &mut self,
+        robot: &mut R,
+        time_limit: f64,
+        mut observe: impl FnMut(&mut R, &Self, &RgbImage) -> io::Result<()>,
+    ) -> io::Result<PushOutcome> {
+        robot.set_resolution(Resolution::Qqvga)?;
+        let (mut image, mut scan) = (RgbImage::default(), LidarScan::default());
+        let begin = robot.now()?;
+        let (mut next, mut last) = (begin, f64::NEG_INFINITY);
+        loop {
+            let time = robot.now()?;
+            if time <= last {
+                return Err(io::Error::new(ErrorKind::Other, "the robot's clock stands still"));
+            }
+            last = time;
+            if self.phase == HomePhase::Finding {
+                robot.image_into(&mut image)?;
+            }
+            robot.scan_into(&mut scan)?;
+            let pose = robot.pose()?;
+            let twist = self
+                .step(&ColourObservation { time, image: &image, scan: &scan, pose })
+                .map_err(|error| io::Error::new(ErrorKind::Other, error.to_string()).with_source(error))?;
+            observe(robot, self, &image)?;
+            let outcome = if time - begin >= time_limit {
+                Some(PushOutcome::TimedOut)
+            } else if robot.is_stalled()? {
+                Some(PushOutcome::Blocked)
+            } else {
+                twist.is_none().then_some(PushOutcome::Home)
+            };
+            robot.set_speed(twist.filter(|_| outcome.is_none()).unwrap_or(Twist::STOP))?;
+            if let Some(outcome) = outcome {
+                return Ok(outcome);
+            }
+            next += self.parameters.tracker.period;
+            let pause = next - robot.now()?;
+            robot.wait(pause)?;
+        }
+    }
+}

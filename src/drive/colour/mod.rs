@@ -1,0 +1,14 @@
+//! Driving by colour (book, section 11.4 and the tasks of 11.6): driving to what a
+//! [`ColourFinder`](crate::vision::ColourFinder) finds, and pushing it home.
+
+mod home;
+mod observation;
+mod scan_memory;
+mod steering;
+#[cfg(test)]
+mod tests;
+mod tracker;
+
+pub use home::{HomeParameters, HomePhase, PushHome, PushOutcome};
+pub use observation::ColourObservation;
+pub use tracker::{ColourOutcome, ColourPhase, ColourTracker, TrackerParameters};

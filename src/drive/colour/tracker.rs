@@ -1,0 +1,294 @@
+use std::f64::consts::{PI, TAU};
+
+use image::RgbImage;
+
+use super::ColourObservation;
+use super::steering::{Exempt, Steering, nearest, obstacles};
+use crate::geometry::{Point, Twist, angle_difference, math};
+use crate::io::{self, Camera, Clock, Drive, ErrorKind, Lidar, LidarScan, Resolution};
+use crate::vision::{ColourFinder, Sighting};
+
+/// How a [`ColourTracker`] drives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrackerParameters {
+    /// Metres per second.
+    pub speed: f64,
+    /// Radians per second.
+    pub turn_speed: f64,
+    /// Metres from the robot's middle to its rim.
+    pub radius: f64,
+    /// Metres that it keeps free beside it.
+    pub margin: f64,
+    /// Metres between the robot's rim and the object when it is reached.
+    pub gap: f64,
+    /// Seconds for which an object is driven to that is out of sight.
+    pub memory: f64,
+    /// Metres driven to look from elsewhere.
+    pub leg: f64,
+    /// Seconds between two steps.
+    pub period: f64,
+}
+
+impl Default for TrackerParameters {
+    fn default() -> Self {
+        Self {
+            speed: 0.25,
+            turn_speed: 1.2,
+            radius: 0.060,
+            margin: 0.025,
+            gap: 0.05,
+            memory: 4.0,
+            leg: 0.8,
+            period: 0.1,
+        }
+    }
+}
+
+/// What a [`ColourTracker`] is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColourPhase {
+    /// It turns on the spot and looks for the colour.
+    Searching,
+    /// It drives elsewhere to look from there.
+    Roaming,
+    /// It drives to the object.
+    Approaching,
+}
+
+/// How driving to a colour ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColourOutcome {
+    /// The robot stands before the object.
+    Reached,
+    /// Time was over.
+    TimedOut,
+    /// The drive stalled.
+    Blocked,
+}
+
+/// Drives to what has a taught colour, and searches for it when it is not in sight (book, Programs 11.9 to 11.11).
+///
+/// The camera finds the object; the lidar tells how far it is and keeps the robot from touching anything else. Where the
+/// object is lost behind something, the robot goes on to where it was; where it is nowhere, the robot turns once and
+/// then looks from another place, the freest that it has not been to.
+#[derive(Debug, Clone)]
+pub struct ColourTracker {
+    finder: ColourFinder,
+    parameters: TrackerParameters,
+    phase: ColourPhase,
+    /// Where the object is, in odometry's frame, and when it was seen last.
+    target: Option<(Point, f64)>,
+    sighting: Option<Sighting>,
+    /// How far the robot has turned in this search, and its heading before.
+    turned: f64,
+    heading: Option<f64>,
+    /// Where it has looked from, and where it goes to look.
+    places: Vec<Point>,
+    goal: Option<Point>,
+    leg_start: f64,
+    points: Vec<Point>,
+}
+
+/// Metres around an object's place within which what the lidar sees is the object.
+pub(super) const OBJECT: f64 = 0.09;
+
+impl ColourTracker {
+    /// A tracker that begins with a search.
+    pub fn new(finder: ColourFinder, parameters: TrackerParameters) -> Self {
+        Self {
+            finder,
+            parameters,
+            phase: ColourPhase::Searching,
+            target: None,
+            sighting: None,
+            turned: 0.0,
+            heading: None,
+            places: Vec::new(),
+            goal: None,
+            leg_start: 0.0,
+            points: Vec::new(),
+        }
+    }
+
+    /// The same tracker before its first search.
+    #[must_use]
+    pub(super) fn anew(&self) -> Self {
+        Self::new(self.finder.clone(), self.parameters)
+    }
+
+    /// What it is doing.
+    pub fn phase(&self) -> ColourPhase {
+        self.phase
+    }
+
+    /// Where in the last image the object was.
+    pub fn sighting(&self) -> Option<Sighting> {
+        self.sighting
+    }
+
+    /// Where it takes the object to be, in odometry's frame.
+    pub fn target(&self) -> Option<Point> {
+        self.target.map(|(place, _)| place)
+    }
+
+    /// The speed for an observation; `None` when the object is reached.
+    pub fn step(&mut self, seen: &ColourObservation<'_>) -> Result<Option<Twist>, crate::vision::Error> {
+        self.sighting = self.finder.find(seen.image)?;
+        if let Some(sighting) = self.sighting {
+            let place = self.place_of(&sighting, seen.scan);
+            self.target = Some((seen.pose.to_world(place), seen.time));
+            self.phase = ColourPhase::Approaching;
+        }
+        Ok(match (self.phase, self.target) {
+            (ColourPhase::Approaching, Some((target, last))) => self.approach(seen, target, last),
+            (ColourPhase::Roaming, _) => Some(self.roam(seen)),
+            _ => Some(self.search(seen)),
+        })
+    }
+
+    /// Where something is, in the robot's frame: on the floor, or where the lidar meets it.
+    fn place_of(&self, sighting: &Sighting, scan: &LidarScan) -> Point {
+        let camera = self.finder.camera;
+        if let Some(place) = sighting.place
+            && place.coords.norm() < 2.5
+        {
+            // The lidar knows the distance better where it sees the same thing.
+            let bearing = math::atan2(place.y, place.x);
+            let met = nearest(scan, bearing, 0.06);
+            return met.filter(|met| (met - place).norm() < 0.3 * place.coords.norm()).unwrap_or(place);
+        }
+        let met = nearest(scan, sighting.bearing, 0.05).map_or(3.0, |met| met.coords.norm());
+        let depth = (met - camera.ahead).max(0.01);
+        let (sin, cos) = math::sin_cos(sighting.bearing);
+        Point::new(camera.ahead + depth * cos, depth * sin)
+    }
+
+    fn approach(&mut self, seen: &ColourObservation<'_>, target: Point, last: f64) -> Option<Twist> {
+        let p = self.parameters;
+        let place = seen.pose.to_local(target);
+        let (distance, bearing) = (place.coords.norm(), math::atan2(place.y, place.x));
+        let unseen = seen.time - last;
+        // Where it should be in sight and is not, it is gone.
+        let in_view = bearing.abs() < 0.4 * self.finder.camera.field_of_view;
+        if unseen > p.memory || (in_view && unseen > 0.8) {
+            self.begin_search();
+            return Some(self.search(seen));
+        }
+        let gap = nearest(seen.scan, bearing, 0.15).map_or(f64::INFINITY, |met| met.coords.norm()) - p.radius;
+        let is_near = self.sighting.is_some_and(|s| s.at_the_bottom || s.place.is_some_and(|p| p.x < 0.3));
+        if is_near && gap <= p.gap && bearing.abs() < 0.25 {
+            return None;
+        }
+        let steering = self.steering();
+        let exempt = Exempt { place, reach: OBJECT };
+        obstacles(seen.scan, Some(exempt), &mut self.points);
+        let reach = (distance - p.radius - p.gap).clamp(0.02, 0.5);
+        let Some(way) = steering.way(&self.points, bearing, reach) else {
+            return Some(Twist::new(0.0, p.turn_speed));
+        };
+        let straight = (way - bearing).abs() < 1e-9;
+        let fastest = if straight { 0.03 + 1.2 * (gap - 0.8 * p.gap).max(0.0) } else { p.speed };
+        Some(steering.towards(way, fastest))
+    }
+
+    fn steering(&self) -> Steering {
+        let TrackerParameters { radius, margin, speed, turn_speed, .. } = self.parameters;
+        Steering { radius, margin, speed, turn_speed }
+    }
+
+    fn begin_search(&mut self) {
+        self.phase = ColourPhase::Searching;
+        (self.turned, self.heading, self.target) = (0.0, None, None);
+    }
+
+    /// Turns on the spot, and chooses another place after a full turn.
+    fn search(&mut self, seen: &ColourObservation<'_>) -> Twist {
+        let heading = seen.pose.heading;
+        self.turned += self.heading.map_or(0.0, |before| angle_difference(heading, before).abs());
+        self.heading = Some(heading);
+        if self.turned < TAU + 0.2 {
+            // Slower than it drives, so that images show enough of everything.
+            return Twist::new(0.0, 0.8 * self.parameters.turn_speed);
+        }
+        self.places.push(seen.pose.position());
+        self.phase = ColourPhase::Roaming;
+        self.leg_start = seen.time;
+        self.goal = Some(self.freest(seen));
+        self.roam(seen)
+    }
+
+    /// The end of the longest free way, with places preferred that are far from those looked from before.
+    fn freest(&mut self, seen: &ColourObservation<'_>) -> Point {
+        obstacles(seen.scan, None, &mut self.points);
+        let steering = self.steering();
+        let ends = (0..24).map(|i| {
+            let angle = f64::from(i) * (TAU / 24.0);
+            let free = steering.free(&self.points, angle, self.parameters.leg);
+            let end = seen.pose.to_world(Point::origin() + crate::geometry::direction(angle) * free);
+            let away = |place: &Point| (end - place).norm();
+            let news = self.places.iter().map(away).fold(f64::INFINITY, f64::min);
+            (end, free + 2.0 * news.min(2.0 * self.parameters.leg))
+        });
+        let best = ends.max_by(|a, b| a.1.total_cmp(&b.1));
+        best.map_or(seen.pose.position(), |(end, _)| end)
+    }
+
+    fn roam(&mut self, seen: &ColourObservation<'_>) -> Twist {
+        let place = self.goal.map_or(Point::origin(), |goal| seen.pose.to_local(goal));
+        let (distance, bearing) = (place.coords.norm(), math::atan2(place.y, place.x));
+        obstacles(seen.scan, None, &mut self.points);
+        let steering = self.steering();
+        let way = steering.way(&self.points, bearing, distance.clamp(0.02, 0.3));
+        let slow = seen.time - self.leg_start > 4.0 * self.parameters.leg / self.parameters.speed + 4.0;
+        match way {
+            Some(way) if distance > 0.05 && !slow && (way - bearing).abs() < 0.5 * PI => {
+                steering.towards(way, self.parameters.speed)
+            }
+            _ => {
+                self.begin_search();
+                Twist::STOP
+            }
+        }
+    }
+
+    /// Drives until the object is reached or time is over. `observe` is called at each step.
+    pub fn run<R: Camera + Clock + Drive + Lidar + ?Sized>(
+        &mut self,
+        robot: &mut R,
+        time_limit: f64,
+        mut observe: impl FnMut(&mut R, &Self, &RgbImage) -> io::Result<()>,
+    ) -> io::Result<ColourOutcome> {
+        robot.set_resolution(Resolution::Qqvga)?;
+        let (mut image, mut scan) = (RgbImage::default(), LidarScan::default());
+        let begin = robot.now()?;
+        let (mut next, mut last) = (begin, f64::NEG_INFINITY);
+        loop {
+            let time = robot.now()?;
+            if time <= last {
+                return Err(io::Error::new(ErrorKind::Other, "the robot's clock stands still"));
+            }
+            last = time;
+            robot.image_into(&mut image)?;
+            robot.scan_into(&mut scan)?;
+            let pose = robot.pose()?;
+            let twist = self.step(&ColourObservation { time, image: &image, scan: &scan, pose });
+            let twist = twist
+                .map_err(|error| io::Error::new(ErrorKind::Other, error.to_string()).with_source(error))?;
+            observe(robot, self, &image)?;
+            let outcome = if time - begin >= time_limit {
+                Some(ColourOutcome::TimedOut)
+            } else if robot.is_stalled()? {
+                Some(ColourOutcome::Blocked)
+            } else {
+                twist.is_none().then_some(ColourOutcome::Reached)
+            };
+            robot.set_speed(twist.filter(|_| outcome.is_none()).unwrap_or(Twist::STOP))?;
+            if let Some(outcome) = outcome {
+                return Ok(outcome);
+            }
+            next += self.parameters.period;
+            let pause = next - robot.now()?;
+            robot.wait(pause)?;
+        }
+    }
+}

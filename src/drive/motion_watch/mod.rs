@@ -1,0 +1,7 @@
+//! Turning to what moves (book, section 11.5), and seeing it while turning (section 11.6).
+
+#[cfg(test)]
+mod tests;
+mod watch;
+
+pub use watch::{MotionWatch, WatchParameters};

@@ -1,0 +1,241 @@
+use super::error::{PlanError, positive};
+use crate::geometry::{Point, Segment, Vector};
+
+/// A place on the centre line, and how far the track reaches to both sides of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Station {
+    /// Where it is.
+    pub position: Point,
+    /// The unit vector to the left.
+    pub normal: Vector,
+    /// Metres to the left edge.
+    pub left: f64,
+    /// Metres to the right edge.
+    pub right: f64,
+}
+
+impl Station {
+    /// The point so many metres to the left of the centre line.
+    pub fn aside(&self, offset: f64) -> Point {
+        self.position + self.normal * offset
+    }
+}
+
+/// A track as a centre line with widths, closed to a loop or open.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Corridor {
+    stations: Vec<Station>,
+    closed: bool,
+}
+
+impl Corridor {
+    /// A loop from points in the order in which they are driven, each with the metres to the left and to the right edge.
+    pub fn closed(points: &[(Point, f64, f64)]) -> Result<Self, PlanError> {
+        Self::new(points, true)
+    }
+
+    /// The same for a track with two ends.
+    pub fn open(points: &[(Point, f64, f64)]) -> Result<Self, PlanError> {
+        Self::new(points, false)
+    }
+
+    fn new(points: &[(Point, f64, f64)], closed: bool) -> Result<Self, PlanError> {
+        let n = points.len();
+        let needed = if closed { 5 } else { 2 };
+        if n < needed {
+            return Err(PlanError::TooFew { found: n, needed });
+        }
+        let at = |i: usize| points[i % n].0;
+        let mut stations = Vec::with_capacity(n);
+        for (index, &(position, left, right)) in points.iter().enumerate() {
+            positive("width to the left", left)?;
+            positive("width to the right", right)?;
+            let (before, after) = if closed {
+                (at(index + n - 1), at(index + 1))
+            } else {
+                (at(index.saturating_sub(1)), at((index + 1).min(n - 1)))
+            };
+            let (along, next) = (after - before, after - position);
+            let length = along.norm();
+            let last = !closed && index + 1 == n;
+            if !(length > 1e-9 && length.is_finite() && (last || next.norm() > 1e-9)) {
+                return Err(PlanError::Degenerate { index });
+            }
+            let normal = Vector::new(-along.y, along.x) / length;
+            stations.push(Station { position, normal, left, right });
+        }
+        Ok(Self { stations, closed })
+    }
+
+    /// The stations in the order of driving.
+    pub fn stations(&self) -> &[Station] {
+        &self.stations
+    }
+
+    /// The same loop with the station nearest to a place as its first one. A corridor with two ends stays as it is.
+    #[must_use]
+    pub fn beginning_near(mut self, place: Point) -> Self {
+        if self.closed {
+            let away = |i: &usize| (self.stations[*i].position - place).norm_squared();
+            let nearest = (0..self.stations.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
+            self.stations.rotate_left(nearest.unwrap_or(0));
+        }
+        self
+    }
+
+    /// Whether it is a loop.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Metres along the centre line, by its chords.
+    pub fn length(&self) -> f64 {
+        self.pairs().map(|(a, b)| (b.position - a.position).norm()).sum()
+    }
+
+    /// The left or the right edge as a chain of points.
+    pub fn edge(&self, left: bool) -> Vec<Point> {
+        self.stations.iter().map(|s| if left { s.aside(s.left) } else { s.aside(-s.right) }).collect()
+    }
+
+    /// Stations with their next ones.
+    fn pairs(&self) -> impl Iterator<Item = (&Station, &Station)> {
+        let n = self.stations.len();
+        let count = if self.closed { n } else { n - 1 };
+        (0..count).map(move |i| (&self.stations[i], &self.stations[(i + 1) % n]))
+    }
+
+    /// For each station the offsets to the left, from least to most, at which a line keeps `margin` metres from both edges.
+    ///
+    /// Fails where nothing is left between them. O(n) as long as stations are not much closer than the margin.
+    pub fn free(&self, margin: f64) -> Result<Vec<[f64; 2]>, PlanError> {
+        if !(margin >= 0.0 && margin.is_finite()) {
+            return Err(PlanError::Parameter {
+                name: "margin",
+                value: margin,
+                expected: "0 or more, finite",
+            });
+        }
+        let margins = vec![[margin; 2]; self.stations.len()];
+        let ranges = self.ranges(&margins);
+        let narrow = ranges.iter().position(|[low, high]| high <= low);
+        narrow.map_or(Ok(ranges), |index| {
+            let station = &self.stations[index];
+            let free = (station.left + station.right).max(0.0);
+            Err(PlanError::TooNarrow { index, free, needed: 2.0 * margin })
+        })
+    }
+
+    /// The same for margins of their own at each station, to the right and to the left. Where nothing is left between them, the
+    /// offset at which as much is missing on both sides.
+    pub(super) fn room(&self, margins: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let mut ranges = self.ranges(margins);
+        for range in ranges.iter_mut().filter(|[low, high]| high <= low) {
+            let middle = 0.5 * (range[0] + range[1]);
+            *range = [middle - 1e-6, middle + 1e-6];
+        }
+        ranges
+    }
+
+    fn ranges(&self, margins: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let edges = [self.edge(false), self.edge(true)];
+        let limit = |index: usize, left: bool| {
+            let station = &self.stations[index];
+            let (side, sign) = if left { (1, 1.0) } else { (0, -1.0) };
+            let margin = margins[index][side];
+            let mut offset = if left { station.left } else { station.right } - margin;
+            // Towards the middle by what is missing, until nothing is: where the edge is oblique, or bends in.
+            for _ in 0..12 {
+                let place = station.aside(sign * offset);
+                let missing = margin - self.distance_to_edge(&edges[side], index, place, margin);
+                if missing <= 1e-9 {
+                    break;
+                }
+                offset -= missing * 1.05 + 1e-9;
+            }
+            sign * offset
+        };
+        (0..self.stations.len()).map(|index| [limit(index, false), limit(index, true)]).collect()
+    }
+
+    /// The distance of a point from an edge near a station, as far as it may be below `reach`.
+    fn distance_to_edge(&self, edge: &[Point], index: usize, point: Point, reach: f64) -> f64 {
+        let n = edge.len();
+        let mut least = f64::INFINITY;
+        for forward in [true, false] {
+            let (mut passed, mut at) = (0.0, index);
+            // The edge may be much shorter than the centre line inside a bend, so both are counted.
+            for _ in 0..n / 2 {
+                let at_end = if forward { at + 1 == n } else { at == 0 };
+                if at_end && !self.closed {
+                    break;
+                }
+                let next = if forward { (at + 1) % n } else { (at + n - 1) % n };
+                let segment = Segment::new(edge[at], edge[next]);
+                least = least.min(segment.distance_to(point));
+                passed += (edge[next] - edge[at]).norm();
+                at = next;
+                if passed > 2.0 * reach + 1.0 {
+                    break;
+                }
+            }
+        }
+        least
+    }
+
+    /// The same corridor with stations about every `step` metres: on a spline through the present ones where it is a loop, on
+    /// its chords where it is open.
+    pub fn resampled(&self, step: f64) -> Result<Self, PlanError> {
+        positive("step", step)?;
+        let n = self.stations.len();
+        if !self.closed {
+            let mut points = Vec::new();
+            for (a, b) in self.pairs() {
+                let parts = ((b.position - a.position).norm() / step).ceil().max(1.0);
+                for k in 0..parts as usize {
+                    let share = k as f64 / parts;
+                    let mix = |a: f64, b: f64| a + (b - a) * share;
+                    let position = a.position + (b.position - a.position) * share;
+                    points.push((position, mix(a.left, b.left), mix(a.right, b.right)));
+                }
+            }
+            let last = self.stations[n - 1];
+            points.push((last.position, last.left, last.right));
+            return Self::open(&points);
+        }
+        let positions: Vec<Point> = self.stations.iter().map(|s| s.position).collect();
+        let spline = super::ClosedSpline::through(&positions)?;
+        let places = spline.resample_with_pieces(step);
+        let points: Vec<_> = places
+            .iter()
+            .map(|&(piece, share, position)| {
+                let (a, b) = (&self.stations[piece], &self.stations[(piece + 1) % n]);
+                (position, a.left + (b.left - a.left) * share, a.right + (b.right - a.right) * share)
+            })
+            .collect();
+        Self::closed(&points)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::race::{TrackOptions, generate};
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(crate::testing::cases(20))]
+        #[test]
+        fn a_loop_begins_where_it_is_told(seed in 0_u64..50, share in 0.0..1.0f64, aside in -1.0..1.0f64) {
+            let corridor = generate(seed, &TrackOptions::drawn(seed)).unwrap().corridor;
+            let n = corridor.stations().len();
+            let at = ((share * n as f64) as usize).min(n - 1);
+            let turned = corridor.clone().beginning_near(corridor.stations()[at].aside(aside));
+            // The same stations in the same order, from the nearest one on.
+            let first = turned.stations()[0];
+            let shift = corridor.stations().iter().position(|station| *station == first).unwrap();
+            prop_assert!((0..n).all(|i| turned.stations()[i] == corridor.stations()[(i + shift) % n]));
+            prop_assert!((shift + n - at) % n <= 2 || (at + n - shift) % n <= 2, "{shift} for {at}");
+            prop_assert!((turned.length() - corridor.length()).abs() < 1e-9);
+        }
+    }
+}

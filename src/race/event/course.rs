@@ -1,0 +1,142 @@
+use super::layout::{EventLayout, EventShape};
+use super::line::{self, crossings, straight};
+use crate::geometry::{Point, Pose};
+use crate::race::cone::{ConeColour, ConeTrack, Event};
+use crate::race::corridor::Corridor;
+use crate::race::profile::{CarLimits, SpeedProfile};
+use crate::race::racing_line::CarOutline;
+
+/// The course of an event, as a referee measures it out among all cones.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EventCourse {
+    event: Event,
+    layout: EventLayout,
+    corridor: Corridor,
+    /// Stations of the lines where each time begins and ends.
+    timed: Vec<[usize; 2]>,
+}
+
+/// Metres of an acceleration from line to line, and of the way behind its finish, where no cones say more.
+const STRIP: (f64, f64) = (75.0, 25.0);
+/// Metres from the nose to the start line where no cones say more.
+const TO_START: f64 = 0.3;
+/// Metres from the nose, ahead and behind, within which the gate of the start stands.
+const GATE: f64 = 8.0;
+/// Metres of a course behind the rear axle of a car at its start.
+const BEHIND: f64 = 1.0;
+
+impl EventCourse {
+    /// The course among the cones of a track, for a car with an outline. `None` for tracks of laps, and where the cones stand as
+    /// at none of the events.
+    ///
+    /// Lines are the gates of the track, or else those between its large cones; of a skidpad the one through its middle.
+    pub fn of(track: &ConeTrack, outline: &CarOutline) -> Option<Self> {
+        let start = track.start_pose()?;
+        match track.event() {
+            Event::Laps => None,
+            Event::Acceleration => Self::acceleration(track, start, outline.nose),
+            Event::Skidpad => Self::skidpad(track, start),
+        }
+    }
+
+    fn acceleration(track: &ConeTrack, start: Pose, nose: f64) -> Option<Self> {
+        let mut layout = EventLayout::find(&track.cones, start, EventShape::STRIP)?;
+        layout.pose = layout.pose.compose(&Pose::new(nose, 0.0, 0.0));
+        let along = |place: Point| layout.pose.to_local(place).x;
+        let gates: Vec<f64> = if track.gates.is_empty() {
+            track.of(ConeColour::BigOrange).map(along).collect()
+        } else {
+            track.gates.iter().flatten().map(|place| along(*place)).collect()
+        };
+        let mean = |near: &dyn Fn(f64) -> bool| {
+            let places: Vec<f64> = gates.iter().copied().filter(|x| near(*x)).collect();
+            (!places.is_empty()).then(|| places.iter().sum::<f64>() / places.len() as f64)
+        };
+        let begin = mean(&|x| x.abs() < GATE).unwrap_or(TO_START);
+        let end = mean(&|x| x >= GATE).unwrap_or(begin + STRIP.0);
+        let box_end = track.of(ConeColour::Orange).map(along).fold(f64::NEG_INFINITY, f64::max);
+        let box_end = if box_end > end { box_end } else { end + STRIP.1 };
+        let points = straight(-nose - BEHIND, box_end);
+        let station = |x: f64| points.partition_point(|point| point.x < x - 1e-9);
+        let timed = vec![[station(begin), station(end)]];
+        Self::new(Event::Acceleration, layout, &points, timed)
+    }
+
+    fn skidpad(track: &ConeTrack, start: Pose) -> Option<Self> {
+        let layout = EventLayout::find(&track.cones, start, EventShape::EIGHT)?;
+        let along = |place: Point| layout.pose.to_local(place).x;
+        let box_end = track.of(ConeColour::Orange).map(along).fold(f64::NEG_INFINITY, f64::max);
+        let ends = [along(start.position()) - BEHIND, if box_end > 10.0 { box_end } else { STRIP.1 }];
+        let EventShape::Eight { apart, .. } = layout.shape else { return None };
+        // Circles that meet at the origin.
+        let points = line::eight(apart, apart, ends);
+        let lines = crossings(ends);
+        let timed = vec![[lines[1], lines[2]], [lines[3], lines[4]]];
+        Self::new(Event::Skidpad, layout, &points, timed)
+    }
+
+    fn new(event: Event, layout: EventLayout, points: &[Point], timed: Vec<[usize; 2]>) -> Option<Self> {
+        let rows = points.iter().map(|point| {
+            let sides = match layout.shape {
+                EventShape::Eight { apart, inner, outer } if point.y > 0.0 => [apart - inner, outer - apart],
+                EventShape::Eight { apart, inner, outer } if point.y < 0.0 => [outer - apart, apart - inner],
+                _ => [layout.shape.half_width(); 2],
+            };
+            (layout.pose.to_world(*point), sides[0], sides[1])
+        });
+        let corridor = Corridor::open(&rows.collect::<Vec<_>>()).ok()?;
+        Some(Self { event, layout, corridor, timed })
+    }
+
+    /// Which event it is of.
+    pub fn event(&self) -> Event {
+        self.event
+    }
+
+    /// Its edges in the frame of the track.
+    pub fn layout(&self) -> &EventLayout {
+        &self.layout
+    }
+
+    /// The whole way between its edges, from behind the start to the end of the lane behind the finish.
+    pub fn corridor(&self) -> &Corridor {
+        &self.corridor
+    }
+
+    /// Stations of the lines where each time begins and ends: one time of an acceleration; of a skidpad that of the second lap to the
+    /// right, then to the left.
+    pub fn timed(&self) -> &[[usize; 2]] {
+        &self.timed
+    }
+
+    /// Seconds of each time at the quasi-steady optimum of a car with some limits: straight on from standing, as fast as it can
+    /// still stand before the end of the lane, or around the inner cones as near as its width lets it.
+    pub fn optima(&self, limits: &CarLimits, outline: &CarOutline) -> Vec<f64> {
+        match self.layout.shape {
+            EventShape::Strip { .. } => self.strip_optimum(limits, outline).into_iter().collect(),
+            EventShape::Eight { .. } => {
+                let touches = outline.half_width + ConeColour::Unknown.radius();
+                let radius = line::radius(self.layout.shape, touches);
+                let speed =
+                    (limits.hold.across(1.0 / radius, limits.drive) * radius).sqrt().min(limits.top_speed);
+                vec![std::f64::consts::TAU * radius / speed; self.timed.len()]
+            }
+        }
+    }
+
+    /// That of a strip: stations are where the nose is.
+    fn strip_optimum(&self, limits: &CarLimits, outline: &CarOutline) -> Option<f64> {
+        let stations = self.corridor.stations();
+        let along = |k: usize| self.layout.pose.to_local(stations[k].position).x;
+        let first = (0..stations.len()).find(|&k| along(k) >= -1e-9)?;
+        let last = (first..stations.len()).rev().find(|&k| {
+            along(k) <= along(stations.len() - 1) - ConeColour::Orange.radius() - outline.room.min(0.1)
+        })?;
+        let points: Vec<Point> = stations[first..=last].iter().map(|s| s.position).collect();
+        let profile = SpeedProfile::open(&points, limits, 0.0, 0.0).ok()?;
+        let [begin, end] = (*self.timed.first()?).map(|station| station.saturating_sub(first));
+        let pieces = begin..end.min(points.len() - 1);
+        let seconds = |i: usize| 2.0 * profile.lengths[i] / (profile.speeds[i] + profile.speeds[i + 1]);
+        Some(pieces.map(seconds).sum())
+    }
+}

@@ -1,0 +1,338 @@
+//! What the books of rules say of a strip and of a skidpad, and where that is among cones.
+
+use nalgebra::{Matrix6, Vector6};
+
+use crate::geometry::{Point, Pose, Vector, normalize_angle};
+use crate::race::cone::Cone;
+
+/// The edges between which an event is driven, by a few numbers: which cones stand where on an edge differs from place to place.
+///
+/// In its frame x is ahead of the car at the start and y to its left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum EventShape {
+    /// Two straight rows along x.
+    Strip {
+        /// Metres from the middle to each row.
+        half_width: f64,
+    },
+    /// Two pairs of circles, to the right and to the left of the origin, and the lanes along x that lead to it and away from it.
+    Eight {
+        /// Metres from the origin to each centre.
+        apart: f64,
+        /// Radius of the inner circles in metres.
+        inner: f64,
+        /// Radius of the outer circles in metres.
+        outer: f64,
+    },
+}
+
+/// An edge near a place.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    /// Metres of the place beyond the edge.
+    off: f64,
+    /// How that changes with the place, and with the numbers of the shape.
+    by_place: Vector,
+    by_shape: [f64; 3],
+}
+
+/// Metres along x from the origin of a skidpad beyond which its lanes are straight rows.
+const LANES: f64 = 6.5;
+
+impl EventShape {
+    /// A strip as wide as the rules let it be at least.
+    pub const STRIP: Self = Self::Strip { half_width: 1.5 };
+    /// The skidpad of the rules of Formula Student: centres 18.25 m from each other, circles of 15.25 and 21.25 m.
+    pub const EIGHT: Self = Self::Eight { apart: 9.125, inner: 7.625, outer: 10.625 };
+
+    /// Its numbers.
+    pub(super) fn numbers(&self) -> [f64; 3] {
+        match *self {
+            Self::Strip { half_width } => [half_width, 0.0, 0.0],
+            Self::Eight { apart, inner, outer } => [apart, inner, outer],
+        }
+    }
+
+    /// The same kind with other numbers.
+    fn with(&self, [first, inner, outer]: [f64; 3]) -> Self {
+        match self {
+            Self::Strip { .. } => Self::Strip { half_width: first },
+            Self::Eight { .. } => Self::Eight { apart: first, inner, outer },
+        }
+    }
+
+    /// That of the rules, and metres by which a course may differ from it.
+    fn ruled(&self) -> (Self, f64) {
+        match self {
+            Self::Strip { .. } => (Self::Strip { half_width: 1.75 }, 0.5),
+            Self::Eight { .. } => (Self::EIGHT, 0.15),
+        }
+    }
+
+    /// Metres from the middle to the edges of the straight lanes.
+    pub fn half_width(&self) -> f64 {
+        match *self {
+            Self::Strip { half_width } => half_width,
+            Self::Eight { apart, inner, .. } => apart - inner,
+        }
+    }
+
+    /// The edge nearest to a place.
+    fn edge(&self, place: Point) -> Edge {
+        let row = |by_shape: [f64; 3]| {
+            let side = 1.0_f64.copysign(place.y);
+            Edge { off: place.y.abs() - self.half_width(), by_place: Vector::new(0.0, side), by_shape }
+        };
+        let Self::Eight { apart, inner, outer } = *self else { return row([-1.0, 0.0, 0.0]) };
+        let arm = place - Point::new(0.0, apart.copysign(place.y));
+        let distance = arm.norm().max(1e-9);
+        let outwards = arm / distance;
+        let by_apart = -outwards.y.copysign(outwards.y * place.y);
+        let circles = [(inner, [by_apart, -1.0, 0.0]), (outer, [by_apart, 0.0, -1.0])];
+        let circles =
+            circles.map(|(radius, by_shape)| Edge { off: distance - radius, by_place: outwards, by_shape });
+        let nearer = |a: Edge, b: Edge| if b.off.abs() < a.off.abs() { b } else { a };
+        let nearest = nearer(circles[0], circles[1]);
+        if place.x.abs() > LANES { nearer(nearest, row([-1.0, 1.0, 0.0])) } else { nearest }
+    }
+}
+
+/// Edges at a pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EventLayout {
+    /// The frame of the shape.
+    pub pose: Pose,
+    /// The edges in that frame.
+    pub shape: EventShape,
+}
+
+/// Metres from an edge within which a cone stands at it; the same while a layout is looked for.
+const AT_EDGE: f64 = 0.4;
+const GATE: f64 = 0.8;
+/// Metres by which cones of an edge stand beside it, and beyond which they count less.
+const PLACED: (f64, f64) = (0.1, 0.3);
+/// The share of all cones that stands at edges where a layout is found, and as long as it is followed; how many they are at least.
+const SHARES: [f64; 2] = [0.6, 0.4];
+const FEWEST: usize = 3;
+/// Metres, metres and radians by which a layout may move from look to look in the frame of a map that drifts.
+const MOVES: [f64; 3] = [0.05, 0.05, 0.01];
+
+impl EventLayout {
+    /// Looks for a strip or a skidpad of any size among cones, for a car that stands at a pose before its start. `None` if cones
+    /// fit none, or too few of them are seen. O(n) for n cones.
+    ///
+    /// ```
+    /// use roverlab::race::{Cone, EventLayout, EventShape};
+    /// use roverlab::geometry::{Point, Pose};
+    /// let row = |y: f64| (0..5).map(move |k| Cone::unknown(Point::new(5.0 * f64::from(k), y)));
+    /// let cones: Vec<Cone> = row(1.9).chain(row(-1.9)).collect();
+    /// let found = EventLayout::find(&cones, Pose::new(-2.0, 0.2, 0.05), EventShape::STRIP).unwrap();
+    /// assert!((found.shape.half_width() - 1.9).abs() < 0.05 && found.pose.heading.abs() < 0.01);
+    /// // The origin of a strip is where the car stands, in its middle.
+    /// assert!((found.pose.position() - Point::new(-2.0, 0.0)).norm() < 0.05);
+    /// ```
+    pub fn find(cones: &[Cone], car: Pose, shape: EventShape) -> Option<Self> {
+        let mut best: Option<(f64, Self)> = None;
+        for start in Self::guesses(car, shape) {
+            let score = start.score(cones);
+            if best.is_none_or(|(before, _)| score > before) {
+                best = Some((score, start));
+            }
+        }
+        let (_, mut found) = best?;
+        for _ in 0..20 {
+            found.improve(cones, [0.3, 0.3, 0.1]);
+        }
+        if matches!(shape, EventShape::Strip { .. }) {
+            // Nothing says where a strip begins.
+            let ahead = found.pose.to_local(car.position()).x;
+            found.pose = found.pose.compose(&Pose::new(ahead, 0.0, 0.0));
+        }
+        (found.holds(cones, SHARES[0]) && found.has_both_hands(cones)).then_some(found)
+    }
+
+    /// Layouts that a car which stands before the start may have around it.
+    fn guesses(car: Pose, shape: EventShape) -> impl Iterator<Item = Self> {
+        let (begins, widths) = match shape {
+            EventShape::Strip { .. } => (0..1, 5),
+            EventShape::Eight { .. } => (12..56, 1),
+        };
+        begins.flat_map(move |ahead| {
+            (-5..=5).flat_map(move |turn| {
+                (-3..=3).flat_map(move |aside| {
+                    (0..widths).map(move |wide| {
+                        let [ahead, turn, aside] = [ahead, turn, aside].map(f64::from);
+                        let aims = car.compose(&Pose::new(0.0, 0.4 * aside, 0.03 * turn));
+                        let pose = aims.compose(&Pose::new(0.5 * ahead, 0.0, 0.0));
+                        let shape = match shape {
+                            EventShape::Strip { .. } => {
+                                EventShape::Strip { half_width: 1.5 + 0.25 * f64::from(wide) }
+                            }
+                            EventShape::Eight { .. } => EventShape::EIGHT,
+                        };
+                        Self { pose, shape }
+                    })
+                })
+            })
+        })
+    }
+
+    /// How many cones stand at edges, the nearer the better.
+    fn score(&self, cones: &[Cone]) -> f64 {
+        let near = |cone: &Cone| {
+            let off = self.off(cone.position) / AT_EDGE;
+            (1.0 - off * off).max(0.0)
+        };
+        cones.iter().map(near).sum()
+    }
+
+    /// Metres of a place from the nearest edge.
+    fn off(&self, place: Point) -> f64 {
+        self.shape.edge(self.pose.to_local(place)).off
+    }
+
+    /// Whether enough of some cones stand at the edges for a layout that was found.
+    pub(super) fn fits(&self, cones: &[Cone]) -> bool {
+        self.holds(cones, SHARES[1])
+    }
+
+    fn holds(&self, cones: &[Cone], share: f64) -> bool {
+        let count = self.at_edges(cones).count();
+        count >= FEWEST && count as f64 >= share * cones.len() as f64
+    }
+
+    fn at_edges<'c>(&self, cones: &'c [Cone]) -> impl Iterator<Item = &'c Cone> {
+        let layout = *self;
+        cones.iter().filter(move |cone| layout.off(cone.position).abs() < AT_EDGE)
+    }
+
+    /// Whether there are some of them on each hand: a single row may be the edge of anything.
+    fn has_both_hands(&self, cones: &[Cone]) -> bool {
+        let fewest = if matches!(self.shape, EventShape::Strip { .. }) { 2 } else { 4 };
+        let on = |side: f64| {
+            self.at_edges(cones).filter(|cone| side * self.pose.to_local(cone.position).y > 0.0).count()
+        };
+        on(1.0) >= fewest && on(-1.0) >= fewest
+    }
+
+    /// Follows the cones of a map, whose frame drifts.
+    pub(super) fn follow(&mut self, cones: &[Cone]) {
+        self.improve(cones, MOVES);
+    }
+
+    /// One step of Gauss and Newton towards the least distances of cones from their edges, those that are far off counting less,
+    /// while nothing moves much farther than it may.
+    fn improve(&mut self, cones: &[Cone], moves: [f64; 3]) {
+        let (ruled, differs) = self.shape.ruled();
+        let mut matrix = Matrix6::zeros();
+        let mut right = Vector6::zeros();
+        for (axis, (number, rule)) in self.shape.numbers().iter().zip(ruled.numbers()).enumerate() {
+            matrix[(axis, axis)] = 1.0 / (moves[axis] * moves[axis]);
+            matrix[(axis + 3, axis + 3)] = 1.0 / (differs * differs);
+            right[axis + 3] = (rule - number) / (differs * differs);
+        }
+        for cone in cones {
+            let place = self.pose.to_local(cone.position);
+            let Edge { off, by_place, by_shape: [a, b, c] } = self.shape.edge(place);
+            if off.abs() > GATE {
+                continue;
+            }
+            let weight = 1.0 / (PLACED.0 * PLACED.0 * (1.0 + (off / PLACED.1) * (off / PLACED.1)));
+            let turn = by_place.x * place.y - by_place.y * place.x;
+            let row = Vector6::new(-by_place.x, -by_place.y, turn, a, b, c);
+            matrix += row * row.transpose() * weight;
+            right -= row * (weight * off);
+        }
+        let Some(inverse) = matrix.try_inverse() else { return };
+        let change = inverse * right;
+        if !change.iter().all(|value| value.is_finite()) {
+            return;
+        }
+        self.pose = self.pose.compose(&Pose::new(change[0], change[1], normalize_angle(change[2])));
+        let numbers = self.shape.numbers();
+        self.shape = self.shape.with([0, 1, 2].map(|k| numbers[k] + change[k + 3]));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::direction;
+    use proptest::prelude::*;
+    use std::f64::consts::TAU;
+
+    /// By which a number is changed to see what that does.
+    const STEP: f64 = 1e-6;
+
+    fn eight(apart: f64, inner: f64, outer: f64) -> Vec<Cone> {
+        let mut cones = Vec::new();
+        for side in [1.0, -1.0] {
+            for k in 0..16 {
+                let arm = direction(TAU * f64::from(k) / 16.0);
+                let centre = Point::new(0.0, side * apart);
+                cones.push(Cone::unknown(centre + arm * inner));
+                let place = centre + arm * outer;
+                if place.y * side > 1.0 {
+                    cones.push(Cone::unknown(place));
+                }
+            }
+            for k in 0..3 {
+                cones.push(Cone::unknown(Point::new(-9.0 - 2.0 * f64::from(k), side * (apart - inner))));
+            }
+        }
+        cones
+    }
+
+    proptest! {
+        #![proptest_config(crate::testing::cases(32))]
+        #[test]
+        fn a_skidpad_is_found_from_its_start(
+            apart in 9.0..9.3f64, thin in 1.5..1.65f64, wide in 1.4..1.65f64,
+            back in 14.0..20.0f64, aside in -0.4..0.4f64, turn in -0.1..0.1f64,
+        ) {
+            let cones = eight(apart, apart - thin, apart + wide);
+            let car = Pose::new(-back, aside, turn);
+            let seen: Vec<Cone> = cones.into_iter().filter(|cone| car.distance_to(cone.position) < 24.0).collect();
+            let found = EventLayout::find(&seen, car, EventShape::EIGHT).unwrap();
+            prop_assert!(found.pose.position().coords.norm() < 0.1 && found.pose.heading.abs() < 0.02, "{:?}", found);
+            let numbers = [apart, apart - thin, apart + wide];
+            for (number, truth) in found.shape.numbers().iter().zip(numbers) {
+                prop_assert!((number - truth).abs() < 0.1, "{:?} {:?}", found, numbers);
+            }
+        }
+
+        #[test]
+        fn gradients_are_those_of_the_distance(x in -15.0..15.0f64, y in -19.0..19.0f64) {
+            prop_assume!(y.abs() > 0.01);
+            let place = Point::new(x, y);
+            let numbers = EventShape::EIGHT.numbers();
+            let edge = EventShape::EIGHT.edge(place);
+            for axis in 0..3 {
+                let mut other = numbers;
+                other[axis] += STEP;
+                let moved = EventShape::EIGHT.with(other).edge(place).off;
+                // Not where another edge becomes the nearest.
+                if (moved - edge.off).abs() < 2.0 * STEP {
+                    prop_assert!(((moved - edge.off) / STEP - edge.by_shape[axis]).abs() < 1e-3);
+                }
+            }
+            for (axis, step) in [Vector::new(STEP, 0.0), Vector::new(0.0, STEP)].into_iter().enumerate() {
+                let moved = EventShape::EIGHT.edge(place + step).off;
+                if (moved - edge.off).abs() < 2.0 * STEP {
+                    prop_assert!(((moved - edge.off) / STEP - edge.by_place[axis]).abs() < 1e-3);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_layout() {
+        assert_eq!(EventLayout::find(&[], Pose::default(), EventShape::STRIP), None);
+        let heap: Vec<Cone> = (0..30)
+            .map(|k| Cone::unknown(Point::new(f64::from(7 * k % 20), f64::from(11 * k % 17) - 8.0)))
+            .collect();
+        for shape in [EventShape::STRIP, EventShape::EIGHT] {
+            assert_eq!(EventLayout::find(&heap, Pose::default(), shape), None);
+        }
+    }
+}

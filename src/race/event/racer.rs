@@ -1,0 +1,363 @@
+use super::layout::{EventLayout, EventShape};
+use super::line;
+use crate::geometry::{Point, Pose, Twist};
+use crate::io::{self, Clock, Drive, Lidar, LidarScan};
+use crate::race::cone::{Cone, ConeColour};
+use crate::race::error::PlanError;
+use crate::race::hold::Hold;
+use crate::race::map::{ConeMap, ConeMapParameters};
+use crate::race::profile::{CarLimits, SpeedProfile};
+use crate::race::racer::RacerParameters;
+use crate::race::racing_line::CarOutline;
+use crate::race::reckoning::Reckoning;
+use crate::race::sight::{Sighting, sightings};
+use crate::race::tracker::{LineTracker, TrackerParameters};
+use crate::race::tyres::Tyres;
+
+/// How an event is driven.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EventParameters {
+    /// What is asked of the tyres and motors at most.
+    pub limits: CarLimits,
+    /// The car's outline, by which it keeps clear of cones.
+    pub outline: CarOutline,
+    /// How the map is made.
+    pub map: ConeMapParameters,
+    /// How lines are followed.
+    pub tracker: TrackerParameters,
+    /// Metres from the nose to the finish of an acceleration: from where the car stands to the start line, and 75 m.
+    pub strip: f64,
+    /// Metres behind the finish at which the nose stands at the end: of an acceleration, and of a skidpad.
+    pub stop: [f64; 2],
+    /// Metres per second up to the first circle of a skidpad.
+    pub entry: f64,
+    /// Seconds without cones that fit the layout after which the car stops: as it is looked for, and as it is driven.
+    pub patience: [f64; 2],
+    /// Seconds from decision to decision.
+    pub period: f64,
+}
+
+impl Default for EventParameters {
+    fn default() -> Self {
+        let RacerParameters { limits, outline, map, tracker, period, .. } = RacerParameters::default();
+        Self {
+            // A circle that stays the same asks less of steering and tyres than bends that come and go.
+            limits: CarLimits {
+                hold: Hold::Balance(Tyres { grip: 11.7, ..Tyres::default() }),
+                brake: 10.0,
+                ..limits
+            },
+            outline: CarOutline { room: 0.3, ..outline },
+            map,
+            tracker,
+            strip: 75.3,
+            // The shortest lanes behind the finish are 25 and 21 m long.
+            stop: [21.5, 15.0],
+            entry: 6.0,
+            patience: [3.0, 0.6],
+            period,
+        }
+    }
+}
+
+/// What a car at an event does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum EventPhase {
+    /// Looks for the layout, standing at first.
+    Looking,
+    /// Drives.
+    Driving,
+    /// Has crossed the finish and stands.
+    Finished,
+    /// Sees no cones that fit the layout, and stops.
+    Lost,
+}
+
+/// Drives an acceleration or a skidpad by cones that it does not know and a layout that it does.
+///
+/// The layout is fitted to the cones that were seen lately, at every look; the line is given in its frame. The way of an
+/// acceleration is the middle between both rows, with all that the motors give, so far that the car stands within the shortest
+/// lane that there is behind a finish. That of a skidpad leads around the inner cones as near as is safe.
+#[derive(Debug, Clone)]
+pub struct EventRacer {
+    parameters: EventParameters,
+    event: EventShape,
+    map: ConeMap,
+    reckoning: Reckoning,
+    layout: Option<EventLayout>,
+    phase: EventPhase,
+    line: Option<LineTracker>,
+    /// The layout's shape for which the line is.
+    planned: EventShape,
+    /// Seconds, metres, and seconds since cones fitted.
+    time: f64,
+    way: f64,
+    blind: f64,
+}
+
+/// Seconds that it looks before it moves.
+const LOOKS: f64 = 0.3;
+/// Metres per second at which it looks for the layout from nearer, and metres that it goes so.
+const CREEP: f64 = 1.0;
+const CREEPS: f64 = 6.0;
+/// Metres behind the place where the car stands at first at which lines begin.
+const BEHIND: f64 = 4.0;
+/// Metres before the origin of a skidpad at which its line begins.
+const BEFORE: f64 = 30.0;
+/// Metres before the origin of a skidpad up to which it is entered slowly.
+const ENTERED: f64 = 2.0;
+/// Metres by which a number of the layout changes before the line is planned again.
+const CHANGED: f64 = 0.02;
+/// Metres between a cone and the side of a car that passes it, and between a cone and the nose of one that stands before it.
+const BESIDE: f64 = 0.07;
+const STANDS: f64 = 0.5;
+/// Metres ahead that cones in the way matter.
+const AHEAD: f64 = 45.0;
+/// Metres per second below which a car stands.
+const STILL: f64 = 0.05;
+/// Metres from the end of its line within which a car has driven it.
+const END: f64 = 2.0;
+
+impl EventRacer {
+    /// A car before the start of an acceleration.
+    pub fn acceleration(parameters: EventParameters) -> Self {
+        Self::new(EventShape::STRIP, &parameters)
+    }
+
+    /// A car before the start of a skidpad.
+    pub fn skidpad(parameters: EventParameters) -> Self {
+        Self::new(EventShape::EIGHT, &parameters)
+    }
+
+    fn new(event: EventShape, parameters: &EventParameters) -> Self {
+        Self {
+            parameters: *parameters,
+            event,
+            map: ConeMap::new(parameters.map),
+            reckoning: Reckoning::default(),
+            layout: None,
+            phase: EventPhase::Looking,
+            line: None,
+            planned: event,
+            time: 0.0,
+            way: 0.0,
+            blind: 0.0,
+        }
+    }
+
+    /// What it does now.
+    pub fn phase(&self) -> EventPhase {
+        self.phase
+    }
+
+    /// The cones that it has seen, in the frame of its start.
+    pub fn map(&self) -> &ConeMap {
+        &self.map
+    }
+
+    /// Where it believes the layout to be, in the frame of its map.
+    pub fn layout(&self) -> Option<&EventLayout> {
+        self.layout.as_ref()
+    }
+
+    /// The line that it follows, in the frame of the layout.
+    pub fn line(&self) -> Option<&LineTracker> {
+        self.line.as_ref()
+    }
+
+    /// The command for the pose and the speed that odometry measures and a scan.
+    pub fn step(&mut self, odometry: Pose, speed: Twist, scan: &LidarScan) -> Twist {
+        self.decide(odometry, speed, &sightings(scan))
+    }
+
+    /// The same for what was found already, by a lidar or a camera. It is called once in every
+    /// [`period`](EventParameters::period). Where odometry is no number, the car brakes.
+    pub fn decide(&mut self, odometry: Pose, speed: Twist, seen: &[Sighting]) -> Twist {
+        if !(odometry.is_finite() && speed.is_finite()) {
+            return Twist::STOP;
+        }
+        self.way += self.reckoning.step(odometry, speed, &self.parameters.tracker.tyres);
+        self.map.update(self.reckoning.pose(), seen);
+        self.time += self.parameters.period;
+        let fresh: Vec<Cone> = self.map.fresh_cones().collect();
+        self.localise(&fresh, seen);
+        match self.phase {
+            EventPhase::Looking => self.look(&fresh),
+            EventPhase::Driving => self.drive(speed, &fresh),
+            EventPhase::Finished => Twist::default(),
+            EventPhase::Lost => self.brake(speed),
+        }
+    }
+
+    /// Drives until it stands behind the finish, or is lost and stands, or a time is over. `watch` is told of every decision.
+    pub fn run<R: Clock + Drive + Lidar>(
+        &mut self,
+        robot: &mut R,
+        seconds: f64,
+        mut watch: impl FnMut(&mut R, &Self),
+    ) -> io::Result<EventPhase> {
+        let mut scan = LidarScan::default();
+        let end = robot.now()? + seconds;
+        while robot.now()? < end {
+            robot.scan_into(&mut scan)?;
+            let (pose, speed) = (robot.pose()?, robot.speed()?);
+            let command = self.step(pose, speed, &scan);
+            robot.set_speed(command)?;
+            watch(robot, self);
+            if self.is_done(speed) {
+                break;
+            }
+            robot.wait(self.parameters.period)?;
+        }
+        robot.set_speed(Twist::default())?;
+        Ok(self.phase)
+    }
+
+    /// Whether it stands and drives no more.
+    pub fn is_done(&self, speed: Twist) -> bool {
+        matches!(self.phase, EventPhase::Finished | EventPhase::Lost) && speed.linear.abs() < STILL
+    }
+
+    /// Finds the layout, or follows it, and tells for how long nothing that is seen has belonged to it.
+    fn localise(&mut self, fresh: &[Cone], seen: &[Sighting]) {
+        let Some(layout) = &mut self.layout else {
+            self.blind = if seen.is_empty() { self.blind + self.parameters.period } else { 0.0 };
+            if self.time >= LOOKS {
+                self.layout = self.find(fresh);
+            }
+            return;
+        };
+        layout.follow(fresh);
+        let fits = !seen.is_empty() && layout.fits(fresh);
+        self.blind = if fits { 0.0 } else { self.blind + self.parameters.period };
+    }
+
+    fn find(&self, fresh: &[Cone]) -> Option<EventLayout> {
+        let mut found = EventLayout::find(fresh, self.map.pose(), self.event)?;
+        if matches!(self.event, EventShape::Strip { .. }) {
+            // The origin of a strip is where the nose stood at first.
+            found.pose = found.pose.compose(&Pose::new(self.parameters.outline.nose - self.way, 0.0, 0.0));
+        }
+        Some(found)
+    }
+
+    /// Stands, then creeps on, until the layout is found.
+    fn look(&mut self, fresh: &[Cone]) -> Twist {
+        if let Some(layout) = self.layout {
+            self.planned = layout.shape;
+            if let Ok((points, profile)) = self.plan(layout.shape) {
+                self.line = Some(LineTracker::new(points, profile, false, self.parameters.tracker));
+                self.phase = EventPhase::Driving;
+            } else {
+                self.phase = EventPhase::Lost;
+            }
+            return Twist::default();
+        }
+        if self.blind >= self.parameters.patience[0] || self.way >= CREEPS {
+            self.phase = EventPhase::Lost;
+        }
+        let outline = self.parameters.outline;
+        let pose = self.map.pose();
+        let free = fresh.iter().all(|cone| {
+            let local = pose.to_local(cone.position);
+            local.y.abs() > self.beside() || !(0.0..outline.nose + 2.0).contains(&local.x)
+        });
+        let creeps =
+            self.time >= 2.0 * LOOKS && self.blind == 0.0 && free && self.phase == EventPhase::Looking;
+        if creeps { Twist::new(CREEP, 0.0) } else { Twist::default() }
+    }
+
+    /// Metres from the line at which a car touches a cone, and a little more.
+    fn beside(&self) -> f64 {
+        self.parameters.outline.half_width + ConeColour::Unknown.radius() + BESIDE
+    }
+
+    /// The line in the frame of a layout, with its speeds.
+    fn plan(&self, shape: EventShape) -> Result<(Vec<Point>, SpeedProfile), PlanError> {
+        let p = &self.parameters;
+        // The line is that of a point behind the nose.
+        let behind = p.outline.nose - p.outline.ahead;
+        let (points, entered) = match shape {
+            EventShape::Strip { .. } => {
+                (line::straight(-behind - BEHIND, p.strip + p.stop[0] - behind), f64::NEG_INFINITY)
+            }
+            EventShape::Eight { apart, .. } => {
+                let room = p.outline.half_width + ConeColour::Unknown.radius() + p.outline.room;
+                let ends = [-BEFORE, p.stop[1] - behind];
+                (line::smooth_eight(apart, line::radius(shape, room), ends), -ENTERED)
+            }
+        };
+        let mut profile = SpeedProfile::open(&points, &p.limits, p.limits.top_speed, 0.0)?;
+        let entry = points.iter().zip(&mut profile.speeds).take_while(|(point, _)| point.x < entered);
+        entry.for_each(|(_, speed)| *speed = speed.min(p.entry));
+        Ok((points, profile))
+    }
+
+    fn drive(&mut self, speed: Twist, fresh: &[Cone]) -> Twist {
+        self.adapt();
+        if self.blind >= self.parameters.patience[1] {
+            self.phase = EventPhase::Lost;
+        }
+        let command = self.follow(speed);
+        if self.is_at_end() && speed.linear.abs() < STILL {
+            self.phase = EventPhase::Finished;
+            return Twist::default();
+        }
+        self.before_cones(command, fresh)
+    }
+
+    /// Plans again where the layout has other numbers than it had.
+    fn adapt(&mut self) {
+        let Some(layout) = self.layout else { return };
+        let (now, before) = (layout.shape.numbers(), self.planned.numbers());
+        let changed = now.iter().zip(before).any(|(now, before)| (now - before).abs() > CHANGED);
+        if !changed || matches!(layout.shape, EventShape::Strip { .. }) {
+            return;
+        }
+        if let (Ok((points, profile)), Some(line)) = (self.plan(layout.shape), &mut self.line) {
+            line.shift(points, profile);
+            self.planned = layout.shape;
+        }
+    }
+
+    fn follow(&mut self, speed: Twist) -> Twist {
+        let Some((layout, line)) = self.layout.as_ref().zip(self.line.as_mut()) else {
+            return Twist::default();
+        };
+        let pose = layout.pose.inverse().compose(&self.map.pose());
+        line.step(pose, speed).map_or(Twist::default(), |(twist, _)| twist)
+    }
+
+    fn is_at_end(&self) -> bool {
+        let Some(line) = &self.line else { return false };
+        let left = &line.profile().lengths[line.passed()..line.points().len() - 1];
+        left.iter().sum::<f64>() < END
+    }
+
+    /// A command that stops before cones, and other things, that stand in the way, as at the end of a lane.
+    fn before_cones(&self, command: Twist, fresh: &[Cone]) -> Twist {
+        let Some((layout, line)) = self.layout.as_ref().zip(self.line.as_ref()) else { return command };
+        let p = &self.parameters;
+        let places = fresh.iter().map(|cone| cone.position).chain(self.map.fresh_others());
+        let places = places.map(|place| layout.pose.to_local(place));
+        let gaps = places.filter_map(|place| line.distance_to(place, self.beside(), AHEAD));
+        let Some(gap) = gaps.min_by(f64::total_cmp) else { return command };
+        let free = (gap - (p.outline.nose - p.outline.ahead) - STANDS).max(0.0);
+        slowed(command, (1.6 * p.limits.brake * free).sqrt())
+    }
+
+    /// Brakes along the line as long as there is one.
+    fn brake(&mut self, speed: Twist) -> Twist {
+        let command = self.follow(speed);
+        if speed.linear > 0.1 { slowed(command, (speed.linear - 0.5).max(0.0)) } else { Twist::default() }
+    }
+}
+
+/// A command of the same curvature that is no faster than some speed.
+fn slowed(command: Twist, fastest: f64) -> Twist {
+    if command.linear <= fastest {
+        return command;
+    }
+    let share = fastest.max(1e-3) / command.linear;
+    Twist::new(fastest.max(1e-3), command.angular * share)
+}

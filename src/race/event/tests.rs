@@ -1,0 +1,234 @@
+//! Whole runs on strips and skidpads of our own.
+
+use std::f64::consts::TAU;
+
+use super::*;
+use crate::geometry::{Point, Pose, direction};
+use crate::io::sim::NoiseModel;
+use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions};
+use crate::io::{Camera, Clock, Drive, Lidar, LidarScan, Resolution};
+use crate::race::{
+    CameraMount, CameraSight, CarOutline, Cone, ConeColour, ConeTrack, Event, RacerParameters, Verdict,
+};
+use crate::world::Colour;
+
+const OUTLINE: CarOutline = CarOutline { half_width: 0.7, nose: 2.15, ahead: 0.9, room: 0.0 };
+
+/// A strip with rows so far from its middle and cones so far from each other, and a lane behind the finish that two cones close.
+fn strip(half_width: f64, spacing: f64, lane: f64) -> ConeTrack {
+    let mut track = ConeTrack { start: Some(Pose::new(-2.45, 0.3, 0.05)), ..ConeTrack::default() };
+    let mut both = |x: f64, colours: [ConeColour; 2]| {
+        for (side, colour) in [1.0, -1.0].into_iter().zip(colours) {
+            track.cones.push(Cone::new(Point::new(x, side * half_width), colour));
+        }
+    };
+    for x in [-0.25, 0.25, 74.75, 75.25] {
+        both(x, [ConeColour::BigOrange; 2]);
+    }
+    for k in 1..(74.0 / spacing) as u32 {
+        both(spacing * f64::from(k), [ConeColour::Blue, ConeColour::Yellow]);
+    }
+    for k in 1..=(lane / spacing) as u32 {
+        both(75.0 + spacing * f64::from(k), [ConeColour::Orange; 2]);
+    }
+    for y in [-0.5, 0.5] {
+        track.cones.push(Cone::new(Point::new(75.0 + lane, y * half_width), ConeColour::Orange));
+    }
+    track
+}
+
+/// A skidpad by the rules, or about so, turned and moved.
+fn skidpad(apart: f64, inner: f64, outer: f64) -> ConeTrack {
+    let frame = Pose::new(7.0, -3.0, 0.8);
+    let mut track =
+        ConeTrack { start: Some(frame.compose(&Pose::new(-17.0, 0.1, -0.03))), ..ConeTrack::default() };
+    let mut put =
+        |x: f64, y: f64, colour| track.cones.push(Cone::new(frame.to_world(Point::new(x, y)), colour));
+    for (side, near, far) in
+        [(1.0, ConeColour::Blue, ConeColour::Yellow), (-1.0, ConeColour::Yellow, ConeColour::Blue)]
+    {
+        for k in 0..16 {
+            let arm = direction(TAU * f64::from(k) / 16.0);
+            put(arm.x * inner, side * apart + arm.y * inner, near);
+            let (x, y) = (arm.x * outer, side * apart + arm.y * outer);
+            if y * side > 1.0 {
+                put(x, y, far);
+            }
+        }
+        for x in [-15.0, -11.0, 11.0, 16.0, 21.0] {
+            put(x, side * (apart - inner), ConeColour::Orange);
+        }
+        put(21.0, side * 0.5, ConeColour::Orange);
+    }
+    track
+}
+
+fn racer_for(course: &EventCourse) -> EventRacer {
+    match course.event() {
+        Event::Acceleration => EventRacer::acceleration(EventParameters::default()),
+        _ => EventRacer::skidpad(EventParameters::default()),
+    }
+}
+
+fn world(track: &ConeTrack, seed: u64) -> Race {
+    let paint = |colour| match colour {
+        ConeColour::Blue => 0x1f_4f_d8,
+        ConeColour::Yellow => 0xf2_c8_11,
+        _ => 0xf0_70_10,
+    };
+    let cones: Vec<RaceCone> = track
+        .cones
+        .iter()
+        .map(|cone| RaceCone::new(cone.position, Colour::from_hex(paint(cone.colour))))
+        .collect();
+    let options = RaceOptions { seed, noise: NoiseModel::real(), ..RaceOptions::default() };
+    Race::new(&cones, &[(RaceCarSpec::default(), track.start.unwrap())], options).unwrap()
+}
+
+/// One run with lidar or camera: what the referee saw, whether all was complete, and how the car ended.
+fn run(track: &ConeTrack, seed: u64, camera: bool) -> (Verdict, bool, EventPhase) {
+    let course = EventCourse::of(track, &OUTLINE).unwrap();
+    let wheels = [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y));
+    let mut racer = racer_for(&course);
+    let mut referee = EventReferee::new(course, wheels, Point::new(OUTLINE.nose, 0.0));
+    let mut world = world(track, seed);
+    let (mut scan, mut sight) = (LidarScan::default(), CameraSight::new(CameraMount::default()));
+    while world.time() < 60.0 {
+        let mut car = world.car(0).unwrap();
+        let (pose, speed) = (car.pose().unwrap(), car.speed().unwrap());
+        let command = if camera {
+            car.set_resolution(Resolution::Vga).unwrap();
+            racer.decide(pose, speed, &sight.find(&car.image().unwrap()))
+        } else {
+            car.scan_into(&mut scan).unwrap();
+            racer.step(pose, speed, &scan)
+        };
+        car.set_speed(command).unwrap();
+        for _ in 0..5 {
+            world.advance(0.01);
+            let truth = world.truth(0).unwrap();
+            referee.see(world.time(), truth.pose, truth.hits);
+        }
+        if racer.is_done(world.car(0).unwrap().speed().unwrap()) {
+            break;
+        }
+    }
+    (referee.verdict().clone(), referee.is_complete(), racer.phase())
+}
+
+/// A run that ends behind its finish, without a penalty, near the optimum.
+fn assert_clean(track: &ConeTrack, seed: u64, camera: bool, over: f64) {
+    let course = EventCourse::of(track, &OUTLINE).unwrap();
+    let spec = RaceCarSpec::default();
+    let limits = crate::race::CarLimits {
+        hold: crate::race::Hold::Balance(crate::race::Tyres::default()),
+        drive: spec.drive,
+        brake: spec.brake,
+        ..RacerParameters::default().limits
+    };
+    let optima = course.optima(&limits, &OUTLINE);
+    let found = run(track, seed, camera);
+    let (verdict, complete, phase) = &found;
+    assert!(*complete && *phase == EventPhase::Finished, "{seed}: {found:?}");
+    assert_eq!((verdict.cones_hit, verdict.off_course), (0, 0), "{seed}: {found:?}");
+    assert_eq!(verdict.lap_times.len(), optima.len(), "{seed}: {found:?}");
+    for (time, optimum) in verdict.lap_times.iter().zip(&optima) {
+        assert!((1.0..over).contains(&(time / optimum)), "{seed}: {found:?} {optima:?}");
+    }
+}
+
+#[test]
+fn strips_of_all_widths_are_driven_to_the_lane_behind_them() {
+    for (seed, half_width, spacing, lane) in
+        [(1, 1.5, 5.0, 25.0), (2, 1.9, 5.0, 100.0), (3, 2.4, 4.0, 50.0), (4, 1.6, 6.0, 30.0)]
+    {
+        assert_clean(&strip(half_width, spacing, lane), seed, false, 1.08);
+    }
+    assert_clean(&strip(1.5, 5.0, 25.0), 5, true, 1.08);
+}
+
+#[test]
+fn skidpads_are_driven_four_times_around() {
+    for (seed, apart, inner, outer) in [
+        (1, 9.125, 7.625, 10.625),
+        (2, 9.25, 7.61, 10.61),
+        (3, 9.125, 7.475, 10.775),
+        (4, 9.125, 7.625, 10.625),
+    ] {
+        assert_clean(&skidpad(apart, inner, outer), seed, false, 1.08);
+    }
+    assert_clean(&skidpad(9.125, 7.625, 10.625), 5, true, 1.08);
+}
+
+#[test]
+fn the_course_is_measured_out_among_the_cones() {
+    let course = EventCourse::of(&strip(1.5, 5.0, 25.0), &OUTLINE).unwrap();
+    let place = |station: usize| course.corridor().stations()[station].position;
+    let [begin, end] = course.timed()[0];
+    assert!((place(begin).x.abs() < 0.3) && (place(end).x - 75.0).abs() < 0.3, "{:?}", course.timed());
+    assert_eq!(course.event(), Event::Acceleration);
+    let course = EventCourse::of(&skidpad(9.125, 7.625, 10.625), &OUTLINE).unwrap();
+    let laps: Vec<usize> = course.timed().iter().map(|[begin, end]| end - begin).collect();
+    assert_eq!((course.event(), laps), (Event::Skidpad, vec![224; 2]));
+    // Laps of a circuit are none, nor is a heap with a cone of orange.
+    let mut track = strip(1.5, 5.0, 25.0);
+    track.cones.retain(|cone| cone.colour != ConeColour::Orange);
+    assert_eq!(EventCourse::of(&track, &OUTLINE), None);
+    let mut heap = skidpad(9.125, 7.625, 10.625);
+    for (k, cone) in heap.cones.iter_mut().enumerate() {
+        cone.position = Point::new((7 * k % 23) as f64, (11 * k % 19) as f64);
+    }
+    assert_eq!(EventCourse::of(&heap, &OUTLINE), None);
+}
+
+#[test]
+fn without_cones_it_stops_and_says_so() {
+    for mut racer in [
+        EventRacer::acceleration(EventParameters::default()),
+        EventRacer::skidpad(EventParameters::default()),
+    ] {
+        let mut world = world(&ConeTrack { start: Some(Pose::default()), ..ConeTrack::default() }, 1);
+        let phase = racer.run(&mut world.car(0).unwrap(), 20.0, |_, _| ()).unwrap();
+        assert_eq!((phase, racer.layout()), (EventPhase::Lost, None));
+        let truth = world.truth(0).unwrap();
+        assert!(truth.distance < 0.1 && world.time() < 5.0, "{truth:?}");
+    }
+}
+
+#[test]
+fn it_stops_when_it_sees_no_more() {
+    for track in [strip(1.5, 5.0, 25.0), skidpad(9.125, 7.625, 10.625)] {
+        let mut racer = racer_for(&EventCourse::of(&track, &OUTLINE).unwrap());
+        let mut world = world(&track, 3);
+        let mut scan = LidarScan::default();
+        while world.time() < 20.0 && racer.phase() != EventPhase::Finished {
+            let mut car = world.car(0).unwrap();
+            car.scan_into(&mut scan).unwrap();
+            if car.now().unwrap() > 4.0 {
+                scan.ranges.fill(f64::INFINITY);
+            }
+            let (pose, speed) = (car.pose().unwrap(), car.speed().unwrap());
+            car.set_speed(racer.step(pose, speed, &scan)).unwrap();
+            world.advance(0.05);
+        }
+        let truth = world.truth(0).unwrap();
+        assert_eq!((racer.phase(), truth.hits), (EventPhase::Lost, 0), "{truth:?}");
+        assert!(truth.twist.linear.abs() < 0.05, "{truth:?}");
+    }
+}
+
+#[test]
+fn time_may_be_over_before_the_finish() {
+    let track = skidpad(9.125, 7.625, 10.625);
+    let mut racer = racer_for(&EventCourse::of(&track, &OUTLINE).unwrap());
+    let mut world = world(&track, 1);
+    let phase = racer.run(&mut world.car(0).unwrap(), 5.0, |_, _| ()).unwrap();
+    assert_eq!(phase, EventPhase::Driving);
+    assert!(world.time() < 5.1);
+}
+
+#[test]
+fn the_same_seed_gives_the_same_run() {
+    let track = strip(1.5, 5.0, 25.0);
+    assert_eq!(run(&track, 7, false), run(&track, 7, false));
+}

@@ -1,0 +1,77 @@
+use std::fmt::Write as _;
+
+use super::MOST;
+use super::csv::{Field, field, rows};
+use crate::geometry::{Point, Pose};
+use crate::race::{Cone, ConeColour, ConeTrack};
+use crate::world::formats::{FormatError, Location, shown};
+
+const HEADER: &str = "tag,x,y,direction,x_variance,y_variance,xy_covariance";
+const TAGS: &str = "blue, yellow, orange, big_orange, unknown, car_start or midpoint";
+
+/// Reads a cone map of EUFS: a tag, metres, and for the start a direction in radians; variances are not used.
+pub fn parse_eufs(text: &str, file: &str) -> Result<ConeTrack, FormatError> {
+    let mut rows = rows(text);
+    let header = rows.next();
+    if !header.as_ref().is_some_and(|row| is_header(row)) {
+        let found = header.map_or_else(|| "an empty file".into(), |row| shown(row[0].text));
+        return Err(FormatError::new(file, Location::START, found, format!("the line {HEADER}")));
+    }
+    let mut track = ConeTrack::default();
+    for row in rows {
+        let tag = row[0];
+        let metres =
+            |index| field(&row, index, file, "a number of metres")?.number(file, "a number of metres");
+        let colour = match tag.text {
+            "car_start" => {
+                let direction = row.get(3).map(|f| f.number(file, "a direction in radians")).transpose()?;
+                if track.start.is_some() {
+                    return Err(FormatError::new(file, tag.at, "a second start", "one start"));
+                }
+                track.start = Some(Pose::new(metres(1)?, metres(2)?, direction.unwrap_or(0.0)));
+                continue;
+            }
+            // Some files are two, one behind the other.
+            "tag" if is_header(&row) => continue,
+            // Points of the way that is to be driven, without a cone.
+            "midpoint" => continue,
+            "blue" => ConeColour::Blue,
+            "yellow" => ConeColour::Yellow,
+            "orange" => ConeColour::Orange,
+            "big_orange" => ConeColour::BigOrange,
+            "unknown" => ConeColour::Unknown,
+            _ => return Err(tag.error(file, TAGS)),
+        };
+        if track.cones.len() == MOST {
+            return Err(FormatError::new(file, tag.at, "one more cone", format!("at most {MOST} cones")));
+        }
+        track.cones.push(Cone::new(Point::new(metres(1)?, metres(2)?), colour));
+    }
+    if track.cones.is_empty() {
+        return Err(FormatError::new(file, Location::START, "no cones", "at least one cone"));
+    }
+    Ok(track)
+}
+
+fn is_header(row: &[Field<'_>]) -> bool {
+    row.len() >= 3 && row.iter().zip(["tag", "x", "y"]).all(|(field, name)| field.text == name)
+}
+
+/// A cone map as [`parse_eufs`] reads it. The lines where time is taken have no place in it and are left out.
+pub fn write_eufs(track: &ConeTrack) -> String {
+    let mut text = format!("{HEADER}\n");
+    for cone in &track.cones {
+        let tag = match cone.colour {
+            ConeColour::Blue => "blue",
+            ConeColour::Yellow => "yellow",
+            ConeColour::Orange => "orange",
+            ConeColour::BigOrange => "big_orange",
+            ConeColour::Unknown => "unknown",
+        };
+        let _ = writeln!(text, "{tag},{},{},0,0,0,0", cone.position.x, cone.position.y);
+    }
+    if let Some(start) = track.start {
+        let _ = writeln!(text, "car_start,{},{},{},0,0,0", start.x, start.y, start.heading);
+    }
+    text
+}

@@ -1,0 +1,98 @@
+use std::fmt::Write as _;
+
+use saphyr_parser::Event;
+
+use super::lists::{list_of, number, points};
+use crate::geometry::{Point, Pose};
+use crate::race::{Cone, ConeColour, ConeTrack};
+use crate::world::formats::{FormatError, Location, YamlEvents, shown};
+
+const KEYS: [(&str, ConeColour); 4] = [
+    ("cones_left", ConeColour::Blue),
+    ("cones_right", ConeColour::Yellow),
+    ("cones_orange", ConeColour::Orange),
+    ("cones_orange_big", ConeColour::BigOrange),
+];
+
+/// Metres from the rear axle to the front wing, where these files say that the car starts.
+const WING: f64 = 2.15;
+
+/// Reads a track of FSSIM: lists of cones by colour, the pose of the front wing at the start, and the ends of the lines
+/// where time is taken. The start of the track is that of the rear axle, 2.15 m behind the wing. Other keys with lists of
+/// numbers are left out.
+pub fn parse_fssim(text: &str, file: &str) -> Result<ConeTrack, FormatError> {
+    let mut events = YamlEvents::new(text, file, "keys with lists");
+    let mut track = ConeTrack::default();
+    events.enter()?;
+    let mut seen: Vec<String> = Vec::new();
+    loop {
+        let (key, at) = match events.next()? {
+            (Event::MappingEnd, _) => break,
+            (Event::Scalar(key, ..), at) => (key.into_owned(), at),
+            (event, at) => return Err(events.unexpected(&event, at, "a key")),
+        };
+        if seen.contains(&key) {
+            return Err(events.error(at, format!("a second {}", shown(&key)), "each key once"));
+        }
+        take(&mut track, &mut events, &key, at)?;
+        seen.push(key);
+    }
+    if track.cones.is_empty() {
+        return Err(FormatError::new(file, Location::START, "no cones", "at least one cone"));
+    }
+    Ok(track)
+}
+
+/// Takes in the list of a key.
+fn take(
+    track: &mut ConeTrack,
+    events: &mut YamlEvents<'_>,
+    key: &str,
+    at: Location,
+) -> Result<(), FormatError> {
+    if let Some((_, colour)) = KEYS.iter().find(|(name, _)| *name == key) {
+        track.cones.extend(points(events)?.into_iter().map(|position| Cone::new(position, *colour)));
+    } else if key == "tk_device" {
+        let ends = points(events)?;
+        if ends.len() % 2 == 1 {
+            return Err(events.error(at, format!("{} points", ends.len()), "two for each line"));
+        }
+        track.gates = ends.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+    } else {
+        let numbers = list_of(events, |events, event, at| number(events, &event, at))?;
+        if key == "starting_pose_front_wing" {
+            let [x, y, heading] = numbers[..] else {
+                let found = format!("{} numbers", numbers.len());
+                return Err(events.error(at, found, "x, y and the heading"));
+            };
+            track.start = Some(Pose::new(x, y, heading).compose(&Pose::new(-WING, 0.0, 0.0)));
+        }
+    }
+    Ok(())
+}
+
+/// A track as [`parse_fssim`] reads it. Cones without a colour have no place in it and are left out.
+pub fn write_fssim(track: &ConeTrack) -> String {
+    let mut text = String::new();
+    for (key, colour) in KEYS {
+        list(&mut text, key, track.of(colour));
+    }
+    list(&mut text, "tk_device", track.gates.iter().flatten().copied());
+    if let Some(start) = track.start.map(|start| start.compose(&Pose::new(WING, 0.0, 0.0))) {
+        let _ = writeln!(
+            text,
+            "starting_pose_front_wing:\n- {:?}\n- {:?}\n- {:?}",
+            start.x, start.y, start.heading
+        );
+    }
+    text
+}
+
+fn list(text: &mut String, key: &str, points: impl Iterator<Item = Point>) {
+    let mut points = points.peekable();
+    let empty = points.peek().is_none();
+    let _ = writeln!(text, "{key}:{}", if empty { " []" } else { "" });
+    for point in points {
+        let _ = writeln!(text, "- - {:?}\n  - {:?}", point.x, point.y);
+    }
+}

@@ -1,0 +1,81 @@
+//! Readers and writers of track files: FSSIM's YAML, the CSV of EUFS, and the CSV of the TUM race track database; and a reader
+//! of logs of drives between cones.
+//!
+//! All are in metres and radians.
+
+mod csv;
+mod eufs;
+mod fssim;
+mod lists;
+mod log;
+mod tum;
+
+pub use eufs::{parse_eufs, write_eufs};
+pub use fssim::{parse_fssim, write_fssim};
+pub use log::{ConeFrame, parse_cone_log};
+pub use tum::{parse_line, parse_tum, write_tum};
+
+use super::{ConeTrack, Corridor};
+use crate::geometry::Point;
+use crate::world::formats::{FormatError, Location, shown};
+
+/// Numbers of files beyond this are no tracks.
+const FARTHEST: f64 = 1e5;
+/// Cones or stations of a file.
+const MOST: usize = 20_000;
+
+/// What a track file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TrackFile {
+    /// Cones (FSSIM, EUFS).
+    Cones(ConeTrack),
+    /// A centre line with its widths (TUM).
+    Corridor(Corridor),
+    /// A line without widths, as the race lines of TUM.
+    Line(Vec<Point>),
+    /// What a car knew from moment to moment (JSON).
+    Log(Vec<ConeFrame>),
+}
+
+/// Reads a track file of any of the kinds, told apart by what they begin with. `file` is how messages call it.
+///
+/// ```
+/// use roverlab::race::{TrackFile, parse_track};
+/// let text = "tag,x,y,direction,x_variance,y_variance,xy_covariance\nblue,1.0,1.5,0,0,0,0\nyellow,1.0,-1.5,0,0,0,0\n";
+/// let Ok(TrackFile::Cones(track)) = parse_track(text, "two.csv") else { panic!() };
+/// assert_eq!(track.cones.len(), 2);
+/// let error = parse_track("tag,x,y\nblue,1.0,here\n", "bad.csv").unwrap_err();
+/// assert_eq!(error.to_string(), "bad.csv:2:10: found `here`; expected a number of metres");
+/// ```
+pub fn parse_track(text: &str, file: &str) -> Result<TrackFile, FormatError> {
+    let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or("");
+    let first = first.trim_start_matches('\u{feff}').trim_start();
+    if first.starts_with('[') {
+        return parse_cone_log(text, file).map(TrackFile::Log);
+    }
+    if first.starts_with("tag") {
+        return parse_eufs(text, file).map(TrackFile::Cones);
+    }
+    if first.starts_with('#') && first.contains(',') {
+        if first.contains("w_tr") {
+            return parse_tum(text, file).map(TrackFile::Corridor);
+        }
+        return parse_line(text, file).map(TrackFile::Line);
+    }
+    if is_csv(first, file) {
+        let found = if first.is_empty() { "an empty file".into() } else { shown(first) };
+        return Err(FormatError::new(file, Location::START, found, CSV));
+    }
+    parse_fssim(text, file).map(TrackFile::Cones)
+}
+
+/// How the CSV files begin.
+const CSV: &str = "a line that begins with tag,x,y (EUFS), # x_m,y_m,w_tr_right_m,w_tr_left_m (TUM), or # x_m,y_m (a race line of TUM)";
+
+/// Whether a file is to be one of comma-separated values: by its name, if it does not begin with a key, or by a first line that
+/// is a row of numbers.
+fn is_csv(first: &str, file: &str) -> bool {
+    let named = file.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("csv"));
+    (named && !first.contains(':'))
+        || (first.contains(',') && first.split(',').all(|field| field.trim().parse::<f64>().is_ok()))
+}

@@ -1,0 +1,88 @@
+use std::fmt::Write as _;
+
+use super::MOST;
+use super::csv::{field, rows};
+use crate::geometry::Point;
+use crate::race::{Corridor, PlanError};
+use crate::world::formats::{FormatError, Location, shown};
+
+/// Metres from the middle to an edge at most. No track is wider, and wider ones would take long to line with cones.
+const WIDEST: f64 = 100.0;
+const HEADER: &str = "# x_m,y_m,w_tr_right_m,w_tr_left_m";
+
+/// Reads a circuit of the TUM race track database: a closed centre line in metres, and how far the track reaches to the
+/// right and to the left of each point.
+pub fn parse_tum(text: &str, file: &str) -> Result<Corridor, FormatError> {
+    let numbers = table::<4>(text, file, HEADER)?;
+    for (values, at) in &numbers {
+        for (width, side) in [(values[2], "right"), (values[3], "left")] {
+            if !(width > 0.0 && width <= WIDEST) {
+                let expected = format!("a width to the {side} of more than 0, at most {WIDEST} m");
+                return Err(FormatError::new(file, *at, width.to_string(), expected));
+            }
+        }
+    }
+    let rows: Vec<_> =
+        numbers.iter().map(|([x, y, right, left], _)| (Point::new(*x, *y), *left, *right)).collect();
+    Corridor::closed(&rows).map_err(|error: PlanError| {
+        FormatError::new(file, Location::START, error.to_string(), "a closed centre line")
+    })
+}
+
+/// Reads a line without widths, as the race lines of the same database.
+pub fn parse_line(text: &str, file: &str) -> Result<Vec<Point>, FormatError> {
+    let rows = table::<2>(text, file, "# x_m,y_m")?;
+    Ok(rows.iter().map(|([x, y], _)| Point::new(*x, *y)).collect())
+}
+
+/// A circuit as [`parse_tum`] reads it.
+pub fn write_tum(corridor: &Corridor) -> String {
+    let mut text = format!("{HEADER}\n");
+    for station in corridor.stations() {
+        let p = station.position;
+        let _ = writeln!(text, "{},{},{},{}", p.x, p.y, station.right, station.left);
+    }
+    text
+}
+
+/// Rows of numbers behind a line that begins with a hash.
+fn table<const N: usize>(
+    text: &str,
+    file: &str,
+    header: &str,
+) -> Result<Vec<([f64; N], Location)>, FormatError> {
+    let mut rows = rows(text);
+    let first = rows.next();
+    if !first.as_ref().is_some_and(|row| row[0].text.starts_with('#')) {
+        let found = first.map_or_else(|| "an empty file".into(), |row| shown(row[0].text));
+        return Err(FormatError::new(file, Location::START, found, format!("the line {header}")));
+    }
+    let mut table = Vec::new();
+    for row in rows {
+        let mut values = [0.0; N];
+        for (index, value) in values.iter_mut().enumerate() {
+            *value = field(&row, index, file, "a number of metres")?.number(file, "a number of metres")?;
+        }
+        if let Some(more) = row.get(N) {
+            return Err(more.error(file, "the end of the line"));
+        }
+        if table.len() == MOST {
+            return Err(FormatError::new(
+                file,
+                row[0].at,
+                "one more point",
+                format!("at most {MOST} points"),
+            ));
+        }
+        table.push((values, row[0].at));
+    }
+    if table.len() < 4 {
+        return Err(FormatError::new(
+            file,
+            Location::START,
+            format!("{} points", table.len()),
+            "at least 4 points",
+        ));
+    }
+    Ok(table)
+}

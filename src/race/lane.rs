@@ -1,0 +1,250 @@
+//! The lane ahead of a car that knows only some of its cones: where one side is missing, where gaps are wide, and where others
+//! stand about.
+
+use super::cone::Cone;
+use super::fit::Fitter;
+use super::rows::{Passage, RowParameters, rows};
+use super::ways::{along_lane, beside_row, distinct, straight_on};
+use crate::geometry::{Point, Pose, Vector};
+
+#[cfg(test)]
+mod tests;
+
+/// What a lane is looked for with. All numbers are greater than 0 and finite, and it looks no farther ahead than 1000 m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LaneParameters {
+    /// Metres ahead of the car.
+    pub ahead: f64,
+    /// The greatest curvature, in 1/m.
+    pub curvature: f64,
+    /// Metres to a cone at which a car would touch it.
+    pub clearance: f64,
+    /// Metres from the middle to an edge, from least to most.
+    pub half_width: [f64; 2],
+    /// The same before cones say more.
+    pub usual: f64,
+    /// Metres by which a cone of an edge may stand off it.
+    pub loose: f64,
+    /// Metres from cone to cone of an edge at most, where one or two are missing.
+    pub spacing: f64,
+    /// Radians by which an edge turns at most at one cone.
+    pub sharpest: f64,
+}
+
+impl Default for LaneParameters {
+    fn default() -> Self {
+        Self {
+            ahead: 17.5,
+            curvature: 0.38,
+            clearance: 1.15,
+            half_width: [1.4, 2.8],
+            usual: 1.9,
+            loose: 0.8,
+            spacing: 10.5,
+            sharpest: 1.9,
+        }
+    }
+}
+
+/// Metres that are looked ahead at most.
+const FARTHEST: f64 = 1000.0;
+
+impl LaneParameters {
+    /// Whether all numbers are within their ranges.
+    fn is_usable(&self) -> bool {
+        let p = self;
+        let [least, most] = p.half_width;
+        let numbers =
+            [p.ahead, p.curvature, p.clearance, least, most, p.usual, p.loose, p.spacing, p.sharpest];
+        let are_good = numbers.iter().all(|number| *number > 0.0 && number.is_finite());
+        are_good && least <= most && p.ahead <= FARTHEST
+    }
+}
+
+/// The middle of a lane.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lane {
+    /// Points along it, about a metre apart.
+    pub points: Vec<Point>,
+    /// The cones of its left and of its right edge, by their indices, in their order along it.
+    pub edges: [Vec<usize>; 2],
+    /// Metres from the middle to an edge, as its cones say.
+    pub half_width: f64,
+}
+
+/// Where a car was, is, and has been earlier.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Way<'w> {
+    /// Where it was just now, oldest first.
+    pub(super) behind: &'w [Pose],
+    pub(super) car: Pose,
+    /// The way by which it came: it does not lead back there. Where a circuit crosses itself, it goes straight on.
+    pub(super) earlier: &'w [Pose],
+    /// What is no cone and not to be touched.
+    pub(super) others: &'w [Point],
+}
+
+impl Lane {
+    /// A lane of which nothing is known but half its width.
+    pub(super) fn unknown(half_width: f64) -> Self {
+        Self { points: Vec::new(), edges: [Vec::new(), Vec::new()], half_width }
+    }
+
+    /// How far a place is from the lane, 0 to 1; 0 beyond its end.
+    pub(super) fn away(&self, place: Point) -> f64 {
+        let mut nearest = (0, f64::INFINITY);
+        for (i, point) in self.points.iter().enumerate() {
+            let squared = (point - place).norm_squared();
+            if squared < nearest.1 {
+                nearest = (i, squared);
+            }
+        }
+        if nearest.0 + 2 < self.points.len() { nearest.1.min(1.0) } else { 0.0 }
+    }
+}
+
+/// The lane that the cones are most likely the edges of, some of which may be missing and some false: a curve with edges at half its
+/// width to both sides, whose bends begin slowly, and which keeps clear of all cones. Colours count, if they are known.
+///
+/// The cones are read as rows first, in up to four ways; beside each row, along the lane found before, and straight on, the lane is
+/// found that fits the cones there best, by least squares in which cones count by how likely they are at an edge; the most likely one
+/// of these is told.
+///
+/// `behind` is where the car was, oldest first, `car` where it is, at the point of it that is to be in the middle, and `before` the
+/// lane as it was found before. What is found begins up to [`LaneParameters::spacing`] behind the car, where `behind` does, and ends
+/// just beyond the last cone of its edges. `None` without a cone at an edge, and with parameters out of their ranges. Takes O(n²) for
+/// n cones.
+///
+/// ```
+/// use roverlab::race::{Cone, Lane, LaneParameters, lane};
+/// use roverlab::geometry::{Point, Pose};
+/// let edge = |y: f64| (0..6).map(move |k| Cone::unknown(Point::new(3.0 * f64::from(k), y)));
+/// let cones: Vec<Cone> = edge(1.6).chain(edge(-1.8)).collect();
+/// let unknown = Lane { points: Vec::new(), edges: [Vec::new(), Vec::new()], half_width: 1.9 };
+/// let found = lane(&cones, &[], Pose::default(), &unknown, &LaneParameters::default()).expect("a lane");
+/// assert_eq!((found.edges[0].len(), found.edges[1].len()), (6, 6));
+/// assert!(found.points[8..].iter().all(|point| (point.y + 0.1).abs() < 0.1));
+/// ```
+pub fn lane(
+    cones: &[Cone],
+    behind: &[Pose],
+    car: Pose,
+    before: &Lane,
+    parameters: &LaneParameters,
+) -> Option<Lane> {
+    lane_where(cones, &Way { behind, car, earlier: &[], others: &[] }, before, parameters)
+}
+
+/// The same for a car of which it is known where else it has been.
+pub(super) fn lane_where(
+    cones: &[Cone],
+    way: &Way,
+    before: &Lane,
+    parameters: &LaneParameters,
+) -> Option<Lane> {
+    if !parameters.is_usable() || before.half_width <= 0.0 {
+        return None;
+    }
+    let car = way.car;
+    let reach = parameters.ahead + parameters.spacing;
+    let near: Vec<usize> =
+        (0..cones.len()).filter(|&cone| (cones[cone].position - car.position()).norm() < reach).collect();
+    let cones: Vec<Cone> = near.iter().map(|&cone| cones[cone]).collect();
+    let mut found = lane_between(&cones, way, before, parameters)?;
+    for cone in found.edges.iter_mut().flatten() {
+        *cone = near[*cone];
+    }
+    Some(found)
+}
+
+/// The same between cones that are all near.
+fn lane_between(cones: &[Cone], way: &Way, before: &Lane, parameters: &LaneParameters) -> Option<Lane> {
+    // What is far behind says nothing of the lane here, and a curve from there would bend too slowly.
+    let is_far = |pose: &Pose| (pose.position() - way.car.position()).norm() > parameters.spacing;
+    let first = way.behind.iter().rposition(is_far).map_or(0, |far| far + 1);
+    let stations: Vec<Pose> = way.behind[first..].iter().copied().chain([way.car]).collect();
+    let earlier: Vec<Passage> = way.earlier.iter().map(|pose| (*pose).into()).collect();
+    let fitter = Fitter { cones, way, earlier: &earlier, before, parameters };
+    let fits = ways(cones, &stations, &earlier, before, parameters)
+        .into_iter()
+        .filter_map(|ahead| fitter.fit(&[&stations[..], &ahead].concat(), stations.len() - 1));
+    let best = fits.filter(|fit| fit.worth.is_finite()).max_by(|a, b| a.worth.total_cmp(&b.worth))?;
+    let mut points = even(&best.middle);
+    let places: Vec<Point> =
+        cones.iter().map(|cone| cone.position).chain(way.others.iter().copied()).collect();
+    keep_clear(&mut points, &places, parameters.clearance + BEYOND_TOUCH);
+    let found = Lane { points, edges: best.edges, half_width: best.half_width };
+    found.edges.iter().any(|edge| !edge.is_empty()).then_some(found)
+}
+
+/// Ways ahead near which the lane may lie: beside the rows of each reading, along the lane found before, and straight on.
+fn ways(
+    cones: &[Cone],
+    stations: &[Pose],
+    earlier: &[Passage],
+    before: &Lane,
+    p: &LaneParameters,
+) -> Vec<Vec<Pose>> {
+    let Some(&car) = stations.last() else { return Vec::new() };
+    let (half_width, narrowest) = (before.half_width, p.half_width[0]);
+    let along_rows =
+        RowParameters { reach: p.spacing, half_width, narrowest, loose: p.loose, sharpest: p.sharpest };
+    let mut ways = Vec::new();
+    for rows in rows(cones, stations, earlier, &along_rows) {
+        for (row, right) in rows.edges.iter().zip([half_width, -half_width]) {
+            let places: Vec<Point> = row.iter().map(|&cone| cones[cone].position).collect();
+            ways.extend(beside_row(&places, right, car, p.ahead));
+        }
+    }
+    ways.extend(along_lane(before, car, p.ahead));
+    ways.extend(straight_on(car, p.ahead));
+    distinct(ways)
+}
+
+/// Points at even steps of about a metre along a chain, smoothed.
+fn even(chain: &[Point]) -> Vec<Point> {
+    let mut points: Vec<Point> = Vec::new();
+    let mut left = 0.0;
+    for pair in chain.windows(2) {
+        let leg = pair[1] - pair[0];
+        let length = leg.norm();
+        while left < length {
+            points.push(pair[0] + leg * (left / length));
+            left += 1.0;
+        }
+        left -= length;
+    }
+    (0..3).for_each(|_| smooth(&mut points));
+    points
+}
+
+/// Moves points towards the middle of their neighbours, and then as much outwards again, as bends would shrink.
+fn smooth(points: &mut [Point]) {
+    for share in [0.5, -0.52] {
+        let old = points.to_vec();
+        for i in 1..old.len().saturating_sub(1) {
+            points[i] += (nalgebra::center(&old[i - 1], &old[i + 1]) - old[i]) * share;
+        }
+    }
+}
+
+/// Rounds in which points are moved away from cones.
+const PUSHES: usize = 8;
+/// Metres to a cone that are kept beside those at which a car touches it, where the lane is wide enough.
+const BEYOND_TOUCH: f64 = 0.4;
+
+/// Moves points away from cones, or other places, that are nearer than some metres, where those of the other edge let them.
+fn keep_clear(points: &mut [Point], places: &[Point], room: f64) {
+    for _ in 0..PUSHES {
+        for point in points.iter_mut() {
+            let push = |place: &Point| {
+                let away = *point - place;
+                let distance = away.norm().max(1e-6);
+                away * (0.5 * (room - distance).max(0.0) / distance)
+            };
+            let pushes: Vector = places.iter().map(push).sum();
+            *point += pushes;
+        }
+        smooth(points);
+    }
+}

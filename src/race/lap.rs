@@ -1,0 +1,104 @@
+//! The corridor of a lap that was driven without one.
+
+use super::corridor::Corridor;
+use super::error::PlanError;
+use super::lane::LaneParameters;
+use super::spline::ClosedSpline;
+use crate::geometry::{Point, Pose, math};
+
+/// Metres beyond the usual widths at which cones of an edge may stand beside the way of a lap.
+const BEYOND: f64 = 0.5;
+/// Metres along the lap over which a cone speaks for its edge.
+const SPEAKS: f64 = 6.5;
+/// Stations of a lap to both sides within which the width of a track is about the same.
+const ALIKE: usize = 10;
+
+/// The corridor around a lap that was driven in the middle, between the cones beside it.
+pub(super) fn around_lap(cones: &[Point], lap: &[Point], p: &LaneParameters) -> Result<Corridor, PlanError> {
+    let stations: Vec<Pose> = ClosedSpline::through(lap)?
+        .resample(1.0)
+        .iter()
+        .map(|place| {
+            let heading = math::atan2(place.tangent.y, place.tangent.x);
+            Pose::new(place.position.x, place.position.y, heading)
+        })
+        .collect();
+    let n = stations.len();
+    let edges = p.half_width[0] - BEYOND..p.half_width[1] + BEYOND;
+    let beside = |side: f64| -> Vec<Option<f64>> {
+        let near = |pose: &Pose| {
+            let local = cones.iter().map(|cone| pose.to_local(*cone)).filter(|local| local.x.abs() < 0.8);
+            let asides = local.map(|local| side * local.y).filter(|aside| edges.contains(aside));
+            asides.min_by(f64::total_cmp)
+        };
+        stations.iter().map(near).collect()
+    };
+    let sides = [beside(1.0), beside(-1.0)];
+    let usual = |at: usize| {
+        let around = (at + n - ALIKE..=at + n + ALIKE).flat_map(|k| [sides[0][k % n], sides[1][k % n]]);
+        let mut asides: Vec<f64> = around.flatten().collect();
+        asides.sort_by(f64::total_cmp);
+        asides.get(asides.len() / 2).copied().unwrap_or(p.usual)
+    };
+    let rows: Vec<(Point, f64, f64)> = (0..n)
+        .map(|at| {
+            let usual = usual(at);
+            let [left, right] = [0, 1].map(|side| between(&sides[side], at, (usual, p.loose)));
+            // Without one edge, it is as far from the other as it usually is.
+            let [left, right] = match (left, right) {
+                (Some(left), Some(right)) => [left, right],
+                (Some(left), None) => [left, (2.0 * usual - left).max(0.5)],
+                (None, Some(right)) => [(2.0 * usual - right).max(0.5), right],
+                (None, None) => [usual; 2],
+            };
+            (stations[at].position(), left, right)
+        })
+        .collect();
+    Corridor::closed(&rows)
+}
+
+/// The distance of an edge at a station of a lap, between the cones before and behind it that are about as far off as is usual.
+fn between(asides: &[Option<f64>], at: usize, (usual, loose): (f64, f64)) -> Option<f64> {
+    let n = asides.len();
+    let good = |k: usize| asides[k % n].filter(|aside| (aside - usual).abs() < loose);
+    let ahead = (0..=SPEAKS as usize).find_map(|k| good(at + k).map(|aside| (k as f64, aside)));
+    let back = (0..=SPEAKS as usize).find_map(|k| good(at + n - k).map(|aside| (k as f64, aside)));
+    match (back, ahead) {
+        (Some((before, one)), Some((behind, other))) => {
+            let share = before / (before + behind).max(1e-6);
+            Some(one + (other - one) * share)
+        }
+        (one, other) => one.or(other).map(|(_, aside)| aside),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::race::{TrackOptions, generate};
+
+    #[test]
+    fn a_lap_has_its_corridor() {
+        let generated = generate(5, &TrackOptions::drawn(5)).unwrap();
+        let lap: Vec<Point> =
+            generated.corridor.stations().iter().step_by(2).map(|s| s.aside(0.15)).collect();
+        let mut places: Vec<Point> = generated.track.cones.iter().map(|cone| cone.position).collect();
+        // Every ninth one is missing.
+        let mut index = 0;
+        places.retain(|_| {
+            index += 1;
+            index % 9 != 4
+        });
+        let found = around_lap(&places, &lap, &LaneParameters::default()).unwrap();
+        let wrong = |a: f64, b: f64| (a - b).abs();
+        for station in found.stations() {
+            let truth = generated.corridor.stations().iter().min_by(|a, b| {
+                let squared = |s: &crate::race::Station| (s.position - station.position).norm_squared();
+                squared(a).total_cmp(&squared(b))
+            });
+            let truth = truth.unwrap();
+            let widths = [station.left + station.right, truth.left + truth.right];
+            assert!(wrong(widths[0], widths[1]) < 0.9, "{station:?} {truth:?}");
+        }
+    }
+}

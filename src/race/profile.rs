@@ -1,0 +1,264 @@
+use super::error::{PlanError, positive};
+use super::hold::Hold;
+use super::racing_line::curvature;
+use crate::geometry::Point;
+
+/// What a car's tyres and motors do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CarLimits {
+    /// What its tyres give at most.
+    pub hold: Hold,
+    /// The greatest acceleration of the motors, in m/s².
+    pub drive: f64,
+    /// The greatest deceleration of the brakes, in m/s².
+    pub brake: f64,
+    /// Metres per second that are never exceeded.
+    pub top_speed: f64,
+    /// How fast the curvature of its way changes at most, in 1/m each second: as fast as the steering turns. Infinity for no limit.
+    pub turning: f64,
+}
+
+impl CarLimits {
+    /// A car whose tyres hold as well in all directions: those of a friction circle.
+    pub const fn circle(grip: f64, drive: f64, brake: f64, top_speed: f64) -> Self {
+        let hold = Hold::Ellipse { across: grip, turned: 0.0, along: grip };
+        Self { hold, drive, brake, top_speed, turning: f64::INFINITY }
+    }
+
+    fn check(&self) -> Result<(), PlanError> {
+        self.hold.check()?;
+        if self.turning.is_nan() || self.turning <= 0.0 {
+            return Err(PlanError::Parameter {
+                name: "change of curvature",
+                value: self.turning,
+                expected: "a positive number",
+            });
+        }
+        positive("drive", self.drive)?;
+        positive("brake", self.brake)?;
+        positive("top speed", self.top_speed)
+    }
+}
+
+/// How fast each point of a closed line is passed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpeedProfile {
+    /// Metres per second at each point.
+    pub speeds: Vec<f64>,
+    /// The curvature at each point, in 1/m, positive to the left.
+    pub curvatures: Vec<f64>,
+    /// Metres from each point to the next.
+    pub lengths: Vec<f64>,
+    /// Seconds for one lap.
+    pub lap_time: f64,
+}
+
+impl SpeedProfile {
+    /// The fastest way around a closed line within the friction ellipse, for a point mass in balance at each moment (the
+    /// quasi-steady optimum): the speed of each bend, limited forwards by what the motors give and backwards by what the
+    /// brakes take. O(n).
+    ///
+    /// ```
+    /// use roverlab::race::{CarLimits, SpeedProfile};
+    /// use roverlab::geometry::{Point, direction};
+    /// let limits = CarLimits::circle(10.0, 5.0, 8.0, 30.0);
+    /// let circle: Vec<_> = (0..100).map(|i| Point::origin() + direction(f64::from(i) * 0.0628318) * 9.0).collect();
+    /// let profile = SpeedProfile::closed(&circle, &limits)?;
+    /// // The root of grip times radius.
+    /// assert!((profile.speeds[50] - 90.0_f64.sqrt()).abs() < 0.01);
+    /// # Ok::<(), roverlab::race::PlanError>(())
+    /// ```
+    pub fn closed(points: &[Point], limits: &CarLimits) -> Result<Self, PlanError> {
+        let n = points.len();
+        if n < 4 {
+            return Err(PlanError::TooFew { found: n, needed: 4 });
+        }
+        let curvatures: Vec<f64> =
+            (0..n).map(|i| curvature([points[(i + n - 1) % n], points[i], points[(i + 1) % n]])).collect();
+        Self::of(points, curvatures, limits, true)
+    }
+
+    /// The same for a line with two ends, from a speed at the first point to at most another one at the last.
+    pub fn open(points: &[Point], limits: &CarLimits, first: f64, last: f64) -> Result<Self, PlanError> {
+        let n = points.len();
+        if n < 3 {
+            return Err(PlanError::TooFew { found: n, needed: 3 });
+        }
+        let curvatures: Vec<f64> = (0..n)
+            .map(|i| {
+                let middle = i.clamp(1, n - 2);
+                curvature([points[middle - 1], points[middle], points[middle + 1]])
+            })
+            .collect();
+        let mut profile = Self::of(points, curvatures, limits, false)?;
+        profile.speeds[0] = profile.speeds[0].min(first.max(0.0));
+        profile.speeds[n - 1] = profile.speeds[n - 1].min(last.max(0.0));
+        profile.limit(limits, false);
+        Ok(profile)
+    }
+
+    fn of(
+        points: &[Point],
+        curvatures: Vec<f64>,
+        limits: &CarLimits,
+        closed: bool,
+    ) -> Result<Self, PlanError> {
+        limits.check()?;
+        let n = points.len();
+        let lengths: Vec<f64> = (0..n).map(|i| (points[(i + 1) % n] - points[i]).norm()).collect();
+        let lengths_used = if closed { &lengths[..] } else { &lengths[..n - 1] };
+        if let Some(index) = lengths_used.iter().position(|&length| !(length > 1e-9 && length.is_finite())) {
+            return Err(PlanError::Degenerate { index });
+        }
+        let speed = |i: usize| {
+            let around = if closed {
+                [(i + n - 1) % n, (i + 1) % n]
+            } else {
+                [i.saturating_sub(1), (i + 1).min(n - 1)]
+            };
+            let change = (curvatures[around[1]] - curvatures[around[0]]).abs();
+            let turns = limits.turning * (lengths[around[0]] + lengths[i]) / change.max(1e-9);
+            let holds =
+                (limits.hold.across(curvatures[i], limits.drive) / curvatures[i].abs().max(1e-9)).sqrt();
+            holds.min(turns).min(limits.top_speed)
+        };
+        let speeds = (0..n).map(speed).collect();
+        let mut profile = Self { speeds, curvatures, lengths, lap_time: 0.0 };
+        profile.limit(limits, closed);
+        Ok(profile)
+    }
+
+    fn limit(&mut self, limits: &CarLimits, closed: bool) {
+        let n = self.speeds.len();
+        let forwards = |bend, across| limits.hold.forwards(bend, across, limits.drive);
+        let backwards = |bend, across| limits.hold.backwards(bend, across, limits.brake);
+        // Twice around, so that the beginning knows of the end.
+        let steps = if closed { 2 * n } else { n - 1 };
+        for k in 0..steps {
+            let i = k % n;
+            self.pass(forwards, i, (i + 1) % n, i);
+        }
+        for k in 0..steps {
+            let i = steps - 1 - k;
+            self.pass(backwards, (i + 1) % n, i % n, i % n);
+        }
+        let count = if closed { n } else { n - 1 };
+        self.lap_time = (0..count)
+            .map(|i| 2.0 * self.lengths[i] / (self.speeds[i] + self.speeds[(i + 1) % n]).max(1e-6))
+            .sum();
+    }
+
+    /// The acceleration along the way from a point to the next one.
+    pub(super) fn along(&self, from: usize, to: usize) -> f64 {
+        let (before, after) = (self.speeds[from], self.speeds[to]);
+        (after * after - before * before) / (2.0 * self.lengths[from].max(1e-9))
+    }
+
+    /// Limits the speed at `to` by an acceleration from `from` over a length, with Heun's rule: what there is at most for a curvature
+    /// and an acceleration across.
+    fn pass(&mut self, most: impl Fn(f64, f64) -> f64, from: usize, to: usize, length: usize) {
+        let length = self.lengths[length];
+        let bends = [from, to].map(|i| self.curvatures[i].abs());
+        let squared = self.speeds[from] * self.speeds[from];
+        let begin = most(bends[0], squared * bends[0]);
+        let guess = (squared + 2.0 * length * begin).min(self.speeds[to] * self.speeds[to]);
+        let end = most(bends[1], guess * bends[1]);
+        let reached = (squared + length * (begin + end)).sqrt();
+        self.speeds[to] = self.speeds[to].min(reached);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::direction;
+    use crate::race::ClosedSpline;
+    use proptest::prelude::*;
+    use std::f64::consts::TAU;
+
+    const LIMITS: CarLimits = CarLimits::circle(12.0, 6.0, 11.0, 25.0);
+
+    fn ellipse(n: u32, a: f64, b: f64) -> Vec<Point> {
+        (0..n)
+            .map(|i| {
+                let unit = direction(TAU * f64::from(i) / f64::from(n));
+                Point::new(a * unit.x, b * unit.y)
+            })
+            .collect()
+    }
+
+    proptest! {
+        #![proptest_config(crate::testing::cases(40))]
+        #[test]
+        fn the_tyres_hold_everywhere(a in 8.0..60.0f64, b in 8.0..60.0f64) {
+            let points: Vec<Point> =
+                ClosedSpline::through(&ellipse(80, a, b)).unwrap().resample(0.5).iter().map(|p| p.position).collect();
+            let profile = SpeedProfile::closed(&points, &LIMITS).unwrap();
+            let n = points.len();
+            for i in 0..n {
+                let (v, w) = (profile.speeds[i], profile.speeds[(i + 1) % n]);
+                let along = (w * w - v * v) / (2.0 * profile.lengths[i]);
+                let across = v * v * profile.curvatures[i];
+                prop_assert!((-11.0 - 1e-6..=6.0 + 1e-6).contains(&along) && v <= 25.0);
+                prop_assert!(crate::geometry::math::hypot(along, across) < 12.0 * 1.1, "{i}: {along} {across}");
+            }
+        }
+
+        #[test]
+        fn finer_steps_change_little(a in 8.0..60.0f64, b in 8.0..60.0f64) {
+            let spline = ClosedSpline::through(&ellipse(80, a, b)).unwrap();
+            let time = |step| {
+                let points: Vec<Point> = spline.resample(step).iter().map(|p| p.position).collect();
+                SpeedProfile::closed(&points, &LIMITS).unwrap().lap_time
+            };
+            prop_assert!((time(1.0) / time(0.05) - 1.0).abs() < 0.01);
+        }
+    }
+
+    #[test]
+    fn a_strip_from_standing_to_standing() {
+        let strip: Vec<Point> = (0..=150).map(|i| Point::new(0.5 * f64::from(i), 0.0)).collect();
+        let limits = CarLimits { top_speed: 100.0, ..LIMITS };
+        let profile = SpeedProfile::open(&strip, &limits, 0.0, 0.0).unwrap();
+        // Up with 6, down with 11 m/s²: v² (1/12 + 1/22) = 75.
+        let top = (75.0_f64 / (1.0 / 12.0 + 1.0 / 22.0)).sqrt();
+        let reached = profile.speeds.iter().copied().fold(0.0, f64::max);
+        assert!((reached - top).abs() < 0.2 && profile.speeds[0] == 0.0 && profile.speeds[150] == 0.0);
+        assert!((profile.lap_time - (top / 6.0 + top / 11.0)).abs() < 0.1);
+    }
+
+    #[test]
+    fn tighter_circles_are_slower_in_the_balance() {
+        use crate::race::{Hold, Tyres};
+        let limits = CarLimits { hold: Hold::Balance(Tyres::default()), ..LIMITS };
+        let speeds = [5.0, 9.0, 20.0, 40.0]
+            .map(|radius| SpeedProfile::closed(&ellipse(120, radius, radius), &limits).unwrap().speeds[60]);
+        assert!(speeds.windows(2).all(|pair| pair[0] < pair[1]), "{speeds:?}");
+        // Less than tyres without an axle that gives up first would.
+        assert!(speeds[1] < 0.96 * (12.0 * 9.0_f64).sqrt() && speeds[1] > 0.85 * (12.0 * 9.0_f64).sqrt());
+    }
+
+    #[test]
+    fn the_steering_keeps_up_with_the_bends() {
+        // A straight way that becomes a circle at once.
+        let mut points: Vec<Point> = (0..40).map(|i| Point::new(0.5 * f64::from(i), 0.0)).collect();
+        let circle = (0..30).map(|i| direction(0.05 * f64::from(i) - TAU / 4.0) * 10.0);
+        points.extend(circle.map(|arm| Point::new(20.0, 10.0) + arm));
+        let limits = CarLimits { turning: 0.5, ..LIMITS };
+        let [free, slow] =
+            [LIMITS, limits].map(|limits| SpeedProfile::open(&points, &limits, 20.0, 20.0).unwrap());
+        // The curvature becomes 0.1 within a metre.
+        assert!(slow.speeds[39] < 6.5 && free.speeds[39] > 10.0, "{} {}", slow.speeds[39], free.speeds[39]);
+        assert!((slow.speeds[65] / free.speeds[65] - 1.0).abs() < 0.02);
+        let error = SpeedProfile::closed(&points, &CarLimits { turning: f64::NAN, ..LIMITS }).unwrap_err();
+        assert_eq!(error.to_string(), "change of curvature is NaN; expected a positive number");
+    }
+
+    #[test]
+    fn what_is_no_car() {
+        let points = ellipse(20, 9.0, 9.0);
+        let limits = CarLimits::circle(f64::NAN, 6.0, 11.0, 25.0);
+        let error = SpeedProfile::closed(&points, &limits).unwrap_err();
+        assert_eq!(error.to_string(), "grip across is NaN; expected a positive, finite number");
+    }
+}

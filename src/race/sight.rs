@@ -1,0 +1,179 @@
+use super::cone::ConeColour;
+use crate::geometry::{Point, direction, math};
+use crate::io::LidarScan;
+
+/// Something that a scan shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sighting {
+    /// Its middle in the robot's frame.
+    pub position: Point,
+    /// Metres from its first point to its last.
+    pub size: f64,
+    /// How many of the beams that a cone would stop it has stopped, 0 to 1; 0 of what [most likely is
+    /// none](super::CameraSight::fuse) by its colour.
+    pub confidence: f64,
+    /// Metres from the sensor.
+    pub range: f64,
+    /// How far its place may be wrong, in metres.
+    pub error: f64,
+    /// Its colour, where that is seen.
+    pub colour: ConeColour,
+}
+
+impl Sighting {
+    /// Metres that no cone is wide.
+    pub const WIDEST_CONE: f64 = 0.45;
+
+    /// Whether it is as small as a cone.
+    pub fn is_cone(&self) -> bool {
+        self.size < Self::WIDEST_CONE
+    }
+}
+
+/// A cone's radius where a low scanner sees it, in metres.
+const RADIUS: f64 = 0.065;
+/// Metres by which the place of a cone in a scan is wrong.
+const ERROR: f64 = 0.03;
+/// Metres within which a beam has met nothing but the car itself.
+const BLIND: f64 = 0.05;
+/// Metres from point to point within one thing.
+const STEP: f64 = 0.3;
+
+/// The things in a scan: runs of beams whose ends are near each other. One beam in between may miss. O(n).
+///
+/// What is small because something nearer hides the rest of it is left out: that may be a part of anything, such as of the side of
+/// a car, and looks like a cone.
+///
+/// ```
+/// use roverlab::race::sightings;
+/// use roverlab::io::LidarScan;
+/// let mut ranges = vec![f64::INFINITY; 181];
+/// ranges[89..92].copy_from_slice(&[5.01, 4.94, 5.01]);
+/// let step = 1.0_f64.to_radians();
+/// let scan = LidarScan { angle_min: -90.0 * step, angle_increment: step, range_max: 20.0, ranges, ..LidarScan::default() };
+/// let found = sightings(&scan);
+/// assert!(found.len() == 1 && found[0].is_cone() && (found[0].position.x - 5.05).abs() < 0.02);
+/// ```
+pub fn sightings(scan: &LidarScan) -> Vec<Sighting> {
+    let mut found = Vec::new();
+    let mut run: Vec<usize> = Vec::new();
+    let mut misses = 0;
+    for (beam, &range) in scan.ranges.iter().enumerate() {
+        if !(range.is_finite() && range > BLIND) {
+            misses += 1;
+            continue;
+        }
+        let near = run.last().is_some_and(|&last| (scan.ranges[last] - range).abs() < STEP && misses <= 1);
+        if !near {
+            found.extend(finish(scan, &run));
+            run.clear();
+        }
+        run.push(beam);
+        misses = 0;
+    }
+    found.extend(finish(scan, &run));
+    found
+}
+
+fn finish(scan: &LidarScan, run: &[usize]) -> Option<Sighting> {
+    let (&first, &last) = (run.first()?, run.last()?);
+    let count = run.len() as f64;
+    let angle = run.iter().map(|&beam| scan.angle(beam)).sum::<f64>() / count;
+    let mean = run.iter().map(|&beam| scan.ranges[beam]).sum::<f64>() / count;
+    let place = |beam: usize| direction(scan.angle(beam)) * scan.ranges[beam];
+    let size = (place(last) - place(first)).norm();
+    let before = first.checked_sub(1).is_some_and(|beside| is_nearer(scan, beside, first));
+    if size < Sighting::WIDEST_CONE && (before || is_nearer(scan, last + 1, last)) {
+        return None;
+    }
+    // Beams meet a disc at a quarter of pi of its radius before its middle, in the mean.
+    let range = mean + 0.785 * RADIUS;
+    let half = math::asin((RADIUS / range).min(1.0));
+    let expected = (2.0 * half / scan.angle_increment.abs().max(1e-9)).floor().max(1.0);
+    let local = Point::origin() + direction(angle) * range;
+    Some(Sighting {
+        position: scan.mount.to_world(local),
+        size,
+        confidence: (count / expected).min(1.0),
+        range,
+        error: ERROR,
+        colour: ConeColour::Unknown,
+    })
+}
+
+/// Whether a beam ends before another one.
+fn is_nearer(scan: &LidarScan, beam: usize, other: usize) -> bool {
+    scan.ranges.get(beam).is_some_and(|range| *range > BLIND && *range < scan.ranges[other])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn scan_of(discs: &[Point]) -> LidarScan {
+        let step = std::f64::consts::PI / 900.0;
+        let ranges = (0..901)
+            .map(|beam| {
+                let ray = direction(-0.5 * std::f64::consts::PI + step * f64::from(beam));
+                let hits = discs.iter().filter_map(|disc| {
+                    let along = disc.coords.dot(&ray);
+                    let aside = disc.coords.norm_squared() - along * along;
+                    let deep = RADIUS * RADIUS - aside;
+                    (deep >= 0.0 && along > 0.0).then(|| along - deep.sqrt())
+                });
+                hits.fold(f64::INFINITY, f64::min)
+            })
+            .collect();
+        let angle_min = -0.5 * std::f64::consts::PI;
+        LidarScan { angle_min, angle_increment: step, range_max: 25.0, ranges, ..LidarScan::default() }
+    }
+
+    proptest! {
+        #![proptest_config(crate::testing::cases(256))]
+        #[test]
+        fn a_cone_is_found_where_it_stands(x in 0.5..14.0f64, y in -8.0..8.0f64) {
+            let found = sightings(&scan_of(&[Point::new(x, y)]));
+            prop_assert_eq!(found.len(), 1);
+            prop_assert!((found[0].position - Point::new(x, y)).norm() < 0.03, "{:?}", found);
+            prop_assert!(found[0].is_cone() && found[0].confidence > 0.4);
+        }
+    }
+
+    #[test]
+    fn the_side_of_a_car_is_no_row_of_cones() {
+        // From the corner at (6, 0.7) on, beams meet the side ever farther from each other.
+        let step = 0.01;
+        let wall = |beam: i32| {
+            let ray = direction(step * f64::from(beam));
+            let (rear, side) = (6.0 / ray.x, 0.7 / ray.y);
+            if (-0.7..0.7).contains(&(rear * ray.y)) {
+                rear
+            } else if side * ray.x > 6.0 && side * ray.x < 9.0 {
+                side
+            } else {
+                f64::INFINITY
+            }
+        };
+        let ranges: Vec<f64> = (-50..50).map(wall).collect();
+        let scan = LidarScan {
+            angle_min: -0.5,
+            angle_increment: step,
+            range_max: 25.0,
+            ranges,
+            ..LidarScan::default()
+        };
+        let found = sightings(&scan);
+        assert!(found.len() == 1 && !found[0].is_cone(), "{found:?}");
+    }
+
+    #[test]
+    fn neighbours_are_told_apart() {
+        let found = sightings(&scan_of(&[Point::new(5.0, 0.0), Point::new(5.0, 0.4), Point::new(9.0, 0.3)]));
+        assert_eq!(found.len(), 3);
+        // The third one stands in the shadow of the first.
+        let found = sightings(&scan_of(&[Point::new(5.0, 0.0), Point::new(5.0, 0.4), Point::new(9.0, 0.1)]));
+        assert_eq!(found.len(), 2);
+        assert!(sightings(&LidarScan::default()).is_empty());
+    }
+}

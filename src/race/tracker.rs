@@ -1,0 +1,314 @@
+use super::profile::SpeedProfile;
+use super::tyres::{SLIPS, Tyres};
+use crate::geometry::{Point, Pose, Twist, angle_difference, cross, math};
+
+/// How a car is kept on a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrackerParameters {
+    /// Metres from the rear axle to the point of the car that is kept on the line.
+    pub ahead: f64,
+    /// Metres in which an error dies out, standing.
+    pub length: f64,
+    /// Metres more for each m/s.
+    pub length_by_speed: f64,
+    /// Seconds by which the steering lags behind.
+    pub steering_lag: f64,
+    /// Seconds by which the speed lags behind.
+    pub speed_lag: f64,
+    /// Seconds of the acceleration that the tyres have left by which more speed is asked for than there is. The inverse of the gain of
+    /// the car's own controller is what spins no wheel; with twice of that, a car that only slides a little is not slowed down.
+    pub speed_time: f64,
+    /// Seconds of the deceleration by tyres that push across by which more speed is asked for: the inverse of that gain.
+    pub drag_time: f64,
+    /// How the car answers to its steering when it is fast.
+    pub tyres: Tyres,
+    /// How much more it is steered for a rate of turn that it does not have yet: curvature for curvature.
+    pub yaw: f64,
+    /// The share of the turn by which tyres that begin to slip let the nose point into a bend that is steered before it shows.
+    pub swing: f64,
+    /// The greatest curvature that is asked for, in 1/m.
+    pub curvature: f64,
+}
+
+impl Default for TrackerParameters {
+    fn default() -> Self {
+        Self {
+            ahead: 0.9,
+            length: 1.7,
+            length_by_speed: 0.16,
+            steering_lag: 0.11,
+            speed_lag: 0.12,
+            speed_time: 0.16,
+            drag_time: 0.083,
+            tyres: Tyres::default(),
+            yaw: 1.0,
+            swing: 0.5,
+            curvature: 0.42,
+        }
+    }
+}
+
+impl TrackerParameters {
+    /// For a car whose tyres do not slip.
+    pub fn rolling() -> Self {
+        Self {
+            length: 2.0,
+            length_by_speed: 0.22,
+            steering_lag: 0.1,
+            speed_lag: 0.08,
+            speed_time: 0.15,
+            drag_time: 0.0,
+            tyres: Tyres::ROLLING,
+            yaw: 0.0,
+            swing: 0.0,
+            ..Self::default()
+        }
+    }
+}
+
+/// A line with its speeds, and how far along it the car is.
+#[derive(Debug, Clone)]
+pub struct LineTracker {
+    parameters: TrackerParameters,
+    points: Vec<Point>,
+    profile: SpeedProfile,
+    closed: bool,
+    nearest: usize,
+    started: bool,
+    /// Whether the car has come to it. Without an end, a line may begin beside the car.
+    reached: bool,
+}
+
+/// What no car's place, in metres, speed or rate of turn comes to.
+const BEYOND_ALL: f64 = 1e6;
+/// Metres from a line within which a car is on it, and metres per second at which it comes to it if it stands.
+const ON_LINE: f64 = 0.3;
+const SLOW: f64 = 2.0;
+/// The share of the metres in which an error dies out by which one counts at most: what is farther off is approached at 14 degrees.
+const SLANTED: f64 = 0.4;
+/// The share of the tyres' grip that is asked of them at most to come back to a line. With all of it, a fast car whose line moves aside would
+/// steer until its tyres slip, and weave.
+const BACK: f64 = 0.6;
+/// Metres before and beyond a place between which the turn of the nose is taken.
+const SWINGS: f64 = 1.0;
+
+impl LineTracker {
+    /// A line from points, and a profile for the same ones.
+    pub fn new(
+        points: Vec<Point>,
+        profile: SpeedProfile,
+        closed: bool,
+        parameters: TrackerParameters,
+    ) -> Self {
+        Self { parameters, points, profile, closed, nearest: 0, started: false, reached: !closed }
+    }
+
+    /// Takes another line of as many points, which is a little beside the first one, and goes on at the same point of it.
+    pub(super) fn shift(&mut self, points: Vec<Point>, profile: SpeedProfile) {
+        debug_assert_eq!(points.len(), self.points.len(), "a line of as many points");
+        (self.points, self.profile) = (points, profile);
+    }
+
+    /// The number of the point before the car.
+    pub(super) fn passed(&self) -> usize {
+        self.nearest
+    }
+
+    /// Whether the line is a loop.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// The points of the line.
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// The speeds and curvatures at the points.
+    pub fn profile(&self) -> &SpeedProfile {
+        &self.profile
+    }
+
+    fn next(&self, i: usize) -> usize {
+        let n = self.points.len();
+        if self.closed { (i + 1) % n } else { (i + 1).min(n - 1) }
+    }
+
+    /// Speed and rate of turn that keep a car on the line, for what both are now: the curvature ahead, and what brings errors of
+    /// place and heading to nothing within some metres, both as the tyres slip. Also the distance from the line, positive to its
+    /// left.
+    ///
+    /// `None` beyond the end of an open line, and for what is no number or no car's, as of odometry that has failed.
+    pub fn step(&mut self, rear: Pose, moving: Twist) -> Option<(Twist, f64)> {
+        let is_car = |value: f64| value.abs() < BEYOND_ALL;
+        if ![rear.x, rear.y, rear.heading, moving.linear, moving.angular].into_iter().all(is_car) {
+            return None;
+        }
+        let p = self.parameters;
+        let speed = moving.linear;
+        let place = rear.to_world(Point::new(p.ahead, 0.0));
+        self.locate(place);
+        let (i, j) = (self.nearest, self.next(self.nearest));
+        if i == j {
+            return None;
+        }
+        let chord = self.points[j] - self.points[i];
+        let along = chord / chord.norm().max(1e-9);
+        let share = ((place - self.points[i]).dot(&along) / chord.norm().max(1e-9)).clamp(0.0, 1.0);
+        let aside = cross(along, place - self.points[i]);
+        let curvature_here = self.at(&self.profile.curvatures, i, share, 0.0);
+        // The rear axle bends as the point ahead of it has bent some time ago.
+        let bent = self.at(&self.profile.curvatures, i, share, -p.ahead);
+        // The chord's heading is that of its middle; the point of the car that is followed does not move along the car.
+        let heading = math::atan2(along.y, along.x) + curvature_here * (share - 0.5) * chord.norm();
+        let slip = math::asin((p.ahead * bent).clamp(-0.9, 0.9));
+        // Tyres that slip let the nose point into the bend.
+        let push = self.profile.along(i, j);
+        let inwards = p.tyres.slips(speed * speed * bent, push)[1];
+        let turned = angle_difference(rear.heading, heading - slip + inwards);
+        let beyond = speed.max(0.0) * p.steering_lag - p.ahead;
+        let curvature = self.at(&self.profile.curvatures, i, share, beyond);
+        let length = p.length + p.length_by_speed * speed.abs();
+        let swing = if speed > SLIPS { p.swing * self.swing(i, share, beyond, push) } else { 0.0 };
+        // Without a bound, a line that begins far beside the car would be driven at athwart.
+        let most = (SLANTED * length).min(BACK * p.tyres.grip * length * length / (speed * speed));
+        let back = aside.clamp(-most, most);
+        let wanted = curvature + swing - back / (length * length) - 1.6 * math::sin(turned) / length;
+        // The rear axle drives a tighter bend than the point ahead of it.
+        let inside = (1.0 - (p.ahead * wanted) * (p.ahead * wanted)).max(0.5).sqrt();
+        // Near the limit, tyres answer the less the more is asked, to what brings the car back as well.
+        let tyres = p.tyres.steering(wanted, speed * speed * wanted, push) - wanted;
+        // They answer late as well: a car that does not turn yet is steered more.
+        let late = if speed > SLIPS { p.yaw * (wanted - moving.angular / speed) } else { 0.0 };
+        let curvature = (wanted / inside + tyres + late).clamp(-p.curvature, p.curvature);
+        let planned = self.at(&self.profile.speeds, i, share, (speed.max(0.0) + 0.5) * p.speed_lag);
+        let most = self.left_along(wanted, moving) * p.speed_time;
+        let planned = planned + p.drag_time * p.tyres.drag(curvature_here, speed * speed * curvature_here);
+        self.reached |= aside.abs() < ON_LINE;
+        // Beside its line, it gains no speed: there may be no room for that.
+        let planned = if self.reached { planned } else { planned.min(speed.max(SLOW)) };
+        let speed = planned.min(speed.max(0.0) + most);
+        Some((Twist::new(speed, speed * curvature), aside))
+    }
+
+    /// What the tyres have left along the way beside what the car gives across and what it should: motors take no more, so that a car
+    /// that has to come back to its line can. Brakes do, as there is no other way to be slower.
+    fn left_along(&self, wanted: f64, moving: Twist) -> f64 {
+        let (tyres, speed) = (&self.parameters.tyres, moving.linear);
+        if speed <= SLIPS {
+            return tyres.grip;
+        }
+        let across = (speed * moving.angular).abs().max(speed * speed * wanted.abs());
+        tyres.left_along(wanted, across)
+    }
+
+    /// How much faster than the line the car turns on it, in 1/m: the more its tyres have to slip, the more its nose points into the
+    /// bend.
+    fn swing(&self, piece: usize, share: f64, beyond: f64, push: f64) -> f64 {
+        let inwards = |beyond: f64| {
+            let [bend, speed] = [&self.profile.curvatures, &self.profile.speeds]
+                .map(|values| self.at(values, piece, share, beyond));
+            self.parameters.tyres.slips(speed * speed * bend, push)[1]
+        };
+        (inwards(beyond + SWINGS) - inwards(beyond - SWINGS)) / (2.0 * SWINGS)
+    }
+
+    /// Metres along the line, from where the car is, to a thing that stands on it or nearer to it than `aside`. `None` where it does
+    /// not, or is farther off than some metres.
+    pub fn distance_to(&self, thing: Point, aside: f64, farthest: f64) -> Option<f64> {
+        let (mut i, mut passed) = (self.nearest, 0.0);
+        while passed < farthest {
+            if (self.points[i] - thing).norm_squared() < aside * aside {
+                return Some(passed);
+            }
+            let next = self.next(i);
+            if next == i {
+                return None;
+            }
+            passed += self.profile.lengths[i];
+            i = next;
+        }
+        None
+    }
+
+    /// The point of the line before the place, near the last one.
+    fn locate(&mut self, place: Point) {
+        let n = self.points.len();
+        let squared = |i: usize| (self.points[i] - place).norm_squared();
+        if !self.started {
+            self.started = true;
+            self.nearest = (0..n).min_by(|&a, &b| squared(a).total_cmp(&squared(b))).unwrap_or(0);
+        }
+        for _ in 0..n {
+            let (i, j) = (self.nearest, self.next(self.nearest));
+            let chord = self.points[j] - self.points[i];
+            if i == j || (place - self.points[j]).dot(&chord) < 0.0 {
+                break;
+            }
+            self.nearest = j;
+        }
+    }
+
+    fn previous(&self, i: usize) -> usize {
+        let n = self.points.len();
+        if self.closed { (i + n - 1) % n } else { i.saturating_sub(1) }
+    }
+
+    /// A value along the line, some metres beyond a share of a piece, or before it.
+    fn at(&self, values: &[f64], piece: usize, share: f64, beyond: f64) -> f64 {
+        let (mut i, mut left) = (piece, beyond + share * self.profile.lengths[piece]);
+        while left < 0.0 {
+            let before = self.previous(i);
+            if before == i {
+                return values[i];
+            }
+            i = before;
+            left += self.profile.lengths[i];
+        }
+        while left > self.profile.lengths[i] {
+            left -= self.profile.lengths[i];
+            let next = self.next(i);
+            if next == i || (!self.closed && self.next(next) == next) {
+                return values[next];
+            }
+            i = next;
+        }
+        let share = left / self.profile.lengths[i];
+        values[i] + (values[self.next(i)] - values[i]) * share
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::race::CarLimits;
+
+    #[test]
+    fn what_is_no_number_leads_nowhere() {
+        let points: Vec<Point> = (0..40).map(|k| Point::new(0.5 * f64::from(k), 0.0)).collect();
+        let limits = CarLimits::circle(5.0, 3.0, 5.0, 10.0);
+        let profile = SpeedProfile::open(&points, &limits, 5.0, 2.0).unwrap();
+        let mut tracker = LineTracker::new(points, profile, false, TrackerParameters::rolling());
+        for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300] {
+            assert_eq!(tracker.step(Pose::new(1.0, wrong, 0.0), Twist::new(3.0, 0.0)), None);
+            assert_eq!(tracker.step(Pose::new(1.0, 0.0, 0.0), Twist::new(wrong, 0.0)), None);
+        }
+        assert!(tracker.step(Pose::new(1.0, 0.0, 0.0), Twist::new(3.0, 0.0)).is_some());
+    }
+
+    #[test]
+    fn a_line_far_beside_is_come_to_at_a_slant() {
+        let points: Vec<Point> = (0..400).map(|k| Point::new(0.5 * f64::from(k), 0.0)).collect();
+        let limits = CarLimits::circle(5.0, 3.0, 5.0, 10.0);
+        let profile = SpeedProfile::open(&points, &limits, 10.0, 2.0).unwrap();
+        let mut tracker = LineTracker::new(points, profile, false, TrackerParameters::rolling());
+        let (mut rear, mut moving) = (Pose::new(0.0, 5.0, 0.0), Twist::new(8.0, 0.0));
+        let mut steepest = 0.0_f64;
+        while rear.x < 100.0 {
+            (moving, _) = tracker.step(rear, moving).unwrap();
+            rear = rear.compose(&Pose::new(0.02 * moving.linear, 0.0, 0.02 * moving.angular));
+            steepest = steepest.max(rear.heading.abs());
+        }
+        assert!(steepest < 0.3 && rear.y.abs() < 0.05, "{steepest} {rear:?}");
+    }
+}

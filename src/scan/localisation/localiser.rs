@@ -1,0 +1,290 @@
+use nalgebra::Matrix3;
+
+use super::hypothesis::Bench;
+use super::map::scanner_of;
+use super::search::search;
+use super::{Hypothesis, LocalisationMap, LocaliserParameters};
+use crate::geometry::{Pose, angle_difference, math};
+use crate::io::{Error, LidarScan, Result};
+
+/// What a [`Localiser`] knows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Localisation {
+    /// Nothing yet, or nothing that explains what is seen.
+    Lost,
+    /// So many places explain what was seen; the most probable one comes along.
+    Several(usize, Hypothesis),
+    /// One place.
+    One(Hypothesis),
+}
+
+impl Localisation {
+    /// The most probable place.
+    pub fn best(&self) -> Option<Hypothesis> {
+        match self {
+            Localisation::Lost => None,
+            Localisation::Several(_, best) | Localisation::One(best) => Some(*best),
+        }
+    }
+
+    /// How many places there are.
+    pub fn count(&self) -> usize {
+        match self {
+            Localisation::Lost => 0,
+            Localisation::Several(count, _) => *count,
+            Localisation::One(_) => 1,
+        }
+    }
+}
+
+/// Finds out where a robot is in a known world without being told where it started (the task of section 4.3).
+///
+/// The first scan is compared with what would be seen from all free places of a grid in all directions. What fits becomes a
+/// hypothesis: a pose with a covariance, which moves on with odometry, is matched to each scan and weighed by how well it
+/// explains it (P. Jensfelt and S. Kristensen, "Active global localization for a mobile robot using multiple hypothesis
+/// tracking", 2001). Poses that the world cannot tell apart stay equally probable, and are told as such. When none explains
+/// what is seen, as after the robot was carried away, the search begins anew.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::io::{Drive, Lidar, Clock};
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::scan::{Localiser, LocaliserParameters, LocalisationMap};
+/// use roverlab::world::{RobotSpec, Scene, Wall, World};
+/// # fn main() -> roverlab::io::Result<()> {
+/// let mut world = World::walled(2.0, 3.0);
+/// world.walls.push(Wall::new(Point::new(0.0, 2.0), Point::new(0.9, 2.0)));
+/// let start = Pose::new(1.3, 0.7, 2.0);
+/// let scene = Scene::with_robot(world.clone(), RobotSpec::s4(), start);
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let mut robot = simulation.robot(0)?;
+/// let mut localiser = Localiser::new(LocalisationMap::new(&world)?, LocaliserParameters::default())?;
+/// for _ in 0..10 {
+///     robot.turn(0.3, 1.0)?;
+///     robot.wait_done()?;
+///     let (odometry, scan) = (robot.pose()?, robot.scan()?);
+///     localiser.update(odometry, &scan)?;
+/// }
+/// let found = localiser.localisation();
+/// assert_eq!(found.count(), 1);
+/// assert!(found.best().unwrap().pose.distance_to(start.position()) < 0.02);
+/// assert_eq!(simulation.truth().robot(0)?.contacts, 0);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone)]
+pub struct Localiser {
+    map: LocalisationMap,
+    parameters: LocaliserParameters,
+    hypotheses: Vec<Hypothesis>,
+    bench: Option<Bench>,
+    odometry: Option<Pose>,
+    /// Where odometry was when weights were changed last.
+    viewed: Option<Pose>,
+    /// Scans in a row that nothing explains.
+    unexplained: u32,
+    /// How often the search has begun.
+    searches: u32,
+}
+
+/// Steps by which candidates of a search and hypotheses on the way are matched.
+const SEARCH_STEPS: usize = 10;
+const TRACK_STEPS: usize = 3;
+/// How far a candidate of a search may be off, in metres and radians.
+const CANDIDATE_SPREAD: f64 = 0.15;
+/// How many candidates are tried again, turned by so many radians.
+const TURNED: usize = 16;
+const TURNS: [f64; 6] = [-0.2, -0.13, -0.06, 0.06, 0.13, 0.2];
+/// A hypothesis counts if it is this probable in terms of the best one.
+const COUNTS: f64 = 0.02;
+/// The share of beams that have to be as expected.
+const EXPLAINED: f64 = 0.6;
+/// Scans in a row without that after which the search begins anew.
+const PATIENCE: u32 = 8;
+/// The most hypotheses that are kept.
+const MOST: usize = 64;
+
+impl Localiser {
+    /// A localiser that knows nothing but the map.
+    pub fn new(map: LocalisationMap, parameters: LocaliserParameters) -> Result<Self> {
+        parameters.validate()?;
+        Ok(Self {
+            map,
+            parameters,
+            hypotheses: Vec::new(),
+            bench: None,
+            odometry: None,
+            viewed: None,
+            unexplained: 0,
+            searches: 0,
+        })
+    }
+
+    /// Begins with a place that is known to within a few centimetres and degrees, instead of looking everywhere.
+    pub fn start_at(&mut self, pose: Pose) {
+        /// Metres and radians.
+        const SPREAD: f64 = 0.03;
+        self.hypotheses = vec![Hypothesis::new(pose, SPREAD)];
+        (self.odometry, self.viewed, self.unexplained) = (None, None, 0);
+    }
+
+    /// Where the robot most probably is by now, by odometry since the last scan.
+    pub fn place(&self, odometry: Pose) -> Option<Pose> {
+        let best = self.hypotheses.first()?;
+        let last = self.odometry.unwrap_or(odometry);
+        Some(best.pose.compose(&last.inverse().compose(&odometry)))
+    }
+
+    /// All places where the robot may be, the most probable one first.
+    pub fn hypotheses(&self) -> &[Hypothesis] {
+        &self.hypotheses
+    }
+
+    /// What is known.
+    pub fn localisation(&self) -> Localisation {
+        let Some(best) = self.hypotheses.first().filter(|best| best.explained >= EXPLAINED) else {
+            return Localisation::Lost;
+        };
+        let least = COUNTS * best.probability;
+        match self.hypotheses.iter().filter(|other| other.probability >= least).count() {
+            0 | 1 => Localisation::One(*best),
+            count => Localisation::Several(count, *best),
+        }
+    }
+
+    /// The map.
+    pub fn map(&self) -> &LocalisationMap {
+        &self.map
+    }
+
+    /// How often the robot was looked for everywhere.
+    pub fn searches(&self) -> u32 {
+        self.searches
+    }
+
+    /// Takes a scan into account that was taken where odometry says.
+    ///
+    /// Fails for a pose that is not finite and for a scan without beams.
+    pub fn update(&mut self, odometry: Pose, scan: &LidarScan) -> Result<()> {
+        if !odometry.is_finite() {
+            return Err(Error::invalid_input("observed pose", format!("{odometry:?}"), "finite numbers"));
+        }
+        let beams = scan.ranges.len();
+        if beams < 8 || scan.angle_increment.abs() < 1e-9 {
+            return Err(Error::invalid_input(
+                "beams of the scan",
+                beams,
+                "at least 8 in different directions",
+            ));
+        }
+        let mut bench = match self.bench.take() {
+            Some(bench) if bench.expected.len() == beams => bench,
+            _ => Bench { scanner: scanner_of(scan), expected: vec![0.0; beams] },
+        };
+        if self.hypotheses.is_empty() {
+            self.search(scan, &mut bench);
+            self.viewed = Some(odometry);
+        } else {
+            let motion = self.odometry.map_or(Pose::default(), |last| last.inverse().compose(&odometry));
+            let other_view = self.is_other_view(&odometry);
+            if other_view {
+                self.viewed = Some(odometry);
+            }
+            self.track(&motion, scan, &mut bench, other_view);
+        }
+        self.odometry = Some(odometry);
+        self.bench = Some(bench);
+        self.tidy();
+        self.give_up();
+        Ok(())
+    }
+
+    fn is_other_view(&self, odometry: &Pose) -> bool {
+        self.viewed.is_none_or(|last| {
+            last.distance_to(odometry.position()) > self.parameters.view.0
+                || angle_difference(last.heading, odometry.heading).abs() > self.parameters.view.1
+        })
+    }
+
+    fn search(&mut self, scan: &LidarScan, bench: &mut Bench) {
+        self.searches += 1;
+        let candidates = search(&self.map, scan, &self.parameters);
+        self.try_poses(candidates.into_iter().map(|candidate| candidate.pose), scan, bench);
+        self.turn_best(scan, bench);
+    }
+
+    /// Makes hypotheses of poses that may be right.
+    fn try_poses(&mut self, poses: impl IntoIterator<Item = Pose>, scan: &LidarScan, bench: &mut Bench) {
+        for pose in poses {
+            let mut hypothesis = Hypothesis::new(pose, CANDIDATE_SPREAD);
+            hypothesis.log_weight =
+                hypothesis.match_scan(&self.map, scan, bench, &self.parameters, SEARCH_STEPS);
+            self.hypotheses.push(hypothesis);
+        }
+    }
+
+    /// Adds the best hypotheses turned a little. A round wall is made of straight pieces, and a scan that is off by one
+    /// piece fits nearly as well as the right one: matching does not leave it, and candidates so near are not looked at.
+    fn turn_best(&mut self, scan: &LidarScan, bench: &mut Bench) {
+        self.unite();
+        let best = self.hypotheses.iter().take(TURNED);
+        let turned: Vec<Pose> = best.flat_map(|best| TURNS.map(|turn| best.turned(turn))).collect();
+        self.try_poses(turned, scan, bench);
+    }
+
+    fn track(&mut self, motion: &Pose, scan: &LidarScan, bench: &mut Bench, other_view: bool) {
+        for hypothesis in &mut self.hypotheses {
+            hypothesis.predict(motion, &self.parameters);
+            let likelihood = hypothesis.match_scan(&self.map, scan, bench, &self.parameters, TRACK_STEPS);
+            if other_view {
+                hypothesis.log_weight += likelihood;
+            }
+            if !self.map.is_free(hypothesis.pose.position(), 0.5 * self.parameters.radius) {
+                hypothesis.log_weight = f64::NEG_INFINITY;
+            }
+        }
+    }
+
+    /// Sorts, unites and weighs the hypotheses, and drops the improbable ones.
+    fn tidy(&mut self) {
+        self.unite();
+        let best = self.hypotheses.first().map_or(0.0, |best| best.log_weight);
+        let least = best + math::ln(self.parameters.least_probability);
+        self.hypotheses.retain(|hypothesis| hypothesis.log_weight >= least);
+        self.hypotheses.truncate(MOST);
+        let total: f64 = self.hypotheses.iter().map(|other| math::exp(other.log_weight - best)).sum();
+        for hypothesis in &mut self.hypotheses {
+            hypothesis.log_weight -= best;
+            hypothesis.probability = math::exp(hypothesis.log_weight) / total;
+        }
+    }
+
+    /// Sorts the hypotheses, the best one first, and keeps the best alone of those that are the same.
+    fn unite(&mut self) {
+        self.hypotheses.retain(|hypothesis| hypothesis.log_weight.is_finite());
+        self.hypotheses.sort_by(|a, b| b.log_weight.total_cmp(&a.log_weight));
+        let mut kept: Vec<Hypothesis> = Vec::with_capacity(self.hypotheses.len());
+        for hypothesis in self.hypotheses.drain(..) {
+            if !kept.iter().any(|other| other.is_same(&hypothesis)) {
+                kept.push(hypothesis);
+            }
+        }
+        self.hypotheses = kept;
+    }
+
+    /// Begins anew if nothing explains what is seen.
+    fn give_up(&mut self) {
+        let explained = self.hypotheses.first().is_some_and(|best| best.explained >= EXPLAINED);
+        self.unexplained = if explained { 0 } else { self.unexplained + 1 };
+        if self.unexplained >= PATIENCE {
+            self.unexplained = 0;
+            self.hypotheses.clear();
+        }
+    }
+
+    /// The covariance of the most probable place.
+    pub fn covariance(&self) -> Option<Matrix3<f64>> {
+        self.hypotheses.first().map(|best| best.covariance)
+    }
+}

@@ -1,0 +1,161 @@
+use image::{GrayImage, RgbImage};
+
+use super::{
+    CameraGeometry, Components, Error, HueLimits, HueRange, HueScale, NO_HUE, RgbView, hue,
+    hue_histogram_into, hue_match_into, maximum,
+};
+use crate::geometry::Point;
+
+/// How a colour is found in an image.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FindMethod {
+    /// By the largest number of matching pixels in a column (Programs 11.9 and 11.10).
+    Histogram,
+    /// By the largest group of connected matching pixels.
+    #[default]
+    Blob,
+}
+
+/// Where in an image a colour is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sighting {
+    /// The column of its middle.
+    pub column: f64,
+    /// Its first and its last column.
+    pub columns: (usize, usize),
+    /// Matching pixels: of the largest group, or in the fullest column.
+    pub pixels: u32,
+    /// The direction of its middle from the camera, in radians to the left of straight ahead.
+    pub bearing: f64,
+    /// Where it stands on the floor, in the robot's frame, if its foot is in the image.
+    pub place: Option<Point>,
+    /// Whether it reaches down to the last rows of the image, as what is near does.
+    pub at_the_bottom: bool,
+}
+
+/// Finds a taught hue in images. It keeps its memory from one image to the next.
+#[derive(Debug, Clone)]
+pub struct ColourFinder {
+    /// The hues that match.
+    pub range: HueRange,
+    /// How much colour and light a pixel needs.
+    pub limits: HueLimits,
+    /// How the colour is found.
+    pub method: FindMethod,
+    /// The fewest pixels of a group, or an eighth of it in a column.
+    pub min_pixels: u32,
+    /// The camera.
+    pub camera: CameraGeometry,
+    columns: Vec<u32>,
+    mask: GrayImage,
+    components: Components,
+}
+
+impl ColourFinder {
+    /// Limits that keep a hue down to light of a fourth of a room's.
+    pub const LIMITS: HueLimits = HueLimits { min_saturation: 128, min_intensity: 6 };
+
+    /// A finder of the hues less than `tolerance` away from one, on RoBIOS's scale.
+    pub fn new(hue: u8, tolerance: u8, method: FindMethod, camera: CameraGeometry) -> Result<Self, Error> {
+        Ok(Self {
+            range: HueRange::around(hue, tolerance, HueScale::Robios)?,
+            limits: Self::LIMITS,
+            method,
+            min_pixels: 12,
+            camera,
+            columns: Vec::new(),
+            mask: GrayImage::default(),
+            components: Components::new(),
+        })
+    }
+
+    /// Where the colour is; `None` if there is not enough of it. Fails for an image without pixels.
+    pub fn find(&mut self, image: &RgbImage) -> Result<Option<Sighting>, Error> {
+        match self.method {
+            FindMethod::Histogram => self.by_histogram(image),
+            FindMethod::Blob => self.by_blob(image),
+        }
+    }
+
+    fn by_histogram(&mut self, image: &RgbImage) -> Result<Option<Sighting>, Error> {
+        self.columns.resize(image.width() as usize, 0);
+        hue_histogram_into(image.try_into()?, &mut self.columns, self.range, self.limits)?;
+        let Some((peak, most)) = maximum(&self.columns).filter(|&(_, most)| 8 * most >= self.min_pixels)
+        else {
+            return Ok(None);
+        };
+        // The columns around the fullest that are half as full at least.
+        let full = |count: &&u32| 2 * **count >= most;
+        let left = peak - self.columns[..peak].iter().rev().take_while(full).count();
+        let right = peak + self.columns[peak + 1..].iter().take_while(full).count();
+        let column = 0.5 * (left + right) as f64;
+        let foot = self.lowest(image, peak);
+        Ok(Some(self.sighting(image, (left, right), (column, foot), most)))
+    }
+
+    /// The last row of a column that matches.
+    fn lowest(&self, image: &RgbImage, column: usize) -> usize {
+        let matches = |row: &u32| {
+            let pixel = image.get_pixel(column as u32, *row).0;
+            self.range.contains(hue(pixel, HueScale::Robios, self.limits))
+        };
+        (0..image.height()).rev().find(matches).unwrap_or(0) as usize
+    }
+
+    fn by_blob(&mut self, image: &RgbImage) -> Result<Option<Sighting>, Error> {
+        if self.mask.dimensions() != image.dimensions() {
+            self.mask = GrayImage::new(image.width(), image.height());
+        }
+        let mask = (&mut self.mask).try_into()?;
+        hue_match_into(image.try_into()?, mask, self.range, HueScale::Robios, self.limits)?;
+        let largest = self.components.largest((&self.mask).try_into()?, self.min_pixels as usize);
+        let Some(blob) = largest else { return Ok(None) };
+        let columns = (blob.min.0, blob.max.0);
+        Ok(Some(self.sighting(image, columns, (blob.centroid.0, blob.max.1), blob.area as u32)))
+    }
+
+    /// What is seen of something in some columns, from its middle column and the last row where it is.
+    fn sighting(
+        &self,
+        image: &RgbImage,
+        columns: (usize, usize),
+        (column, foot): (f64, usize),
+        pixels: u32,
+    ) -> Sighting {
+        let at_the_bottom = foot + 3 >= image.height() as usize;
+        let on_the_floor = || self.camera.floor(column, foot as f64 + 0.5, image.dimensions());
+        let place = if at_the_bottom { None } else { on_the_floor() };
+        let bearing = self.camera.bearing(column, image.width());
+        Sighting { column, columns, pixels, bearing, place, at_the_bottom }
+    }
+}
+
+/// The hue that most pixels in the middle of an image have, if there are enough: what is held before the camera to
+/// teach it. Neighbouring hues help each other.
+pub fn teach_hue(image: &RgbImage, limits: HueLimits) -> Result<Option<u8>, Error> {
+    // Hues of RoBIOS's circle, and how far those may be that help one.
+    const CIRCLE: usize = 252;
+    const REACH: usize = 4;
+    let view: RgbView<'_> = image.try_into()?;
+    let (width, height) = view.size();
+    let (across, down) = ((width / 4).max(1), (height / 4).max(1));
+    let part = view.region(((width - across) / 2, (height - down) / 2), across, down)?;
+    let mut counts = [0_u32; CIRCLE];
+    for y in 0..down {
+        for &pixel in part.row(y).as_chunks::<3>().0 {
+            let hue = hue(pixel, HueScale::Robios, limits);
+            if hue != NO_HUE {
+                counts[usize::from(hue) % CIRCLE] += 1;
+            }
+        }
+    }
+    // Those nearer to a hue help it more, so that of a single one the hue itself comes out.
+    let around = |hue: usize, weight: &dyn Fn(usize) -> u32| {
+        let near = (0..=2 * REACH).map(|step| (step, (hue + CIRCLE + step - REACH) % CIRCLE));
+        near.map(|(step, place)| weight(step.abs_diff(REACH)) * counts[place]).sum::<u32>()
+    };
+    let near_first = |distance: usize| (REACH + 1 - distance) as u32;
+    let Some(best) = (0..CIRCLE).max_by_key(|&hue| around(hue, &near_first)) else { return Ok(None) };
+    let pixels = around(best, &|_| 1) as usize;
+    Ok((8 * pixels >= across * down).then_some(best as u8))
+}
