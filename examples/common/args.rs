@@ -175,8 +175,8 @@ impl CommonArgs {
         self.picture.clone().or_else(|| self.unnamed_file(name))
     }
 
-    /// The file for an output that no option names: in a folder of its own, and only without `--json`. `None` if an option names
-    /// that very file for something else.
+    /// The file for an output that no option names: in a folder of its own, and only without `--json`. `None`
+    /// if an option names that very file for something else.
     pub(crate) fn unnamed_file(&self, name: &str) -> Option<PathBuf> {
         if self.json {
             return None;

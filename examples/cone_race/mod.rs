@@ -10,8 +10,7 @@ use std::path::{Path, PathBuf};
 
 use roverlab::geometry::{Point, Segment};
 use roverlab::io::sim::race::RaceCarSpec;
-use roverlab::race::Event;
-use roverlab::race::{ClosedSpline, EventCourse, TrackFile, parse_track};
+use roverlab::race::{ClosedSpline, Event, EventCourse, TrackFile, parse_track};
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, check_writable, is_same_file, rounded};
 use crate::cones::{Course, Spoils, check_race, refuse};

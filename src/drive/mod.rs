@@ -15,7 +15,8 @@
 //!   (chapter 5);
 //! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6); [`PidWallFollower`],
 //!   [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`] beside it;
-//! - [`colour`]: to what has a taught colour, and home with it; [`motion_watch`]: turning to what moves (chapter 11);
+//! - [`colour`]: to what has a taught colour, and home with it (chapter 11);
+//! - [`motion_watch`]: turning to what moves (chapter 11);
 //! - [`Pid`] and [`RelayTuner`]: a PID controller and how to find its gains.
 
 mod a_to_b;

@@ -285,8 +285,8 @@ mod tests {
         (0..corners).map(|i| middle + direction(TAU * i as f64 / corners as f64) * radius).collect()
     }
 
-    /// Two robots whose cells are the same ones: those that a radius has by itself begin elsewhere, and the middle of the cell
-    /// that holds a point is then another place.
+    /// Two robots on one raster. A raster of its own begins elsewhere for each radius, so the middle of the
+    /// cell that holds a point is another place.
     fn on_the_same_cells(world: &World, small: f64, large: f64) -> (Reachability, Reachability) {
         let field = Clearance::new(world, 0.02, large.next_up()).unwrap();
         (Reachability::from_clearance(&field, small), Reachability::from_clearance(&field, large))

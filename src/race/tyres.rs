@@ -60,8 +60,8 @@ impl Tyres {
         strained * circle / (self.stiffness * (1.0 - strained * strained).sqrt())
     }
 
-    /// What is left across beside an acceleration along the way, in m/s²: never less than 1, so that what is divided by it stays
-    /// finite.
+    /// What is left across beside an acceleration along the way, in m/s²: never less than 1, so that what is
+    /// divided by it stays finite.
     fn circle(&self, along: f64) -> f64 {
         (self.grip * self.grip - along * along).max(1.0).sqrt()
     }

@@ -1,5 +1,5 @@
-//! What is made of a lidar's scans (book, chapters 3 and 4): free of noise, as walls and corners, as a map, and as the place
-//! where the robot must be.
+//! What is made of a lidar's scans (book, chapters 3 and 4): free of noise, as walls and corners, as a map,
+//! and as the place where the robot must be.
 //!
 //! - [`ScanFilter`]: takes most of the noise out of the scans of a moving robot;
 //! - [`extract_features`]: walls, corners and objects; [`plot_scan`]: the scan on the robot's display;

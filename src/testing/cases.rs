@@ -2,11 +2,12 @@ use std::env;
 
 use proptest::test_runner::{Config, RngSeed};
 
-/// The configuration of a property test with a number of cases, the same ones in every run and on every machine.
+/// The configuration of a property test with a number of cases, the same ones in every run and on every
+/// machine.
 ///
-/// The environment variable `PROPTEST_RNG_SEED`, a whole number, draws other cases. `PROPTEST_CASES` draws more of them: it is
-/// the number for a property of 256, and changes that of every other one in proportion. A failing case is printed, and written to
-/// no file.
+/// The environment variable `PROPTEST_RNG_SEED`, a whole number, draws other cases. `PROPTEST_CASES` draws
+/// more of them: it is the number for a property of 256, and changes that of every other one in proportion. A
+/// failing case is printed, and written to no file.
 ///
 /// # Panics
 ///

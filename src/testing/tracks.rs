@@ -38,7 +38,8 @@ mod tests {
 
     #[test]
     fn a_narrow_track_of_wide_bends_leaves_little_to_gain() {
-        // Round a bend of radius r, a line that is d farther out bends by r / (r + d) of what the middle does.
+        // Round a bend of radius r, a line that is d farther out bends by r / (r + d) of what the middle
+        // does.
         let seed = 8_368_310_778_412_755_768;
         let left = bending_left(&generate(seed, &TrackOptions::drawn(seed)).unwrap());
         assert!(left < 0.97, "{left}");

@@ -16,7 +16,8 @@
 //! # }
 //! ```
 //!
-//! [`motion`] has what moves in an image. The robots that drive by what they see are in [`drive`](crate::drive).
+//! [`motion`] has what moves in an image. The robots that drive by what they see are in
+//! [`drive`](crate::drive).
 //!
 //! The functions in `_into` write into memory of the caller's and allocate nothing. The loops are plain Rust that the
 //! compiler vectorises for several generations of processors; the best one that the processor has is chosen at run

@@ -58,8 +58,8 @@ fn watcher(options: SimOptions, other: Twist) -> SimRobot {
     robot
 }
 
-/// How many of the images of one run are alarms while the robot turns, and how many there are. The watched room is still
-/// or has another robot that drives across; odometry jumps in the midst of a turn.
+/// How many of the images of one run are alarms while the robot turns, and how many there are. The watched
+/// room is still or has another robot that drives across; odometry jumps in the midst of a turn.
 fn alarms_while_turning(moves: bool, noise: f64, light: f64, seed: u64) -> (usize, usize) {
     let options = SimOptions { light, ..SimOptions::with_noise(noise, seed) };
     let mut robot = watcher(options, if moves { Twist::new(0.25, 2.0) } else { Twist::STOP });

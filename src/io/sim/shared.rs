@@ -51,7 +51,8 @@ impl State {
         }
     }
 
-    /// A robot that holds the world back and that nobody may be about to use: this thread was the last one, or none has been.
+    /// A robot that holds the world back and may have been left behind: this thread was the last one to use
+    /// it, or none has used it.
     fn held_back_by(&self, index: usize) -> Option<usize> {
         let me = thread::current().id();
         let tick = self.engine.tick;

@@ -11,8 +11,9 @@ use crate::world::Scene;
 /// One robot needs no thread. Of several, each gets a thread of its own; take all of them with
 /// [`robot`](Simulation::robot) before the first one drives, because the world waits for those that are taken, from
 /// the start. A robot that nobody takes stands still; one whose handle is dropped keeps its last command. A thread
-/// that waits ten seconds of real time for a robot that no other thread uses gets an error instead of waiting for ever: so it
-/// is with two robots in one thread. A program that thinks longer than that before its first call asks for the time first.
+/// that waits ten seconds of real time for a robot that no other thread uses gets an error instead of waiting
+/// for ever, as with two robots in one thread. A program that computes longer than that before it drives
+/// calls [`now`](crate::io::Clock::now) first.
 #[derive(Debug, Clone)]
 pub struct Simulation {
     shared: Arc<Shared>,

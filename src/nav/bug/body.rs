@@ -5,8 +5,7 @@ use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math};
 use crate::io::{Error, Result};
 use crate::nav::boundary::{WallSide, nearer_side};
 use crate::nav::surroundings::Surroundings;
-use crate::scan::check_measured;
-use crate::scan::{ScanFilter, ScanMatcher};
+use crate::scan::{ScanFilter, ScanMatcher, check_measured};
 
 /// What all bugs have in common: where they are, what they see, and how they steer.
 ///

@@ -23,9 +23,9 @@ family! {
     /// One between that and one and a half robot widths may be open from one side and closed from the other, as beams see its
     /// edges: where there are such, a verdict may be wrong.
     /// `F` is the distance that the whole disc can move towards the goal, and `d_min` starts at the place where the
-    /// disc would have touched the obstacle, so that the margins kept from obstacles do not enter the comparison. A way that
-    /// ends within a few margins at the followed obstacle itself, as in a corner, is no place to leave: its end is one more
-    /// point of the boundary.
+    /// disc would have touched the obstacle, so that the margins kept from obstacles do not enter the
+    /// comparison. A way that ends within a few margins at the followed obstacle itself, as in a corner, is
+    /// no place to leave: its end is one more point of the boundary.
     ///
     /// # Failure modes
     ///

@@ -8,8 +8,7 @@ use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::beat::Beat;
 use crate::io::{Clock, Drive, Error, Lidar, LidarScan, Result};
 use crate::nav::surroundings::Surroundings;
-use crate::scan::ScanFilter;
-use crate::scan::check_measured;
+use crate::scan::{ScanFilter, check_measured};
 use crate::world::{GridCell, World};
 
 /// Drives to a goal through a known world, of which something may have changed (book, section 10.3 and after).

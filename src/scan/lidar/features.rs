@@ -266,7 +266,8 @@ mod tests {
         fn walls_lie_where_walls_are(x in 0.4..2.6f64, y in 0.4..1.4f64, heading in -3.1..3.1f64, seed: u64) {
             let (walls, gap) = walls_and_widest_gap(Pose::new(x, y, heading), seed);
             prop_assert!(walls >= 4);
-            // Six standard deviations of a range: along a wall that is seen aslant, it is one reading that says where it ends.
+            // Six standard deviations of a range: along a wall that is seen aslant, it is one reading that
+            // says where it ends.
             prop_assert!(gap < 0.06, "{}", gap);
         }
 

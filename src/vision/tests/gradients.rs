@@ -123,7 +123,8 @@ fn reach(a: (i32, i32), b: (i32, i32)) -> i32 {
 /// Orders in which the pixels of a segment vote.
 const ORDERS: u32 = 20;
 
-/// The share of a drawn segment that is found when its pixels vote in an order; all that is found lies on the segment.
+/// The share of a drawn segment that is found when its pixels vote in an order; all that is found lies on the
+/// segment.
 fn share_found(ends: ((i32, i32), (i32, i32)), seed: u64) -> f64 {
     let mut data = vec![0; 120 * 90];
     draw(&mut data, 120, ends);
@@ -199,8 +200,9 @@ proptest! {
     fn what_is_found_of_a_segment_lies_on_it(ends in [5_i32..115, 5..85, 5..115, 5..85], seed: u64) {
         let ends = ((ends[0], ends[1]), (ends[2], ends[3]));
         prop_assume!(reach(ends.0, ends.1) >= 40);
-        // Twelve pixels near each other tell an angle badly: what is followed by it is short, leaves the vote and is no line.
-        // In the mean over the orders in which pixels vote, most of the segment is found all the same.
+        // Twelve pixels near each other tell an angle badly: what is followed by it is short, leaves the vote
+        // and is no line. In the mean over the orders in which pixels vote, most of the segment is found all
+        // the same.
         let mut stream = Stream::new(seed);
         let shares = (0..ORDERS).map(|_| share_found(ends, stream.bits()));
         let mean = shares.sum::<f64>() / f64::from(ORDERS);

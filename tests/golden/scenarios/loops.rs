@@ -1,5 +1,5 @@
-//! How the loops that run behaviours begin and end: at the time limit, blocked, with a sensor, link or clock that fails,
-//! and at the end of the simulation.
+//! How the loops that run behaviours begin and end: at the time limit, blocked, with a sensor, link or clock
+//! that fails, and at the end of the simulation.
 
 use std::ops::ControlFlow;
 

@@ -173,7 +173,8 @@ fn rig(spec: &RobotSpec) -> Result<Rig> {
     Rig::new(spec, OdometryErrors { wheel_scale, wheel_mismatch, track, slip }, range)
 }
 
-/// The left hand on the wall: by odometry alone, in the middle by a proportional controller, and by a PID controller.
+/// The left hand on the wall: by odometry alone, in the middle by a proportional controller, and by a PID
+/// controller.
 fn left_hand() -> Result<String> {
     let (scale, spec) = (Scale::DOUBLED, RobotSpec::s4());
     let rig = rig(&spec)?;

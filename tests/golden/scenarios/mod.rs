@@ -1,5 +1,5 @@
-//! Whole runs of every system and the logs that they leave. No test harness is needed, so that a plain program can run
-//! them on any platform.
+//! Whole runs of every system and the logs that they leave. No test harness is needed, so that a plain
+//! program can run them on any platform.
 
 #![allow(clippy::unnecessary_wraps, reason = "the table holds functions of one type")]
 

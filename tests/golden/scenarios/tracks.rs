@@ -1,4 +1,5 @@
-//! The parts of a race: tracks and their files, the lane between cones, the centre line, the racing line and its speeds.
+//! The parts of a race: tracks and their files, the lane between cones, the centre line, the racing line and
+//! its speeds.
 
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::Result;
@@ -97,7 +98,8 @@ fn centre_line() -> Result<String> {
     Ok(log)
 }
 
-/// The line of least curvature on two tracks and around the courses of events, with the speeds of three models of grip.
+/// The line of least curvature on two tracks and around the courses of events, with the speeds of three
+/// models of grip.
 fn racing_line() -> Result<String> {
     let outline = RacerParameters::default().outline;
     let limits = RacerParameters::default().limits;
@@ -142,7 +144,8 @@ fn tyres() -> Result<String> {
     Ok(log)
 }
 
-/// The lane that a car sees ahead on its way round a track, with cones that have no colours and some that are missing.
+/// The lane that a car sees ahead on its way round a track, with cones that have no colours and some that are
+/// missing.
 fn lane_finder() -> Result<String> {
     let generated = generate(54, &TrackOptions::drawn(54)).map_err(other)?;
     let cones: Vec<Cone> = generated

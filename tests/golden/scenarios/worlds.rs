@@ -1,4 +1,5 @@
-//! Worlds: generators, file formats, rays and contacts, clearance and ways through; and the streams of random numbers.
+//! Worlds: generators, file formats, rays and contacts, clearance and ways through; and the streams of random
+//! numbers.
 
 use std::collections::BTreeMap;
 

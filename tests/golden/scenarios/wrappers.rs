@@ -1,4 +1,5 @@
-//! Robots around robots: noise, faults, limits, coarse numbers and a dead man's switch; and the scripted robot.
+//! Robots around robots: noise, faults, limits, coarse numbers and a dead man's switch; and the scripted
+//! robot.
 
 use roverlab::geometry::{Pose, Twist};
 use roverlab::io::sim::{SimRobot, Simulation};

@@ -134,9 +134,9 @@ proptest! {
     }
 }
 
-/// Paths exist where the grid has some, go through free cells, and are together not much longer than the shortest. Returns
-/// the greatest ratio of one alone: a short one may pass an obstacle on the longer side, as the middles of edges overrate the
-/// shorter one by up to a cell at either end.
+/// Paths exist where the grid has some, go through free cells, and are together not much longer than the
+/// shortest. Returns the greatest ratio of one alone: a short path may pass an obstacle on the longer side,
+/// as the middles of edges overrate the shorter side by up to a cell at either end.
 fn ten_paths(width: usize, height: usize, share: f64, seed: u64) -> Result<f64, TestCaseError> {
     let grid = random_grid(width, height, share, seed);
     let cells: Vec<GridCell> = grid.free_cells().collect();
