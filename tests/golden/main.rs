@@ -3,7 +3,7 @@
 //! `digests.txt`.
 //!
 //! `REGENERATE=1 cargo test --test golden` writes that file anew, after a change that is meant to change runs.
-//! `cargo run --example golden NAME` prints a run's log, to see where two of them part.
+//! `cargo run -p roverlab-oracles NAME` prints a run's log, to see where two of them part.
 
 mod scenarios;
 

@@ -35,8 +35,6 @@ mod scanner;
 mod shape;
 mod solid;
 mod store;
-#[cfg(test)]
-mod tests;
 
 pub use contact::Contact;
 pub use scanner::Scanner;

@@ -113,19 +113,19 @@ fn every_line_has_its_fixed_form() {
     robot.send(2, b"\x00hi\n").unwrap();
     robot.set_speed(Twist::new(1.0 / 3.0, 0.0)).unwrap();
     let text = String::from_utf8(robot.finish().1.unwrap()).unwrap();
-    insta::assert_snapshot!(text, @r#"
-    0.0 wait(0.1) -> ok
-    0.1 pose() -> (0.1, -0.0, 1e-7)
-    0.1 distance(1) -> NaN
-    0.1 distance(9) -> error Unsupported "no script says what the PSD 9 reads"
-    0.1 scan_into() -> 2 beams 0e276b3c83337db9 from -0.5 by 1.0 to 4.0 at (0.0, 0.0, 0.0) [0.1, inf]
-    0.1 print("a \"b\"\n") -> ok
-    0.1 pixel((-1, 0)) -> none
-    0.1 set_menu(["", "b", "c", "END"]) -> ok
-    0.1 draw_image(binary 3x2 d7e4fcfa299d713d, ((1, -2), 3, 4)) -> ok
-    0.1 send(2, "\x00hi\n") -> ok
-    0.1 set_speed((0.3333333333333333, 0.0)) -> ok
-    "#);
+    let expected = r#"0.0 wait(0.1) -> ok
+0.1 pose() -> (0.1, -0.0, 1e-7)
+0.1 distance(1) -> NaN
+0.1 distance(9) -> error Unsupported "no script says what the PSD 9 reads"
+0.1 scan_into() -> 2 beams 0e276b3c83337db9 from -0.5 by 1.0 to 4.0 at (0.0, 0.0, 0.0) [0.1, inf]
+0.1 print("a \"b\"\n") -> ok
+0.1 pixel((-1, 0)) -> none
+0.1 set_menu(["", "b", "c", "END"]) -> ok
+0.1 draw_image(binary 3x2 d7e4fcfa299d713d, ((1, -2), 3, 4)) -> ok
+0.1 send(2, "\x00hi\n") -> ok
+0.1 set_speed((0.3333333333333333, 0.0)) -> ok
+"#;
+    assert_eq!(text, expected);
 }
 
 #[test]

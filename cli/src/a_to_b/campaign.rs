@@ -1,0 +1,181 @@
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use roverlab::drive::AToBOutcome;
+use roverlab::geometry::{Pose, direction};
+use roverlab::random::Stream;
+use roverlab::world::{RobotSpec, Scene, World};
+
+use super::drive::drive;
+use super::job::{add_landmarks, heading_error, inside_ellipse, options};
+use super::{Args, table};
+use crate::common::{Failure, Outcome, Progress, Report, Trip};
+use crate::driving::{Conditions, Way};
+
+/// What a row of the table is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// No noise, and encoders that measure exactly.
+    Ideal,
+    /// No noise, with encoder ticks.
+    Ticks,
+    /// Noise as on the real robot, by odometry alone.
+    Odometry,
+    /// The same with a landmark.
+    Landmark,
+}
+
+/// What came of many runs.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) kind: Kind,
+    pub(crate) way: Way,
+    pub(crate) runs: u64,
+    pub(crate) reached: u64,
+    pub(crate) contacts: u64,
+    /// Metres and radians.
+    pub(crate) worst_position: f64,
+    pub(crate) mean_position: f64,
+    pub(crate) worst_heading: f64,
+    /// Runs that ended in the predicted ellipse.
+    pub(crate) inside: u64,
+    pub(crate) sim_time: f64,
+}
+
+impl Kind {
+    pub(crate) const ALL: [Self; 4] = [Self::Ideal, Self::Ticks, Self::Odometry, Self::Landmark];
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Ideal => "ideal encoders",
+            Self::Ticks => "encoder ticks",
+            Self::Odometry => "odometry",
+            Self::Landmark => "landmark",
+        }
+    }
+
+    pub(crate) fn noise(self) -> f64 {
+        match self {
+            Self::Ideal | Self::Ticks => 0.0,
+            Self::Odometry | Self::Landmark => 1.0,
+        }
+    }
+
+    /// The largest errors that are good, in millimetres and degrees.
+    pub(crate) fn limits(self) -> Option<(f64, f64)> {
+        match self {
+            Self::Ideal => Some((1.0, 0.1)),
+            Self::Ticks => Some((6.0, 0.3)),
+            Self::Landmark => Some((20.0, f64::INFINITY)),
+            Self::Odometry => None,
+        }
+    }
+}
+
+impl Row {
+    /// Percent of runs in the ellipse.
+    pub(crate) fn percent_inside(&self) -> f64 {
+        100.0 * self.inside as f64 / self.runs as f64
+    }
+
+    /// Whether the figures are as they should be. The share inside the ellipse is judged for a thousand runs or more.
+    pub(crate) fn is_good(&self) -> bool {
+        use roverlab::geometry::units::{to_deg, to_mm};
+        let arrived = self.reached == self.runs && self.contacts == 0;
+        let near = self.kind.limits().is_none_or(|(position, heading)| {
+            to_mm(self.worst_position) <= position && to_deg(self.worst_heading) <= heading
+        });
+        let honest =
+            self.kind != Kind::Odometry || self.runs < 1000 || (93.5..=96.5).contains(&self.percent_inside());
+        arrived && near && honest
+    }
+}
+
+/// The campaign's work.
+pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
+    let rows = rows(args)?;
+    let good = rows.iter().all(Row::is_good);
+    args.common.tell(table::text(&rows));
+    let outcome = if good { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
+    Ok(Report {
+        sim_time: Some(rows.iter().map(|row| row.sim_time).sum()),
+        collisions: Some(rows.iter().map(|row| row.contacts).sum()),
+        ..Report::new(outcome)
+    }
+    .table("rows", table::json(&rows)))
+}
+
+/// The rows of the table, driven one after the other.
+pub(crate) fn rows(args: &Args) -> Result<Vec<Row>, Failure> {
+    let mut progress = Progress::start();
+    let mut rows = Vec::new();
+    for kind in Kind::ALL {
+        for way in Way::ALL {
+            let runs = if kind == Kind::Odometry { args.runs } else { args.runs.div_ceil(10) };
+            rows.push(row(args, kind, way, runs, &mut progress)?);
+        }
+    }
+    Ok(rows)
+}
+
+fn row(args: &Args, kind: Kind, way: Way, runs: u64, progress: &mut Progress) -> Result<Row, Failure> {
+    let mut row = Row {
+        kind,
+        way,
+        runs,
+        reached: 0,
+        contacts: 0,
+        worst_position: 0.0,
+        mean_position: 0.0,
+        worst_heading: 0.0,
+        inside: 0,
+        sim_time: 0.0,
+    };
+    for index in 0..runs {
+        progress.show(|| format!("{}, {}: {index} of {runs} runs", kind.name(), way.name()));
+        add_run(&mut row, args, args.common.seed.wrapping_add(index))?;
+    }
+    row.mean_position /= runs as f64;
+    Ok(row)
+}
+
+fn add_run(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
+    let args = Args { method: row.way, ..args.clone() };
+    let (mut trip, heading) = trip(seed);
+    let conditions = Conditions {
+        seed,
+        noise: row.kind.noise(),
+        ideal_encoders: row.kind == Kind::Ideal,
+        time_limit: 120.0,
+        light: 1.0,
+        keys: Vec::new(),
+        pushing: false,
+        others: Vec::new(),
+        common: None,
+    };
+    let mut options = options(&args, &trip, Some(heading), &conditions);
+    if row.kind == Kind::Landmark {
+        add_landmarks(&args, &mut trip, &mut options)?;
+    }
+    let run = conditions.run(&trip.scene, |_| {}, |robot, step| drive(robot, &options, step))?;
+    let position = run.truth.pose.distance_to(trip.goal);
+    row.worst_position = row.worst_position.max(position);
+    row.mean_position += position;
+    row.worst_heading = row.worst_heading.max(heading_error(&run, heading));
+    row.contacts += u64::from(run.truth.contacts);
+    row.sim_time += run.sim_time;
+    if let Ok(arrival) = &run.ending {
+        row.reached += u64::from(arrival.outcome == AToBOutcome::Reached);
+        row.inside += u64::from(inside_ellipse(trip.start(), &run, arrival));
+    }
+    Ok(())
+}
+
+/// A trip of 0.5 to 2 m over an empty floor, with a heading at its end.
+fn trip(seed: u64) -> (Trip, f64) {
+    let mut stream = Stream::new(seed).child("trip", 0);
+    let start = Pose::new(5.0, 5.0, stream.between(-PI, PI));
+    let bearing = start.heading + stream.between(-FRAC_PI_2, FRAC_PI_2);
+    let goal = start.position() + direction(bearing) * stream.between(0.5, 2.0);
+    let heading = bearing + stream.between(-FRAC_PI_2, FRAC_PI_2);
+    (Trip { scene: Scene::with_robot(World::empty(10.0, 10.0), RobotSpec::s4(), start), goal }, heading)
+}

@@ -1,0 +1,197 @@
+//! The command `ackermann`.
+
+use roverlab::drive::{CarDriver, CarOutcome, CarParameters, CarToB, Goal, Method, Path};
+use roverlab::geometry::{Pose, angle_difference, normalize_angle, units};
+use roverlab::io::{self, Clock, Drive, Motors, Servos};
+use roverlab::kinematics::Ackermann;
+use roverlab::picture::{Mark, Picture, Style};
+use roverlab::world::{Colour, DriveSpec, Marker, RobotSpec, Scene, World};
+
+use crate::common::{
+    CommonArgs, Failure, GoalOption, Outcome, Report, StandIn, Trip, millimetres, point_in_mm, rounded,
+};
+use crate::driving::{Conditions, Run, Way, check_drive, drawn, paced};
+
+/// The command line of `ackermann`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Drives a car by its motor and its steering servo to a goal, within its turning circle",
+    after_help = "\
+Without --world, the car drives over an empty floor. Where a method would turn too tightly, the car goes round its turning
+circle. A heading in --goal is met by every method: a car cannot turn at the end.
+
+JSON fields:
+  method                      turn, arc, dog or spline
+  goal, goal_heading_deg      [x, y] mm; the heading or null
+  position_error_mm           true distance to the goal at the end
+  heading_error_deg           true error of the heading, or null
+  turning_radius_mm           radius of the turning circle
+  time_limit_s, picture
+Outcomes: reached, missed, blocked, timed_out, collided, failed."
+)]
+pub(crate) struct Args {
+    /// How to get there.
+    #[arg(long, value_enum, default_value = "spline")]
+    pub(crate) method: Way,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// Where to drive, and how, in the frame of odometry.
+#[derive(Debug, Clone)]
+pub(crate) struct Options {
+    pub(crate) method: Method,
+    pub(crate) goal: Goal,
+    pub(crate) driver: CarDriver,
+    /// Seconds.
+    pub(crate) time_limit: f64,
+}
+
+/// How a drive ended, and the path that was planned.
+#[derive(Debug, Clone)]
+pub(crate) struct Arrival {
+    pub(crate) outcome: CarOutcome,
+    pub(crate) plan: Option<Path>,
+}
+
+/// Drives a car to a goal. `watch` is called after each step.
+pub(crate) fn drive<R: Clock + Drive + Motors + Servos + ?Sized>(
+    robot: &mut R,
+    options: &Options,
+    mut watch: impl FnMut(),
+) -> io::Result<Arrival> {
+    let mut behaviour = CarToB::new(options.method, options.goal, options.driver, CarParameters::default())?;
+    let plan = behaviour.plan(robot.pose()?)?;
+    let outcome = behaviour.run(robot, options.time_limit, |_, _| watch())?;
+    Ok(Arrival { outcome, plan })
+}
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    let common = &args.common;
+    common.check_picture()?;
+    let trip = trip(common)?;
+    check_drive(
+        common,
+        trip.spec(),
+        is_car(trip.spec()),
+        "a car; the command `a-to-b` drives robots that turn on the spot",
+    )?;
+    let driver = driver(trip.spec())?;
+    let heading = match common.goal {
+        Some(goal) => goal.heading,
+        None => common.world.is_none().then_some(HEADING),
+    };
+    let conditions = Conditions::new(common, 90.0 + 30.0 * trip.distance())?;
+    let start = trip.start();
+    let options = Options {
+        method: args.method.method(),
+        goal: Goal {
+            position: start.to_local(trip.goal),
+            heading: heading.map(|heading| normalize_angle(heading - start.heading)),
+        },
+        driver,
+        time_limit: conditions.time_limit,
+    };
+    let run = conditions.run(&trip.scene, paced(common), |robot, step| drive(robot, &options, step))?;
+    let (file, trouble) = drawn(common, "ackermann.svg", || picture(args, &trip, &run, &conditions, heading));
+    let report = report(args, &trip, &run, heading)
+        .field("turning_radius_mm", millimetres(driver.kinematics.turning_radius()))
+        .field("time_limit_s", conditions.time_limit)
+        .field("picture", file);
+    Ok(Report { trouble, ..report })
+}
+
+/// The heading at the goal of the command's own scene.
+const HEADING: f64 = std::f64::consts::FRAC_PI_2;
+
+/// The trip that the options describe. A car takes the place of another robot.
+fn trip(common: &CommonArgs) -> Result<Trip, Failure> {
+    common.trip_to_pose_of(&StandIn { spec: RobotSpec::car().into(), suits: is_car }, || scene(common.goal))
+}
+
+fn is_car(spec: &RobotSpec) -> bool {
+    matches!(spec.drive, DriveSpec::Ackermann { .. })
+}
+
+/// An empty floor of 5 m x 5 m with a marker at the goal, ahead to the left without one.
+fn scene(goal: Option<GoalOption>) -> Scene {
+    let mut world = World::empty(5.0, 5.0);
+    let start = Pose::from_mm_deg(1500.0, 1500.0, 0.0);
+    let own = Pose::from_mm_deg(3200.0, 2700.0, 0.0).position();
+    let position = goal.map_or(own, |goal| goal.position);
+    world.markers.push(Marker { position, colour: Colour::GREEN, alpha: 255 });
+    Scene::with_robot(world, RobotSpec::car(), start)
+}
+
+fn driver(spec: &RobotSpec) -> Result<CarDriver, Failure> {
+    let DriveSpec::Ackermann { wheel_diameter, track, wheelbase, max_steering, max_wheel_speed, .. } =
+        spec.drive
+    else {
+        return Err(Failure::input("found no car; expected one"));
+    };
+    let kinematics = Ackermann::new(wheelbase, track, max_steering).map_err(Failure::input)?;
+    Ok(CarDriver { kinematics, full_speed: 0.5 * wheel_diameter * max_wheel_speed })
+}
+
+fn report(args: &Args, trip: &Trip, run: &Run<Arrival>, heading: Option<f64>) -> Report {
+    let report = run.report(|arrival| match arrival.outcome {
+        CarOutcome::Reached => Outcome::verdict("reached"),
+        CarOutcome::Missed => Outcome::failure("missed"),
+        CarOutcome::Blocked => Outcome::failure("blocked"),
+        _ => Outcome::failure("timed_out"),
+    });
+    let turned = heading.map(|heading| angle_difference(run.truth.pose.heading, heading).abs());
+    report
+        .field("method", args.method.name())
+        .field("goal", point_in_mm(trip.goal))
+        .field("goal_heading_deg", heading.map(|heading| rounded(units::to_deg(heading))))
+        .field("position_error_mm", millimetres(run.truth.pose.distance_to(trip.goal)))
+        .field("heading_error_deg", turned.map(|error| rounded(units::to_deg(error))))
+}
+
+/// The plan, where the car was and believed to be, and where the goal is.
+fn picture(
+    args: &Args,
+    trip: &Trip,
+    run: &Run<Arrival>,
+    conditions: &Conditions,
+    heading: Option<f64>,
+) -> Picture {
+    let (start, outline) = (trip.start(), trip.spec().footprint);
+    let pale = Style::new(Colour::from_hex(0x8a_90_9c)).opacity(0.5);
+    let mut picture = Picture::new(&trip.scene.world);
+    let ending = match &run.ending {
+        Ok(arrival) if arrival.outcome == CarOutcome::Reached => "goal reached",
+        Ok(_) => "goal missed",
+        Err(_) => "the robot failed",
+    };
+    picture.title(format!("A car by {}: {ending}", args.method.name()));
+    let off = units::to_mm(run.truth.pose.distance_to(trip.goal));
+    let (seconds, noise, seed) = (run.sim_time, conditions.noise, conditions.seed);
+    picture.caption(format!("{off:.0} mm off after {seconds:.0} s, noise {noise}, seed {seed}"));
+    if let Ok(Arrival { plan: Some(plan), .. }) = &run.ending {
+        let points = plan.points().iter().map(|point| start.to_world(point.pose.position()));
+        picture.line(points, Style::plan());
+    }
+    picture.true_path(run.positions());
+    picture.odometry_path(run.odometry_path.iter().copied());
+    picture.robot_with(start, &outline, pale.clone());
+    if let Some(heading) = heading {
+        picture.robot_with(Pose::new(trip.goal.x, trip.goal.y, heading), &outline, pale);
+    }
+    picture.robot(run.truth.pose, &outline);
+    picture.mark(Mark::Start, start.position());
+    picture.mark(Mark::Goal, trip.goal);
+    for &point in &run.truth.contact_places {
+        picture.mark(Mark::Contact, point);
+    }
+    picture
+}

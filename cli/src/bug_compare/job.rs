@@ -1,0 +1,95 @@
+use roverlab::geometry::Pose;
+use roverlab::world::{RobotSpec, Scene, World};
+
+use super::contest::{self, Entry};
+use super::ride::ride;
+use super::{Args, campaign, picture, table};
+use crate::common::{Failure, Outcome, Report, Trip};
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    check(args)?;
+    if args.campaign {
+        return campaign::campaign(args);
+    }
+    let is_recorded = args.common.record.is_some() || args.common.replay.is_some();
+    let entries = if is_recorded { vec![contest::recorded(args)?] } else { contest::entries(args)? };
+    let rows = table::rows(&entries, args.common.noise);
+    args.common.tell(table::text(&rows));
+    // Errors of odometry can lead any algorithm astray: verdicts are judged without noise alone.
+    let good = args.common.noise > 0.0 || table::all_correct(&rows);
+    let outcome = if good { Outcome::verdict("compared") } else { Outcome::failure("wrong") };
+    let trouble =
+        drawn(args, entries.first().filter(|_| is_recorded)).err().map(|failure| failure.to_string());
+    Ok(summed(outcome, &entries, trouble)
+        .table("rows", table::json(&rows))
+        .table("runs", table::json_runs(&rows))
+        .field("picture", args.common.picture.as_deref()))
+}
+
+/// A report with the sums over all rides.
+pub(super) fn summed(outcome: Outcome, entries: &[Entry], trouble: Option<String>) -> Report {
+    let rides = || entries.iter().flat_map(|entry| &entry.rides);
+    Report {
+        sim_time: Some(rides().map(|ride| ride.sim_time).sum()),
+        collisions: Some(rides().map(|ride| u64::from(ride.contacts)).sum()),
+        path_length: Some(rides().map(|ride| ride.path_length).sum()),
+        trouble,
+        ..Report::new(outcome)
+    }
+}
+
+/// Refuses what makes no sense for many runs.
+fn check(args: &Args) -> Result<(), Failure> {
+    let common = &args.common;
+    common.check_picture()?;
+    let alone: [(&str, bool); 3] = [
+        ("--start", common.start.is_some()),
+        ("--goal", common.goal.is_some()),
+        ("--robot", common.robot.is_some()),
+    ];
+    if let Some((option, _)) = alone.iter().find(|(_, given)| *given && common.world.is_none()) {
+        return Err(Failure::input(format!("{option}: found no --world; expected both, or neither")));
+    }
+    let never = [("--fault", !common.fault.is_empty()), ("--realtime", common.realtime)];
+    if let Some((option, _)) = never.iter().find(|(_, given)| *given) {
+        return Err(Failure::input(format!(
+            "{option}: found it for a comparison of many runs; expected a command line without it, or the command \
+             `distbug`"
+        )));
+    }
+    if args.campaign && (common.world.is_some() || !args.families.is_empty()) {
+        return Err(Failure::input(
+            "--campaign: found --world or --families beside it; expected neither, since it draws its own courses",
+        ));
+    }
+    Ok(())
+}
+
+/// The trip of the options, for a robot that can do it.
+pub(super) fn own_trip(args: &Args) -> Result<Trip, Failure> {
+    // The scene of `--world` comes before this empty one.
+    let empty = || Scene::with_robot(World::walled(1.0, 1.0), RobotSpec::s4(), Pose::new(0.5, 0.5, 0.0));
+    let trip = args.common.trip(empty)?;
+    args.common.check_turning_with_lidar(trip.spec())?;
+    Ok(trip)
+}
+
+/// Draws the paths of all algorithms on one world, if asked for: those that were recorded, or new ones.
+pub(super) fn drawn(args: &Args, recorded: Option<&Entry>) -> Result<(), Failure> {
+    let Some(file) = &args.common.picture else { return Ok(()) };
+    let new;
+    let Entry { setting, rides } = if let Some(recorded) = recorded {
+        recorded
+    } else {
+        let setting = contest::shown(args)?;
+        let conditions = setting.conditions(args);
+        let drive = |&kind| ride(&setting.trip, kind, conditions);
+        let rides = args.bugs().iter().map(drive).collect::<Result<_, Failure>>()?;
+        new = Entry { setting, rides };
+        &new
+    };
+    picture::of(setting, rides, setting.conditions(args)).save(file)?;
+    args.common.tell(format_args!("picture: {}", file.display()));
+    Ok(())
+}

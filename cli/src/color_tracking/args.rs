@@ -1,0 +1,113 @@
+use roverlab::vision::FindMethod;
+
+use crate::common::CommonArgs;
+
+/// The command line of `color-tracking`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Teaches the robot a hue at a key press, then lets it find what has it, drive there, or push it home",
+    after_help = "\
+Without --world, the scene is drawn by --seed: a room of 4 m x 4 m with a red can and things of other hues in it. The robot
+is taught the colour of a red card that is held before its camera when the first soft key is pressed; --hue takes a hue
+instead. In a world from a file, the object is the one of the taught
+hue that the robot finds; distances are to the nearest that has it.
+
+With --job home, the robot drives round the object and pushes it to where it started (section 11.6).
+With --campaign, many scenes: another place of everything, light of 30 to 150 %, noise as --noise says.
+
+JSON fields:
+  job, method, light
+  hue                         taught or given, on RoBIOS's scale
+  distance_mm                 true distance from the robot's middle to the object's at the end
+  home_mm                     home: true distance of the object from home at the end
+  time_limit_s, picture
+  scenes, reached, wrong      campaign: how many, and the seeds of those not reached
+Outcomes: reached, home, missed (if the true distance is above 200 mm), blocked, timed_out, collided, failed; with
+--campaign: passed, wrong."
+)]
+pub(crate) struct Args {
+    /// What the robot does.
+    #[arg(long, value_enum, default_value = "reach")]
+    pub(crate) job: Job,
+
+    /// How it finds the colour in an image.
+    #[arg(long, value_enum, default_value = "blob")]
+    pub(crate) method: Method,
+
+    /// Hue to look for, instead of a taught one: RoBIOS's scale, red 42, green 126, blue 210.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(..252))]
+    pub(crate) hue: Option<u8>,
+
+    /// Hues less than this away from it match.
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u8).range(1..))]
+    pub(crate) tolerance: u8,
+
+    /// Brightness of the light; 1 is a well lit room [default: 1].
+    #[arg(long, value_name = "F", value_parser = parse_light, allow_hyphen_values = true)]
+    pub(crate) light: Option<f64>,
+
+    /// Drive in many scenes and print how many went well.
+    #[arg(long)]
+    pub(crate) campaign: bool,
+
+    /// Scenes of a campaign.
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) scenes: u64,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// What the robot does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Job {
+    /// Drive to the object.
+    Reach,
+    /// Push it home.
+    Home,
+}
+
+impl Job {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Reach => "reach",
+            Self::Home => "home",
+        }
+    }
+}
+
+/// How a colour is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Method {
+    /// By the fullest column.
+    Histogram,
+    /// By the largest group of pixels.
+    Blob,
+}
+
+impl Method {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Histogram => "histogram",
+            Self::Blob => "blob",
+        }
+    }
+
+    pub(crate) fn method(self) -> FindMethod {
+        match self {
+            Self::Histogram => FindMethod::Histogram,
+            Self::Blob => FindMethod::Blob,
+        }
+    }
+}
+
+fn parse_light(text: &str) -> Result<f64, String> {
+    let light = text.parse().ok().filter(|light: &f64| (0.0..=10.0).contains(light));
+    light.ok_or_else(|| "expected a number from 0 to 10".into())
+}

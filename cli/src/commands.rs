@@ -1,0 +1,130 @@
+//! The commands of `roverlab`, and how one is chosen. What is added to the list here can be run, is listed by
+//! `roverlab systems`, and its recordings can be checked.
+
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use clap::CommandFactory;
+
+use crate::common::{Failure, parser, refused, run, run_plain, run_printing, written};
+use crate::maze_drive::{maze_explore, maze_left, maze_lidar};
+use crate::{
+    a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, edges,
+    follow_me, genetic, grid_benchmark, lidar_scan, localise, micromouse, motion, navigate, omni, quadtree,
+    random_drive, replay, safety, starman, wall_following,
+};
+
+/// Runs a command with its command line and its two outputs. Returns the exit status.
+type Run = fn(Vec<OsString>, &mut dyn Write, &mut dyn Write) -> u8;
+
+/// One of the commands.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Command {
+    /// The name in reports and recordings: words joined by underscores. On the command line they are joined by hyphens.
+    pub(crate) name: &'static str,
+    /// Runs it. The first word is its name.
+    pub(crate) run: Run,
+    parser: fn() -> clap::Command,
+}
+
+/// The parser of the command line that some work takes.
+fn parser_of<A: CommandFactory, R>(name: &str, _: impl Fn(&A) -> Result<R, Failure>) -> clap::Command {
+    parser::<A>(name)
+}
+
+/// A table of commands from the names of their modules and the functions that run them.
+macro_rules! commands {
+    ($($name:ident by $run:path),* $(,)?) => {
+        /// All commands, in the order of their names.
+        pub(crate) const COMMANDS: &[Command] = &[$(Command {
+            name: stringify!($name),
+            run: |words, out, err| $run(stringify!($name), words, out, err, $name::work),
+            parser: || parser_of(stringify!($name), $name::work),
+        }),*];
+    };
+}
+
+commands!(
+    a_to_b by run,
+    ackermann by run,
+    bug_compare by run,
+    camera by run,
+    color_tracking by run,
+    cone_drive by run,
+    cone_race by run,
+    coverage by run,
+    distbug by run,
+    edges by run,
+    follow_me by run,
+    genetic by run,
+    grid_benchmark by run_plain,
+    lidar_scan by run,
+    localise by run,
+    maze_explore by run,
+    maze_left by run,
+    maze_lidar by run,
+    micromouse by run,
+    motion by run,
+    navigate by run,
+    omni by run,
+    quadtree by run_plain,
+    random_drive by run,
+    replay by run_printing,
+    safety by run,
+    starman by run,
+    wall_following by run,
+);
+
+impl Command {
+    /// Whether it drives robots, so that its runs can be recorded.
+    pub(crate) fn drives(&self) -> bool {
+        (self.parser)().get_arguments().any(|argument| argument.get_id() == "record")
+    }
+}
+
+/// A command by its name, whichever way its words are joined.
+pub(crate) fn named(name: &str) -> Option<&'static Command> {
+    let name = name.replace('-', "_");
+    COMMANDS.iter().find(|command| command.name == name)
+}
+
+/// The program.
+#[must_use]
+pub fn main() -> ExitCode {
+    let words: Vec<OsString> = std::env::args_os().collect();
+    let status = starman::work_for_another(&words)
+        .or_else(|| micromouse::mms::drive_for_another(&words))
+        .unwrap_or_else(|| dispatch(words, &mut io::stdout(), &mut io::stderr()));
+    ExitCode::from(status)
+}
+
+/// Runs the command that a command line names, or says which ones there are. Returns the exit status.
+pub(crate) fn dispatch(mut words: Vec<OsString>, out: &mut dyn Write, err: &mut dyn Write) -> u8 {
+    if let Some(command) = words.get(1).and_then(|word| named(word.to_str()?)) {
+        words.remove(0);
+        return (command.run)(words, out, err);
+    }
+    match program().try_get_matches_from(words) {
+        Ok(_) => written(write!(out, "{}", systems()), err, 0),
+        Err(error) => refused(&error, out, err),
+    }
+}
+
+/// The parser of the whole program, which tells what there is and what is meant by a mistyped name.
+fn program() -> clap::Command {
+    clap::Command::new("roverlab")
+        .about("Every system of the library roverlab as a command")
+        .subcommand_required(true)
+        .subcommand(clap::Command::new("systems").about("Lists every system, with a line each"))
+        .subcommands(COMMANDS.iter().map(|command| (command.parser)()))
+}
+
+/// All commands with a line each.
+fn systems() -> String {
+    let line = |command: &Command| {
+        let parser = (command.parser)();
+        format!("{:<15} {}\n", parser.get_name(), parser.get_about().unwrap_or_default())
+    };
+    COMMANDS.iter().map(line).collect()
+}

@@ -1,0 +1,255 @@
+use std::fmt::Display;
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use roverlab::geometry::Pose;
+use roverlab::io::wrappers::Fault;
+
+use super::values::{GoalOption, parse_goal, parse_noise, parse_picture, parse_pose, parse_seconds};
+use super::{Failure, Origin, is_same_file};
+
+/// The folder of files that no option names.
+const UNNAMED: &str = "target/pictures";
+
+/// The options that all commands have. Flatten it into a command's own.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Options of all commands (millimetres and degrees)")]
+#[allow(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
+pub(crate) struct CommonArgs {
+    /// World or scene to run in: .sim, .wld, .maz, a ROS map.yaml, or a MovingAI .map.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) world: Option<PathBuf>,
+
+    /// Robot description [default: the built-in S4].
+    #[arg(long, value_name = "FILE.robi")]
+    pub(crate) robot: Option<PathBuf>,
+
+    /// Where the robot starts.
+    #[arg(long, value_name = "X,Y,DEG", value_parser = parse_pose, allow_hyphen_values = true)]
+    pub(crate) start: Option<Pose>,
+
+    /// Where the robot is to go; some commands take a heading to arrive with.
+    #[arg(long, value_name = "X,Y[,DEG]", value_parser = parse_goal, allow_hyphen_values = true)]
+    pub(crate) goal: Option<GoalOption>,
+
+    /// Seed of every random stream.
+    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true)]
+    pub(crate) seed: u64,
+
+    /// Noise: 0 ideal, 1 as on the real robot, up to 5.
+    #[arg(long, value_name = "F", default_value = "1", value_parser = parse_noise, allow_hyphen_values = true)]
+    pub(crate) noise: f64,
+
+    /// Simulated seconds after which the run ends.
+    #[arg(long, value_name = "S", value_parser = parse_seconds, allow_hyphen_values = true)]
+    pub(crate) time_limit: Option<f64>,
+
+    /// Draw the run into a .svg or .png file.
+    #[arg(long, value_name = "FILE", value_parser = parse_picture)]
+    pub(crate) picture: Option<PathBuf>,
+
+    /// Record the run.
+    #[arg(long, value_name = "FILE.mcap")]
+    pub(crate) record: Option<PathBuf>,
+
+    /// Run against a recording, with its options; others come before them.
+    #[arg(long, value_name = "FILE.mcap")]
+    pub(crate) replay: Option<PathBuf>,
+
+    /// Drive a real EyeBot, or what speaks RoBIOS, through this C library; the world is what the robot is told of.
+    #[arg(long, value_name = "LIB")]
+    pub(crate) robios: Option<PathBuf>,
+
+    /// Round what the simulated robot is told and tells as RoBIOS does: to whole millimetres and degrees.
+    #[arg(long)]
+    pub(crate) quantised: bool,
+
+    /// Print exactly one JSON object on standard output, and nothing else there.
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    /// Report how long it took too, which differs from run to run.
+    #[arg(long)]
+    pub(crate) timing: bool,
+
+    /// Pace simulated time by the wall clock.
+    #[arg(long)]
+    pub(crate) realtime: bool,
+
+    /// Inject a fault T seconds into the run: stuck, lost, nan, jump, late, link, hang or clock. May be repeated.
+    #[arg(long, value_name = "KIND@T")]
+    pub(crate) fault: Vec<String>,
+
+    /// Put robots under the safety system, armed and started; what it does is told. Robots of campaigns and
+    /// those that are stepped as a troop have none.
+    #[arg(long)]
+    pub(crate) supervised: bool,
+
+    /// What the run is, for recordings.
+    #[arg(skip)]
+    pub(crate) origin: Origin,
+}
+
+/// The options of a command that drives no robot.
+#[derive(Debug, Clone, clap::Args)]
+pub(crate) struct PlainArgs {
+    /// Seed of what the command draws by itself.
+    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true)]
+    pub(crate) seed: u64,
+
+    /// Print exactly one JSON object on standard output, and nothing else there.
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    /// Report how long it took too, which differs from run to run.
+    #[arg(long)]
+    pub(crate) timing: bool,
+}
+
+impl CommonArgs {
+    /// Fails if this build cannot do what the options ask for.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        if let Some(file) = &self.record {
+            check_writable("--record", file)?;
+        }
+        match &self.robios {
+            Some(library) if self.replay.is_some() => Err(Failure::input(format!(
+                "--robios {} and --replay; expected one of them, a recording needs no robot",
+                library.display()
+            ))),
+            Some(library) => check_library(library),
+            None => Ok(()),
+        }
+    }
+
+    /// Fails if the options ask for a recording that there cannot be, because no robot drove.
+    pub(crate) fn check_recorded(&self) -> Result<(), Failure> {
+        let option = [("--record", &self.record), ("--replay", &self.replay), ("--robios", &self.robios)];
+        match option.into_iter().find_map(|(option, file)| file.as_ref().map(|file| (option, file))) {
+            Some((option, file)) if !self.origin.is_staged() => Err(Failure::input(format!(
+                "{option} {}: found no robot that drives; expected a run of one robot that drives",
+                file.display()
+            ))),
+            _ => Ok(()),
+        }
+    }
+
+    /// Fails if robots were to be supervised, and none was.
+    pub(crate) fn check_supervised(&self, was: bool) -> Result<(), Failure> {
+        if self.supervised && !was {
+            return Err(Failure::input(
+                "--supervised: found no robot under a safety system; expected a run of one robot that drives",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Fails if the options say what the file of a maze says.
+    pub(crate) fn check_maze(&self) -> Result<(), Failure> {
+        let options = [
+            ("--robot", self.robot.is_some()),
+            ("--start", self.start.is_some()),
+            ("--goal", self.goal.is_some()),
+        ];
+        refuse(&options, |name| {
+            if name == "--robot" { "the robot is that for mazes" } else { "the maze's file says where it is" }
+        })
+    }
+
+    /// Fails if the options say where and how one robot drives, for runs that are about something else.
+    pub(crate) fn check_placeless(&self, says: &str) -> Result<(), Failure> {
+        let options = [
+            ("--world", self.world.is_some()),
+            ("--robot", self.robot.is_some()),
+            ("--start", self.start.is_some()),
+            ("--goal", self.goal.is_some()),
+            ("--picture", self.picture.is_some()),
+            ("--fault", !self.fault.is_empty()),
+        ];
+        refuse(&options, |_| says)
+    }
+
+    /// Tells a person what happens during a run. Silent with `--json`.
+    pub(crate) fn tell(&self, event: impl Display) {
+        if !self.json {
+            // A reader that went away, as `head` does, is no reason to stop the run.
+            let _ = writeln!(std::io::stdout(), "{event}");
+        }
+    }
+
+    /// Notes something odd about the input. It is told on standard error when the input has turned out to be of use, with
+    /// `--json` as well: that reserves standard output alone. Of input that is refused, the refusal is all that is told.
+    pub(crate) fn warn(&self, warning: impl Display) {
+        self.origin.warn(warning.to_string());
+    }
+
+    /// Fails if pictures cannot be written where the options ask for one, before a long run is in vain.
+    pub(crate) fn check_picture(&self) -> Result<(), Failure> {
+        self.picture.as_deref().map_or(Ok(()), |file| check_writable("--picture", file))
+    }
+
+    /// The picture's file: the one that `--picture` names, or one in the folder for what nobody named.
+    pub(crate) fn picture_file(&self, name: &str) -> Option<PathBuf> {
+        self.picture.clone().or_else(|| self.unnamed_file(name))
+    }
+
+    /// The file for an output that no option names: in a folder of its own, and only without `--json`. `None`
+    /// if an option names that very file for something else.
+    pub(crate) fn unnamed_file(&self, name: &str) -> Option<PathBuf> {
+        if self.json {
+            return None;
+        }
+        let folder = Path::new(UNNAMED);
+        // If it cannot be made, then saving the file fails, and says why.
+        let _ = fs::create_dir_all(folder);
+        let file = folder.join(name);
+        let named = [&self.picture, &self.record, &self.replay, &self.world, &self.robot];
+        let is_named = named.into_iter().flatten().any(|other| is_same_file(other, &file));
+        (!is_named).then_some(file)
+    }
+
+    /// The faults to inject.
+    pub(crate) fn faults(&self) -> Result<Vec<Fault>, Failure> {
+        let parse = |text: &String| text.parse().map_err(|error| Failure::input(format!("--fault: {error}")));
+        self.fault.iter().map(parse).collect()
+    }
+}
+
+/// Fails if a library cannot be loaded.
+fn check_library(library: &Path) -> Result<(), Failure> {
+    let opened = roverlab::io::robios::RobiosRobot::open(library);
+    opened
+        .map(|_| ())
+        .map_err(|error| Failure::input(format!("--robios {error}; expected a library of RoBIOS")))
+}
+
+/// Fails if a file cannot be written where an option asks for one.
+pub(crate) fn check_writable(option: &str, file: &Path) -> Result<(), Failure> {
+    static TRIALS: AtomicUsize = AtomicUsize::new(0);
+    let refused = |found: String, expected: &str| {
+        Err(Failure::input(format!("{option} {}: found {found}; expected {expected}", file.display())))
+    };
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        return refused(format!("no folder {}", folder.display()), "one that exists");
+    }
+    if file.is_dir() {
+        return refused("a folder of this name".into(), "the name of a file");
+    }
+    // Pictures are written beside an older file and then take its place, so it is the folder that counts.
+    let number = TRIALS.fetch_add(1, Ordering::Relaxed);
+    let trial = folder.join(format!(".roverlab-{}-{number}.tmp", std::process::id()));
+    match File::create(&trial).and_then(|_| fs::remove_file(&trial)) {
+        Ok(()) => Ok(()),
+        Err(error) => refused(format!("folder {} ({error})", folder.display()), "one that can be written to"),
+    }
+}
+
+/// Fails for the first of some options that is given, with the reason why it should not be.
+fn refuse<'a>(options: &[(&'a str, bool)], says: impl Fn(&'a str) -> &'a str) -> Result<(), Failure> {
+    options.iter().find(|(_, given)| *given).map_or(Ok(()), |(name, _)| {
+        Err(Failure::input(format!("{name}: found one; expected none, as {}", says(name))))
+    })
+}

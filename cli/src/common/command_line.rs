@@ -1,0 +1,194 @@
+use std::ffi::OsString;
+use std::fs;
+use std::path::Path;
+
+use clap::parser::ValueSource;
+use clap::{ArgAction, ArgMatches, Command};
+use roverlab::io::log::Log;
+
+use super::files::recorded_name;
+use super::origin::Facts;
+use super::outputs::check_outputs;
+use super::{CommonArgs, Failure, parser};
+
+/// Options that do not affect a run.
+const NOT_RECORDED: [&str; 13] = [
+    "record",
+    "replay",
+    "picture",
+    "animation",
+    "output",
+    "lcd",
+    "json",
+    "timing",
+    "realtime",
+    "robios",
+    // How a run is computed, and where it is kept on the way.
+    "threads",
+    "processes",
+    "checkpoint",
+];
+
+/// Options that say what a robot meets: in a replay that is as it was.
+const MET: [&str; 4] = ["seed", "noise", "quantised", "fault"];
+
+/// Options that name files which a run reads.
+const FILES: [&str; 5] = ["world", "robot", "maze", "track", "line"];
+
+/// Options with which nothing drives that could be recorded: many runs at once, or none.
+const UNRECORDED: [&str; 5] = ["campaign", "plan", "input", "compare", "steps"];
+
+/// Why a command line is not one to run.
+pub(crate) enum Refusal {
+    /// The parser says why, or shows its help.
+    Parser(clap::Error),
+    /// The recording to replay is none, or the files that it names do not go together.
+    Files(Failure),
+}
+
+/// Reads a command line. With `--replay`, the options of the recording come with it.
+pub(crate) fn parse<A>(name: &str, command_line: impl IntoIterator<Item = OsString>) -> Result<A, Refusal>
+where
+    A: clap::Parser + AsRef<CommonArgs>,
+{
+    let mut words: Vec<OsString> = command_line.into_iter().collect();
+    let mut command = parser::<A>(name);
+    let log = replayed(&words).map(|file| recording(name, &command, &file));
+    let log = log.transpose().map_err(Refusal::Files)?;
+    if let Some(log) = &log {
+        let given = words.split_off(1.min(words.len()));
+        let recorded = log.header().options.iter().filter(|option| !repeats(option, &given));
+        words.extend(recorded.map(OsString::from).collect::<Vec<_>>());
+        words.extend(given);
+    }
+    let mut matches = command.try_get_matches_from_mut(words).map_err(Refusal::Parser)?;
+    check_recorded(&matches).map_err(Refusal::Files)?;
+    check_outputs(&matches).map_err(Refusal::Files)?;
+    let options = options(&command, &matches);
+    if let Some(log) = &log {
+        check_met(&command, &options, &log.header().options).map_err(Refusal::Files)?;
+    }
+    let args =
+        A::from_arg_matches_mut(&mut matches).map_err(|error| Refusal::Parser(error.format(&mut command)))?;
+    args.as_ref().origin.set(Facts { program: name.into(), options, log });
+    Ok(args)
+}
+
+/// Fails if there is to be a recording of what cannot be recorded.
+fn check_recorded(matches: &ArgMatches) -> Result<(), Failure> {
+    let given = |name: &&&str| {
+        matches.try_contains_id(name).is_ok_and(|known| known)
+            && matches.value_source(name) == Some(ValueSource::CommandLine)
+    };
+    let unrecorded = UNRECORDED.iter().find(given);
+    match (["record", "replay"].iter().find(given), unrecorded) {
+        (Some(option), Some(other)) => Err(Failure::input(format!(
+            "--{option}: found no robot that drives with --{other}; expected a run that can be recorded"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Fails if a replay is to meet something other than what was recorded.
+fn check_met(command: &Command, options: &[String], recorded: &[String]) -> Result<(), Failure> {
+    let default = |name: &str| {
+        let arg = command.get_arguments().find(|arg| arg.get_long() == Some(name))?;
+        arg.get_default_values().first()?.to_str()
+    };
+    let was_recorded = |option: &str| {
+        let (name, value) = (name_of(option), value_of(option));
+        let mut known = recorded.iter().filter(|other| name_of(other) == name).peekable();
+        match known.peek() {
+            Some(_) => known.any(|other| is_same(value_of(other), value)),
+            None => is_same(default(name), value),
+        }
+    };
+    let changed = |option: &&String| MET.contains(&name_of(option)) && !was_recorded(option);
+    options.iter().find(changed).map_or(Ok(()), |option| {
+        Err(Failure::input(format!(
+            "found {option} and --replay; expected none, what the robot meets is in the recording"
+        )))
+    })
+}
+
+/// Whether two values of an option say the same: as text, or as numbers.
+fn is_same(one: Option<&str>, other: Option<&str>) -> bool {
+    let number = |text: Option<&str>| text?.parse::<f64>().ok();
+    one == other || number(one).is_some_and(|one| Some(one) == number(other))
+}
+
+/// The file behind `--replay`.
+fn replayed(words: &[OsString]) -> Option<OsString> {
+    let words = || words.iter().skip(1).take_while(|word| *word != "--");
+    let joined = words().find_map(|word| word.to_str()?.strip_prefix("--replay=").map(OsString::from));
+    joined.or_else(|| words().skip_while(|word| *word != "--replay").nth(1).cloned())
+}
+
+fn recording(wanted: &str, command: &Command, file: &OsString) -> Result<Log, Failure> {
+    let name = Path::new(file).display();
+    let refused = |error: &dyn std::fmt::Display| Failure::input(format!("--replay {name}: {error}"));
+    let bytes = fs::read(file).map_err(|error| refused(&error))?;
+    let log = Log::read(bytes).map_err(|error| refused(&error))?;
+    let program = &log.header().program;
+    if program != wanted {
+        return Err(refused(&format!(
+            "found a recording of the program `{program}`; expected one of `{wanted}`"
+        )));
+    }
+    // A recording comes from anywhere: it may not have files written, nor other files read than its own.
+    match log.header().options.iter().find(|option| !affects_run(command, option)) {
+        Some(option) => Err(refused(&format!(
+            "found the option {option} in the recording; expected options that affect the run"
+        ))),
+        None => Ok(log),
+    }
+}
+
+/// Whether an option is one that recordings hold.
+fn affects_run(command: &Command, option: &str) -> bool {
+    let name = name_of(option);
+    let known = command.get_arguments().any(|arg| arg.get_long() == Some(name));
+    let is_own = |value: &str| value == recorded_name(name, Path::new(value));
+    known && !NOT_RECORDED.contains(&name) && (!FILES.contains(&name) || value_of(option).is_some_and(is_own))
+}
+
+/// Whether a recorded option is given anew.
+fn repeats(option: &str, given: &[OsString]) -> bool {
+    given.iter().filter_map(|word| word.to_str()).any(|word| name_of(word) == name_of(option))
+}
+
+/// The name in `--name=value` or `--name`.
+fn name_of(option: &str) -> &str {
+    option.split('=').next().unwrap_or(option).trim_start_matches("--")
+}
+
+/// The value in `--name=value`.
+fn value_of(option: &str) -> Option<&str> {
+    option.split_once('=').map(|(_, value)| value)
+}
+
+/// The options that affect a run, as they were given, in the order of the command.
+fn options(command: &Command, matches: &ArgMatches) -> Vec<String> {
+    let mut options = Vec::new();
+    for arg in command.get_arguments() {
+        let id = arg.get_id().as_str();
+        let given = matches.value_source(id) == Some(ValueSource::CommandLine);
+        if !given || NOT_RECORDED.contains(&id) {
+            continue;
+        }
+        let name = arg.get_long().map(|long| format!("--{long}"));
+        if matches!(arg.get_action(), ArgAction::SetTrue | ArgAction::SetFalse) {
+            options.extend(name);
+            continue;
+        }
+        let values =
+            matches.get_raw(id).into_iter().flatten().map(|value| value.to_string_lossy().into_owned());
+        let is_file = FILES.contains(&id);
+        let values = values.map(|value| if is_file { recorded_name(id, Path::new(&value)) } else { value });
+        options.extend(values.map(|value| match &name {
+            Some(name) => format!("{name}={value}"),
+            None => value,
+        }));
+    }
+    options
+}

@@ -1,0 +1,56 @@
+use std::error::Error;
+use std::fmt::{self, Display};
+
+use roverlab::picture::SaveError;
+
+/// Why a command ends without a report.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    status: u8,
+    message: String,
+}
+
+impl Failure {
+    /// The exit status of a run that failed.
+    pub(crate) const RUN: u8 = 1;
+    /// The exit status of a wrong command line or input file.
+    pub(crate) const INPUT: u8 = 2;
+
+    /// The command line or an input file is wrong: what was found, and what was expected.
+    pub(crate) fn input(message: impl Display) -> Self {
+        Self { status: Self::INPUT, message: message.to_string() }
+    }
+
+    /// Something went wrong during the run.
+    pub(crate) fn run(message: impl Display) -> Self {
+        Self { status: Self::RUN, message: message.to_string() }
+    }
+
+    /// The exit status that belongs to it.
+    pub(crate) fn status(&self) -> u8 {
+        self.status
+    }
+}
+
+impl Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl From<roverlab::io::Error> for Failure {
+    /// The error and those that caused it, in one line.
+    fn from(error: roverlab::io::Error) -> Self {
+        let causes = std::iter::successors(error.source(), |error| (*error).source());
+        Self::run(causes.fold(error.to_string(), |text, cause| format!("{text}: {cause}")))
+    }
+}
+
+impl From<SaveError> for Failure {
+    fn from(error: SaveError) -> Self {
+        match error {
+            SaveError::Extension { .. } | SaveError::NoPng { .. } => Self::input(error),
+            _ => Self::run(error),
+        }
+    }
+}

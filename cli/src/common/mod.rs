@@ -1,0 +1,86 @@
+//! What all commands share: their command line, the report that they print, and the way they end.
+//!
+//! A command is a `main` of a few lines and a function that does the work:
+//!
+//! ```ignore
+//! #[derive(Debug, clap::Parser)]
+//! #[command(about = "Drives to a goal among unknown obstacles", after_help = "JSON fields: hit_points, leave_points")]
+//! struct Args {
+//!     // The command's own options come first, so that `--help` lists them apart from the common ones.
+//!     #[command(flatten)]
+//!     common: CommonArgs,
+//! }
+//!
+//! impl AsRef<CommonArgs> for Args {
+//!     fn as_ref(&self) -> &CommonArgs {
+//!         &self.common
+//!     }
+//! }
+//!
+//! fn main() -> std::process::ExitCode {
+//!     common::main("distbug", |args: &Args| {
+//!         // ... simulate, draw the picture ...
+//!         Ok(Report::new(Outcome::verdict("reached")).field("hit_points", 3))
+//!     })
+//! }
+//! ```
+//!
+//! # Recordings
+//!
+//! A command that takes its robots from a [`Stage`] can record and replay its runs:
+//!
+//! ```ignore
+//! let stage = args.common.stage(&scene, SimOptions::with_noise(args.common.noise, args.common.seed))?;
+//! let mut robot = stage.robot(0)?; // instead of `simulation.robot(0)`; --fault is in it
+//! let mut truth = stage.truth(0)?; // instead of `simulation.truth()`: for verdicts and pictures
+//! behaviour.run(&mut robot, limit, |_| path.push(truth.pose(0)))?;
+//! drop(robot); // lets go of the world, as a simulated robot does
+//! let end = truth.robot(0)?;
+//! ```
+//!
+//! With `--record` the stage writes down what robot and truth are asked and answer, with `--replay` they are made of
+//! a recording, and without either it is the simulator alone. Several robots in threads: take all of them before the
+//! first one drives, and give each thread a truth of its own, `stage.truth(index)`. What goes wrong with a recording
+//! reaches the report by itself. Runs that nobody records, as those of a campaign, use `Stage::simulated`. Robots that are
+//! stepped in one thread come from `common.troop(&scene, options)`, which is used as a `Fleet` is.
+//!
+//! `replay check` finds the program of a recording in `programs`, where the command is listed.
+//!
+//! The command line of a recorded run is in the recording, but for what does not affect the run; `--replay` reads it
+//! from there. In place of the names of files are those that the files have in the recording, so a command reads the
+//! file of an option of its own by `common.read("option", path)`, and the option stands in the list `FILES` of
+//! `command_line`; `common.trip` does so for `--world` and `--robot`.
+
+mod args;
+mod command_line;
+mod failure;
+mod files;
+mod free_floor;
+mod images;
+mod origin;
+mod outputs;
+mod report;
+mod run;
+mod stage;
+mod supervision;
+mod trip;
+mod values;
+mod wall_clock;
+mod workers;
+
+pub(crate) use args::{CommonArgs, PlainArgs, check_writable};
+pub(crate) use failure::Failure;
+pub(crate) use free_floor::FreeFloor;
+pub(crate) use images::write_image;
+pub(crate) use origin::Origin;
+pub(crate) use outputs::is_same_file;
+pub(crate) use report::{Outcome, Report, millimetres, point_in_mm, rounded};
+pub(crate) use run::{Printed, parser, refused, run, run_plain, run_printing, written};
+pub(crate) use stage::{Driven, Stage, StageTruth};
+pub(crate) use supervision::DEADMAN;
+pub(crate) use trip::{StandIn, Trip};
+#[cfg(test)]
+pub(crate) use values::parse_pose;
+pub(crate) use values::{GoalOption, parse_noise, parse_picture, parse_point, parse_seconds};
+pub(crate) use wall_clock::{Pacer, Progress, Stopwatch};
+pub(crate) use workers::{share_out, threads};

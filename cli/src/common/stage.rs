@@ -1,0 +1,469 @@
+use std::collections::BTreeMap;
+use std::fmt;
+use std::fs::File;
+use std::io::BufWriter;
+use std::ops::{Deref, DerefMut};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use roverlab::geometry::Pose;
+use roverlab::io::log::{Attachment, Header, LogError, LogWriter, Player, Troop, Witness};
+use roverlab::io::robios::{RobiosRobot, RobiosTruth};
+use roverlab::io::sim::race::{Race, RaceCarSpec, SharedRace};
+use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, Simulation};
+use roverlab::io::wrappers::{Deadman, Fault, Faulty, Quantised};
+use roverlab::io::{self, Key, RobotIo};
+use roverlab::safety::{SpeedError, StoppingModel};
+use roverlab::world::{MotorSpec, Scene, formats};
+
+use super::supervision::{DEADMAN, Stops, guarded};
+use super::{CommonArgs, Failure, Origin};
+
+/// How many bytes of a recording a robot that is apart may be ahead of the others.
+const MOST_AHEAD: usize = 1 << 20;
+
+/// A robot for a command: simulated or replayed, and recorded if the options ask for it.
+pub(crate) type Driven = Box<dyn RobotIo + Send>;
+
+/// What is true about a command's robots.
+pub(crate) type StageTruth = Box<dyn Witness + Send>;
+
+/// Where a command gets its robots from: a simulator, or a recording; and where it records them.
+///
+/// When it goes, the recording is complete, and the run's [`Origin`] knows what went wrong with it.
+#[derive(Debug)]
+pub(crate) struct Stage {
+    play: Play,
+    faults: Vec<Fault>,
+    /// Whether simulated robots round as RoBIOS does.
+    quantised: bool,
+    /// Who knows what is true, for each robot. Let go before the recording is finished.
+    truths: Mutex<BTreeMap<usize, SharedTruth>>,
+    recording: Recording,
+    guard: Option<Guard>,
+    /// Whether robots stop by themselves when nobody talks to them.
+    deadman: bool,
+}
+
+/// What the safety systems of robots go by, one for each robot.
+#[derive(Debug, Clone)]
+struct Guard {
+    models: Vec<StoppingModel>,
+    /// Whether each robot is alone in a world.
+    apart: bool,
+    /// When something goes wrong with the first one.
+    fault: Option<f64>,
+    stops: Stops,
+}
+
+#[derive(Debug)]
+enum Play {
+    Simulation(Simulation),
+    /// Each robot alone in a world of its own.
+    Apart(Vec<Simulation>),
+    Race(SharedRace),
+    Recording(Player),
+    /// The one robot behind a library, until it is taken, and what is known about it.
+    Library(PathBuf, Mutex<(Option<RobiosRobot>, Option<RobiosTruth>)>),
+}
+
+/// Where a run is recorded, and what it replays.
+#[derive(Debug, Default)]
+struct Recording {
+    writer: Option<LogWriter<BufWriter<File>>>,
+    player: Option<Player>,
+    origin: Origin,
+}
+
+/// Robots that are stepped in one thread: simulated or replayed, and recorded if the options ask for it. For all else as
+/// a [`Stage`].
+pub(crate) struct StagedTroop<'a> {
+    // Let go before the recording is finished.
+    troop: Box<dyn Troop<'a> + 'a>,
+    _recording: Recording,
+}
+
+impl<'a> Deref for StagedTroop<'a> {
+    type Target = dyn Troop<'a> + 'a;
+
+    fn deref(&self) -> &Self::Target {
+        self.troop.as_ref()
+    }
+}
+
+impl DerefMut for StagedTroop<'_> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        self.troop.as_mut()
+    }
+}
+
+/// One robot with a world of its own kind: made by the command or replayed, and recorded if the options ask for it.
+/// For all else as a [`Stage`].
+pub(crate) struct StagedRobot {
+    // Let go before the recording is finished.
+    robot: Driven,
+    _recording: Recording,
+}
+
+impl Deref for StagedRobot {
+    type Target = Driven;
+
+    fn deref(&self) -> &Self::Target {
+        &self.robot
+    }
+}
+
+impl DerefMut for StagedRobot {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.robot
+    }
+}
+
+/// A witness that several programs ask.
+#[derive(Clone)]
+struct SharedTruth(Arc<Mutex<StageTruth>>);
+
+impl SharedTruth {
+    fn ask<T>(&self, question: impl FnOnce(&mut StageTruth) -> io::Result<T>) -> io::Result<T> {
+        question(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl fmt::Debug for SharedTruth {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SharedTruth").finish_non_exhaustive()
+    }
+}
+
+impl Witness for SharedTruth {
+    fn time(&mut self) -> io::Result<f64> {
+        self.ask(Witness::time)
+    }
+
+    fn pose(&mut self, robot: usize) -> io::Result<Pose> {
+        self.ask(|truth| truth.pose(robot))
+    }
+
+    fn robot(&mut self, robot: usize) -> io::Result<RobotTruth> {
+        self.ask(|truth| truth.robot(robot))
+    }
+
+    fn object(&mut self, object: usize) -> io::Result<Pose> {
+        self.ask(|truth| truth.object(object))
+    }
+}
+
+impl CommonArgs {
+    /// The stage that the options describe: a simulation of a scene, or the recording that `--replay` names.
+    pub(crate) fn stage(&self, scene: &Scene, options: SimOptions) -> Result<Stage, Failure> {
+        let stage = match (self.player(), &self.robios) {
+            (Some(player), _) => Stage::new(Play::Recording(player), Vec::new()),
+            (None, Some(library)) => {
+                let start = scene.robots.first().map_or(Pose::default(), |robot| robot.pose);
+                let robot = RobiosRobot::open(library).map_err(Failure::input)?;
+                let truth = robot.truth(start);
+                let play = Play::Library(library.clone(), Mutex::new((Some(robot), Some(truth))));
+                Stage::new(play, self.faults()?)
+            }
+            _ => Stage { quantised: self.quantised, ..Stage::simulated(scene, options, self.faults()?)? },
+        };
+        self.recorded(scene, stage, motors(scene))
+    }
+
+    /// Fails where many robots drive at once, and a library has only one.
+    fn check_no_library(&self) -> Result<(), Failure> {
+        self.robios.as_ref().map_or(Ok(()), |library| Err(alone(library)))
+    }
+
+    /// As [`stage`](Self::stage), with copies of the scene's first robot that drive each alone in a copy of its world, and
+    /// each in a thread of its own: what is recorded is merged by time while they drive.
+    pub(crate) fn stage_apart(
+        &self,
+        scene: &Scene,
+        options: &SimOptions,
+        robots: usize,
+    ) -> Result<Stage, Failure> {
+        self.check_no_library()?;
+        let play = if let Some(player) = self.player() {
+            Play::Recording(player)
+        } else {
+            let simulations = (0..robots).map(|_| Simulation::new(scene, options.clone()));
+            Play::Apart(simulations.collect::<io::Result<_>>().map_err(Failure::input)?)
+        };
+        let mut stage = self.recorded(scene, Stage::new(play, Vec::new()), motors(scene))?;
+        if let Some(guard) = &mut stage.guard {
+            guard.apart = true;
+        }
+        if let Some(writer) = &stage.recording.writer {
+            writer.hold_at_most(MOST_AHEAD);
+        }
+        Ok(stage)
+    }
+
+    /// As [`stage`](Self::stage), with the cars of a race; the scene shows its cones.
+    pub(crate) fn stage_race(
+        &self,
+        scene: &Scene,
+        race: impl FnOnce() -> io::Result<Race>,
+    ) -> Result<Stage, Failure> {
+        let stage = match self.player() {
+            Some(player) => Stage::new(Play::Recording(player), Vec::new()),
+            None => Stage::race(race().map_err(Failure::input)?, self.faults()?),
+        };
+        let car = RaceCarSpec::default();
+        let (lag, deceleration) = (1.0 / car.speed_gain, car.brake);
+        let model = StoppingModel { reaction: 0.0, lag, deceleration, error: SpeedError::NONE };
+        self.recorded(scene, stage, vec![model])
+    }
+
+    fn recorded(&self, scene: &Scene, stage: Stage, models: Vec<StoppingModel>) -> Result<Stage, Failure> {
+        let player = match &stage.play {
+            Play::Recording(player) => Some(player.clone()),
+            _ => None,
+        };
+        let stops = self.origin.stops().clone();
+        // How well speeds are measured goes by the noise.
+        let error = SpeedError::default().scaled(self.noise);
+        let models = models.into_iter().map(|model| StoppingModel { error, ..model }).collect();
+        let fault = self.faults()?.iter().map(|fault| fault.at).reduce(f64::min);
+        let guard = self.supervised.then_some(Guard { models, apart: false, fault, stops });
+        Ok(Stage { recording: self.recording(scene, player)?, guard, ..stage })
+    }
+
+    /// As [`stage`](Self::stage), with all robots stepped in one thread.
+    pub(crate) fn troop<'a>(&self, scene: &Scene, options: SimOptions) -> Result<StagedTroop<'a>, Failure> {
+        self.check_no_library()?;
+        let player = self.player();
+        let troop: Box<dyn Troop<'a> + 'a> = match &player {
+            Some(player) => Box::new(player.troop()),
+            None => Box::new(Fleet::new(scene, options).map_err(Failure::input)?),
+        };
+        let recording = self.recording(scene, player)?;
+        let troop = match &recording.writer {
+            Some(writer) => Box::new(writer.troop(troop)),
+            None => troop,
+        };
+        Ok(StagedTroop { troop, _recording: recording })
+    }
+
+    /// A robot that no scene describes: `own`, or that of the recording which `--replay` names. The scene is what
+    /// viewers show around it.
+    pub(crate) fn staged_robot(
+        &self,
+        scene: &Scene,
+        own: impl RobotIo + Send + 'static,
+    ) -> Result<StagedRobot, Failure> {
+        let player = self.player();
+        let recording = self.recording(scene, player.clone())?;
+        let robot = match player {
+            Some(player) => recording.recorder(player.robot(0).map_err(|error| foreign(&error))?, 0),
+            None => recording.recorder(own, 0),
+        };
+        Ok(StagedRobot { robot, _recording: recording })
+    }
+
+    /// What plays the recording that `--replay` names.
+    fn player(&self) -> Option<Player> {
+        self.origin.facts().log.as_ref().map(Player::new)
+    }
+
+    /// Begins the recording that `--record` asks for.
+    fn recording(&self, scene: &Scene, player: Option<Player>) -> Result<Recording, Failure> {
+        let mut recording = Recording { writer: None, player, origin: self.origin.clone() };
+        self.origin.set_staged();
+        let Some(file) = &self.record else { return Ok(recording) };
+        let facts = self.origin.facts();
+        let header = facts.log.as_ref().map_or_else(
+            || Header {
+                seed: Some(self.seed),
+                attachments: texts(scene).into_iter().chain(self.origin.files()).collect(),
+                ..Header::new(&facts.program, &facts.options)
+            },
+            |log| log.header().clone(),
+        );
+        let writer = create(file, &header).map_err(|error| {
+            let file = file.display();
+            Failure::input(format!("--record {file}: {error}; expected a file that can be written"))
+        })?;
+        writer.show(scene);
+        recording.writer = Some(writer);
+        Ok(recording)
+    }
+}
+
+/// How the robots of a scene stop.
+fn motors(scene: &Scene) -> Vec<StoppingModel> {
+    let motors = scene.robots.iter().map(|robot| robot.spec.motor);
+    let model = |motor: MotorSpec| StoppingModel {
+        reaction: 0.0,
+        lag: motor.time_constant,
+        deceleration: motor.max_acceleration,
+        error: SpeedError::NONE,
+    };
+    motors.map(model).collect()
+}
+
+/// World and robots as text.
+fn texts(scene: &Scene) -> Vec<Attachment> {
+    let text = |name: String, text: String| Attachment {
+        name,
+        media_type: "text/plain".into(),
+        data: text.into_bytes(),
+    };
+    let mut files = vec![text("scene.wld".into(), formats::wld::print(&scene.world))];
+    let mut script = formats::sim::SimFile::for_scene(scene, "scene.wld");
+    for (index, robot) in scene.robots.iter().enumerate() {
+        if !scene.robots[..index].iter().any(|other| other.spec == robot.spec) {
+            let name = format!("scene.robot{}.robi", index + 1);
+            script.statements.insert(1, formats::sim::Statement::Robot(name.clone()));
+            files.push(text(name, formats::robi::print(&robot.spec)));
+        }
+    }
+    files.push(text("scene.sim".into(), formats::sim::print(&script)));
+    files
+}
+
+fn create(file: &Path, header: &Header) -> std::io::Result<LogWriter<BufWriter<File>>> {
+    LogWriter::new(BufWriter::with_capacity(1 << 16, File::create(file)?), header)
+}
+
+impl Stage {
+    /// A simulation that nobody records, with faults of the first robot.
+    pub(crate) fn simulated(scene: &Scene, options: SimOptions, faults: Vec<Fault>) -> Result<Self, Failure> {
+        let simulation = Simulation::new(scene, options).map_err(Failure::input)?;
+        Ok(Self::new(Play::Simulation(simulation), faults))
+    }
+
+    /// A race that nobody records, with faults of the first car.
+    pub(crate) fn race(race: Race, faults: Vec<Fault>) -> Self {
+        Self::new(Play::Race(SharedRace::new(race)), faults)
+    }
+
+    fn new(play: Play, faults: Vec<Fault>) -> Self {
+        Self {
+            play,
+            faults,
+            quantised: false,
+            truths: Mutex::default(),
+            recording: Recording::default(),
+            guard: None,
+            deadman: false,
+        }
+    }
+
+    /// The same, with robots that stop by themselves when nobody talks to them for [`DEADMAN`] seconds.
+    pub(crate) fn with_deadman(self) -> Self {
+        Self { deadman: true, ..self }
+    }
+
+    /// A robot, by its index in the scene. Take all robots that drive at once before the first one does.
+    pub(crate) fn robot(&self, index: usize) -> Result<Driven, Failure> {
+        let simulated = |simulation: &Simulation, index| simulation.robot(index).map_err(Failure::input);
+        let robot = match &self.play {
+            Play::Simulation(simulation) if self.quantised => {
+                self.faulty(Quantised::new(simulated(simulation, index)?), index)?
+            }
+            Play::Simulation(simulation) => self.faulty(simulated(simulation, index)?, index)?,
+            Play::Race(race) => self.faulty(race.car(index).map_err(Failure::input)?, index)?,
+            Play::Apart(simulations) => self.faulty(simulated(&simulations[index], 0)?, index)?,
+            Play::Library(library, taken) => {
+                let robot = taken.lock().unwrap_or_else(PoisonError::into_inner).0.take();
+                self.faulty(robot.filter(|_| index == 0).ok_or_else(|| alone(library))?, index)?
+            }
+            Play::Recording(player) => {
+                self.recording.recorder(player.robot(index).map_err(|error| foreign(&error))?, index)
+            }
+        };
+        let Some(guard) = &self.guard else { return Ok(robot) };
+        let models = &guard.models;
+        let model = *models.get(index).or(models.first()).ok_or_else(|| Failure::input("no robot"))?;
+        let who = if guard.apart { 0 } else { index };
+        let model = (model, guard.fault.filter(|_| index == 0));
+        guarded(robot, self.truth(index)?, who, model, guard.stops.clone()).map_err(Failure::run)
+    }
+
+    /// A simulated robot with the faults of the first one.
+    fn faulty(&self, robot: impl RobotIo + Send + 'static, index: usize) -> Result<Driven, Failure> {
+        let faults = if index == 0 { self.faults.clone() } else { Vec::new() };
+        if self.guard.is_none() && !self.deadman {
+            return Ok(self.recording.recorder(Faulty::new(robot, faults), index));
+        }
+        let robot = Deadman::new(robot, DEADMAN).map_err(Failure::run)?;
+        Ok(self.recording.recorder(Faulty::new(robot, faults), index))
+    }
+
+    /// What is true, for the program that drives or watches a robot. Of robots apart, each is the first one of its world.
+    /// All who ask about a robot share one witness: a recording keeps one order of questions.
+    pub(crate) fn truth(&self, index: usize) -> Result<StageTruth, Failure> {
+        let mut truths = self.truths.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = truths.get(&index) {
+            return Ok(Box::new(known.clone()));
+        }
+        let witness = SharedTruth(Arc::new(Mutex::new(self.witness(index)?)));
+        truths.insert(index, witness.clone());
+        Ok(Box::new(witness))
+    }
+
+    fn witness(&self, index: usize) -> Result<StageTruth, Failure> {
+        let witness: StageTruth = match &self.play {
+            Play::Simulation(simulation) => Box::new(simulation.truth()),
+            Play::Apart(simulations) => Box::new(simulations[index].truth()),
+            Play::Race(race) => Box::new(race.clone()),
+            Play::Recording(player) => Box::new(player.truth(index).map_err(|error| foreign(&error))?),
+            Play::Library(library, taken) => {
+                let truth = taken.lock().unwrap_or_else(PoisonError::into_inner).1.take();
+                Box::new(truth.ok_or_else(|| alone(library))?)
+            }
+        };
+        Ok(match &self.recording.writer {
+            Some(writer) => Box::new(writer.witness(witness, index)),
+            None => witness,
+        })
+    }
+
+    /// Schedules a key press, in seconds since the start. A replayed robot's keys are in the recording.
+    pub(crate) fn press_key(&self, index: usize, time: f64, key: Key) -> io::Result<()> {
+        match &self.play {
+            Play::Simulation(simulation) => simulation.press_key(index, time, key),
+            Play::Apart(simulations) => simulations[index].press_key(0, time, key),
+            // A racing car has no keys, and whoever stands beside a real robot presses its keys.
+            Play::Race(_) | Play::Recording(_) | Play::Library(..) => Ok(()),
+        }
+    }
+}
+
+/// A library has one robot.
+fn alone(library: &Path) -> Failure {
+    let library = library.display();
+    Failure::input(format!(
+        "--robios {library}: found several robots that drive; expected a run of one robot"
+    ))
+}
+
+/// A recording that lacks a robot belongs to another scene.
+fn foreign(error: &LogError) -> Failure {
+    Failure::input(format!("--replay: {error}"))
+}
+
+impl Recording {
+    /// A robot that is recorded, if there is a recording.
+    fn recorder(&self, robot: impl RobotIo + Send + 'static, index: usize) -> Driven {
+        match &self.writer {
+            Some(writer) => Box::new(writer.recorder(robot, index)),
+            None => Box::new(robot),
+        }
+    }
+}
+
+impl Drop for Recording {
+    fn drop(&mut self) {
+        if let Some(Err(error)) = self.writer.take().map(LogWriter::finish) {
+            self.origin.note(format!("--record: the recording is incomplete: {error}"));
+        }
+        if let Some((time, call)) = self.player.as_ref().and_then(Player::rest) {
+            self.origin.note(format!(
+                "--replay: the run has ended; expected the call {call} at {time} s, as recorded"
+            ));
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! The command `cone-drive`.
+
+use std::path::PathBuf;
+
+use roverlab::geometry::{Point, Pose};
+use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
+use roverlab::io::sim::{NoiseModel, RobotTruth};
+use roverlab::io::{self, LidarScan, LidarSettings, RobotIo};
+use roverlab::picture::{Picture, Style};
+use roverlab::race::{GapDriver, Verdict};
+
+use crate::common::{CommonArgs, Failure, Outcome, Report, Stage, rounded};
+use crate::cones::{Course, Judge, check_campaign, check_race, colour, pass};
+
+/// The command line of `cone-drive`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Drives between cones as the book prints it: for the nearest gap left and right of the middle of one scan",
+    after_help = "\
+The car keeps its speed; ten times a second it steers for the middle between the two cones nearest to the middle of its
+scan. `cone_race` drives the same tracks properly.
+
+JSON fields:
+  laps, cones_hit, off_course, lap_times_s    as the referee sees it
+  distance_clean_m                            metres to the first cone or off the course
+  tracks, clean, clean_share                  of a campaign
+  picture
+Outcomes: finished, collided (a cone was hit, whatever else came of it), penalised (all laps, but the course was left with
+all wheels), timed_out (time was over, or the car was far off its track), failed (the car's program), raced (a campaign).
+Tracks of events, an acceleration or a skidpad, are refused: `cone_race` drives them."
+)]
+pub(crate) struct Args {
+    /// Track to drive on [default: one of our own].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) track: Option<PathBuf>,
+
+    /// Laps to drive.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100))]
+    pub(crate) laps: u16,
+
+    /// Speed in metres per second.
+    #[arg(long, value_name = "M/S", default_value_t = 3.0)]
+    pub(crate) speed: f64,
+
+    /// Drive on so many tracks of our own, from --seed on.
+    #[arg(long, value_name = "TRACKS", conflicts_with = "track", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) campaign: Option<u32>,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// What came out of a drive.
+struct Driven {
+    verdict: Verdict,
+    /// Why it ended early, if the car failed.
+    error: Option<String>,
+    truth: RobotTruth,
+    time: f64,
+    clean: f64,
+    trail: Vec<(Pose, f64)>,
+}
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    let common = &args.common;
+    common.check_picture()?;
+    check_race(common)?;
+    if !(args.speed > 0.0 && args.speed <= 30.0) {
+        return Err(Failure::input(format!("--speed {}: expected more than 0, at most 30 m/s", args.speed)));
+    }
+    if let Some(tracks) = args.campaign {
+        return campaign(args, tracks);
+    }
+    let course = match &args.track {
+        Some(path) => Course::from_file(common, path)?,
+        None => Course::generated(common.seed)?,
+    };
+    let stage = common.stage_race(&course.scene(), || world(&course, args, common.seed))?;
+    let driven = drive(&course, args, &stage)?;
+    let file = common.picture_file("cone_drive.svg");
+    let saved = file.as_ref().map(|file| picture(&course, &driven).save(file)).transpose();
+    let trouble = saved.err().map(|error| error.to_string());
+    Ok(Report { trouble, ..report(args, &course, driven).field("picture", file) })
+}
+
+/// What is told about a drive.
+fn report(args: &Args, course: &Course, driven: Driven) -> Report {
+    let verdict = &driven.verdict;
+    let done = verdict.lap_times.len() >= usize::from(args.laps);
+    let word = match (done, verdict.cones_hit + verdict.off_course) {
+        _ if driven.error.is_some() => Outcome::failure("failed"),
+        (false, _) => Outcome::failure("timed_out"),
+        (true, 0) => Outcome::verdict("finished"),
+        (true, _) => Outcome::verdict("penalised"),
+    };
+    let times: Vec<f64> = verdict.lap_times.iter().map(|time| rounded(*time)).collect();
+    let report = Report::new(word)
+        .field("laps", times.len())
+        .field("cones_hit", verdict.cones_hit)
+        .field("off_course", verdict.off_course)
+        .field("lap_times_s", times)
+        .field("distance_clean_m", rounded(driven.clean));
+    Report {
+        sim_time: Some(driven.time),
+        collisions: Some(driven.truth.contacts.into()),
+        path_length: Some(driven.truth.path_length),
+        pose: Some(driven.truth.pose),
+        odometry: Some(course.start.compose(&driven.truth.odometry)),
+        error: driven.error,
+        ..report
+    }
+}
+
+/// The world of a drive.
+fn world(course: &Course, args: &Args, seed: u64) -> io::Result<Race> {
+    let noise = NoiseModel::real().scaled(args.common.noise);
+    let options = RaceOptions { seed, noise, ..RaceOptions::default() };
+    Race::new(&course.race_cones(), &[(RaceCarSpec::default(), course.start)], options)
+}
+
+fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Driven, Failure> {
+    let mut judge = Judge::new(course, stage.truth(0)?, 0).map_err(Failure::run)?;
+    let mut car = stage.robot(0)?;
+    let ending = laps(course, args, car.as_mut(), &mut judge);
+    drop(car);
+    Ok(Driven {
+        verdict: judge.verdict().clone(),
+        error: ending.err().map(|error| Failure::from(error).to_string()),
+        truth: judge.truth().clone(),
+        time: judge.time(),
+        clean: judge.clean_metres(),
+        trail: judge.trail().to_vec(),
+    })
+}
+
+/// Drives until all laps are driven, time is over, or the car is lost.
+fn laps<R: RobotIo + ?Sized>(course: &Course, args: &Args, car: &mut R, judge: &mut Judge) -> io::Result<()> {
+    let mut driver = GapDriver::default();
+    let mut scan = LidarScan::default();
+    let laps = usize::from(args.laps);
+    let usual = 1.5 * course.corridor.length() * laps as f64 / args.speed + 10.0;
+    let limit = args.common.time_limit.unwrap_or(usual);
+    // As the book sets it: 180 points over 180 degrees.
+    car.configure_lidar(LidarSettings { field_of_view: std::f64::consts::PI, tilt: 0.0, points: 180 })?;
+    car.set_motor(1, args.speed / RaceCarSpec::default().top_speed)?;
+    while judge.time() < limit && judge.verdict().lap_times.len() < laps {
+        car.scan_into(&mut scan)?;
+        if let Some(position) = driver.step(&scan) {
+            car.set_servo(1, position)?;
+        }
+        pass(car, &mut [judge], 0.1)?;
+        // Off the track for good: there are no cones to steer by.
+        if judge.verdict().off_course > 0 && lost(course, judge.truth().pose) {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// Whether a car is far from its track.
+fn lost(course: &Course, pose: Pose) -> bool {
+    course.corridor.stations().iter().all(|station| pose.distance_to(station.position) > 25.0)
+}
+
+fn campaign(args: &Args, tracks: u32) -> Result<Report, Failure> {
+    let (mut clean, mut laps, mut cones, mut off, mut metres) = (0_u32, 0, 0, 0, 0.0);
+    check_campaign(&args.common)?;
+    for seed in (0..u64::from(tracks)).map(|track| args.common.seed.wrapping_add(track)) {
+        let course = Course::generated(seed)?;
+        let stage = Stage::race(world(&course, args, seed).map_err(Failure::run)?, args.common.faults()?);
+        let driven = drive(&course, args, &stage)?;
+        let verdict = &driven.verdict;
+        let done = verdict.lap_times.len() >= usize::from(args.laps);
+        clean += u32::from(done && verdict.cones_hit + verdict.off_course == 0);
+        laps += verdict.lap_times.len();
+        cones += verdict.cones_hit;
+        off += verdict.off_course;
+        metres += driven.clean;
+    }
+    let share = |sum: f64| rounded(sum / f64::from(tracks));
+    Ok(Report::new(Outcome::verdict("raced"))
+        .field("tracks", tracks)
+        .field("clean", clean)
+        .field("clean_share", share(f64::from(clean)))
+        .field("laps", laps)
+        .field("cones_hit", cones)
+        .field("off_course", off)
+        .field("distance_clean_m", share(metres)))
+}
+
+fn picture(course: &Course, driven: &Driven) -> Picture {
+    let mut picture = Picture::new(&course.frame(&driven.trail));
+    picture.title("Cone drive, as printed");
+    for cone in &course.cones {
+        picture.disc(cone.position, 0.3, Style::aid().colour(colour(cone.colour)).filled(1.0));
+    }
+    picture
+        .speed_path(driven.trail.iter().map(|(pose, speed)| (pose.to_world(Point::new(0.8, 0.0)), *speed)));
+    picture
+}

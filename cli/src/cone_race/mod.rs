@@ -1,0 +1,371 @@
+//! The command `cone-race`.
+
+mod campaign;
+mod drawing;
+mod event;
+mod log;
+mod race;
+
+use std::path::{Path, PathBuf};
+
+use roverlab::geometry::{Point, Segment};
+use roverlab::io::sim::race::RaceCarSpec;
+use roverlab::race::{ClosedSpline, Event, EventCourse, TrackFile, parse_track};
+
+use crate::common::{CommonArgs, Failure, Outcome, Report, check_writable, is_same_file, rounded};
+use crate::cones::{Course, Spoils, check_race, refuse};
+use race::{Ending, Settings};
+
+/// The command line of `cone-race`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Races on a track of cones that the car does not know: a map in the first lap, then the racing line",
+    after_help = "\
+The first lap is driven between the cones that the car sees, and makes the map; all others are on the racing line within
+what both axles hold. The referee adds 2 s for a cone and 10 s for leaving the course with all wheels. Tracks: FSSIM yaml,
+EUFS csv, TUM csv (lined with cones), or one of our own by the seed. Circuits of TUM are several times as wide as tracks of
+Formula Student: on them, the racer is given other widths of the lane, speeds and ranges of its map, a finer camera, and no other knowledge.
+Drive those by lidar: what the camera alone shows of cones so far off is seldom enough to find the start of a lap again.
+
+An acceleration strip or a skidpad, which the file's cones stand for, is driven as the event that it is: one run, whatever
+--laps says. The car knows which event it is at and what the rules say of its layout, and fits that to the cones that it
+sees. An acceleration has one time, from line to line; it ends standing in the lane behind the finish. A skidpad has two,
+of the second lap to the right and of the second one to the left. The car's nose starts and stops the clock.
+
+A log of a drive (JSON, as of ft-fsd-path-planning) holds what a car's own map was from moment to moment. Nothing is raced: in
+each of its frames the lane is looked for, and compared with where the car then drove. With --sensors lidar without colours.
+
+JSON fields:
+  event                                                laps, acceleration, skidpad, or log
+  laps, cones_hit, off_course, lap_times_s, total_s    of the race; the total is with penalties, the laps of an event are
+                                                       its complete runs
+  track_length_m, cones                                of the track
+  racing_line_rms_m                                    distance of the racing line from that of --line, from two laps on
+  lap_over_optimum                                     of each flying lap: its time over the quasi-steady optimum for the same
+                                                       car on the same line; of an event's times: over that of the car from
+                                                       standing, able to stop in the lane behind the finish, or around the
+                                                       inner cones as near as its width lets it
+  mapped                                               whether the whole track was planned after the first lap, or an event's
+                                                       layout was found
+  other_cones_hit, touched                             with a second car
+  tracks, clean, clean_share, finished                 of a campaign: finished are all races whose laps were all driven, clean
+                                                       those of them without a cone, leaving the course or touching
+  laps, cones_hit, off_course                          of a campaign: of all tracks, as the referee sees it
+  mean_racing_speed_m_s                                of a campaign: over all laps but the first ones
+  mean_lap_over_optimum, worst_lap_over_optimum        of a campaign: over all flying laps; null without any
+  frames, planned, wrong_side                          of a log: with a lane; and with one that has a cone of a colour on the
+                                                       wrong side
+  from_driven_rms_m, from_driven_most_m                of a log: distance of the lane from the next 8 m that were driven
+  picture, animation
+Outcomes: finished, collided (a cone or the second car was touched, whatever else came of it), penalised (all laps or the
+event, but the course was left with all wheels), timed_out, failed (the car's program), impassable (the car does not fit
+between the cones, which is told before the race), lost (no lane, or cones that do not fit the map or the event: the car
+stops), missed (the car stands, but not in the lane behind its event's finish, or after other laps than the referee counted),
+raced (a campaign), planned (a log)."
+)]
+pub(crate) struct Args {
+    /// Track to race on [default: one of our own].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) track: Option<PathBuf>,
+
+    /// Laps to drive, the first one for the map. An acceleration or a skidpad is driven once.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=100))]
+    pub(crate) laps: u16,
+
+    /// What sees the cones.
+    #[arg(long, value_enum, default_value = "lidar")]
+    pub(crate) sensors: Sensors,
+
+    /// Line to compare the racing line with, as a TUM race line.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) line: Option<PathBuf>,
+
+    /// Cones beside the track that belong to none of its edges, as a share.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share)]
+    pub(crate) false_cones: f64,
+
+    /// Cones that are missing, as a share.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share)]
+    pub(crate) missing: f64,
+
+    /// Metres over which one side of the track has no cones.
+    #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = metres)]
+    pub(crate) gap: f64,
+
+    /// A second car drives ahead at a stroll, in the middle of the lane that it sees. Only a lidar sees it.
+    #[arg(long)]
+    pub(crate) other: bool,
+
+    /// Draw the race as a moving picture.
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
+    pub(crate) animation: Option<PathBuf>,
+
+    /// Race on so many tracks of our own, from --seed on, and print a table.
+    #[arg(long, value_name = "TRACKS", conflicts_with = "track", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) campaign: Option<u32>,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl Args {
+    /// What a race is made of, beside its course.
+    fn settings(&self, seed: u64) -> Settings {
+        let (noise, limit) = (self.common.noise, self.common.time_limit);
+        Settings {
+            laps: usize::from(self.laps),
+            sensors: self.sensors,
+            seed,
+            noise,
+            limit,
+            other: self.other,
+        }
+    }
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// What sees the cones.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Sensors {
+    /// The low lidar: places, no colours.
+    Lidar,
+    /// The camera above the driver: colours, and places that are the less certain the farther they are.
+    Camera,
+    /// Places by the lidar, colours by the camera; what has no cone's colour is none.
+    Both,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|value| (0.0..=0.9).contains(value));
+    value.ok_or_else(|| "expected a share of 0 to 0.9".into())
+}
+
+fn metres(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|value| (0.0..=200.0).contains(value));
+    value.ok_or_else(|| "expected 0 to 200 m".into())
+}
+
+fn svg_file(text: &str) -> Result<PathBuf, String> {
+    let file = PathBuf::from(text);
+    let is_svg = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
+    if is_svg { Ok(file) } else { Err("expected a name that ends in .svg".into()) }
+}
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    let common = &args.common;
+    check_race(common)?;
+    if args.other && args.sensors == Sensors::Camera {
+        return Err(Failure::input(
+            "--other: cars that drive by the camera alone do not see another one; expected lidar or both for --sensors",
+        ));
+    }
+    let spoils = Spoils { false_cones: args.false_cones, missing: args.missing, gap: args.gap };
+    if let Some(tracks) = args.campaign {
+        return campaign::run(args, tracks, spoils);
+    }
+    check_pictures(args)?;
+    let published = args.line.as_ref().map(|file| published(common, file)).transpose()?;
+    let mut course = match &args.track {
+        Some(path) => match Course::read(common, path)? {
+            TrackFile::Log(frames) => return log::follow(args, &frames),
+            file => Course::for_its_event(file, path)?,
+        },
+        None => Course::generated(common.seed)?,
+    };
+    if course.event.is_some() {
+        check_event(args)?;
+    }
+    if let Some(line) = &published {
+        check_line(&course, line)?;
+    }
+    if let Some(reason) = course.impassable(&RaceCarSpec::default()) {
+        return Ok(impassable(&course, reason));
+    }
+    course.spoil(spoils, common.seed);
+    let settings = args.settings(common.seed);
+    let stage = common.stage_race(&course.scene(), || settings.world(&course))?;
+    let outcome = race::race(&course, &settings, &stage)?;
+    let (picture, animation, trouble) = draw(args, &course, &outcome);
+    let rms = published.and_then(|other| distance(&other, &outcome.line));
+    let report = report(&course, &outcome)
+        .field("racing_line_rms_m", rms.map(rounded))
+        .field("picture", picture)
+        .field("animation", animation);
+    Ok(Report { trouble, ..report })
+}
+
+/// What is told about a track on which no race begins.
+fn impassable(course: &Course, reason: String) -> Report {
+    let report = Report::new(Outcome::failure("impassable"))
+        .field("event", event_name(course))
+        .field("laps", 0)
+        .field("cones_hit", 0)
+        .field("off_course", 0)
+        .field("lap_times_s", [0.0; 0])
+        .field("track_length_m", rounded(course.corridor.length()))
+        .field("cones", course.cones.len());
+    Report { error: Some(reason), ..report }
+}
+
+/// The event of a course, as it is told.
+fn event_name(course: &Course) -> &'static str {
+    match course.event.as_ref().map(EventCourse::event) {
+        None | Some(Event::Laps) => "laps",
+        Some(Event::Acceleration) => "acceleration",
+        Some(Event::Skidpad) => "skidpad",
+    }
+}
+
+/// Where and why a car was lost.
+fn lost(course: &Course, outcome: &race::Outcome) -> String {
+    let (found, expected) = if course.event.is_some() {
+        ("found no cones that fit its event", format!("those of the {}", event_name(course)))
+    } else if outcome.line.is_empty() {
+        ("found no lane", "cones to both sides of one".into())
+    } else {
+        ("found no cones that fit its map", "those of the first lap".into())
+    };
+    let place = outcome.truth.pose;
+    format!("at ({:.1}, {:.1}) m the car {found}, and stopped; expected {expected}", place.x, place.y)
+}
+
+/// What is told about a race.
+fn report(course: &Course, outcome: &race::Outcome) -> Report {
+    let verdict = &outcome.verdict;
+    let (word, lacking) = match &outcome.ending {
+        Err(error) => (Outcome::failure("failed"), Some(error.clone())),
+        Ok(Ending::Finished) if outcome.is_clean() => (Outcome::verdict("finished"), None),
+        Ok(Ending::Finished) => (Outcome::failure("penalised"), None),
+        Ok(Ending::TimedOut) => (Outcome::failure("timed_out"), None),
+        Ok(Ending::Lost) => (Outcome::failure("lost"), Some(lost(course, outcome))),
+        Ok(Ending::Missed) => (Outcome::failure("missed"), None),
+    };
+    let times: Vec<f64> = verdict.lap_times.iter().map(|time| rounded(*time)).collect();
+    let laps = if course.event.is_some() {
+        usize::from(matches!(outcome.ending, Ok(Ending::Finished)))
+    } else {
+        times.len()
+    };
+    let report = Report::new(word)
+        .field("event", event_name(course))
+        .field("laps", laps)
+        .field("cones_hit", verdict.cones_hit)
+        .field("off_course", verdict.off_course)
+        .field("lap_times_s", times)
+        .field("total_s", rounded(verdict.total()))
+        .field(
+            "lap_over_optimum",
+            outcome.over_optimum.iter().map(|ratio| rounded(*ratio)).collect::<Vec<_>>(),
+        )
+        .field("track_length_m", rounded(course.corridor.length()))
+        .field("cones", course.cones.len())
+        .field("mapped", !outcome.line.is_empty())
+        .field("other_cones_hit", outcome.other.as_ref().map(|other| other.cones_hit))
+        .field("touched", outcome.other.as_ref().map(|other| other.touched));
+    Report {
+        sim_time: Some(outcome.time),
+        collisions: Some(outcome.truth.contacts.into()),
+        path_length: Some(outcome.truth.path_length),
+        pose: Some(outcome.truth.pose),
+        odometry: Some(course.start.compose(&outcome.truth.odometry)),
+        error: lacking,
+        ..report
+    }
+}
+
+/// The racing line in a file.
+fn published(common: &CommonArgs, file: &Path) -> Result<Vec<Point>, Failure> {
+    let bytes = common.read("line", file).map_err(Failure::input)?;
+    let name = file.display().to_string();
+    let text = String::from_utf8_lossy(&bytes);
+    match parse_track(&text, &name).map_err(Failure::input)? {
+        TrackFile::Line(line) => Ok(line),
+        _ => Err(Failure::input(format!("--line {name}: found a track; expected a line without widths"))),
+    }
+}
+
+/// Metres from the middle of a track within which a line may be one of it, beside half its width.
+const OFF_TRACK: f64 = 10.0;
+
+/// Fails where a line is not one of a course.
+fn check_line(course: &Course, line: &[Point]) -> Result<(), Failure> {
+    let stations = course.corridor.stations();
+    let half_width = stations.iter().map(|station| station.left.max(station.right)).fold(0.0, f64::max);
+    let away = |place: &Point| {
+        stations.iter().map(|station| (station.position - place).norm()).fold(f64::INFINITY, f64::min)
+    };
+    let farthest = line.iter().map(away).fold(0.0, f64::max);
+    if farthest <= half_width + OFF_TRACK {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "--line: found a point {farthest:.0} m from the middle of the track; expected a line on it"
+    )))
+}
+
+/// The root of the mean squared distance of a racing line from another one. `None` without one.
+fn distance(other: &[Point], line: &[Point]) -> Option<f64> {
+    let spline = ClosedSpline::through(line).ok()?;
+    let n = other.len();
+    let squared = |p: Point| {
+        let away = (0..n).map(|i| Segment::new(other[i], other[(i + 1) % n]).distance_to(p));
+        let least = away.fold(f64::INFINITY, f64::min);
+        least * least
+    };
+    let places = spline.resample(2.0);
+    let sum: f64 = places.iter().map(|place| squared(place.position)).sum();
+    Some((sum / places.len() as f64).sqrt())
+}
+
+/// Fails when an option has no meaning for an acceleration or a skidpad.
+fn check_event(args: &Args) -> Result<(), Failure> {
+    let given = [("--other", args.other), ("--line", args.line.is_some())];
+    refuse(
+        &given,
+        "found a track of an acceleration or a skidpad; expected one of laps, or a command line without it",
+    )
+}
+
+/// Fails when the pictures cannot be drawn where they are asked for.
+fn check_pictures(args: &Args) -> Result<(), Failure> {
+    args.common.check_picture()?;
+    args.animation.as_deref().map_or(Ok(()), |file| check_writable("--animation", file))?;
+    let (Some(still), Some(moving)) = pictures(args) else { return Ok(()) };
+    if is_same_file(&still, &moving) {
+        return Err(Failure::input(format!(
+            "--picture and --animation: found the same file, {}; expected two",
+            still.display()
+        )));
+    }
+    Ok(())
+}
+
+/// Where the still picture and the moving one are saved: where the options say, or else if a person looks on.
+fn pictures(args: &Args) -> (Option<PathBuf>, Option<PathBuf>) {
+    let moving = args.animation.clone().or_else(|| args.common.unnamed_file("cone_race_moving.svg"));
+    (args.common.picture_file("cone_race.svg"), moving)
+}
+
+/// Saves the pictures.
+fn draw(
+    args: &Args,
+    course: &Course,
+    outcome: &race::Outcome,
+) -> (Option<PathBuf>, Option<PathBuf>, Option<String>) {
+    let (still, moving) = pictures(args);
+    let mut trouble = Vec::new();
+    if let Some(file) = &still {
+        trouble.extend(drawing::picture(course, outcome).save(file).err().map(|error| error.to_string()));
+    }
+    if let Some(file) = &moving {
+        let saved = drawing::animation(course, outcome, file);
+        trouble.extend(saved.err().map(|error| format!("{}: {error}", file.display())));
+    }
+    (still, moving, (!trouble.is_empty()).then(|| trouble.join("\n")))
+}

@@ -1,0 +1,9 @@
+//! What the commands that drive between cones share.
+
+mod course;
+mod judge;
+mod options;
+
+pub(crate) use course::{Course, Spoils, colour};
+pub(crate) use judge::{Judge, pass};
+pub(crate) use options::{check_campaign, check_race, refuse};

@@ -1,0 +1,138 @@
+use std::fmt::Write as _;
+
+use serde_json::{Value, json};
+
+use super::rooms::room;
+use super::{Args, ENOUGH, cover};
+use crate::common::{Failure, Outcome, Progress, Report, rounded};
+use crate::driving::Conditions;
+
+/// What came of many rooms.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) rooms: u64,
+    /// Rooms that were covered by the plan to its end.
+    pub(crate) finished: u64,
+    pub(crate) contacts: u64,
+    /// Shares of the floor.
+    pub(crate) least: f64,
+    pub(crate) mean: f64,
+    /// Path lengths in terms of area over width.
+    pub(crate) mean_ratio: f64,
+    pub(crate) largest_ratio: f64,
+    /// What a random drive covers in the same time.
+    pub(crate) random_mean: f64,
+    pub(crate) random_most: f64,
+    pub(crate) sim_time: f64,
+    /// Seeds of rooms in which something was amiss: the first ones.
+    pub(crate) amiss: Vec<u64>,
+}
+
+/// The longest good path in terms of area over width.
+const RATIO: f64 = 1.5;
+const LISTED: usize = 10;
+
+impl Row {
+    /// Whether each room was covered, without contact and by a short path.
+    pub(crate) fn is_good(&self) -> bool {
+        self.finished == self.rooms
+            && self.contacts == 0
+            && self.least >= ENOUGH
+            && self.largest_ratio <= RATIO
+    }
+}
+
+/// The campaign's work.
+pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
+    let row = row(args)?;
+    args.common.tell(text(&row));
+    let outcome = if row.is_good() { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
+    Ok(Report { sim_time: Some(row.sim_time), collisions: Some(row.contacts), ..Report::new(outcome) }
+        .table("rows", json(&row)))
+}
+
+/// What comes of all rooms.
+pub(crate) fn row(args: &Args) -> Result<Row, Failure> {
+    let mut row = Row {
+        rooms: args.rooms,
+        finished: 0,
+        contacts: 0,
+        least: 1.0,
+        mean: 0.0,
+        mean_ratio: 0.0,
+        largest_ratio: 0.0,
+        random_mean: 0.0,
+        random_most: 0.0,
+        sim_time: 0.0,
+        amiss: Vec::new(),
+    };
+    let mut progress = Progress::start();
+    let part = 1.0 / args.rooms as f64;
+    for index in 0..args.rooms {
+        progress.show(|| format!("coverage: {index} of {} rooms", args.rooms));
+        let seed = args.common.seed.wrapping_add(index);
+        let done = cover(&room(seed), |limit| conditions(args, seed, limit), |_| {})?;
+        let (share, contacts) = (done.map.share(), u64::from(done.run.truth.contacts));
+        row.finished += u64::from(done.run.ending.is_ok());
+        row.contacts += contacts;
+        row.least = row.least.min(share);
+        row.mean += part * share;
+        row.mean_ratio += part * done.ratio;
+        row.largest_ratio = row.largest_ratio.max(done.ratio);
+        row.random_mean += part * done.random;
+        row.random_most = row.random_most.max(done.random);
+        row.sim_time += done.run.sim_time;
+        let good = done.run.ending.is_ok() && contacts == 0 && share >= ENOUGH && done.ratio <= RATIO;
+        if !good && row.amiss.len() < LISTED {
+            row.amiss.push(seed);
+        }
+    }
+    Ok(row)
+}
+
+fn conditions(args: &Args, seed: u64, limit: f64) -> Result<Conditions, Failure> {
+    Ok(Conditions { seed, common: None, ..Conditions::new(&args.common, limit)? })
+}
+
+/// The table. Holds nothing that differs between machines.
+pub(crate) fn text(row: &Row) -> String {
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let mut text = String::from("drive    rooms  contacts   least    mean  mean path  longest path  good\n");
+    writeln!(
+        text,
+        "lanes    {:>5}  {:>8}  {:>6}  {:>6}  {:>9.2}  {:>12.2}  {}",
+        row.rooms,
+        row.contacts,
+        percent(row.least),
+        percent(row.mean),
+        row.mean_ratio,
+        row.largest_ratio,
+        if row.is_good() { "yes" } else { "no" },
+    )
+    .expect("writing to a string does not fail");
+    let (mean, most) = (percent(row.random_mean), percent(row.random_most));
+    writeln!(text, "random   in the same time: {mean} in the mean, {most} at most")
+        .expect("writing to a string does not fail");
+    if !row.amiss.is_empty() {
+        writeln!(text, "  amiss with seeds {:?}", row.amiss).expect("writing to a string does not fail");
+    }
+    let enough = 100.0 * ENOUGH;
+    write!(text, "good: {enough} % at least, no contact, paths of at most {RATIO} times area over width")
+        .expect("writing to a string does not fail");
+    text
+}
+
+fn json(row: &Row) -> Vec<Value> {
+    vec![json!({
+        "rooms": row.rooms,
+        "finished": row.finished,
+        "contacts": row.contacts,
+        "least_coverage_percent": rounded(100.0 * row.least),
+        "mean_coverage_percent": rounded(100.0 * row.mean),
+        "mean_path_ratio": rounded(row.mean_ratio),
+        "largest_path_ratio": rounded(row.largest_ratio),
+        "random_drive_mean_percent": rounded(100.0 * row.random_mean),
+        "amiss": row.amiss,
+        "good": row.is_good(),
+    })]
+}

@@ -1,0 +1,63 @@
+use std::num::NonZero;
+use std::path::PathBuf;
+
+use crate::common::{CommonArgs, parse_noise};
+
+/// The command line of `distbug`.
+#[derive(Debug, clap::Parser)]
+#[command(
+    about = "Drives a robot with a lidar to a goal among unknown obstacles, or proves that there is no way (DistBug)",
+    after_help = "\
+Without --world, the robot drives through a world of the command's own. A .sim gives robot, start and goal (its first
+robot and its first marker), a .maz start and goal (the letters S and G), a .wld the start (`position`); --robot,
+--start and --goal come before them. Other robots stand still.
+
+Without --time-limit, the time is generous for the size of the world. Without --picture, the run is drawn into
+target/pictures/distbug.svg, except with --json.
+
+With --campaign, generated courses instead of one. A verdict is correct if it is `unreachable` and there is no way, or
+`reached`, there is a way, and the robot really is within 50 mm of the goal, or within 250 mm with noise. Contacts are
+counted apart. The results do not depend on --threads; the course of one seed is that of `--seed SEED --worlds 1`.
+
+JSON fields:
+  goal                       [x, y] mm
+  goal_distance_mm           true distance at the end
+  hit_points, leave_points   lists of [x, y] mm in the world, as the robot takes them
+  contact_points             list of [x, y] mm, true
+  time_limit_s               simulated seconds after which the run would have ended
+  picture                    the file's name, or null
+  error                      why the robot failed, only if it did
+  worlds, levels             with --campaign only: how many courses; what came of them at each level of noise
+  timing                     with --timing and --campaign: real_time_factor
+Outcomes: reached, unreachable, timed_out, collided, failed; with --campaign: passed, wrong."
+)]
+pub(crate) struct Args {
+    /// Drive through many generated courses and compare the verdicts with the truth.
+    #[arg(long)]
+    pub(crate) campaign: bool,
+
+    /// How many courses a campaign draws. Each has the next seed.
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub(crate) worlds: u64,
+
+    /// Levels of noise of a campaign.
+    #[arg(long, value_name = "F,...", default_value = "0,1,2", value_delimiter = ',', value_parser = parse_noise, allow_hyphen_values = true)]
+    pub(crate) levels: Vec<f64>,
+
+    /// How many threads drive in a campaign [default: one for each core].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(crate) threads: Option<NonZero<usize>>,
+
+    /// Write the courses of a campaign that went wrong into this folder, as .sim and .wld.
+    #[arg(long, value_name = "DIR", requires = "campaign")]
+    pub(crate) save: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}

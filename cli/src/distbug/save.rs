@@ -1,0 +1,38 @@
+use std::fs;
+use std::path::Path;
+
+use roverlab::world::formats::sim::{self, SimFile};
+use roverlab::world::formats::wld;
+
+use super::trial::{Run, Trial};
+use crate::common::Failure;
+
+/// Makes the folder, so that a long campaign is not in vain.
+pub(super) fn prepare(folder: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(folder).map_err(|error| {
+        let name = folder.display();
+        Failure::input(format!("--save {name}: {error}; expected a folder that can be written to"))
+    })
+}
+
+/// Writes the courses on which a run went wrong: `course-SEED.sim`, which the command `distbug` can run, and the
+/// `course-SEED.wld` that it names.
+pub(super) fn failures(trials: &[Trial], folder: &Path) -> Result<(), Failure> {
+    trials
+        .iter()
+        .filter(|trial| !trial.runs.iter().all(Run::is_clean))
+        .try_for_each(|trial| save(trial, folder))
+}
+
+/// Writes one course.
+pub(crate) fn save(trial: &Trial, folder: &Path) -> Result<(), Failure> {
+    let name = format!("course-{}", trial.seed);
+    let world = format!("{name}.wld");
+    let script = sim::print(&SimFile::for_scene(&trial.trip.scene, &world));
+    write(&folder.join(&world), &wld::print(&trial.trip.scene.world))?;
+    write(&folder.join(format!("{name}.sim")), &script)
+}
+
+fn write(file: &Path, text: &str) -> Result<(), Failure> {
+    fs::write(file, text).map_err(|error| Failure::run(format!("{}: {error}", file.display())))
+}

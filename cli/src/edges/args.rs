@@ -1,0 +1,174 @@
+use std::path::PathBuf;
+
+use clap::value_parser;
+
+use super::Kernel;
+use crate::common::CommonArgs;
+
+/// The command line of `edges`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Edges, colours and lines: a kernel on an image file, or live on the robot's display",
+    after_help = "\
+With --input, the kernel works on an image file (PNG, PNM or BMP), and --output takes the result (by its ending .png, .pgm,
+.ppm or .bmp). Without, a robot in its room turns and shows what the kernel makes of its camera's images on its display; --output
+takes the last display.
+
+A definition says what is meant where the book and OpenCV differ:
+                 book (the default)                               opencv
+  gray           (R + B) / 4 + G / 2                              0.299 R + 0.587 G + 0.114 B
+  laplace        border 0                                         border by mirror image
+  sobel_l1, _l2  a third of the gradient, border 0                the gradient, border by mirror image
+  canny          after a Gaussian of 7 x 7 with sigma 1.5         as it is
+  hue            a circle of 252, 255 without colour or light     a circle of 180
+  saturation     255 - 255 min / I                                255 (max - min) / max
+  intensity      (R + G + B) / 3                                  max
+  hue_match      255-hue circle of the book's Program 11.9        180-hue circle
+  hough_prob...  pixels vote in an order drawn by --seed          OpenCV's order, and its rule of votes taken back
+With --smooth, --min-saturation and --min-intensity either can be had with both.
+
+JSON fields:
+  kernel, definition, width, height, output
+  timing                      with --timing: ns_per_pixel, of the kernel's fastest run of --repeat
+  mean                        of the result's bytes
+  lines                       hough: [{rho, theta_deg, votes}]; hough_probabilistic: [[x0, y0, x1, y1]]
+  blobs                       blobs: [{area, x, y, min, max}]
+  columns, rows               projections: the sums
+  descriptor_length, descriptor_digest   hog; with --descriptor, its numbers in `descriptor`
+  frames                      live: images shown
+Outcomes: filtered, shown, collided, failed."
+)]
+pub(crate) struct Args {
+    /// Image to work on.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) input: Option<PathBuf>,
+
+    /// What to do with it.
+    #[arg(long, value_enum, default_value = "laplace")]
+    pub(crate) kernel: Kernel,
+
+    /// Where the result goes.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Whose definition counts where they differ.
+    #[arg(long, value_enum, default_value = "book")]
+    pub(crate) definition: Definition,
+
+    /// Second image, for difference and overlay.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) second: Option<PathBuf>,
+
+    /// canny, and what works on its edges: gradient that continues an edge.
+    #[arg(long, value_name = "N", default_value_t = 50, allow_hyphen_values = true)]
+    pub(crate) low: u16,
+
+    /// canny, and what works on its edges: gradient that starts an edge.
+    #[arg(long, value_name = "N", default_value_t = 100, allow_hyphen_values = true)]
+    pub(crate) high: u16,
+
+    /// threshold: shades above this become white [128]; hough: votes [100, 50 for segments]; overlay: edges [50].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(crate) threshold: Option<u32>,
+
+    /// Width of a Gaussian in pixels; without it the fixed weights of its size.
+    #[arg(long, value_name = "F", allow_hyphen_values = true)]
+    pub(crate) sigma: Option<f64>,
+
+    /// Smooth first by a Gaussian of this size: 0, 3, 5 or 7 [canny by the book: 7, else 0].
+    #[arg(long, value_name = "N", value_parser = parse_smooth)]
+    pub(crate) smooth: Option<usize>,
+
+    /// Hue to look for [that of red].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(crate) hue: Option<u8>,
+
+    /// Hues less than this away from it match.
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = value_parser!(u8).range(1..), allow_hyphen_values = true)]
+    pub(crate) tolerance: u8,
+
+    /// First hue that matches, instead of --hue; it may be larger than the last.
+    #[arg(long, value_name = "N", requires = "hue_high", allow_hyphen_values = true)]
+    pub(crate) hue_low: Option<u8>,
+
+    /// Last hue that matches.
+    #[arg(long, value_name = "N", requires = "hue_low", allow_hyphen_values = true)]
+    pub(crate) hue_high: Option<u8>,
+
+    /// Least saturation of a pixel with a hue, 0 to 255 [book: 128, opencv: 0].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(crate) min_saturation: Option<u8>,
+
+    /// Least intensity of a pixel with a hue, 0 to 255 [book: 26, opencv: 0].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(crate) min_intensity: Option<u8>,
+
+    /// hue: by the book's formulas instead of RoBIOS's whole numbers, every colour unless a least one is given.
+    #[arg(long)]
+    pub(crate) exact: bool,
+
+    /// hough, `hough_probabilistic`, blobs: the input is an image of edges already.
+    #[arg(long)]
+    pub(crate) binary: bool,
+
+    /// hough: steps of the angle in half a turn.
+    #[arg(long, value_name = "N", default_value_t = 180, value_parser = value_parser!(u16).range(1..=3600), allow_hyphen_values = true)]
+    pub(crate) angles: u16,
+
+    /// hough: pixels between two distances.
+    #[arg(long, value_name = "F", default_value_t = 1.0, allow_hyphen_values = true)]
+    pub(crate) rho: f64,
+
+    /// `hough_probabilistic`: pixels that a line reaches at least.
+    #[arg(long, value_name = "N", default_value_t = 30, allow_hyphen_values = true)]
+    pub(crate) min_length: usize,
+
+    /// `hough_probabilistic`: pixels that may be missing in a line.
+    #[arg(long, value_name = "N", default_value_t = 5, allow_hyphen_values = true)]
+    pub(crate) max_gap: usize,
+
+    /// hog: the whole descriptor among the JSON fields.
+    #[arg(long)]
+    pub(crate) descriptor: bool,
+
+    /// blobs: pixels of the smallest.
+    #[arg(long, value_name = "N", default_value_t = 20, allow_hyphen_values = true)]
+    pub(crate) min_area: usize,
+
+    /// Runs of the kernel, of which the fastest is reported; live: images.
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = value_parser!(u32).range(1..=100_000), allow_hyphen_values = true)]
+    pub(crate) repeat: u32,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// Whose definition of a kernel counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Definition {
+    /// The book's and RoBIOS's.
+    Book,
+    /// `OpenCV`'s.
+    #[value(name = "opencv")]
+    OpenCv,
+}
+
+impl Definition {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Book => "book",
+            Self::OpenCv => "opencv",
+        }
+    }
+}
+
+fn parse_smooth(text: &str) -> Result<usize, String> {
+    let size = text.parse().ok().filter(|size| [0, 3, 5, 7].contains(size));
+    size.ok_or_else(|| "expected 0, 3, 5 or 7".into())
+}

@@ -1,0 +1,150 @@
+use std::fmt::Write as _;
+
+use roverlab::geometry::units::to_mm;
+use roverlab::io::sim::{Fleet, SimOptions};
+use serde_json::{Value, json};
+
+use super::Args;
+use super::job::SECONDS;
+use super::scene::{Mode, hall};
+use super::swarm::run;
+use crate::common::{Failure, Outcome, Progress, Report, millimetres};
+
+/// What came of many seeds for one kind of swarm.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) mode: Mode,
+    pub(crate) followers: usize,
+    pub(crate) obstacles: usize,
+    pub(crate) runs: u64,
+    pub(crate) lost: u64,
+    pub(crate) contacts: u64,
+    /// Metres.
+    pub(crate) mean_gap: f64,
+    pub(crate) largest_gap: f64,
+    pub(crate) sim_time: f64,
+    /// Seeds with contacts or lost robots: the first ones.
+    pub(crate) amiss: Vec<u64>,
+}
+
+/// The swarms of a campaign: mode, followers, obstacles.
+const SWARMS: [(Mode, usize, usize); 6] = [
+    (Mode::Lidar, 1, 0),
+    (Mode::Lidar, 1, 4),
+    (Mode::Raised, 5, 0),
+    (Mode::Raised, 5, 3),
+    (Mode::Radio, 5, 3),
+    (Mode::Chain, 20, 0),
+];
+const LISTED: usize = 10;
+
+impl Row {
+    /// Whether nobody was lost and nothing was touched.
+    pub(crate) fn is_good(&self) -> bool {
+        self.lost == 0 && self.contacts == 0
+    }
+}
+
+/// The campaign's work.
+pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
+    let rows = rows(args)?;
+    args.common.tell(text(&rows));
+    let good = rows.iter().all(Row::is_good);
+    let outcome = if good { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
+    Ok(Report {
+        sim_time: Some(rows.iter().map(|row| row.sim_time).sum()),
+        collisions: Some(rows.iter().map(|row| row.contacts).sum()),
+        ..Report::new(outcome)
+    }
+    .table("rows", json(&rows)))
+}
+
+/// A row for each kind of swarm.
+pub(crate) fn rows(args: &Args) -> Result<Vec<Row>, Failure> {
+    let mut progress = Progress::start();
+    SWARMS
+        .iter()
+        .map(|&(mode, followers, obstacles)| {
+            let mut row = Row {
+                mode,
+                followers,
+                obstacles,
+                runs: args.runs,
+                lost: 0,
+                contacts: 0,
+                mean_gap: 0.0,
+                largest_gap: 0.0,
+                sim_time: 0.0,
+                amiss: Vec::new(),
+            };
+            for index in 0..args.runs {
+                progress.show(|| format!("{} of {followers}: {index} of {} runs", mode.name(), args.runs));
+                add_run(&mut row, args, args.common.seed.wrapping_add(index))?;
+            }
+            row.mean_gap /= args.runs as f64;
+            Ok(row)
+        })
+        .collect()
+}
+
+fn add_run(row: &mut Row, args: &Args, seed: u64) -> Result<(), Failure> {
+    let (scene, waypoints) = hall(row.mode, row.followers, row.obstacles, seed);
+    let options = SimOptions::with_noise(args.common.noise, seed);
+    let seconds = args.common.time_limit.unwrap_or(SECONDS);
+    let mut fleet = Fleet::new(&scene, options)?;
+    let run = run(&mut fleet, &scene, &waypoints, row.mode, seconds, |_| {})?;
+    row.lost += run.lost.len() as u64;
+    row.contacts += run.contacts;
+    row.mean_gap += run.mean_gap;
+    row.largest_gap = row.largest_gap.max(run.largest_gap);
+    row.sim_time += run.sim_time;
+    if !(run.lost.is_empty() && run.contacts == 0) && row.amiss.len() < LISTED {
+        row.amiss.push(seed);
+    }
+    Ok(())
+}
+
+/// The table. Holds nothing that differs between machines.
+pub(crate) fn text(rows: &[Row]) -> String {
+    let mut text =
+        String::from("mode    followers  obstacles  runs  lost  contacts  mean gap mm  max gap mm  good\n");
+    for row in rows {
+        writeln!(
+            text,
+            "{:<6}  {:>9}  {:>9}  {:>4}  {:>4}  {:>8}  {:>11.0}  {:>10.0}  {}",
+            row.mode.name(),
+            row.followers,
+            row.obstacles,
+            row.runs,
+            row.lost,
+            row.contacts,
+            to_mm(row.mean_gap),
+            to_mm(row.largest_gap),
+            if row.is_good() { "yes" } else { "no" },
+        )
+        .expect("writing to a string does not fail");
+        if !row.amiss.is_empty() {
+            writeln!(text, "  amiss with seeds {:?}", row.amiss).expect("writing to a string does not fail");
+        }
+    }
+    text.push_str("good: nobody lost, nothing touched");
+    text
+}
+
+fn json(rows: &[Row]) -> Vec<Value> {
+    let one = |row: &Row| {
+        json!({
+            "mode": row.mode.name(),
+            "followers": row.followers,
+            "obstacles": row.obstacles,
+            "runs": row.runs,
+            "lost": row.lost,
+            "contacts": row.contacts,
+            "mean_gap_mm": millimetres(row.mean_gap),
+            "max_gap_mm": millimetres(row.largest_gap),
+            "amiss": row.amiss,
+            "good": row.is_good(),
+        })
+    };
+    rows.iter().map(one).collect()
+}

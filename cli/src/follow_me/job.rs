@@ -1,0 +1,225 @@
+use std::sync::Arc;
+
+use roverlab::geometry::{Point, units};
+use roverlab::io::sim::SimOptions;
+use roverlab::picture::{Mark, Picture, Style};
+use roverlab::random::Stream;
+use roverlab::world::{RobotPlacement, RobotSpec, Scene};
+
+use super::campaign;
+use super::scene::{Mode, behind, hall};
+use super::swarm::{SwarmRun, run};
+use crate::common::{CommonArgs, Failure, FreeFloor, Outcome, Report, StandIn, millimetres, rounded};
+use crate::driving::{counted, drawn, paced};
+
+/// The command line of `follow-me`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Lets robots follow a leader: one by lidar, five by raised lidars, a chain, or a formation by radio",
+    after_help = "\
+Without --world, a LabBot leads round a hall that is another one for each seed. With --world, the first robot of a .sim leads
+and all others follow; letters in a maze stand for robots there. A world with one robot or none gets --followers behind the
+one that leads from its place, or a LabBot at --start. It leads past the world's markers, or past the corners of
+the floor without any.
+
+--robios and --fault are for one robot alone, and refused.
+
+With --campaign, many seeds for one follower, for five, for five among obstacles, for five by radio, and for a chain of 20.
+
+JSON fields:
+  followers, mode             how many there are, and how they know where to go: lidar, raised, chain or radio
+  lost                        how many are three times as far away as they should be in the end, or have not seen the robot
+                              ahead for three seconds
+  mean_gap_mm, max_gap_mm     distance to the robot ahead, from 10 s on
+  obstacles                   things in the world
+  time_limit_s, picture
+  rows                        with --campaign only: the table
+Collisions, pose, odometry and path length: contacts are those of all robots, the rest is the leader's.
+Outcomes: followed, lost, collided; with --campaign: passed, wrong."
+)]
+pub(crate) struct Args {
+    /// How many robots follow [default: those of the world, or 1].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=100), allow_hyphen_values = true)]
+    pub(crate) followers: Option<u16>,
+
+    /// How they know where to go [default: lidar for one, raised up to five, chain beyond].
+    #[arg(long, value_enum)]
+    pub(crate) mode: Option<Mode>,
+
+    /// Cans on the leader's way.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=50), allow_hyphen_values = true)]
+    pub(crate) obstacles: u16,
+
+    /// Drive with many seeds and print a table.
+    #[arg(long)]
+    pub(crate) campaign: bool,
+
+    /// Seeds in a campaign.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub(crate) runs: u64,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// Simulated seconds of a run.
+pub(super) const SECONDS: f64 = 90.0;
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    let common = &args.common;
+    refuse(common)?;
+    if args.campaign {
+        return campaign(args);
+    }
+    common.check_picture()?;
+    let (scene, waypoints) = scene(args)?;
+    let followers = scene.robots.len() - 1;
+    let mode = args.mode.unwrap_or(Mode::for_followers(followers));
+    let seconds = common.time_limit.unwrap_or(SECONDS);
+    let options = SimOptions::with_noise(common.noise, common.seed);
+    let mut troop = common.troop(&scene, options)?;
+    let run = run(&mut *troop, &scene, &waypoints, mode, seconds, paced(common))?;
+    drop(troop);
+    let (file, trouble) = drawn(common, "follow_me.svg", || picture(args, &scene, &run, mode));
+    let outcome = if run.lost.is_empty() { Outcome::verdict("followed") } else { Outcome::failure("lost") };
+    let leader = run.paths[0].last().copied();
+    Ok(Report {
+        sim_time: Some(run.sim_time),
+        collisions: Some(run.contacts),
+        path_length: Some(run.leader_path),
+        pose: leader,
+        odometry: run.odometry.first().copied(),
+        trouble,
+        ..Report::new(outcome)
+    }
+    .field("followers", followers)
+    .field("mode", mode.name())
+    .field("lost", run.lost.len())
+    .field("mean_gap_mm", millimetres(run.mean_gap))
+    .field("max_gap_mm", millimetres(run.largest_gap))
+    .field("obstacles", scene.world.objects.len())
+    .field("time_limit_s", rounded(seconds))
+    .field("picture", file))
+}
+
+/// What the robots of a fleet cannot do.
+fn refuse(common: &CommonArgs) -> Result<(), Failure> {
+    let given = [
+        ("--fault", !common.fault.is_empty()),
+        ("--goal", common.goal.is_some()),
+        ("--start", common.start.is_some() && common.world.is_none()),
+        ("--robot", common.robot.is_some()),
+    ];
+    match given.into_iter().find(|(_, given)| *given) {
+        Some((option, _)) => Err(Failure::input(format!(
+            "{option}: found it for several robots in one thread; expected a command line without {option}"
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// The robots in their world, and the leader's waypoints.
+fn scene(args: &Args) -> Result<(Scene, Vec<Point>), Failure> {
+    let common = &args.common;
+    let wanted = args.followers.map(usize::from);
+    let followers = wanted.unwrap_or(1);
+    let mode = args.mode.unwrap_or(Mode::for_followers(followers));
+    let Some(file) = &common.world else {
+        return Ok(hall(mode, followers, usize::from(args.obstacles), common.seed));
+    };
+    let parsed = common.load_scene("world", file).map_err(Failure::input)?;
+    for warning in &parsed.warnings {
+        common.warn(warning);
+    }
+    let mut scene = parsed.value;
+    if scene.robots.len() < 2 {
+        let leader = StandIn { spec: RobotSpec::labbot().into(), ..StandIn::default() };
+        scene = common.placed_in(scene, &leader)?;
+        add_followers(&mut scene, mode, followers, common.seed)?;
+    }
+    let found = scene.robots.len() - 1;
+    if let Some(wanted) = wanted.filter(|&wanted| wanted != found) {
+        return Err(Failure::input(format!(
+            "--followers {wanted}: found {found} in {}; expected the same, or none in the file",
+            file.display()
+        )));
+    }
+    if let Some(start) = common.start {
+        scene.robots[0].pose = start;
+    }
+    let markers: Vec<Point> = scene.world.markers.iter().map(|marker| marker.position).collect();
+    let waypoints = if markers.is_empty() { corners(&scene) } else { markers };
+    Ok((scene, waypoints))
+}
+
+/// Puts followers behind the leader of a scene, or where there is room.
+fn add_followers(scene: &mut Scene, mode: Mode, followers: usize, seed: u64) -> Result<(), Failure> {
+    let start = scene.robots[0].pose;
+    let mut stream = Stream::new(seed).child("followers", 0);
+    let spec = mode.spec();
+    let free = FreeFloor::new(scene, &spec);
+    for wished in behind(start, mode, followers, &mut stream) {
+        let place = free.place(scene, &spec, wished).ok_or_else(|| {
+            let number = scene.robots.len();
+            Failure::input(format!(
+                "--followers: found no room for follower {number}; expected fewer of them"
+            ))
+        })?;
+        scene.robots.push(RobotPlacement::new(Arc::clone(&spec), place));
+    }
+    Ok(())
+}
+
+/// Places well inside of the corners of the floor, counter-clockwise.
+fn corners(scene: &Scene) -> Vec<Point> {
+    let floor = scene.world.floor;
+    let inset = (0.25 * floor.size().x.min(floor.size().y)).min(1.0);
+    let inner = floor.inflated(-inset);
+    let (low, high) = (inner.min, inner.max);
+    vec![high, Point::new(low.x, high.y), low, Point::new(high.x, low.y)]
+}
+
+/// The ways of all robots, and where they end.
+fn picture(args: &Args, scene: &Scene, run: &SwarmRun, mode: Mode) -> Picture {
+    let mut picture = Picture::new(&scene.world);
+    let followers = counted(scene.robots.len() - 1, "follower");
+    let ending = if run.contacts > 0 {
+        "collided"
+    } else if run.lost.is_empty() {
+        "none lost"
+    } else {
+        "some lost"
+    };
+    picture.title(format!("Follow me ({}): {followers}, {ending}", mode.name()));
+    picture.caption(format!(
+        "mean gap {:.0} mm; {:.0} s, noise {}, seed {}",
+        units::to_mm(run.mean_gap),
+        run.sim_time,
+        args.common.noise,
+        args.common.seed
+    ));
+    for (index, path) in run.paths.iter().enumerate().rev() {
+        let points = path.iter().map(roverlab::geometry::Pose::position);
+        match index {
+            0 => picture.line(points, Style::true_path().width(3.0).labelled("leader")),
+            _ => picture.line(points, Style::plan().labelled("followers")),
+        };
+    }
+    for (robot, path) in scene.robots.iter().zip(&run.paths) {
+        if let Some(&pose) = path.last() {
+            picture.robot(pose, &robot.spec.footprint);
+        }
+    }
+    picture.mark(Mark::Start, scene.robots[0].pose.position());
+    for &point in &run.contact_places {
+        picture.mark(Mark::Contact, point);
+    }
+    picture
+}

@@ -1,0 +1,273 @@
+use std::cell::Cell;
+use std::collections::VecDeque;
+use std::ops::ControlFlow;
+use std::rc::Rc;
+
+use roverlab::drive::{
+    Cruise, CruiseParameters, FollowMeObservation, FollowMeParameters, Follower, Formation, robots_in,
+};
+use roverlab::geometry::{Point, Pose, direction};
+use roverlab::io::log::Troop;
+use roverlab::io::{self, LidarScan, Psd, RobotIo};
+use roverlab::world::{Footprint, Scene};
+
+use super::scene::Mode;
+
+/// What became of a swarm.
+#[derive(Debug, Clone)]
+pub(crate) struct SwarmRun {
+    /// Where the robots were, the leader first.
+    pub(crate) paths: Vec<Vec<Pose>>,
+    pub(crate) odometry: Vec<Pose>,
+    pub(crate) contacts: u64,
+    pub(crate) contact_places: Vec<Point>,
+    /// The followers, from 1, that have lost the robot ahead of them or their place.
+    pub(crate) lost: Vec<usize>,
+    /// The mean distance to the robot ahead, and the largest after the first seconds, in metres.
+    pub(crate) mean_gap: f64,
+    pub(crate) largest_gap: f64,
+    pub(crate) sim_time: f64,
+    pub(crate) leader_path: f64,
+}
+
+/// Seconds in which a swarm forms.
+const FORMING: f64 = 10.0;
+/// A follower whose true gap is this many times what it should be is lost.
+const TOO_FAR: f64 = 3.0;
+/// Seconds from one step to the next, and between points of the paths.
+const PERIOD: f64 = 0.1;
+
+/// A follower's eyes and memory.
+struct Eyes {
+    scan: LidarScan,
+    points: Vec<Point>,
+    /// What single rays have seen lately, in the frame of odometry, and when.
+    memory: VecDeque<(f64, Point)>,
+}
+
+impl Eyes {
+    fn new() -> Self {
+        Self { scan: LidarScan::default(), points: Vec::new(), memory: VecDeque::new() }
+    }
+
+    /// What a lidar that looks over the floor sees.
+    fn look_round(&mut self, robot: &mut dyn RobotIo) -> io::Result<()> {
+        robot.scan_into(&mut self.scan)?;
+        self.points.clear();
+        self.points.extend(self.scan.points());
+        Ok(())
+    }
+
+    /// What eight distance sensors see, and have seen in the last moments; the lidar looks over the other followers.
+    fn look_by_rays(&mut self, robot: &mut dyn RobotIo, rays: &[(u8, Pose)], pose: Pose) -> io::Result<()> {
+        /// Points that are remembered, for how many seconds, and metres beyond which they do not matter.
+        const REMEMBERED: usize = 48;
+        const LATELY: f64 = 4.0;
+        const NEAR: f64 = 1.0;
+        robot.scan_into(&mut self.scan)?;
+        let now = robot.now()?;
+        for &(id, mount) in rays {
+            let range = robot.distance(Psd(id))?;
+            if range < NEAR {
+                let seen = pose.to_world(mount.position() + direction(mount.heading) * range);
+                self.memory.push_back((now, seen));
+            }
+        }
+        // Other robots are elsewhere by now.
+        let is_old = |&(seen, _): &(f64, Point)| seen < now - LATELY;
+        while self.memory.len() > REMEMBERED || self.memory.front().is_some_and(is_old) {
+            self.memory.pop_front();
+        }
+        self.points.clear();
+        self.points.extend(self.memory.iter().map(|&(_, point)| pose.to_local(point)));
+        Ok(())
+    }
+}
+
+/// The rays of a robot's distance sensors.
+fn rays_of(scene: &Scene, robot: usize) -> Vec<(u8, Pose)> {
+    let mount = |psd: &roverlab::world::PsdSpec| Pose::new(psd.mount.x, psd.mount.y, psd.mount.yaw);
+    scene.robots[robot].spec.psds.iter().map(|psd| (psd.id, mount(psd))).collect()
+}
+
+fn radius_of(scene: &Scene, robot: usize) -> f64 {
+    match scene.robots[robot].spec.footprint {
+        Footprint::Disc { radius } => radius,
+        _ => scene.robots[robot].spec.footprint.bounding_radius(),
+    }
+}
+
+/// Whom a follower follows: in a chain the one before it, else the leader.
+pub(crate) fn ahead_of(mode: Mode, follower: usize) -> usize {
+    if mode == Mode::Chain { follower - 1 } else { 0 }
+}
+
+/// The wished distance of a follower to the robot ahead of it.
+pub(crate) fn gap_of(scene: &Scene, mode: Mode, follower: usize) -> f64 {
+    let started =
+        scene.robots[follower].pose.distance_to(scene.robots[ahead_of(mode, follower)].pose.position());
+    match mode {
+        Mode::Lidar => 0.45,
+        Mode::Chain => 0.36,
+        // Side by side and in rows as they stand at first.
+        Mode::Raised | Mode::Radio => started,
+    }
+}
+
+/// Lets a leader drive past waypoints and the others follow, for so many seconds.
+pub(crate) fn run<'a>(
+    fleet: &mut (dyn Troop<'a> + 'a),
+    scene: &Scene,
+    waypoints: &[Point],
+    mode: Mode,
+    seconds: f64,
+    mut watch: impl FnMut(f64),
+) -> io::Result<SwarmRun> {
+    let robots = scene.robots.len();
+    let last_seen: Vec<Rc<Cell<f64>>> = (0..robots).map(|_| Rc::default()).collect();
+    control_leader(fleet, scene, waypoints, mode)?;
+    for (follower, last_seen) in last_seen.iter().enumerate().skip(1) {
+        if mode == Mode::Radio {
+            control_by_radio(fleet, scene, follower)?;
+        } else {
+            control_follower(fleet, scene, mode, follower, Rc::clone(last_seen))?;
+        }
+    }
+    let mut run = SwarmRun {
+        paths: scene.robots.iter().map(|robot| vec![robot.pose]).collect(),
+        odometry: Vec::new(),
+        contacts: 0,
+        contact_places: Vec::new(),
+        lost: Vec::new(),
+        mean_gap: 0.0,
+        largest_gap: 0.0,
+        sim_time: 0.0,
+        leader_path: 0.0,
+    };
+    let mut gaps = 0_u64;
+    while fleet.time()? + 0.5 * PERIOD < seconds {
+        fleet.run_for(PERIOD)?;
+        for (path, robot) in run.paths.iter_mut().zip(0..) {
+            path.push(fleet.pose(robot)?);
+        }
+        watch(fleet.time()?);
+        if fleet.time()? < FORMING {
+            continue;
+        }
+        for follower in 1..robots {
+            let gap = gap_now(&run.paths, mode, follower);
+            run.mean_gap += gap;
+            gaps += 1;
+            run.largest_gap = run.largest_gap.max(gap);
+        }
+    }
+    run.mean_gap /= gaps.max(1) as f64;
+    for (follower, last_seen) in last_seen.iter().enumerate().skip(1) {
+        let far = gap_now(&run.paths, mode, follower) > TOO_FAR * gap_of(scene, mode, follower).max(0.3);
+        let unseen = mode != Mode::Radio && fleet.time()? - last_seen.get() > 3.0;
+        if far || unseen {
+            run.lost.push(follower);
+        }
+    }
+    for robot in 0..robots {
+        let truth = fleet.truth(robot)?;
+        run.contacts += u64::from(truth.contacts);
+        run.contact_places.extend(truth.contact_places);
+        run.odometry.push(scene.robots[robot].pose.compose(&truth.odometry));
+        if robot == 0 {
+            run.leader_path = truth.path_length;
+        }
+    }
+    run.sim_time = fleet.time()?;
+    Ok(run)
+}
+
+fn gap_now(paths: &[Vec<Pose>], mode: Mode, follower: usize) -> f64 {
+    let last = |robot: usize| paths[robot].last().copied().unwrap_or_default();
+    last(follower).distance_to(last(ahead_of(mode, follower)).position())
+}
+
+fn control_leader<'a>(
+    fleet: &mut (dyn Troop<'a> + 'a),
+    scene: &Scene,
+    waypoints: &[Point],
+    mode: Mode,
+) -> io::Result<()> {
+    let start = scene.robots[0].pose;
+    let local = waypoints.iter().map(|&point| start.to_local(point)).collect();
+    let parameters = CruiseParameters { radius: radius_of(scene, 0), ..CruiseParameters::default() };
+    let mut cruise = Cruise::new(local, parameters)?;
+    let mut eyes = Eyes::new();
+    let step = move |robot: &mut dyn RobotIo| {
+        eyes.look_round(robot)?;
+        let pose = robot.pose()?;
+        // What is behind follows, and does not matter.
+        let ahead: Vec<Point> = eyes.points.iter().copied().filter(|point| point.x > -0.05).collect();
+        let twist = cruise.step(pose, &ahead)?;
+        robot.set_speed(twist)?;
+        if mode == Mode::Radio {
+            let message = Formation::message(start.compose(&pose), twist.linear);
+            let own = robot.radio_id()?;
+            for peer in robot.radio_peers()?.into_iter().filter(|&peer| peer != own) {
+                robot.send(peer, &message)?;
+            }
+        }
+        Ok(ControlFlow::Continue(()))
+    };
+    fleet.control(0, PERIOD, Box::new(step))
+}
+
+fn control_follower<'a>(
+    fleet: &mut (dyn Troop<'a> + 'a),
+    scene: &Scene,
+    mode: Mode,
+    follower: usize,
+    last_seen: Rc<Cell<f64>>,
+) -> io::Result<()> {
+    let leader_radius = radius_of(scene, ahead_of(mode, follower));
+    let parameters = FollowMeParameters {
+        gap: gap_of(scene, mode, follower),
+        leader_radius,
+        radius: radius_of(scene, follower),
+        ..FollowMeParameters::default()
+    };
+    let mut behaviour = Follower::new(parameters)?;
+    let rays = rays_of(scene, follower);
+    let mut eyes = Eyes::new();
+    let step = move |robot: &mut dyn RobotIo| {
+        let (time, pose) = (robot.now()?, robot.pose()?);
+        if mode == Mode::Raised {
+            eyes.look_by_rays(robot, &rays, pose)?;
+        } else {
+            eyes.look_round(robot)?;
+        }
+        let candidates = robots_in(&eyes.scan, leader_radius);
+        let seen = FollowMeObservation { time, pose, candidates: &candidates, obstacles: &eyes.points };
+        let twist = behaviour.step(&seen)?;
+        robot.set_speed(twist)?;
+        last_seen.set(time - behaviour.unseen(time).min(time));
+        Ok(ControlFlow::Continue(()))
+    };
+    fleet.control(follower, PERIOD, Box::new(step))
+}
+
+fn control_by_radio<'a>(fleet: &mut (dyn Troop<'a> + 'a), scene: &Scene, follower: usize) -> io::Result<()> {
+    let start = scene.robots[follower].pose;
+    let place = scene.robots[0].pose.to_local(start.position());
+    let formation = Formation { radius: radius_of(scene, follower), ..Formation::at(place) };
+    formation.validate()?;
+    let mut eyes = Eyes::new();
+    let mut leader = None;
+    let step = move |robot: &mut dyn RobotIo| {
+        eyes.look_round(robot)?;
+        while let Some(message) = robot.receive()? {
+            leader = Some(Formation::read(&message.data)?);
+        }
+        if let Some((place, speed)) = leader {
+            let twist = formation.step(start.compose(&robot.pose()?), place, speed, &eyes.points);
+            robot.set_speed(twist)?;
+        }
+        Ok(ControlFlow::Continue(()))
+    };
+    fleet.control(follower, PERIOD, Box::new(step))
+}

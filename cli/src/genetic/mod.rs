@@ -1,0 +1,137 @@
+//! The command `genetic`.
+
+mod evolve;
+mod spline;
+mod wall;
+
+use std::path::PathBuf;
+
+use roverlab::picture::Picture;
+
+use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
+use evolve::{evolve, inside};
+use spline::Spline;
+use wall::Wall;
+
+/// The command line of `genetic`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Evolves the scale of a spline's tangents, or the gains of a wall follower",
+    after_help = "\
+A spline leads from --start to --goal X,Y,DEG: it shall be short and not bend sharply. A wall follower shall keep its
+distance in the simulator, with noise. Fitness is minus the cost. --record is for --task wall: it records a drive with the
+best gains.
+
+JSON fields:
+  task, method, evaluations, fitness          what was asked, and the best that was found with how many trials
+  scale, length_mm, radius_mm                 of the best spline, and of its sharpest bend
+  proportional, integral, derivative          the best gains
+  best, mean                                  fitness of each generation
+  picture
+Outcomes: evolved, failed."
+)]
+pub(crate) struct Args {
+    /// What to evolve.
+    #[arg(long, value_enum, default_value = "spline")]
+    pub(crate) task: Task,
+
+    /// How to evolve it.
+    #[arg(long, value_enum, default_value = "genetic")]
+    pub(crate) method: Method,
+
+    /// Generations.
+    #[arg(long, value_name = "G", default_value_t = 40, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) generations: u32,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// What is evolved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Task {
+    /// The scale of a spline's tangents.
+    Spline,
+    /// The gains of a PID controller that follows a wall.
+    Wall,
+}
+
+/// A method of evolution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Method {
+    /// Generation after generation.
+    Genetic,
+    /// Two children at a time.
+    SteadyState,
+    /// Evolution strategy with covariance matrix adaptation.
+    CmaEs,
+}
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    let common = &args.common;
+    common.check_picture()?;
+    check(args)?;
+    let (spline, wall, seed) = (Spline::new(common), Wall::new(common), common.seed);
+    let population = match args.task {
+        Task::Spline => {
+            evolve(args.method, Spline::GENES, args.generations, seed, |genes, _| spline.cost(genes))
+        }
+        Task::Wall => {
+            evolve(args.method, Wall::GENES, args.generations, seed, |genes, trial| wall.cost(genes, trial))
+        }
+    }
+    .map_err(Failure::input)?;
+    for row in &population.history {
+        common
+            .tell(format_args!("generation {}: best {:.4}, mean {:.4}", row.generation, row.best, row.mean));
+    }
+    let best = population.best.as_ref().ok_or_else(|| Failure::run("nobody was evaluated"))?;
+    let genes = inside(&best.genome);
+    let (fields, picture) = match args.task {
+        Task::Spline => (spline.found(&genes)?, spline.picture(&population, &genes)),
+        Task::Wall => (Wall::found(&genes), wall.picture(common, &genes)?),
+    };
+    let (file, trouble) = draw(common, &picture);
+    let report = Report::new(Outcome::verdict("evolved"))
+        .field("task", format!("{:?}", args.task).to_lowercase())
+        .field("method", format!("{:?}", args.method))
+        .field("evaluations", population.history.last().map_or(0, |row| row.evaluations))
+        .field("fitness", rounded(best.fitness));
+    let report = fields.into_iter().fold(report, |report, (name, value)| report.field(&name, value));
+    let report = report
+        .field("best", population.history.iter().map(|row| rounded(row.best)).collect::<Vec<_>>())
+        .field("mean", population.history.iter().map(|row| rounded(row.mean)).collect::<Vec<_>>())
+        .field("picture", file);
+    Ok(Report { trouble, ..report })
+}
+
+/// Fails when an option has no meaning here.
+fn check(args: &Args) -> Result<(), Failure> {
+    let common = &args.common;
+    let drives = args.task == Task::Wall;
+    let given = [
+        ("--world", common.world.is_some()),
+        ("--robot", common.robot.is_some()),
+        ("--fault", !common.fault.is_empty()),
+        ("--record", common.record.is_some() && !drives),
+        ("--replay", common.replay.is_some() && !drives),
+    ];
+    let refused = |option: &str| {
+        Failure::input(format!("{option}: has no meaning for evolution; expected a command line without it"))
+    };
+    given.iter().find(|(_, given)| *given).map_or(Ok(()), |(option, _)| Err(refused(option)))
+}
+
+/// Saves the picture where the options say, or else if a person looks on.
+fn draw(common: &CommonArgs, picture: &Picture) -> (Option<PathBuf>, Option<String>) {
+    let file = common.picture_file("genetic.svg");
+    let saved = file.as_ref().map(|file| picture.save(file)).transpose();
+    (file, saved.err().map(|error| error.to_string()))
+}

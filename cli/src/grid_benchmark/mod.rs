@@ -1,0 +1,94 @@
+//! The command `grid-benchmark`.
+
+mod job;
+mod own_map;
+
+pub(crate) use job::work;
+
+use std::num::NonZero;
+use std::path::PathBuf;
+
+use crate::common::PlainArgs;
+
+/// The command line of `grid-benchmark`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Answers the queries of a scenario file on a grid map and compares the paths' lengths with the published ones",
+    after_help = "\
+Without --map and --scen, the map is one of rooms and the queries are drawn; --seed says which. Their lengths are then
+Dijkstra's.
+
+JSON fields:
+  map, algorithm, width, height
+  queries                     how many
+  solved                      those with a path
+  optimal                     those whose path is as long as published, within max(0.006, 2e-5 of the length)
+  mean_ratio, worst_ratio     length in terms of the published one
+  mean_expanded               nodes taken off the queue, per query
+  timing                      with --timing: median_us and p95_us of a query, preprocess_ms to get ready for the map
+Outcomes: solved; wrong if a query got no path, or one of an octile planner is not as long as published. A query that starts
+or ends in a blocked cell or outside of the map is no query."
+)]
+pub(crate) struct Args {
+    /// MovingAI map.
+    #[arg(long, value_name = "FILE.map", requires = "scen")]
+    pub(crate) map: Option<PathBuf>,
+
+    /// MovingAI scenarios for the map.
+    #[arg(long, value_name = "FILE.scen", requires = "map")]
+    pub(crate) scen: Option<PathBuf>,
+
+    /// The planner.
+    #[arg(long, value_enum, default_value = "jps_plus")]
+    pub(crate) algorithm: Algorithm,
+
+    /// Answer every query so often and count the fastest time.
+    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true)]
+    pub(crate) repeat: NonZero<u32>,
+
+    #[command(flatten)]
+    pub(crate) plain: PlainArgs,
+}
+
+impl AsRef<PlainArgs> for Args {
+    fn as_ref(&self) -> &PlainArgs {
+        &self.plain
+    }
+}
+
+/// The planners.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum Algorithm {
+    /// Dijkstra's algorithm.
+    Dijkstra,
+    /// A*.
+    Astar,
+    /// Jump point search without preparation.
+    Jps,
+    /// Jump point search with all jumps prepared.
+    JpsPlus,
+    /// The shortest paths in any direction.
+    AnyAngle,
+    /// Paths through a quadtree's free squares, pulled straight.
+    Quadtree,
+}
+
+impl Algorithm {
+    /// Its name on the command line.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Dijkstra => "dijkstra",
+            Self::Astar => "astar",
+            Self::Jps => "jps",
+            Self::JpsPlus => "jps_plus",
+            Self::AnyAngle => "any_angle",
+            Self::Quadtree => "quadtree",
+        }
+    }
+
+    /// Whether its paths are of the kind whose lengths scenario files hold.
+    pub(crate) fn is_octile(self) -> bool {
+        matches!(self, Self::Dijkstra | Self::Astar | Self::Jps | Self::JpsPlus)
+    }
+}

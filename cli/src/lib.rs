@@ -1,0 +1,40 @@
+//! The program `roverlab`: every system of the library as a command.
+//!
+//! A command is a module with a command line and a function that does the work; `common` has what all share, and
+//! `commands` is the list of them all.
+
+mod a_to_b;
+mod ackermann;
+mod bug_compare;
+mod camera;
+mod color_tracking;
+mod commands;
+mod common;
+mod cone_drive;
+mod cone_race;
+mod cones;
+mod coverage;
+mod distbug;
+mod driving;
+mod edges;
+mod follow_me;
+mod genetic;
+mod grid_benchmark;
+mod lidar_scan;
+mod localise;
+mod maze_drive;
+mod micromouse;
+mod motion;
+mod navigate;
+mod omni;
+mod quadtree;
+mod random_drive;
+mod replay;
+mod room;
+mod safety;
+mod starman;
+#[cfg(test)]
+mod tests;
+mod wall_following;
+
+pub use commands::main;

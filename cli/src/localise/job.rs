@@ -1,0 +1,146 @@
+use roverlab::drive::RandomDriveParameters;
+use roverlab::geometry::{angle_difference, units};
+use roverlab::io::sim::NoiseModel;
+use roverlab::scan::{Localisation, LocalisationMap, LocaliserParameters};
+use roverlab::world::{RobotSpec, Scene};
+use serde_json::{Value, json};
+
+use super::drive::{Finding, Options, drive};
+use super::{campaign, picture, worlds};
+use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
+use crate::driving::{Conditions, Run, check_lidar, drawn, paced, world_with_others};
+
+/// The command line of `localise`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Finds out where the robot is in a world that it knows, by matching scans while it drives about",
+    after_help = "\
+Without --world, the robot is somewhere in an office of its own, at a place drawn with the seed. It is told the world, and
+neither its place nor its heading. It drives about at random until one place explains all that it saw, or --patience is over.
+
+With --campaign, many starts in five worlds, and some in two more that look the same from several places.
+
+JSON fields:
+  position_error_mm, heading_error_deg
+                              of the most probable place; null if there is none
+  hypotheses                  how many places explain what was seen
+  places                      a list of {x_mm, y_mm, heading_deg, probability}, the most probable one first
+  deviation_mm, deviation_deg standard deviations of the most probable place: the larger one of x and y, and the heading
+  scans                       how many were matched
+  time_limit_s, picture
+  rows                        with --campaign only: the table
+Outcomes: localised, several_hypotheses, lost, collided, timed_out, failed; with --campaign: passed, wrong."
+)]
+pub(crate) struct Args {
+    /// Seconds to drive about while there are several places.
+    #[arg(long, value_name = "S", default_value_t = 40.0, value_parser = parse_patience, allow_hyphen_values = true)]
+    pub(crate) patience: f64,
+
+    /// Start at many places in many worlds and print a table.
+    #[arg(long)]
+    pub(crate) campaign: bool,
+
+    /// Starts in each world of a campaign; a fifth of it where several places look the same.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub(crate) starts: u64,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+fn parse_patience(text: &str) -> Result<f64, String> {
+    let patience = text.parse().ok().filter(|patience: &f64| (1.0..=1e5).contains(patience));
+    patience.ok_or_else(|| "expected 1 to 100000 s".into())
+}
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    if args.campaign {
+        return campaign(args);
+    }
+    let common = &args.common;
+    common.check_picture()?;
+    let scene = common.placed_without_goal("the robot goes nowhere", || own_scene(common.seed))?;
+    check_lidar(&scene)?;
+    let conditions = Conditions::new(common, args.patience + 30.0)?;
+    let run = run(args, &scene, &conditions, paced(common))?;
+    let (file, trouble) =
+        drawn(common, "localise.svg", || picture::of(&scene, &run, conditions.noise, conditions.seed));
+    let report = report(&run).field("time_limit_s", conditions.time_limit).field("picture", file);
+    Ok(Report { trouble, ..report })
+}
+
+/// The office, with a robot somewhere in it.
+fn own_scene(seed: u64) -> Scene {
+    let (world, spec) = (worlds::office(), RobotSpec::s4());
+    let start = worlds::start(&world, spec.footprint.bounding_radius(), seed);
+    Scene::with_robot(world, spec, start.expect("the office has free floor"))
+}
+
+/// Lets the robot find out.
+pub(super) fn run(
+    args: &Args,
+    scene: &Scene,
+    conditions: &Conditions,
+    pace: impl FnMut(f64),
+) -> Result<Run<Finding>, Failure> {
+    let radius = scene.robots[0].spec.footprint.bounding_radius();
+    let options = Options {
+        map: LocalisationMap::new(&world_with_others(scene)).map_err(Failure::input)?,
+        localiser: LocaliserParameters {
+            range_error: NoiseModel::real().scaled(conditions.noise).range,
+            radius,
+            ..LocaliserParameters::default()
+        },
+        random: RandomDriveParameters { radius, ..RandomDriveParameters::default() },
+        seed: conditions.seed,
+        patience: args.patience.min(conditions.time_limit - 2.0),
+    };
+    conditions.run(scene, pace, |robot, step| drive(robot, &options, step))
+}
+
+/// Metres and radians from the most probable place to the robot.
+pub(super) fn errors(run: &Run<Finding>) -> Option<(f64, f64)> {
+    let best = run.ending.as_ref().ok()?.localisation.best()?;
+    let truth = run.truth.pose;
+    Some((best.pose.distance_to(truth.position()), angle_difference(best.pose.heading, truth.heading).abs()))
+}
+
+fn report(run: &Run<Finding>) -> Report {
+    let report = run.report(|finding| match finding.localisation {
+        Localisation::One(_) => Outcome::verdict("localised"),
+        Localisation::Several(..) => Outcome::verdict("several_hypotheses"),
+        _ => Outcome::failure("lost"),
+    });
+    let errors = errors(run);
+    let finding = run.ending.as_ref().ok();
+    let best = finding.and_then(|finding| finding.localisation.best());
+    let count = finding.map(|finding| finding.localisation.count());
+    let deviation = |row: usize| best.map(|best| best.covariance[(row, row)].max(0.0).sqrt());
+    report
+        .field("position_error_mm", errors.map(|(position, _)| millimetres(position)))
+        .field("heading_error_deg", errors.map(|(_, heading)| rounded(units::to_deg(heading))))
+        .field("hypotheses", count)
+        .field("places", finding.map(places))
+        .field("deviation_mm", deviation(0).zip(deviation(1)).map(|(x, y)| millimetres(x.max(y))))
+        .field("deviation_deg", deviation(2).map(|heading| rounded(units::to_deg(heading))))
+        .field("scans", finding.map(|finding| finding.scans))
+}
+
+fn places(finding: &Finding) -> Vec<Value> {
+    let place = |hypothesis: &roverlab::scan::Hypothesis| {
+        json!({
+            "x_mm": millimetres(hypothesis.pose.x),
+            "y_mm": millimetres(hypothesis.pose.y),
+            "heading_deg": rounded(units::to_deg(hypothesis.pose.heading)),
+            "probability": rounded(hypothesis.probability),
+        })
+    };
+    finding.hypotheses.iter().take(finding.localisation.count()).map(place).collect()
+}

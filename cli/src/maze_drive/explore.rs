@@ -1,0 +1,128 @@
+use roverlab::geometry::Pose;
+use roverlab::io::sim::NoiseModel;
+use roverlab::maze::{
+    Exploration, Maze, MazeRunner, Preference, RecursiveExplorer, Rig, Route, RunnerParameters, Unknown,
+    shortest_route,
+};
+
+use super::place::{Place, unexplored};
+use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
+use crate::driving::{Conditions, drawn, paced};
+
+/// The command line of `maze-explore`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Explores a whole maze by recursion, then drives to the goal by the shortest way and back",
+    after_help = "\
+--world takes a maze of any format (EyeSim's .maz, the micromouse text format, .maze, map, num); it says where the robot starts.
+Cells are 360 mm wide, for an S4, as in the book, or 180 mm with --micromouse.
+
+JSON fields:
+  width, height               cells
+  early_marking               whether cells that are known on all sides are left out
+  visited_cells, looks        cells that the robot has been in, and stops to look around
+  unknown_walls               walls that it does not know: those that cannot be reached
+  wrong_walls                 walls that it knows wrongly
+  exploration_s               simulated seconds until it is back at the start
+  steps                       steps of the shortest way to the goal; null without one
+  at_goal                     whether it truly was there
+  localisation_error_mm       true error of where the robot takes itself to be in the end
+  picture                     always
+Outcomes: returned, unreachable, missed, timed_out, collided, failed."
+)]
+pub(crate) struct ExploreArgs {
+    /// Go into every cell, also into those that are known on all sides.
+    #[arg(long)]
+    pub(crate) thorough: bool,
+
+    /// A micromouse in a maze of competition size.
+    #[arg(long)]
+    pub(crate) micromouse: bool,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for ExploreArgs {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// What the robot says after its drive.
+#[derive(Debug, Clone)]
+struct Told {
+    exploration: Exploration,
+    known: Maze,
+    route: Option<Route>,
+    at_goal: bool,
+    pose: Pose,
+}
+
+/// The work of the command.
+pub(crate) fn explore(args: &ExploreArgs) -> Result<Report, Failure> {
+    args.common.check_picture()?;
+    let place = Place::new(&args.common, args.micromouse)?;
+    let maze = place.maze();
+    let conditions = Conditions::new(&args.common, 600.0 + 40.0 * maze.cell_count() as f64)?;
+    let parameters = if args.micromouse { RunnerParameters::MICROMOUSE } else { RunnerParameters::EYEBOT };
+    let run = conditions.run_watched(&place.scene(), paced(&args.common), |robot, step| {
+        let range = NoiseModel::real().scaled(conditions.noise).range;
+        let rig = Rig::new(&place.spec, conditions.odometry_errors(), range)?;
+        let mut truth = None;
+        let mut watch = |_: Pose| truth = Some(step());
+        let mut runner = MazeRunner::new(robot, rig, unexplored(maze)?, place.scale, parameters)?;
+        let mut explorer =
+            if args.thorough { RecursiveExplorer::without_early_marking() } else { RecursiveExplorer::new() };
+        let exploration = runner.explore(&mut explorer, &mut watch)?;
+        let route = shortest_route(runner.maze(), Unknown::Closed, Preference::Steps);
+        if let Some(route) = &route {
+            runner.go_to(route.end(), &mut watch)?;
+        }
+        let at_goal = truth.is_some_and(|pose| place.is_at_goal(pose.position()));
+        let mut watch = |_: Pose| {
+            step();
+        };
+        runner.go_to(maze.start(), &mut watch)?;
+        runner.face(maze.heading(), &mut watch)?;
+        Ok(Told { exploration, known: runner.maze().clone(), route, at_goal, pose: runner.pose() })
+    })?;
+    let told = run.ending.as_ref().ok();
+    let (picture, trouble) = drawn(&args.common, "maze_explore.svg", || {
+        let caption = told.map_or(String::new(), |told| {
+            let Exploration { visited, looks, time, .. } = told.exploration;
+            format!("{visited} of {} cells visited, {looks} looks, {time:.0} s", maze.cell_count())
+        });
+        place.picture_of("Recursive exploration", caption, &run)
+    });
+    let report = run.report(|told| match (&told.route, told.at_goal) {
+        (None, _) => Outcome::verdict("unreachable"),
+        (Some(_), true) => Outcome::verdict("returned"),
+        (Some(_), false) => Outcome::failure("missed"),
+    });
+    let lost = told.map(|told| run.truth.pose.distance_to(told.pose.position()));
+    let report = report
+        .field("width", maze.width())
+        .field("height", maze.height())
+        .field("early_marking", !args.thorough)
+        .field("visited_cells", told.map(|told| told.exploration.visited))
+        .field("looks", told.map(|told| told.exploration.looks))
+        .field("unknown_walls", told.map(|told| told.known.unknown_walls()))
+        .field("wrong_walls", told.map(|told| wrong_walls(&told.known, maze)))
+        .field("exploration_s", told.map(|told| rounded(told.exploration.time)))
+        .field("steps", told.and_then(|told| told.route.as_ref().map(Route::steps)))
+        .field("at_goal", told.is_some_and(|told| told.at_goal))
+        .field("localisation_error_mm", lost.map(millimetres))
+        .field("picture", picture);
+    Ok(Report { trouble, ..report })
+}
+
+fn wrong_walls(known: &Maze, truth: &Maze) -> usize {
+    use roverlab::maze::{Direction, Wall};
+    let sides = truth.cells().flat_map(|cell| Direction::ALL.map(|side| (cell, side)));
+    let wrong = |&(cell, side): &(_, _)| {
+        let wall = known.wall(cell, side);
+        wall != Wall::Unknown && (wall == Wall::Present) != (truth.wall(cell, side) != Wall::Absent)
+    };
+    sides.filter(wrong).count()
+}

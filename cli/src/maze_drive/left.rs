@@ -1,0 +1,126 @@
+use roverlab::io::sim::NoiseModel;
+use roverlab::maze::{CellDriveParameters, LeftHand, LeftHandOutcome, LeftHandParameters, Rig, Straight};
+
+use super::place::Place;
+use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres};
+use crate::driving::{Conditions, drawn, paced};
+
+/// How to drive from cell to cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Drive {
+    /// By odometry alone, as the book's first program.
+    Open,
+    /// In the middle between the walls, by a proportional controller as the book's second program: it swings.
+    P,
+    /// The same by a PID controller, which odometry helps to see through the noise of the readings.
+    Pid,
+}
+
+/// The command line of `maze-left`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Keeps the left hand on the wall of a maze until the goal or the start is reached",
+    after_help = "\
+--world takes a maze of any format (EyeSim's .maz, the micromouse text format, .maze, map, num); it says where the robot starts.
+Cells are 360 mm wide, for an S4, as in the book, or 180 mm with --micromouse.
+
+JSON fields:
+  drive                       open, p or pid
+  width, height               cells
+  cells                       cells driven, as the robot counts them
+  at_goal, back               whether the robot takes itself to be in the goal, or at the start again
+  really                      whether it truly is there
+  off_middle_mm               from the middle of the cell where it takes itself to be
+  picture                     always
+Outcomes: goal, returned, lost (it is not where it takes itself to be), stuck, timed_out, collided, failed."
+)]
+pub(crate) struct LeftArgs {
+    /// How to drive from cell to cell.
+    #[arg(long, value_enum, default_value_t = Drive::Pid)]
+    pub(crate) drive: Drive,
+
+    /// A micromouse in a maze of competition size.
+    #[arg(long)]
+    pub(crate) micromouse: bool,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for LeftArgs {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// How a robot drives through a place.
+fn parameters(
+    args: &LeftArgs,
+    place: &Place,
+    conditions: &Conditions,
+) -> Result<LeftHandParameters, Failure> {
+    let range = NoiseModel::real().scaled(conditions.noise).range;
+    let rig = Rig::new(&place.spec, conditions.odometry_errors(), range).map_err(Failure::input)?;
+    let speed = 0.5 * place.scale.cell;
+    Ok(match args.drive {
+        Drive::Open => {
+            let straight = Straight::OpenLoop { length: place.scale.cell, speed };
+            let threshold = place.scale.cell / 0.9;
+            LeftHandParameters { straight, threshold, ..LeftHandParameters::as_printed() }
+        }
+        Drive::P => {
+            LeftHandParameters::controlled(CellDriveParameters::proportional(&rig, place.scale, speed))
+        }
+        Drive::Pid => LeftHandParameters::controlled(CellDriveParameters::pid(&rig, place.scale, speed)),
+    })
+}
+
+/// The work of the command.
+pub(crate) fn left(args: &LeftArgs) -> Result<Report, Failure> {
+    args.common.check_picture()?;
+    let place = Place::new(&args.common, args.micromouse)?;
+    let maze = place.maze();
+    let conditions = Conditions::new(&args.common, 60.0 + 12.0 * maze.cell_count() as f64)?;
+    let rule = LeftHand::new(parameters(args, &place, &conditions)?).map_err(Failure::input)?;
+    let (mut cells, mut at) = (0_usize, Some(maze.start()));
+    let run = conditions.run(&place.scene(), paced(&args.common), |robot, step| {
+        rule.run(
+            robot,
+            maze.heading(),
+            |offset, _| {
+                cells += 1;
+                at = place.cell(offset);
+                at.is_none_or(|cell| maze.is_goal(cell) || cell == maze.start())
+            },
+            step,
+        )
+    })?;
+    let end = run.truth.pose.position();
+    let really = at.is_some() && place.scale.cell_of(maze, end) == at;
+    let at_goal = at.is_some_and(|cell| maze.is_goal(cell));
+    let off = at.map(|cell| (place.scale.centre(cell) - end).norm());
+    let (picture, trouble) = drawn(&args.common, "maze_left.svg", || {
+        place.picture_of("Left hand on the wall", format!("{cells} cells"), &run)
+    });
+    let report = run.report(|&outcome| match outcome {
+        LeftHandOutcome::Stalled => Outcome::failure("stuck"),
+        LeftHandOutcome::Finished if !really => Outcome::failure("lost"),
+        LeftHandOutcome::Finished => Outcome::verdict(if at_goal { "goal" } else { "returned" }),
+    });
+    let drive = match args.drive {
+        Drive::Open => "open",
+        Drive::P => "p",
+        Drive::Pid => "pid",
+    };
+    let report = report
+        .field("drive", drive)
+        .field("width", maze.width())
+        .field("height", maze.height())
+        .field("cells", cells)
+        .field("at_goal", at_goal)
+        .field("back", at == Some(maze.start()))
+        .field("really", really)
+        .field("off_middle_mm", off.map(millimetres))
+        .field("picture", picture);
+    Ok(Report { trouble, ..report })
+}

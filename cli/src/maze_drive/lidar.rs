@@ -1,0 +1,144 @@
+use std::collections::BTreeMap;
+
+use roverlab::geometry::{Point, Pose};
+use roverlab::maze::{LidarLeft, LidarLeftParameters};
+use roverlab::picture::Style;
+use roverlab::world::Wall;
+
+use super::place::Place;
+use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres};
+use crate::driving::{Conditions, drawn, paced};
+
+/// The command line of `maze-lidar`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Follows the left wall of a maze by a lidar until the goal or the start is reached, and draws what it saw",
+    after_help = "\
+--world takes a maze of any format (EyeSim's .maz, the micromouse text format, .maze, map, num); it says where the robot starts.
+Cells are 360 mm wide. The map has every point that the lidar saw where odometry put it, so that it bends as odometry errs.
+
+JSON fields:
+  width, height               cells
+  cells                       cells that the robot has really been in
+  map_points                  points of the map
+  map_error_mm                mean distance of the map's points from the nearest wall
+  odometry_error_mm           where odometry takes the robot to be in the end, from where it is
+  picture                     always
+Outcomes: goal, returned, timed_out, collided, failed."
+)]
+pub(crate) struct LidarArgs {
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for LidarArgs {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// The work of the command.
+pub(crate) fn lidar(args: &LidarArgs) -> Result<Report, Failure> {
+    args.common.check_picture()?;
+    let place = Place::new(&args.common, false)?;
+    let (maze, scale) = (place.maze(), place.scale);
+    let scene = place.scene();
+    let start = scene.robots[0].pose;
+    let conditions = Conditions::new(&args.common, 60.0 + 12.0 * maze.cell_count() as f64)?;
+    let parameters = LidarLeftParameters::for_corridor(scale.cell - scale.wall);
+    let mut follower = LidarLeft::new(parameters).map_err(Failure::input)?;
+    let mut map: Vec<Point> = Vec::new();
+    let mut visited = vec![false; maze.cell_count()];
+    let mut steps = 0_u32;
+    let run = conditions.run_watched(&scene, paced(&args.common), |robot, step| {
+        let mut left_start = false;
+        follower.run(robot, |_, points| {
+            let truth: Pose = step();
+            // One scan in ten is enough for a map.
+            if steps.is_multiple_of(10) {
+                map.extend(points.iter().map(|&point| start.to_world(point)));
+            }
+            steps += 1;
+            let Some(cell) = scale.cell_of(maze, truth.position()) else { return true };
+            visited[maze.index(cell)] = true;
+            let middle = (scale.centre(cell) - truth.position()).norm() < 0.3 * scale.cell;
+            left_start |= cell != maze.start();
+            middle && (maze.is_goal(cell) || (left_start && cell == maze.start()))
+        })
+    })?;
+    let at_goal = place.is_at_goal(run.truth.pose.position());
+    let (picture, trouble) = drawn(&args.common, "maze_lidar.svg", || {
+        let mut picture = place.picture_of("Left wall by lidar", format!("{} points", map.len()), &run);
+        picture.points(map.iter().copied(), Style::lidar().labelled("map by odometry"));
+        picture
+    });
+    let walls = NearWalls::new(&scene.world.walls, scale.cell);
+    let error = map.iter().map(|&point| walls.distance(point)).sum::<f64>() / map.len().max(1) as f64;
+    let report = run.report(|()| Outcome::verdict(if at_goal { "goal" } else { "returned" }));
+    let lost = run.truth.pose.distance_to(run.odometry.position());
+    let report = report
+        .field("width", maze.width())
+        .field("height", maze.height())
+        .field("cells", visited.iter().filter(|&&visited| visited).count())
+        .field("map_points", map.len())
+        .field("map_error_mm", millimetres(error))
+        .field("odometry_error_mm", millimetres(lost))
+        .field("picture", picture);
+    Ok(Report { trouble, ..report })
+}
+
+/// Walls by the squares of a grid that they come near, as a map has millions of points.
+struct NearWalls<'a> {
+    walls: &'a [Wall],
+    side: f64,
+    /// By column and row, the walls that are less than a side away from anywhere in the square.
+    squares: BTreeMap<(i64, i64), Vec<&'a Wall>>,
+}
+
+impl<'a> NearWalls<'a> {
+    fn new(walls: &'a [Wall], side: f64) -> Self {
+        let mut squares: BTreeMap<_, Vec<&Wall>> = BTreeMap::new();
+        for wall in walls {
+            let (a, b) = (wall.line.a, wall.line.b);
+            let reach = side + 0.5 * wall.thickness;
+            let column = |x: f64| (x / side).floor() as i64;
+            for x in column(a.x.min(b.x) - reach)..=column(a.x.max(b.x) + reach) {
+                for y in column(a.y.min(b.y) - reach)..=column(a.y.max(b.y) + reach) {
+                    squares.entry((x, y)).or_default().push(wall);
+                }
+            }
+        }
+        Self { walls, side, squares }
+    }
+
+    /// Metres from a point to the nearest wall; 0 within one.
+    fn distance(&self, point: Point) -> f64 {
+        let square = ((point.x / self.side).floor() as i64, (point.y / self.side).floor() as i64);
+        let near = self.squares.get(&square).map_or(&[][..], Vec::as_slice);
+        let distance = nearest(near.iter().copied(), point);
+        // Farther than a side, another wall may be nearer.
+        if distance <= self.side { distance } else { nearest(self.walls.iter(), point) }
+    }
+}
+
+fn nearest<'a>(walls: impl Iterator<Item = &'a Wall>, point: Point) -> f64 {
+    let distances = walls.map(|wall| wall.line.distance_to(point) - 0.5 * wall.thickness);
+    distances.fold(f64::INFINITY, f64::min).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use roverlab::maze::{Maze, Scale};
+
+    use super::*;
+
+    #[test]
+    fn near_walls_are_as_near_as_all() {
+        let world = Scale::DOUBLED.world(&Maze::open(3, 2).unwrap());
+        let walls = NearWalls::new(&world.walls, Scale::DOUBLED.cell);
+        for (x, y) in (-20..40).flat_map(|x| (-20..40).map(move |y| (x, y))) {
+            let point = Point::new(0.05 * f64::from(x), 0.05 * f64::from(y));
+            assert_eq!(walls.distance(point), nearest(world.walls.iter(), point), "{point}");
+        }
+    }
+}

@@ -1,0 +1,90 @@
+use std::num::NonZero;
+
+use crate::common::{CommonArgs, Failure};
+use roverlab::geometry::units;
+
+/// The command line of `navigate`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Drives a robot with a lidar to a goal in a known world, past what the world is not known to hold",
+    after_help = "\
+Without --world, the robot drives through a world of the command's own, in which it does not know of three obstacles. With
+--world, what --unmapped says is added to it, where it leaves a way, and the robot is told of the world without that. Other
+robots stand still, and nobody tells of them either.
+
+--world also takes MovingAI maps (.map): cells of 500 mm, the lower left corner of the map at 0,0. Unknown cells of a ROS map
+are floor.
+
+With --campaign, generated worlds in each of which up to five obstacles are unmapped; every goal can be reached.
+
+JSON fields:
+  goal                        [x, y] mm
+  goal_distance_mm            true distance at the end
+  position_error_mm           how far the robot is from where it takes itself to be, at the end
+  planned_length_mm           length of the first plan, or null
+  clearance_mm                what the first plan keeps beside the robot, or null
+  replans                     how often what was seen changed the plan
+  recoveries                  how often the robot did not get on and backed off, or doubted what it had seen
+  unmapped                    obstacles that the robot was not told of
+  contact_points              list of [x, y] mm, true
+  time_limit_s, picture
+  runs, reached, contacts, wrong_seeds   with --campaign only
+Outcomes: reached, unreachable, stuck, timed_out, collided, failed; with --campaign: passed, wrong."
+)]
+pub(crate) struct Args {
+    /// Room to be kept beside the robot where there is enough [default: 0.65 of its radius].
+    #[arg(long, value_name = "MM", value_parser = parse_length, allow_hyphen_values = true)]
+    pub(crate) clearance: Option<f64>,
+
+    /// Room beside the robot that a passage must leave on either side [default: 0.2 of its radius].
+    #[arg(long, value_name = "MM", value_parser = parse_length, allow_hyphen_values = true)]
+    pub(crate) least_clearance: Option<f64>,
+
+    /// Obstacles that the robot is not told of [default: 0 with --world].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=100), allow_hyphen_values = true)]
+    pub(crate) unmapped: Option<u32>,
+
+    /// Drive through many generated worlds.
+    #[arg(long)]
+    pub(crate) campaign: bool,
+
+    /// Worlds of a campaign; each has the next seed.
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub(crate) runs: u64,
+
+    /// How many threads drive in a campaign [default: one for each core].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(crate) threads: Option<NonZero<usize>>,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+impl Args {
+    /// Fails if there is no room for the wished clearance.
+    pub(crate) fn parameters(
+        &self,
+        footprint: roverlab::world::Footprint,
+    ) -> Result<roverlab::nav::NavigateParameters, Failure> {
+        let usual = roverlab::nav::NavigateParameters::for_footprint(footprint);
+        let wished = self.clearance.unwrap_or(usual.clearance.max(self.least_clearance.unwrap_or(0.0)));
+        let parameters = roverlab::nav::NavigateParameters {
+            clearance: wished,
+            least_clearance: self.least_clearance.unwrap_or(usual.least_clearance.min(wished)),
+            ..usual
+        };
+        parameters.validate().map_err(Failure::input)?;
+        Ok(parameters)
+    }
+}
+
+fn parse_length(text: &str) -> Result<f64, String> {
+    let length = text.trim().parse().ok().filter(|&mm: &f64| mm > 0.0 && mm <= 1e6);
+    length.map(units::from_mm).ok_or_else(|| "expected a number of millimetres above 0".into())
+}

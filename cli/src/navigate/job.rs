@@ -1,0 +1,104 @@
+use std::path::PathBuf;
+
+use roverlab::geometry::{Point, units};
+use roverlab::nav::{NavigateEvent, NavigateOutcome};
+use roverlab::random::Stream;
+
+use super::course::{self, Course};
+use super::drive::{Arrival, drive};
+use super::{Args, campaign, picture};
+use crate::common::{Failure, Outcome, Report, millimetres, point_in_mm};
+use crate::driving::{Conditions, Run, drawn, paced};
+
+/// Obstacles of the command's own world that the robot is not told of, unless the command line says how many.
+const UNMAPPED: u32 = 3;
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    if args.campaign {
+        return campaign(args);
+    }
+    let common = &args.common;
+    common.check_picture()?;
+    let trip = common.trip(course::scene)?;
+    common.check_turning_with_lidar(trip.spec())?;
+    let parameters = args.parameters(trip.spec().footprint)?;
+    let usual = if common.world.is_none() { UNMAPPED } else { 0 };
+    let mut stream = Stream::new(common.seed).child("unmapped", 0);
+    let course = course::changed(trip, args.unmapped.unwrap_or(usual), &mut stream)?;
+    let trip = &course.trip;
+    let conditions = Conditions::new(common, trip.generous_time_limit())?;
+    common.tell(format_args!(
+        "{} at {} mm; goal at {} mm; {} obstacles unmapped",
+        trip.spec().name,
+        in_words(trip.start().position()),
+        in_words(trip.goal),
+        course.unmapped
+    ));
+    let places = (&course.known, trip.start(), trip.goal);
+    let run = conditions.run(&trip.scene, paced(common), |robot, step| {
+        drive(robot, places, parameters, conditions.time_limit, |news| {
+            for event in news {
+                common.tell(told(event));
+            }
+            step();
+        })
+    })?;
+    let (file, trouble) = drawn(common, "navigate.svg", || picture::of(&course, &run, &conditions));
+    Ok(Report { trouble, ..report(&course, &run, conditions.time_limit, file) })
+}
+
+fn told(event: &NavigateEvent) -> String {
+    let mm = |metres: f64| units::to_mm(metres).round() + 0.0;
+    match event {
+        NavigateEvent::Planned { length, clearance } => {
+            format!("planned: {} mm, {} mm beside the robot", mm(*length), mm(*clearance))
+        }
+        NavigateEvent::Replanned { point, length } => {
+            format!("something unmapped, seen from {} mm: now {} mm are left", in_words(*point), mm(*length))
+        }
+        NavigateEvent::Blocked { point } => format!("blocked at {} mm: backing off", in_words(*point)),
+        NavigateEvent::Doubted { point } => format!("no way left at {} mm: looking again", in_words(*point)),
+        NavigateEvent::End(outcome) => verdict(*outcome).into(),
+        _ => String::new(),
+    }
+}
+
+/// An outcome in words.
+pub(super) fn verdict(outcome: NavigateOutcome) -> &'static str {
+    match outcome {
+        NavigateOutcome::Reached => "goal reached",
+        NavigateOutcome::Unreachable => "the goal cannot be reached",
+        NavigateOutcome::Stuck => "the robot does not get on",
+        NavigateOutcome::TimedOut => "the time is over",
+    }
+}
+
+fn report(course: &Course, run: &Run<Arrival>, limit: f64, file: Option<PathBuf>) -> Report {
+    let arrival = run.ending.as_ref().ok();
+    let planned = arrival.and_then(Arrival::planned);
+    let error = arrival.map(|arrival| run.truth.pose.distance_to(arrival.believed.position()));
+    let contacts: Vec<_> = run.truth.contact_places.iter().copied().map(point_in_mm).collect();
+    run.report(|arrival| match arrival.outcome {
+        NavigateOutcome::Reached => Outcome::verdict("reached"),
+        NavigateOutcome::Unreachable => Outcome::verdict("unreachable"),
+        NavigateOutcome::Stuck => Outcome::failure("stuck"),
+        NavigateOutcome::TimedOut => Outcome::failure("timed_out"),
+    })
+    .field("goal", point_in_mm(course.trip.goal))
+    .field("goal_distance_mm", millimetres(run.truth.pose.distance_to(course.trip.goal)))
+    .field("position_error_mm", error.map(millimetres))
+    .field("planned_length_mm", planned.map(|(length, _)| millimetres(length)))
+    .field("clearance_mm", planned.map(|(_, clearance)| millimetres(clearance)))
+    .field("replans", arrival.map(Arrival::replans))
+    .field("recoveries", arrival.map(Arrival::recoveries))
+    .field("unmapped", course.unmapped)
+    .field("contact_points", contacts)
+    .field("time_limit_s", limit)
+    .field("picture", file)
+}
+
+fn in_words(point: Point) -> String {
+    let [x, y] = [point.x, point.y].map(|metres| units::to_mm(metres).round() + 0.0);
+    format!("{x}, {y}")
+}

@@ -1,0 +1,157 @@
+//! The command `quadtree`.
+
+use std::path::{Path, PathBuf};
+
+use roverlab::nav::grid::{GridPath, GridPlanner, Leaf, Quadtree, QuadtreePlanner};
+use roverlab::random::Stream;
+use roverlab::world::formats::{bitmap, movingai, ros_map};
+use roverlab::world::{BitGrid, GridCell};
+use serde_json::{Value, json};
+
+use crate::common::{Failure, Outcome, PlainArgs, Report, Stopwatch};
+
+/// The command line of `quadtree`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Divides a map into free and blocked squares, and plans a path through the free ones",
+    after_help = "\
+Pictures have their first row at the top and obstacles in black; the rows of a ROS map count from the bottom. Without --map,
+the map has some discs in it; --seed says where. A map whose size is no power of two is divided as if it were part of a larger
+one; squares lie within the map.
+
+JSON fields:
+  map, width, height
+  free_leaves, blocked_leaves how many squares
+  smallest, largest           sides of the free ones, in cells; null without any
+  links                       pairs of free squares that share a part of an edge
+  list                        with --list: the free squares, as the book's program prints them
+  path                        with --from and --to: cost in cells, and points [x, y] in cells
+  timing                      with --timing: decompose_us and list_us, to divide the map and to list its free squares
+Outcomes: decomposed, and with --from and --to found or unreachable."
+)]
+pub(crate) struct Args {
+    /// Picture (.png, .pgm, .bmp), MovingAI map (.map) or ROS map (.yaml).
+    #[arg(long, value_name = "IMAGE")]
+    pub(crate) map: Option<PathBuf>,
+
+    /// List the free squares in the book's order and form: `free COLUMN ROW (SIDE)`.
+    #[arg(long)]
+    pub(crate) list: bool,
+
+    /// Do not divide squares of this side, a power of two; they count as blocked if a cell of theirs is.
+    #[arg(long, value_name = "CELLS", default_value_t = 1, allow_hyphen_values = true)]
+    pub(crate) minimum: usize,
+
+    /// Cell to plan a path from.
+    #[arg(long, value_name = "COLUMN,ROW", value_parser = cell, requires = "to", allow_hyphen_values = true)]
+    pub(crate) from: Option<GridCell>,
+
+    /// Cell to plan a path to.
+    #[arg(long, value_name = "COLUMN,ROW", value_parser = cell, requires = "from", allow_hyphen_values = true)]
+    pub(crate) to: Option<GridCell>,
+
+    #[command(flatten)]
+    pub(crate) plain: PlainArgs,
+}
+
+impl AsRef<PlainArgs> for Args {
+    fn as_ref(&self) -> &PlainArgs {
+        &self.plain
+    }
+}
+
+fn cell(text: &str) -> Result<GridCell, String> {
+    let numbers: Option<Vec<usize>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[column, row]) => Ok(GridCell::new(column, row)),
+        _ => Err("expected COLUMN,ROW: two whole numbers from 0".into()),
+    }
+}
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    let (name, grid) = match &args.map {
+        Some(map) => (map.display().to_string(), load(map)?),
+        None => (format!("discs of seed {}", args.plain.seed), own_map(args.plain.seed)),
+    };
+    let stopwatch = Stopwatch::start();
+    let tree = Quadtree::with_minimum_leaf(&grid, args.minimum)
+        .map_err(|error| Failure::input(format!("--minimum: {error}")))?;
+    let decomposed = stopwatch.seconds();
+    let free = tree.free_leaves();
+    let listed = stopwatch.seconds() - decomposed;
+    let path = match (args.from, args.to) {
+        (Some(from), Some(to)) => Some(plan(&tree, from, to)?),
+        _ => None,
+    };
+    let outcome = match &path {
+        None => "decomposed",
+        Some(None) => "unreachable",
+        Some(Some(_)) => "found",
+    };
+    let report = Report::new(Outcome::verdict(outcome))
+        .field("map", name)
+        .field("width", grid.width())
+        .field("height", grid.height())
+        .field("free_leaves", free.len())
+        .field("blocked_leaves", tree.blocked_leaves().len())
+        .field("smallest", free.iter().map(|leaf| leaf.size).min())
+        .field("largest", free.iter().map(|leaf| leaf.size).max())
+        .field("links", tree.neighbour_graph().links.len())
+        .timing("decompose_us", 1e6 * decomposed)
+        .timing("list_us", 1e6 * listed);
+    let report = match path.flatten() {
+        Some(path) => report.field("path", path_json(&path)),
+        None => report,
+    };
+    if !args.list {
+        return Ok(report);
+    }
+    let list: Vec<String> = free.iter().map(line).collect();
+    Ok(Report { words: Some(list.join("\n")), ..report.field("list", list) })
+}
+
+/// A path, or none if there is no way.
+fn plan(tree: &Quadtree, from: GridCell, to: GridCell) -> Result<Option<GridPath>, Failure> {
+    use roverlab::nav::grid::PlanError;
+    match QuadtreePlanner::new(tree).plan(from, to) {
+        Ok(path) => Ok(Some(path)),
+        Err(PlanError::Unreachable { .. }) => Ok(None),
+        Err(error) => Err(Failure::input(format!("--from, --to: {error}"))),
+    }
+}
+
+fn path_json(path: &GridPath) -> Value {
+    let points: Vec<[f64; 2]> = path.points.iter().map(|point| [point.x, point.y]).collect();
+    json!({ "cost": path.cost, "points": points })
+}
+
+fn line(leaf: &Leaf) -> String {
+    format!("free {} {} ({})", leaf.column, leaf.row, leaf.size)
+}
+
+fn load(path: &Path) -> Result<BitGrid, Failure> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("").to_ascii_lowercase();
+    match ending.as_str() {
+        "map" => movingai::load_map(path).map(|map| map.value.grid()),
+        "yaml" | "yml" => ros_map::load(path).map(|map| BitGrid::from_occupancy(&map.value.grid)),
+        _ => bitmap::load(path).map(|grid| grid.value),
+    }
+    .map_err(Failure::input)
+}
+
+/// Some discs on a square.
+fn own_map(seed: u64) -> BitGrid {
+    let mut stream = Stream::new(seed).child("discs", 0);
+    let size = 128;
+    let discs: Vec<[f64; 3]> = (0..6)
+        .map(|_| [stream.between(0.0, 128.0), stream.between(0.0, 128.0), stream.between(6.0, 20.0)])
+        .collect();
+    let free = |column: usize, row: usize| {
+        let middle = GridCell::new(column, row).centre();
+        discs
+            .iter()
+            .all(|[x, y, r]| (middle.x - x) * (middle.x - x) + (middle.y - y) * (middle.y - y) > r * r)
+    };
+    BitGrid::from_fn(size, size, free).expect("a map of moderate size")
+}

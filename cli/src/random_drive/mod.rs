@@ -1,0 +1,255 @@
+//! The command `random-drive`.
+
+use std::cell::Cell;
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use roverlab::drive::{CoverageMap, CoverageParameters, RandomDrive, RandomDriveParameters};
+use roverlab::geometry::{Point, Pose, units};
+use roverlab::io::sim::SimOptions;
+use roverlab::io::{LidarScan, RobotIo};
+use roverlab::picture::{Mark, Picture, Style};
+use roverlab::random::Stream;
+use roverlab::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
+
+use crate::common::{CommonArgs, Failure, FreeFloor, Outcome, Report, rounded};
+use crate::driving::{Conditions, counted, drawn, paced};
+
+/// The command line of `random-drive`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Drives straight on, turns by a random angle where something is ahead, and so on; one robot or several",
+    after_help = "\
+Without --world, the robots drive in a room with two crates and a can. With a .sim, all of its robots drive. If these
+are fewer than --robots, more stand at places that --seed chooses. --fault is for one robot alone.
+
+JSON fields:
+  robots                      how many drive
+  turns                       how often they have turned, all together
+  coverage_percent            share of the floor that the robots' bodies have passed over, of what the first one could reach
+                              15 mm away from everything
+  time_limit_s, picture
+Collisions are those of all robots; pose, odometry and path length are the first one's.
+Outcomes: driven, collided, failed."
+)]
+pub(crate) struct Args {
+    /// How many robots drive [default: those of the world, or 1].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=6), allow_hyphen_values = true)]
+    pub(crate) robots: Option<u8>,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// Simulated seconds of a run.
+const SECONDS: f64 = 120.0;
+/// Places around which room for one more robot is looked for.
+const PLACES_TRIED: u32 = 50;
+/// Seconds between points of the paths of several robots.
+const STEP: f64 = 0.1;
+
+/// What became of the robots.
+struct Outing {
+    paths: Vec<Vec<Pose>>,
+    turns: u32,
+    contacts: u64,
+    contact_places: Vec<Point>,
+    report: Report,
+}
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    let common = &args.common;
+    common.check_picture()?;
+    let own = || scene(usize::from(args.robots.unwrap_or(1)));
+    let mut scene = common.placed_without_goal("the robots have none", own)?;
+    if let Some(robots) = args.robots {
+        add_robots(&mut scene, usize::from(robots), common.seed)?;
+    }
+    let seconds = common.time_limit.unwrap_or(SECONDS);
+    let outing = if scene.robots.len() == 1 {
+        alone(args, &scene, seconds)?
+    } else {
+        together(args, &scene, seconds)?
+    };
+    let share = covered(&scene, &outing.paths);
+    let (file, trouble) = drawn(common, "random_drive.svg", || picture(args, &scene, &outing, share));
+    let Outing { report, turns, contacts, paths, .. } = outing;
+    Ok(Report { collisions: Some(contacts), trouble, ..report }
+        .field("robots", paths.len())
+        .field("turns", turns)
+        .field("coverage_percent", share.map(|share| rounded(100.0 * share)))
+        .field("time_limit_s", seconds)
+        .field("picture", file))
+}
+
+/// A room with two crates and a can, and robots in it, larger and smaller ones, as in the book.
+fn scene(robots: usize) -> Scene {
+    let mut world = World::walled(3.0, 2.4);
+    for (name, x, y) in [("crate", 1.1, 0.7), ("crate", 2.2, 1.7), ("can", 1.6, 1.5)] {
+        let kind = ObjectKind::predefined(name).map(|kind| Arc::new(ObjectKind { fixed: true, ..kind }));
+        world.objects.extend(kind.map(|kind| Object::new(kind, Pose::new(x, y, 0.4))));
+    }
+    let mut scene = Scene::new(world);
+    let places = [
+        (0.4, 0.4, 0.0),
+        (0.7, 1.2, 45.0),
+        (2.5, 0.5, 90.0),
+        (0.5, 2.0, 0.0),
+        (2.6, 2.1, 180.0),
+        (1.8, 0.4, 0.0),
+    ];
+    for (number, (x, y, heading)) in places.into_iter().take(robots).enumerate() {
+        let spec = if number % 2 == 1 { RobotSpec::labbot() } else { RobotSpec::s4() };
+        let pose = Pose::new(x, y, units::from_deg(heading));
+        scene.robots.push(RobotPlacement::new(Arc::new(spec), pose));
+    }
+    scene
+}
+
+/// Puts more robots like the first one anywhere into a scene, until it has so many.
+fn add_robots(scene: &mut Scene, robots: usize, seed: u64) -> Result<(), Failure> {
+    let found = scene.robots.len();
+    if found > robots {
+        return Err(Failure::input(format!(
+            "--robots {robots}: found {found} robots in the world; expected at least as many"
+        )));
+    }
+    let (spec, floor) = (Arc::clone(&scene.robots[0].spec), scene.world.bounds());
+    let free = FreeFloor::new(scene, &spec);
+    let mut stream = Stream::new(seed).child("places", 0);
+    for _ in found..robots {
+        let mut anywhere = || {
+            let x = stream.between(floor.min.x, floor.max.x);
+            let y = stream.between(floor.min.y, floor.max.y);
+            Pose::new(x, y, stream.between(-PI, PI))
+        };
+        let place =
+            (0..PLACES_TRIED).find_map(|_| free.place(scene, &spec, anywhere())).ok_or_else(|| {
+                let more = robots - scene.robots.len();
+                Failure::input(format!(
+                    "--robots {robots}: found no room for {more} more; expected fewer robots"
+                ))
+            })?;
+        scene.robots.push(RobotPlacement::new(Arc::clone(&spec), place));
+    }
+    Ok(())
+}
+
+fn behaviour(scene: &Scene, robot: usize, seed: u64) -> Result<RandomDrive, Failure> {
+    let radius = scene.robots[robot].spec.footprint.bounding_radius();
+    let parameters = RandomDriveParameters { radius, ..RandomDriveParameters::default() };
+    let stream = Stream::new(seed).child("random drive", robot as u64);
+    RandomDrive::new(parameters, stream).map_err(Failure::input)
+}
+
+/// One robot.
+fn alone(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
+    let conditions = Conditions::new(&args.common, seconds)?;
+    let mut drive = behaviour(scene, 0, args.common.seed)?;
+    let run = conditions.run(scene, paced(&args.common), |robot, step| {
+        drive.run(robot, seconds, |_| step())?;
+        Ok(drive.turns())
+    })?;
+    Ok(Outing {
+        turns: run.ending.as_ref().copied().unwrap_or(0),
+        contacts: run.truth.contacts.into(),
+        contact_places: run.truth.contact_places.clone(),
+        report: run.report(|_| Outcome::verdict("driven")),
+        paths: vec![run.true_path],
+    })
+}
+
+/// Several robots in one thread.
+fn together(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
+    let common = &args.common;
+    if !common.fault.is_empty() {
+        return Err(Failure::input("--fault: found it for several robots; expected it for one robot alone"));
+    }
+    let options = SimOptions::with_noise(common.noise, common.seed);
+    let turns: Vec<Rc<Cell<u32>>> = scene.robots.iter().map(|_| Rc::default()).collect();
+    let mut fleet = common.troop(scene, options)?;
+    for (robot, turns) in turns.iter().cloned().enumerate() {
+        let mut drive = behaviour(scene, robot, common.seed)?;
+        let (mut scan, mut points) = (LidarScan::default(), Vec::new());
+        let period = RandomDriveParameters::default().period;
+        let step = move |robot: &mut dyn RobotIo| {
+            RandomDrive::look(robot, &mut scan, &mut points)?;
+            let twist = drive.step(robot.pose()?, &points)?;
+            robot.set_speed(twist)?;
+            turns.set(drive.turns());
+            Ok(ControlFlow::Continue(()))
+        };
+        fleet.control(robot, period, Box::new(step))?;
+    }
+    let mut paths: Vec<Vec<Pose>> = scene.robots.iter().map(|robot| vec![robot.pose]).collect();
+    let mut pace = paced(common);
+    while fleet.time()? + 0.5 * STEP < seconds {
+        fleet.run_for(STEP)?;
+        for (robot, path) in paths.iter_mut().enumerate() {
+            path.push(fleet.pose(robot)?);
+        }
+        pace(fleet.time()?);
+    }
+    let first = fleet.truth(0)?;
+    let (mut contacts, mut contact_places) = (0, Vec::new());
+    for robot in 0..scene.robots.len() {
+        let truth = fleet.truth(robot)?;
+        contacts += u64::from(truth.contacts);
+        contact_places.extend(truth.contact_places);
+    }
+    let report = Report {
+        sim_time: Some(fleet.time()?),
+        path_length: Some(first.path_length),
+        pose: Some(first.pose),
+        odometry: Some(scene.robots[0].pose.compose(&first.odometry)),
+        ..Report::new(Outcome::verdict("driven"))
+    };
+    Ok(Outing { turns: turns.iter().map(|turns| turns.get()).sum(), contacts, contact_places, report, paths })
+}
+
+/// The share of the floor that the robots have passed over.
+fn covered(scene: &Scene, paths: &[Vec<Pose>]) -> Option<f64> {
+    let radius = scene.robots[0].spec.footprint.bounding_radius();
+    let parameters = CoverageParameters { radius, ..CoverageParameters::default() };
+    let mut map = CoverageMap::new(&scene.world, scene.robots[0].pose.position(), parameters).ok()?;
+    paths.iter().flatten().for_each(|pose| map.cover(pose.position()));
+    Some(map.share())
+}
+
+/// The ways of all robots.
+fn picture(args: &Args, scene: &Scene, outing: &Outing, share: Option<f64>) -> Picture {
+    let mut picture = Picture::new(&scene.world);
+    let ending = if outing.contacts > 0 { "collided" } else { "no contact" };
+    picture.title(format!("Random drive: {}, {ending}", counted(outing.paths.len(), "robot")));
+    let share = share.map_or("-".into(), |share| format!("{:.0} %", 100.0 * share));
+    picture.caption(format!(
+        "{share} of the floor, {} turns, noise {}, seed {}",
+        outing.turns, args.common.noise, args.common.seed
+    ));
+    for (number, path) in outing.paths.iter().enumerate() {
+        let points = path.iter().map(Pose::position);
+        match number {
+            0 => picture.true_path(points),
+            _ => picture.line(points, Style::plan().labelled("other robots")),
+        };
+    }
+    for (robot, path) in scene.robots.iter().zip(&outing.paths) {
+        picture.mark(Mark::Start, robot.pose.position());
+        if let Some(&pose) = path.last() {
+            picture.robot(pose, &robot.spec.footprint);
+        }
+    }
+    for &place in &outing.contact_places {
+        picture.mark(Mark::Contact, place);
+    }
+    picture
+}

@@ -1,0 +1,58 @@
+use std::path::PathBuf;
+
+use crate::common::parse_picture;
+
+/// The command line of `replay`.
+#[derive(Debug, clap::Parser)]
+#[command(
+    about = "Replays recordings, shows what is in them, saves what is left of damaged ones",
+    after_help = "\
+JSON fields: example, command, outcome;
+  check     program, difference: null, or {robot, time_s, found, expected}
+  recover   chunks, messages, header (whether it is saved), lost_bytes
+  info      program, version, schema, seed, options, robots, start_s, end_s, bytes, chunks, topics, attachments,
+            attachments_hash, attachments_lost (whether some are), compression
+  export    rows, csv, picture
+Outcomes: same, different, recovered, read, exported. The exit status is 1 for `different`."
+)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+
+    /// Print exactly one JSON object on standard output, and nothing else there.
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+}
+
+/// What to do.
+#[derive(Debug, Clone, clap::Subcommand)]
+pub(crate) enum Command {
+    /// Runs the program that a recording names on what it recorded, and compares the new recording byte for byte.
+    Check {
+        /// The recording.
+        file: PathBuf,
+    },
+    /// Gives back every complete chunk of a recording that was cut off or damaged.
+    Recover {
+        /// The damaged recording.
+        file: PathBuf,
+        /// The file to write.
+        out: PathBuf,
+    },
+    /// Shows what a recording holds.
+    Info {
+        /// The recording.
+        file: PathBuf,
+    },
+    /// Writes a recording's calls as a table, and its paths as a picture.
+    Export {
+        /// The recording.
+        file: PathBuf,
+        /// The table to write.
+        #[arg(long, value_name = "FILE.csv", required_unless_present = "picture")]
+        csv: Option<PathBuf>,
+        /// The picture to draw: .svg or .png.
+        #[arg(long, value_name = "FILE", value_parser = parse_picture)]
+        picture: Option<PathBuf>,
+    },
+}

@@ -1,0 +1,67 @@
+//! The command `replay`.
+
+mod args;
+mod check;
+mod export;
+mod info;
+
+use std::fs;
+use std::path::Path;
+
+use roverlab::io::log::{Log, recover};
+use serde_json::{Value, json};
+
+use crate::common::{Failure, Printed};
+pub(crate) use args::{Args, Command};
+
+/// What a command found out: its report, and whether it is good.
+struct Found {
+    fields: Value,
+    text: String,
+    good: bool,
+}
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Printed, Failure> {
+    let found = match &args.command {
+        Command::Check { file } => check::check(file),
+        Command::Recover { file, out } => recovered(file, out),
+        Command::Info { file } => info::info(&read(file)?),
+        Command::Export { file, csv, picture } => {
+            export::export(&read(file)?, csv.as_deref(), picture.as_deref())
+        }
+    }?;
+    let text = if args.json { found.fields.to_string() } else { found.text };
+    Ok(Printed { text, message: None, status: u8::from(!found.good) })
+}
+
+fn bytes(file: &Path) -> Result<Vec<u8>, Failure> {
+    fs::read(file)
+        .map_err(|error| Failure::input(format!("{}: {error}; expected a recording", file.display())))
+}
+
+fn read(file: &Path) -> Result<Log, Failure> {
+    Log::read(bytes(file)?).map_err(|error| Failure::input(format!("{}: {error}", file.display())))
+}
+
+fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let refused =
+        |error| Failure::run(format!("{}: {error}; expected a file that can be written", file.display()));
+    fs::write(file, bytes).map_err(refused)
+}
+
+fn recovered(file: &Path, out: &Path) -> Result<Found, Failure> {
+    let saved =
+        recover(&bytes(file)?).map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
+    write(out, &saved.bytes)?;
+    let (chunks, messages, header, lost) = (saved.chunks, saved.messages, saved.header, saved.lost);
+    let without = if header { "" } else { "; the header is lost, so they cannot be replayed" };
+    Ok(Found {
+        fields: json!({
+            "example": "replay", "command": "recover", "outcome": "recovered",
+            "chunks": chunks, "messages": messages, "header": header, "lost_bytes": lost,
+        }),
+        text: format!("recovered {chunks} chunks with {messages} messages; {lost} bytes are lost{without}"),
+        good: true,
+    })
+}

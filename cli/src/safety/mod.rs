@@ -1,0 +1,130 @@
+//! The command `safety`.
+
+mod base;
+mod crew;
+mod drive;
+
+use std::path::PathBuf;
+
+use roverlab::picture::{Picture, Style};
+use roverlab::world::Colour;
+
+use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
+use crate::cones::{Course, colour};
+use crew::Event;
+use drive::{Driven, Stopped};
+
+/// The command line of `safety`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "A racing car under its safety system: it is armed and started, something happens, it stands, and is set going again",
+    after_help = "\
+The car drives between cones at up to 6 m/s. Whatever happens, it has to stand within the distance that is proved for its
+model, and it stands until somebody arms it again. A car that nobody talks to for 0.3 s stops by itself. What happens has to be
+answered within one control period of when it can be noticed. Faults of `--fault` come on top; while a sensor fails, nobody
+vouches for it, and the car is not armed again.
+
+JSON fields:
+  stops               of each: event, state, causes, time_s, reaction_ms after the event, speed_m_s, distance_m, bound_m
+  takeovers           the same of each time that the driver got the car, up to reaction_ms
+  states              [seconds, state] of every change
+  picture
+Outcomes: stood (every stop within its bound), overran, late (something was not answered in time), timed_out."
+)]
+pub(crate) struct Args {
+    /// Track to drive on [default: one of our own].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) track: Option<PathBuf>,
+
+    /// What happens, one after the other [default: everything]. May be repeated.
+    #[arg(long, value_enum)]
+    pub(crate) event: Vec<Event>,
+
+    /// Metres from the start that the car must not leave, in both directions of both axes.
+    #[arg(long, value_name = "M")]
+    pub(crate) fence: Option<f64>,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    let common = &args.common;
+    common.check_picture()?;
+    if common.supervised {
+        return Err(Failure::input(
+            "--supervised: here the car always is; expected a command line without it",
+        ));
+    }
+    if args.fence.is_some_and(|fence| !(fence > 0.0 && fence <= 1e4)) {
+        return Err(Failure::input("--fence: expected more than 0, at most 10000 m"));
+    }
+    let course = match &args.track {
+        Some(path) => Course::from_file(common, path)?,
+        None => Course::generated(common.seed)?,
+    };
+    let stage = common.stage_race(&course.scene(), || drive::world(&course, common))?.with_deadman();
+    let driven = drive::drive(&course, args, &stage)?;
+    for stop in &driven.stops {
+        common.tell(stop);
+    }
+    for takeover in &driven.takeovers {
+        common.tell(takeover);
+    }
+    let file = common.picture_file("safety.svg");
+    let saved = file.as_ref().map(|file| picture(&course, &driven).save(file)).transpose();
+    let trouble = saved.err().map(|error| error.to_string());
+    Ok(Report { trouble, ..report(&course, &driven).field("picture", file) })
+}
+
+fn report(course: &Course, driven: &Driven) -> Report {
+    let word = if driven.stops.iter().any(|stop| !stop.is_within()) {
+        Outcome::failure("overran")
+    } else if !driven.prompt {
+        Outcome::failure("late")
+    } else if driven.done {
+        Outcome::verdict("stood")
+    } else {
+        Outcome::failure("timed_out")
+    };
+    let states: Vec<(f64, String)> =
+        driven.states.iter().map(|(time, state)| (rounded(*time), format!("{state:?}"))).collect();
+    let truth = driven.judge.truth();
+    let report = Report::new(word)
+        .field("stops", driven.stops.iter().map(Stopped::told).collect::<Vec<_>>())
+        .field("takeovers", driven.takeovers.iter().map(drive::told).collect::<Vec<_>>())
+        .field("states", states);
+    Report {
+        sim_time: Some(driven.judge.time()),
+        collisions: Some(truth.contacts.into()),
+        path_length: Some(truth.path_length),
+        pose: Some(truth.pose),
+        odometry: Some(course.start.compose(&truth.odometry)),
+        ..report
+    }
+}
+
+/// The way, coloured by speed, and where the car stood.
+fn picture(course: &Course, driven: &Driven) -> Picture {
+    let mut picture = Picture::new(&course.ground());
+    picture.title("Stops under the safety system");
+    for cone in &course.cones {
+        picture.disc(cone.position, 0.3, Style::aid().colour(colour(cone.colour)).filled(1.0));
+    }
+    picture.speed_path(driven.judge.trail().iter().map(|(pose, speed)| (pose.position(), *speed)));
+    for stop in &driven.stops {
+        let [from, to] = stop.places().map(|pose| pose.position());
+        picture.disc(from, 0.5, Style::new(Colour::RED).filled(1.0).labelled("a stop begins"));
+        picture.disc(to, 0.5, Style::new(Colour::GREEN).filled(1.0).labelled("it stands"));
+    }
+    let worst = driven.stops.iter().map(Stopped::share).fold(0.0, f64::max);
+    picture.caption(format!("{} stops, {:.0} % of the bound at worst", driven.stops.len(), 100.0 * worst));
+    picture
+}

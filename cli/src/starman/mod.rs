@@ -1,0 +1,95 @@
+//! The command `starman`.
+
+mod compare;
+mod evolution;
+mod moving;
+mod options;
+mod steps;
+mod strip;
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use roverlab::evolve::{GenerationStatistics, chart, serve, table};
+use roverlab::geometry::units;
+
+use crate::common::{Failure, Outcome, Report, is_same_file, rounded};
+pub(crate) use options::Args;
+use options::Figure;
+
+/// The word that makes this program evaluate what another one sends it.
+const WORKER: &str = "--evaluate-for-another";
+
+/// Evaluates gaits that come on standard input, if the command line says so. Returns the exit status.
+pub(crate) fn work_for_another(words: &[OsString]) -> Option<u8> {
+    let words: Vec<&str> = words.iter().skip(1).map(|word| word.to_str()).collect::<Option<_>>()?;
+    let [WORKER, seconds, leading, figure] = words.as_slice() else { return None };
+    let (seconds, leading) = seconds.parse().ok().zip(leading.parse().ok())?;
+    let figure = Figure::from_str(figure, true).ok()?;
+    let trials = evolution::Trials { figure, seconds, leading, ..evolution::Trials::default() };
+    let ended =
+        serve(std::io::stdin().lock(), std::io::stdout().lock(), |bytes: &Vec<u8>, _| trials.fitness(bytes));
+    Some(u8::from(ended.is_err()))
+}
+
+/// The work of the command.
+pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    args.check()?;
+    if args.steps {
+        return steps::work(args);
+    }
+    match args.compare {
+        Some(seeds) => compare::work(args, seeds),
+        None => walk(args),
+    }
+}
+
+/// Evolves a gait and shows it.
+fn walk(args: &Args) -> Result<Report, Failure> {
+    let evolved = evolution::evolve(args)?;
+    let way = evolution::walk(args, &evolved.best)?;
+    let walk = strip::Walk::of(&args.trials(), &evolved.best)?;
+    args.common.tell(format_args!("the best gait goes {:.0} mm", units::to_mm(way)));
+    let (picture, trouble) = draw(args, &walk);
+    let trouble = trouble.or(keep_statistics(args, &evolved.history).err());
+    let report = Report::new(Outcome::verdict("evolved"))
+        .field("generations", evolved.generations)
+        .field("evaluations", evolved.evaluations)
+        .timing("evaluations_per_s", evolved.rate)
+        .timing("real_time_factor", evolved.rate * args.seconds)
+        .field("best_first", rounded(evolved.best_first))
+        .field("best_last", rounded(evolved.best_last))
+        .field("ratio", rounded(evolved.best_last / evolved.best_first))
+        .field("population_hash", format!("{:016x}", evolved.hash))
+        .field("best_gait", &evolved.best)
+        .field("way_mm", rounded(units::to_mm(way)))
+        .field("threads", evolved.threads)
+        .field("picture", picture.map(|file| file.display().to_string()));
+    Ok(Report { sim_time: Some(args.seconds * evolved.evaluations as f64), trouble, ..report })
+}
+
+/// Writes the statistics of all generations where the option says.
+fn keep_statistics(args: &Args, history: &[GenerationStatistics]) -> Result<(), String> {
+    let Some(file) = &args.statistics else { return Ok(()) };
+    let told = |error: &dyn std::fmt::Display| format!("--statistics {}: {error}", file.display());
+    if file.extension().is_some_and(|ending| ending == "csv") {
+        std::fs::write(file, table(history)).map_err(|error| told(&error))
+    } else {
+        chart(history).save(file).map_err(|error| told(&error))
+    }
+}
+
+/// Draws a walk where the options say. Returns the file of the strip, and what went wrong.
+fn draw(args: &Args, walk: &strip::Walk) -> (Option<PathBuf>, Option<String>) {
+    let moving = |file: &PathBuf| args.animation.as_ref().is_some_and(|other| is_same_file(other, file));
+    let strip = args.common.picture_file("starman.svg").filter(|file| !moving(file));
+    let drawn = strip.as_ref().map(|file| strip::picture(args, walk).save(file)).transpose();
+    let moved = args.animation.as_ref().map(|file| moving::save(file, walk)).transpose();
+    if let Some(file) = &strip {
+        args.common.tell(format_args!("its picture: {}", file.display()));
+    }
+    let unmoved = |error| format!("--animation: {error}");
+    let trouble = drawn.err().map(|error| error.to_string()).or(moved.err().map(unmoved));
+    (strip, trouble)
+}

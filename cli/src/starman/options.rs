@@ -1,0 +1,241 @@
+use std::path::PathBuf;
+
+use roverlab::evolve::{Gait, OnePoint, Recipe, Selection, Uniform};
+
+use super::evolution::Trials;
+use crate::common::{CommonArgs, Failure, check_writable, parse_seconds};
+
+/// The longest trial, in seconds.
+const LONGEST: f64 = 3600.0;
+
+/// The command line of `starman`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "A round robot with five limbs learns to walk by a genetic algorithm",
+    after_help = "\
+Fitness is 1 plus the millimetres that a gait brings the robot along the floor. The best gait's walk is drawn into
+target/pictures/starman.svg, except with --json.
+
+Fitness counts from where the robot has come to rest at its gait's first control point. --statistics keeps a row of numbers
+or a chart of each generation.
+
+JSON fields:
+  generations, evaluations       made by this run, a checkpoint's included
+  timing                         with --timing: evaluations_per_s by this process, real_time_factor
+  best_first, best_last, ratio   greatest fitness of the first and of all generations
+  population_hash                tells final populations apart
+  best_gait                      its bytes, five for each control point
+  way_mm                         where the best gait's walk ends along the floor, which --record records
+  threads, picture               the file of the strip, if there is one
+With --compare, `rows`: seed, best_first, best_last, ratio, random (the best of as many random gaits), and how often
+evolution was better. With --steps, `rows`: time step, and of the gaits that go more than 5 mm their number and the median
+change of the way when the step is halved.
+Outcomes: evolved, compared, failed."
+)]
+pub(crate) struct Args {
+    /// Individuals in a generation.
+    #[arg(long, value_name = "P", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) population: u32,
+
+    /// Generations.
+    #[arg(long, value_name = "G", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) generations: u32,
+
+    /// Simulated seconds of a trial, of which the first two are for coming to rest.
+    #[arg(long, value_name = "S", default_value = "10", value_parser = parse_seconds, allow_hyphen_values = true)]
+    pub(crate) seconds: f64,
+
+    /// Threads to evaluate in; 0: one for each processor.
+    #[arg(long, value_name = "T", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=512))]
+    pub(crate) threads: u16,
+
+    /// Evaluate in so many processes instead.
+    #[arg(long, value_name = "N", conflicts_with = "threads", value_parser = clap::value_parser!(u16).range(1..=512))]
+    pub(crate) processes: Option<u16>,
+
+    /// The robot: the book's, or the figure in the plane that it came from.
+    #[arg(long, value_enum, default_value = "book")]
+    pub(crate) figure: Figure,
+
+    /// The first generation: near the servos' middle as in the book, or all bytes alike.
+    #[arg(long, value_enum, default_value = "neutral")]
+    pub(crate) init: Init,
+
+    /// How parents are chosen; the book spins the wheel.
+    #[arg(long, value_enum, default_value = "tournament")]
+    pub(crate) selection: Choice,
+
+    /// How two parents become two children; the book cuts at one point.
+    #[arg(long, value_enum, default_value = "uniform")]
+    pub(crate) crossover: Cross,
+
+    /// Bits flipped in a generation [default: three times as many as individuals].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=10_000_000))]
+    pub(crate) mutations: Option<u32>,
+
+    /// Control points of the sequence that leads into the cycle of ten.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=100))]
+    pub(crate) leading: u8,
+
+    /// Keep the run in a file after every generation, and go on from there if there is one.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) checkpoint: Option<PathBuf>,
+
+    /// Write the walk as an SVG that moves.
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) animation: Option<PathBuf>,
+
+    /// Write the statistics of all generations, as a table (.csv) or drawn (.svg or .png).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) statistics: Option<PathBuf>,
+
+    /// Compare with random search, for so many seeds and both ways to begin.
+    #[arg(
+        long,
+        value_name = "SEEDS",
+        conflicts_with_all = ["steps", "init", "checkpoint", "animation", "statistics", "picture", "processes", "record", "replay"],
+        value_parser = clap::value_parser!(u32).range(1..=10_000)
+    )]
+    pub(crate) compare: Option<u32>,
+
+    /// Print how much the way of so many gaits as --population says changes when the time step is halved.
+    #[arg(
+        long,
+        conflicts_with_all = ["leading", "checkpoint", "animation", "statistics", "picture", "processes", "record", "replay"]
+    )]
+    pub(crate) steps: bool,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// How the first generation is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Init {
+    /// Small random steps from the servos' middle.
+    Neutral,
+    /// Any byte with the same chance.
+    Uniform,
+}
+
+/// What learns to walk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Figure {
+    /// The book's robot with servos of 30 degrees a second.
+    Book,
+    /// Longer limbs that snap to their angles.
+    Planar,
+}
+
+/// How parents are chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Choice {
+    /// The fittest of three drawn at random.
+    Tournament,
+    /// In proportion to fitness.
+    Wheel,
+    /// By rank alone.
+    Rank,
+}
+
+/// How two parents become two children.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Cross {
+    /// Each byte of either parent.
+    Uniform,
+    /// What is behind a cut is swapped.
+    OnePoint,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+impl Args {
+    pub(crate) fn trials(&self) -> Trials {
+        let (figure, seconds, leading) = (self.figure, self.seconds, self.leading.into());
+        Trials { figure, seconds, leading, ..Trials::default() }
+    }
+
+    /// What affects the run, for checkpoints.
+    pub(crate) fn settings(&self) -> String {
+        let Self { population, seconds, leading, figure, init, selection, crossover, .. } = self;
+        let (mutations, seed) = (self.mutation_count(), self.common.seed);
+        format!(
+            "population {population}, {seconds} s, {figure:?} figure, {leading} leading points, {init:?} start, {selection:?} selection, \
+             {crossover:?} crossover, {mutations} mutations, seed {seed}"
+        )
+    }
+
+    /// How a generation comes from the one before.
+    pub(crate) fn recipe(&self) -> Recipe<Vec<u8>> {
+        Recipe {
+            selection: match self.selection {
+                Choice::Tournament => Selection::Tournament { size: 3 },
+                Choice::Wheel => Selection::Wheel,
+                Choice::Rank => Selection::Rank { pressure: 1.8 },
+            },
+            crossover: match self.crossover {
+                Cross::Uniform => Box::new(Uniform { probability: 0.5 }),
+                Cross::OnePoint => Box::new(OnePoint),
+            },
+            ..Recipe::book(self.mutation_count())
+        }
+    }
+
+    fn mutation_count(&self) -> usize {
+        self.mutations.unwrap_or(3 * self.population) as usize
+    }
+
+    /// Fails when an option has no meaning here.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        self.common.check_picture()?;
+        self.check_seconds()?;
+        self.check_files()?;
+        let given = [
+            ("--world", self.common.world.is_some()),
+            ("--robot", self.common.robot.is_some()),
+            ("--start", self.common.start.is_some()),
+            ("--goal", self.common.goal.is_some()),
+            ("--fault", !self.common.fault.is_empty()),
+        ];
+        match given.iter().find(|(_, given)| *given) {
+            Some((option, _)) => Err(Failure::input(format!(
+                "{option}: has no meaning for evolution; expected a command line without it"
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    fn check_seconds(&self) -> Result<(), Failure> {
+        if self.seconds > Gait::SETTLING && self.seconds <= LONGEST {
+            return Ok(());
+        }
+        let found = self.seconds;
+        let least = Gait::SETTLING;
+        Err(Failure::input(format!(
+            "--seconds {found}: expected more than the {least} s to come to rest, at most {LONGEST}"
+        )))
+    }
+
+    /// Fails when what a run shall leave behind cannot be written, before it is in vain.
+    fn check_files(&self) -> Result<(), Failure> {
+        let forms = [
+            ("--checkpoint", &self.checkpoint, &[][..]),
+            ("--animation", &self.animation, &["svg"]),
+            ("--statistics", &self.statistics, &["csv", "svg", "png"]),
+        ];
+        for (option, file, endings) in forms {
+            let Some(file) = file else { continue };
+            check_writable(option, file)?;
+            let ending = file.extension().unwrap_or_default();
+            if !endings.is_empty() && endings.iter().all(|known| ending != *known) {
+                let (file, expected) = (file.display(), endings.join(", ."));
+                return Err(Failure::input(format!("{option} {file}: expected the ending .{expected}")));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,169 @@
+//! The commands `genetic` and `starman` as wholes.
+
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+use super::support::{number, run};
+use crate::starman;
+use serde_json::Value;
+
+#[test]
+fn all_methods_find_the_same_spline() {
+    let scales = ["genetic", "steady-state", "cma-es"].map(|method| {
+        let options = ["--method", method, "--generations", "60"];
+        let (status, report, err) = run("genetic", &options);
+        assert_eq!((status, err.as_str()), (0, ""), "{report}");
+        report["scale"].as_f64().unwrap()
+    });
+    assert!(scales.iter().all(|scale| (scale - scales[0]).abs() < 0.02), "{scales:?}");
+}
+
+#[test]
+fn gains_of_a_wall_follower_get_better() {
+    let options = ["--task", "wall", "--generations", "3", "--noise", "1"];
+    let (status, report, err) = run("genetic", &options);
+    assert_eq!((status, err.as_str()), (0, ""), "{report}");
+    assert!(report["fitness"].as_f64().unwrap() > -0.02, "{report}");
+}
+
+#[test]
+fn options_without_a_meaning_are_refused() {
+    let (status, _, err) = run("genetic", &["--world", "a.wld"]);
+    let expected = "--world: has no meaning for evolution; expected a command line without it\n";
+    assert_eq!((status, err.as_str()), (2, expected));
+}
+
+const SMALL: [&str; 6] = ["--population", "8", "--generations", "6", "--seconds", "4"];
+
+fn folder(name: &str) -> PathBuf {
+    let folder = env::temp_dir().join(format!("roverlab-starman-{name}-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn evolved(folder: &Path, options: &[&str]) -> Value {
+    let picture = folder.join("starman.svg");
+    let options = [&SMALL[..], &["--picture", picture.to_str().unwrap()], options].concat();
+    let (status, report, err) = run("starman", &options);
+    assert_eq!((status, err.as_str()), (0, ""), "{report}");
+    report
+}
+
+#[test]
+fn threads_do_not_change_the_population() {
+    let folder = folder("threads");
+    let hashes =
+        ["1", "2", "8"].map(|threads| evolved(&folder, &["--threads", threads])["population_hash"].clone());
+    assert!(hashes.iter().all(|hash| *hash == hashes[0] && hash.is_string()), "{hashes:?}");
+    assert_ne!(evolved(&folder, &["--seed", "2"])["population_hash"], hashes[0]);
+    assert!(fs::read_to_string(folder.join("starman.svg")).unwrap().starts_with("<svg"));
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn the_best_gait_gets_better_and_moves_in_its_picture() {
+    let folder = folder("better");
+    let animation = folder.join("walk.svg");
+    let report = evolved(&folder, &["--init", "uniform", "--animation", animation.to_str().unwrap()]);
+    let number = |name: &str| number(&report, name);
+    assert!(number("best_last") >= number("best_first") && number("best_first") > 1.0, "{report}");
+    assert_eq!(number("evaluations"), 48.0);
+    let moving = fs::read_to_string(animation).unwrap();
+    assert_eq!(moving.matches("<line").count(), 6, "a floor and five limbs");
+    assert!(moving.contains("<animate"));
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn only_a_program_that_is_told_so_works_for_another() {
+    assert!(starman::work_for_another(&["roverlab".into(), "starman".into()]).is_none());
+}
+
+/// An evolution that keeps what it has come to.
+fn resumable(folder: &Path) -> Value {
+    let checkpoint = folder.join("run.json");
+    let options = ["--leading", "2", "--threads", "1"];
+    evolved(folder, &[&options[..], &["--checkpoint", checkpoint.to_str().unwrap()]].concat())
+}
+
+#[test]
+fn what_shapes_a_run_changes_the_population() {
+    let folder = folder("recipes");
+    let hash = |options: &[&str]| evolved(&folder, options)["population_hash"].clone();
+    let usual = hash(&["--threads", "1"]);
+    for other in
+        [["--selection", "wheel"], ["--crossover", "one-point"], ["--figure", "planar"], ["--mutations", "2"]]
+    {
+        assert_ne!(hash(&other), usual, "{other:?}");
+    }
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn statistics_are_kept_as_rows_and_as_a_picture() {
+    let folder = folder("statistics");
+    let file = |name: &str| folder.join(name).display().to_string();
+    evolved(&folder, &["--statistics", &file("rows.csv")]);
+    let rows = fs::read_to_string(file("rows.csv")).unwrap();
+    assert_eq!(rows.lines().count(), 7, "names and six generations: {rows}");
+    evolved(&folder, &["--statistics", &file("chart.svg")]);
+    assert!(fs::read_to_string(file("chart.svg")).unwrap().contains("diversity"));
+    fs::remove_dir_all(folder).unwrap();
+}
+
+fn refused(options: &[&str]) -> String {
+    let (status, _, err) = run("starman", options);
+    assert_eq!(status, 2, "{err}");
+    err
+}
+
+#[test]
+fn what_cannot_be_done_is_refused_before_a_run() {
+    let expected = "--seconds 1.5: expected more than the 2 s to come to rest, at most 3600\n";
+    assert_eq!(refused(&["--seconds", "1.5"]), expected);
+    assert!(refused(&["--seconds", "1e300"]).contains("at most 3600"));
+    assert!(refused(&["--animation", "walk.gif"]).contains("expected the ending .svg"));
+    assert!(refused(&["--animation", "/no/such/walk.svg"]).contains("found no folder /no/such"));
+    assert!(refused(&["--statistics", "rows.txt"]).contains("expected the ending .csv, .svg, .png"));
+    assert!(refused(&["--checkpoint", "/no/such/run.json"]).contains("found no folder /no/such"));
+    assert!(refused(&["--checkpoint", "/dev/null"]).contains("/dev/null: a folder or a device; expected"));
+}
+
+#[test]
+fn a_checkpoint_that_was_changed_is_refused() {
+    let folder = folder("changed");
+    resumable(&folder);
+    let file = folder.join("run.json");
+    let whole: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
+    let changes: [(&str, Value); 5] = [
+        ("seed", 99.into()),
+        ("genomes", vec![vec![1_u8]; 8].into()),
+        ("fitness", vec![1.0].into()),
+        ("history", Value::Array(Vec::new())),
+        ("best", Value::Null),
+    ];
+    for (field, value) in changes {
+        let mut changed = whole.clone();
+        changed["state"][field] = value;
+        fs::write(&file, changed.to_string()).unwrap();
+        let options = ["--leading", "2", "--checkpoint", file.to_str().unwrap()];
+        let err = refused(&[&SMALL[..], &options].concat());
+        assert!(err.starts_with(file.to_str().unwrap()) && err.contains("; expected "), "{field}: {err}");
+    }
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_checkpoint_of_another_run_is_refused() {
+    let folder = folder("other");
+    resumable(&folder);
+    let checkpoint = folder.join("run.json");
+    let options = ["--population", "9", "--seconds", "4", "--checkpoint", checkpoint.to_str().unwrap()];
+    let (status, _, err) = run("starman", &options);
+    assert_eq!(status, 2, "{err}");
+    assert!(
+        err.contains("a run with population 8") && err.contains("expected one with population 9"),
+        "{err}"
+    );
+    fs::remove_dir_all(folder).unwrap();
+}

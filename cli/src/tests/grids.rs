@@ -1,0 +1,157 @@
+//! The planners on grids through the command `grid-benchmark`, on small maps of the project, and on published maps where
+//! the environment variable `ROVERLAB_DATA` names the folder that holds `movingai/`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::support::{self, Ended, folder};
+use roverlab::nav::grid::{
+    AnyAngle, GridPlanner, GridSearch, JumpPointSearch, PreparedJumps, Quadtree, QuadtreePlanner,
+};
+use roverlab::world::formats::movingai;
+
+fn run(options: &[&str]) -> Ended {
+    support::run("grid_benchmark", options)
+}
+
+#[test]
+fn own_maps_are_answered_as_their_scenarios_say() {
+    for map in ["yard", "spiral"] {
+        let name = |ending: &str| format!("../tests/data/grids/{map}.map{ending}");
+        for algorithm in ["dijkstra", "astar", "jps", "jps_plus"] {
+            let (map, scen) = (name(""), name(".scen"));
+            let (status, report, err) = run(&["--map", &map, "--scen", &scen, "--algorithm", algorithm]);
+            assert_eq!(
+                (status, report["outcome"].as_str(), err.as_str()),
+                (0, Some("solved"), ""),
+                "{report}"
+            );
+            assert_eq!(report["optimal"], report["queries"], "{report}");
+            for field in ["mean_ratio", "worst_ratio"] {
+                assert!(report[field].is_number(), "{field} in {report}");
+            }
+        }
+    }
+}
+
+/// Ways in any direction are never longer than octile ones, and those through a quadtree hardly are.
+#[test]
+fn other_planners_find_short_ways() {
+    for (algorithm, most) in [("any_angle", 1.0), ("quadtree", 1.02)] {
+        let (status, report, _) = run(&["--algorithm", algorithm]);
+        assert_eq!((status, report["outcome"].as_str()), (0, Some("solved")), "{report}");
+        assert!(report["worst_ratio"].as_f64().unwrap() <= most + 1e-9, "{report}");
+        assert!(report["mean_ratio"].as_f64().unwrap() < 0.98, "{report}");
+    }
+}
+
+#[test]
+fn without_options_there_is_a_map_of_rooms() {
+    let (status, report, _) = run(&[]);
+    assert_eq!((status, report["queries"].as_u64(), report["optimal"].as_u64()), (0, Some(200), Some(200)));
+    assert_ne!(run(&["--seed", "2"]).1["mean_expanded"], report["mean_expanded"]);
+}
+
+#[test]
+fn a_wrong_length_is_found() {
+    let folder = folder();
+    let scen = folder.join("wrong.scen");
+    fs::write(&scen, "version 1\n0 yard 8 6 0 0 7 0 7.5\n").unwrap();
+    let options = ["--map", "../tests/data/grids/yard.map", "--scen", scen.to_str().unwrap()];
+    let (status, report, _) = run(&options);
+    assert_eq!((status, report["outcome"].as_str()), (1, Some("wrong")), "{report}");
+    fs::write(&scen, "version 1\n0 yard 9 6 0 0 7 0 7\n").unwrap();
+    let (status, _, err) = run(&options);
+    assert!(
+        status == 2 && err.contains("found queries for a map of 9 x 6 cells") && err.lines().count() == 1,
+        "{err}"
+    );
+}
+
+#[test]
+fn what_is_wrong_with_files_is_named() {
+    let folder = folder();
+    let (map, scen) = (folder.join("parted.map"), folder.join("parted.scen"));
+    fs::write(&map, "type octile\nheight 2\nwidth 5\nmap\n..@..\n..@..\n").unwrap();
+    let options = ["--map", map.to_str().unwrap(), "--scen", scen.to_str().unwrap()];
+    for (query, expected, part) in [
+        ("2 1 0 0 1", 2, "parted.scen: query 2: the start (2, 1) is blocked; expected a free cell"),
+        ("0 0 2 0 1", 2, "parted.scen: query 2: the goal (2, 0) is blocked; expected a free cell"),
+        ("5 1 0 0 1", 2, "parted.scen:3:14: found `5`"),
+        ("0 0 0 2 1", 2, "parted.scen:3:20: found `2`"),
+        ("0 0 0 1 nan", 2, "parted.scen:3:22: found `nan`"),
+        ("0 0 0 1 -1", 2, "parted.scen:3:22: found `-1`"),
+        ("0 0 4 1 5", 1, "parted.scen: query 2: no way leads from (0, 0) to (4, 1)"),
+    ] {
+        fs::write(&scen, format!("version 1\n0 parted 5 2 0 0 1 0 1\n0 parted 5 2 {query}\n")).unwrap();
+        for algorithm in ["dijkstra", "astar", "jps", "jps_plus", "any_angle", "quadtree"] {
+            let (status, report, err) = run(&[&options[..], &["--algorithm", algorithm]].concat());
+            assert_eq!((status, err.lines().count()), (expected, 1), "{algorithm}: {query}: {err}");
+            assert!(err.contains(part), "{algorithm}: {query}: {err}");
+            assert_eq!(report["outcome"].as_str(), (expected == 1).then_some("wrong"), "{report}");
+        }
+    }
+    let (status, _, err) = run(&["--map", "nowhere.map", "--scen", "nowhere.scen"]);
+    assert!(status == 2 && err.contains("nowhere.map:1:1: found"), "{err}");
+    fs::write(&scen, "version 1\n").unwrap();
+    let (status, _, err) = run(&["--map", map.to_str().unwrap(), "--scen", scen.to_str().unwrap()]);
+    assert!(status == 2 && err.contains("found no queries"), "{err}");
+    let (status, _, err) = run(&["--map", "nowhere.map"]);
+    assert!(status == 2 && err.contains("--scen"), "{err}");
+}
+
+fn published() -> Option<PathBuf> {
+    std::env::var_os("ROVERLAB_DATA").map(|folder| Path::new(&folder).join("movingai"))
+}
+
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+/// Some queries of every published scenario file: as long as published by all octile planners, at most as long in any
+/// direction, and little longer than that through a quadtree.
+#[test]
+fn published_lengths_are_met() {
+    let Some(folder) = published() else { return };
+    let (mut compared, mut ratios) = (0, Vec::new());
+    for scen in files(&folder.join("scen")).iter().flat_map(|kind| files(kind)) {
+        let queries = movingai::load_scenarios(&scen).unwrap().value;
+        let kind = scen.parent().unwrap().file_name().unwrap();
+        let name = Path::new(&queries[0].map).file_name().unwrap();
+        let map = folder.join("map").join(kind).join(name);
+        let grid = movingai::load_map(&map).unwrap().value.grid();
+        let mut planners: [Box<dyn GridPlanner>; 4] = [
+            Box::new(GridSearch::dijkstra(&grid)),
+            Box::new(GridSearch::astar(&grid)),
+            Box::new(JumpPointSearch::new(&grid)),
+            Box::new(PreparedJumps::new(&grid)),
+        ];
+        let mut any_angle = AnyAngle::new(&grid);
+        let mut quadtree = QuadtreePlanner::new(&Quadtree::new(&grid));
+        for query in queries.iter().step_by(queries.len() / 10 + 1) {
+            let shortest = any_angle.plan(query.start, query.goal).unwrap().cost;
+            assert!(shortest <= query.optimal + 0.006, "{}: {query:?}: {shortest}", map.display());
+            let short = quadtree.plan(query.start, query.goal).unwrap().cost;
+            assert!(short >= shortest - 1e-9, "{}: {query:?}: {short}", map.display());
+            ratios.extend((shortest > 0.0).then(|| short / shortest));
+            for planner in &mut planners {
+                let path = planner.plan(query.start, query.goal).unwrap();
+                let tolerance = (2e-5 * query.optimal).max(0.006);
+                assert!(
+                    (path.cost - query.optimal).abs() <= tolerance,
+                    "{}: {query:?}: {}",
+                    map.display(),
+                    path.cost
+                );
+            }
+            compared += 1;
+        }
+    }
+    assert!(compared >= 100, "only {compared} queries");
+    ratios.sort_by(f64::total_cmp);
+    let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+    let most = ratios[ratios.len() * 99 / 100];
+    assert!(mean <= 1.05 && most <= 1.15, "mean {mean}, 99 % below {most}");
+}

@@ -1,0 +1,84 @@
+//! The commands `lidar-scan` and `localise` as wholes.
+
+use std::fs;
+
+use super::support::{Ended, folder, number, run, temporary};
+use crate::localise;
+use clap::Parser;
+
+fn lidar_scan(options: &[&str]) -> Ended {
+    run("lidar_scan", options)
+}
+
+fn localise(options: &[&str]) -> Ended {
+    run("localise", options)
+}
+
+#[test]
+fn a_scan_shows_walls_corners_and_cans() {
+    let folder = folder();
+    let (lcd, svg) = (folder.join("scan_lcd.png"), folder.join("scan.svg"));
+    let (lcd, svg) = (lcd.to_str().unwrap(), svg.to_str().unwrap());
+    for seed in ["1", "2", "3"] {
+        let (status, report, err) = lidar_scan(&["--seed", seed, "--lcd", lcd, "--picture", svg]);
+        assert_eq!((status, report["outcome"].as_str(), err.as_str()), (0, Some("scanned"), ""), "{report}");
+        assert_eq!(report["objects"].as_array().unwrap().len(), 2, "{report}");
+        // Of the six corners, one is hidden, and one shows one wall only.
+        assert_eq!(report["corners"].as_array().unwrap().len(), 4, "{report}");
+        assert!(
+            number(&report, "corner_error_mm") < 25.0 && number(&report, "object_error_mm") < 15.0,
+            "{report}"
+        );
+    }
+    let display = image::open(lcd).unwrap().into_rgb8();
+    assert_eq!(display.dimensions(), (480, 320));
+    assert!(display.pixels().filter(|pixel| pixel.0 == [0, 0, 255]).count() > 5000);
+    assert!(fs::read_to_string(svg).unwrap().contains("Walls, corners and objects in a scan"));
+    let (status, _, err) = lidar_scan(&["--goal", "1,1"]);
+    assert!(status == 2 && err.contains("expected"), "{err}");
+}
+
+#[test]
+fn the_robot_finds_where_it_is() {
+    for seed in ["1", "2", "3"] {
+        let (status, report, err) = localise(&["--seed", seed]);
+        assert_eq!(
+            (status, report["outcome"].as_str(), err.as_str()),
+            (0, Some("localised"), ""),
+            "{report}"
+        );
+        assert!(number(&report, "position_error_mm") < 20.0 && number(&report, "heading_error_deg") < 1.0);
+        assert_eq!(number(&report, "hypotheses"), 1.0);
+    }
+}
+
+#[test]
+fn what_looks_alike_is_told_as_such() {
+    let world = temporary("rectangle.wld");
+    fs::write(&world, "0 0 3000 0\n3000 0 3000 2000\n3000 2000 0 2000\n0 2000 0 0\nposition 800 700 30\n")
+        .unwrap();
+    let (status, report, _) = localise(&["--world", world.to_str().unwrap(), "--patience", "8"]);
+    assert_eq!((status, report["outcome"].as_str()), (0, Some("several_hypotheses")), "{report}");
+    assert_eq!(number(&report, "hypotheses"), 2.0);
+    let places = report["places"].as_array().unwrap();
+    // They are each other's reflection in the middle of the room.
+    assert!((number(&places[0], "x_mm") + number(&places[1], "x_mm") - 3000.0).abs() < 20.0, "{report}");
+    assert!((number(&places[0], "probability") - 0.5).abs() < 0.2, "{report}");
+}
+
+#[test]
+fn the_table_of_a_campaign() {
+    let args = localise::Args::try_parse_from(["localise", "--campaign", "--starts", "2", "--patience", "6"])
+        .unwrap();
+    let rows = localise::rows(&args).unwrap();
+    let text = localise::text(&rows);
+    assert!(text.lines().count() >= rows.len() + 2 && !text.contains("NO"), "{text}");
+    assert!(rows.iter().all(localise::Row::is_good));
+}
+
+#[test]
+fn a_robot_that_fails_ends_the_run() {
+    let (status, report, err) = localise(&["--fault", "link@1"]);
+    assert_eq!((status, report["outcome"].as_str()), (1, Some("failed")), "{report}");
+    assert!(err.contains("link"), "{err}");
+}

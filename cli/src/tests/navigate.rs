@@ -1,0 +1,107 @@
+//! The command `navigate` as a whole.
+
+use std::fs;
+use std::path::PathBuf;
+
+use super::support::{self, Ended, temporary};
+use crate::navigate;
+use clap::Parser;
+use serde_json::Value;
+
+/// Runs the command. Returns its status and its report, and what it said on standard error.
+fn run(options: &[&str]) -> Ended {
+    support::run("navigate", options)
+}
+
+fn assert_reached((status, report, err): &Ended) {
+    assert_eq!((*status, report["outcome"].as_str(), err.as_str()), (0, Some("reached"), ""), "{report}");
+    assert!(report["goal_distance_mm"].as_f64().unwrap() < 60.0, "{report}");
+    assert!(report["position_error_mm"].as_f64().unwrap() < 40.0, "{report}");
+}
+
+fn file(name: &str, text: &str) -> String {
+    let path: PathBuf = temporary(name);
+    fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn what_the_robot_was_not_told_of_changes_its_plan() {
+    let mut replans = 0;
+    for seed in ["1", "2", "3"] {
+        let ended = run(&["--seed", seed]);
+        assert_reached(&ended);
+        assert_eq!(ended.1["unmapped"], 3);
+        replans += ended.1["replans"].as_u64().unwrap();
+    }
+    assert!(replans > 0);
+    // Told of everything, it plans once.
+    let ended = run(&["--unmapped", "0", "--noise", "0"]);
+    assert_reached(&ended);
+    assert_eq!((&ended.1["replans"], &ended.1["recoveries"]), (&0.into(), &0.into()), "{}", ended.1);
+}
+
+#[test]
+fn a_campaign_reaches_its_goals_without_contact() {
+    let args = navigate::Args::try_parse_from(["navigate", "--campaign", "--runs", "6"]).unwrap();
+    let trials = navigate::trials(&args).unwrap();
+    assert!(trials.iter().all(|trial| trial.is_reached() && trial.contacts == 0), "{trials:?}");
+    assert!(trials.iter().any(|trial| trial.unmapped > 1 && trial.replans > 0), "{trials:?}");
+    let one = navigate::Args::try_parse_from(["navigate", "--campaign", "--runs", "6", "--threads", "1"]);
+    assert_eq!(navigate::trials(&one.unwrap()).unwrap(), trials);
+}
+
+#[test]
+fn closed_worlds_are_told_at_once() {
+    let world = file(
+        "closed.wld",
+        "floor 3000 2000\n0 0 3000 0\n3000 0 3000 2000\n3000 2000 0 2000\n0 2000 0 0\n1500 0 1500 2000\n",
+    );
+    let (status, report, err) = run(&["--world", &world, "--start", "500,1000,0", "--goal", "2500,1000"]);
+    assert_eq!((status, report["outcome"].as_str(), err.as_str()), (0, Some("unreachable"), ""), "{report}");
+    assert!(
+        report["sim_time_s"].as_f64().unwrap() < 1.0 && report["planned_length_mm"].is_null(),
+        "{report}"
+    );
+    // Outside, and in a wall.
+    for goal in ["9000,1000", "1500,1000"] {
+        let (status, report, _) = run(&["--world", &world, "--start", "500,1000,0", "--goal", goal]);
+        assert_eq!((status, report["outcome"].as_str()), (0, Some("unreachable")), "{goal}: {report}");
+    }
+}
+
+#[test]
+fn a_grid_map_is_a_floor() {
+    let map = "type octile\nheight 6\nwidth 9\nmap\n.........\n.@@@@@@..\n.@....@..\n.@.@@.@..\n...@.....\n....@@@@.\n";
+    let world = file("floor.map", map);
+    // Column 2, row 2 of the map, and its upper right cell.
+    let ended = run(&["--world", &world, "--start", "1250,1750,0", "--goal", "4250,2750"]);
+    assert_reached(&ended);
+    // The inside of a blocked cell is solid, though the world's walls only go round it.
+    let (status, _, err) = run(&["--world", &world, "--start", "750,2250,0", "--goal", "4250,2750"]);
+    assert!(status == 2 && err.contains("--start: found a start at 750, 2250 mm, in a wall"), "{err}");
+    let (status, report, _) = run(&["--world", &world, "--start", "1250,1750,0", "--goal", "750,2250"]);
+    assert_eq!((status, report["outcome"].as_str()), (0, Some("unreachable")), "{report}");
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    for (options, part) in [
+        (&["--clearance", "0"][..], "--clearance"),
+        (&["--clearance", "nan"], "--clearance"),
+        (&["--clearance", "10", "--least-clearance", "20"], "clearance"),
+        (&["--unmapped", "1000"], "--unmapped"),
+        (&["--goal", "100,100,90"], "--goal: found a heading"),
+        (&["--world", "no/such.map", "--start", "1,1,0", "--goal", "2,2"], "no/such.map:1:1"),
+        (&["--campaign", "--runs", "0"], "--runs"),
+        (&["--start", "9000,400,0"], "--start: found a start at 9000, 400 mm, outside of the world"),
+        (&["--start", "1400,300,0"], "--start: found a start at 1400, 300 mm, in a wall"),
+        (&["--start", "nan,400,0"], "--start"),
+        (&["--goal", "nan,400"], "--goal"),
+        (&["--goal", "inf,400"], "--goal"),
+    ] {
+        let (status, report, err) = run(options);
+        assert_eq!((status, report, err.lines().count()), (2, Value::Null, 1), "{options:?}: {err}");
+        assert!(err.contains(part), "{options:?}: {err}");
+    }
+}

@@ -1,0 +1,58 @@
+//! What the tests of whole commands share.
+
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::commands::dispatch;
+
+/// Small files that the project made itself.
+pub(crate) const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
+
+/// A command's exit status, its report, and what it said on standard error.
+pub(crate) type Ended = (u8, Value, String);
+
+/// Runs a command. Returns its exit status, and what it said on standard output and on standard error.
+pub(crate) fn said(command: &str, options: &[&str]) -> (u8, String, String) {
+    let words = ["roverlab", command].iter().chain(options).map(OsString::from).collect();
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    let status = dispatch(words, &mut out, &mut err);
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (status, text(out), text(err))
+}
+
+/// Runs a command with `--json`.
+pub(crate) fn run(command: &str, options: &[&str]) -> Ended {
+    let (status, out, err) = said(command, &[&["--json"], options].concat());
+    (status, serde_json::from_str(&out).unwrap_or(Value::Null), err)
+}
+
+/// A number of a report.
+pub(crate) fn number(report: &Value, name: &str) -> f64 {
+    report[name].as_f64().unwrap_or_else(|| panic!("{name} in {report}"))
+}
+
+/// The command ended well, with an outcome.
+pub(crate) fn assert_outcome((status, report, err): &Ended, outcome: &str) {
+    assert_eq!((*status, report["outcome"].as_str()), (0, Some(outcome)), "{report} {err}");
+}
+
+/// The folder of files that tests write, beside the folder of the test program.
+pub(crate) fn folder() -> PathBuf {
+    let program = std::env::current_exe().unwrap();
+    let folder = program.ancestors().nth(2).unwrap().join("tmp");
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// A file of a test's own.
+pub(crate) fn temporary(name: &str) -> PathBuf {
+    folder().join(name)
+}
+
+/// A path as a word of a command line.
+pub(crate) fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}

@@ -1,0 +1,124 @@
+use roverlab::drive::WallSide;
+
+use crate::common::CommonArgs;
+
+/// The command line of `wall-following`.
+#[derive(Debug, Clone, clap::Parser)]
+#[command(
+    about = "Drives a robot along the walls of a room, and measures how well it keeps its distance",
+    after_help = "\
+Without --world, the room is drawn with the seed: corners of 60 to 300 degrees, curves, doors. The run ends when the robot
+has been all the way round as often as --laps says.
+
+Errors are those of the true distance from the robot's middle to the nearest wall on the side where it follows walls, once
+it has driven 300 mm along one. Away from corners means: farther from a corner than the robot's path round it plus 150 mm.
+
+With --campaign, many rooms instead of one, by the book's controller as well, and a table.
+
+JSON fields:
+  controller                  psd, pid, lidar or book
+  side                        left or right; null if no wall was found
+  laps                        how often the robot has been round
+  rms_error_mm, max_error_mm  away from corners; null if nothing was measured
+  rms_error_everywhere_mm     corners included
+  lap_length_mm               true length of the first lap
+  time_limit_s, picture
+  rows                        with --campaign only: the table
+Outcomes: followed, blocked, timed_out, collided, failed; with --campaign: passed, wrong."
+)]
+pub(crate) struct Args {
+    /// What drives the robot.
+    #[arg(long, value_enum, default_value = "psd")]
+    pub(crate) controller: Controller,
+
+    /// On which side of the robot the wall is to be; auto: wherever it has to turn less. The book's program knows the left
+    /// alone.
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) side: Side,
+
+    /// Between the wall and the robot's middle.
+    #[arg(long, value_name = "MM", default_value_t = 200.0, value_parser = parse_distance, allow_hyphen_values = true)]
+    pub(crate) distance: f64,
+
+    /// Speed along the wall in millimetres per second.
+    #[arg(long, value_name = "MM", default_value_t = 200.0, value_parser = parse_speed, allow_hyphen_values = true)]
+    pub(crate) speed: f64,
+
+    /// How often to go round.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..), allow_hyphen_values = true)]
+    pub(crate) laps: u32,
+
+    /// Drive through many rooms and print a table.
+    #[arg(long)]
+    pub(crate) campaign: bool,
+
+    /// Rooms in a campaign.
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub(crate) rooms: u64,
+
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+impl AsRef<CommonArgs> for Args {
+    fn as_ref(&self) -> &CommonArgs {
+        &self.common
+    }
+}
+
+/// A controller by its name on the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Controller {
+    /// Three distance sensors, and lines and curves through what they saw.
+    Psd,
+    /// A PID controller on the range to one side.
+    Pid,
+    /// The shortest beam of a lidar, as in section 9.4.
+    Lidar,
+    /// The book's program 6.1.
+    Book,
+}
+
+impl Controller {
+    pub(crate) const ALL: [Self; 4] = [Self::Psd, Self::Pid, Self::Lidar, Self::Book];
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Psd => "psd",
+            Self::Pid => "pid",
+            Self::Lidar => "lidar",
+            Self::Book => "book",
+        }
+    }
+}
+
+/// A side by its name on the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Side {
+    /// The wall is to the left.
+    Left,
+    /// The wall is to the right.
+    Right,
+    /// Where the robot has to turn less.
+    Auto,
+}
+
+impl Side {
+    pub(crate) fn side(self) -> Option<WallSide> {
+        match self {
+            Self::Left => Some(WallSide::Left),
+            Self::Right => Some(WallSide::Right),
+            Self::Auto => None,
+        }
+    }
+}
+
+fn parse_distance(text: &str) -> Result<f64, String> {
+    let distance = text.parse().ok().filter(|distance: &f64| (100.0..=2000.0).contains(distance));
+    distance.ok_or_else(|| "expected 100 to 2000 mm".into())
+}
+
+fn parse_speed(text: &str) -> Result<f64, String> {
+    let speed = text.parse().ok().filter(|speed: &f64| (10.0..=1000.0).contains(speed));
+    speed.ok_or_else(|| "expected 10 to 1000 mm per second".into())
+}

@@ -1,0 +1,100 @@
+//! Runs that are killed: recordings lose their last chunk at most, and evolutions go on to the same end.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+use std::{fs, thread};
+
+use roverlab::io::log::recover;
+use roverlab::random::Stream;
+use serde_json::Value;
+
+use super::{roverlab, said};
+
+/// Kills recording processes at random times; `ROVERLAB_KILLS` says how many. What is on disk is the beginning of the
+/// whole recording, and all of its complete chunks can be saved.
+#[test]
+#[allow(clippy::disallowed_methods, reason = "processes are killed at times on the wall clock")]
+fn a_killed_process_loses_its_last_chunk_at_most() {
+    let kills = std::env::var("ROVERLAB_KILLS").ok().and_then(|kills| kills.parse().ok()).unwrap_or(4);
+    let log = Path::new(env!("CARGO_TARGET_TMPDIR")).join("killed.mcap");
+    let start = || {
+        let _ = fs::remove_file(&log);
+        let mut command = roverlab(&["distbug", "--json", "--seed", "2", "--record"]);
+        command.arg(&log).stdout(Stdio::null()).spawn().unwrap()
+    };
+    let began = Instant::now();
+    assert!(start().wait().unwrap().success());
+    let duration = began.elapsed().as_secs_f64();
+    let whole = fs::read(&log).unwrap();
+    let mut times = Stream::new(1);
+    let mut cut = 0;
+    for _ in 0..kills {
+        let mut child = start();
+        thread::sleep(Duration::from_secs_f64(times.between(0.0, duration)));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let Ok(part) = fs::read(&log) else { continue };
+        assert!(whole.starts_with(&part), "the file is not the beginning of the whole recording");
+        if let Ok(saved) = recover(&part) {
+            cut += usize::from(part.len() < whole.len());
+            // All that is lost is what is behind the last complete chunk.
+            let again = recover(&saved.bytes).unwrap();
+            assert_eq!((again.chunks, again.lost), (saved.chunks, 0));
+            assert!(saved.lost < 2 << 20, "{} bytes are lost", saved.lost);
+        }
+    }
+    println!("{cut} of {kills} recordings were cut off");
+}
+
+/// An evolution that keeps what it has come to in a folder.
+fn resumable(folder: &Path) -> Command {
+    let options = ["starman", "--json", "--population", "8", "--generations", "6", "--seconds", "4"];
+    let mut command = roverlab(&options);
+    command.args(["--leading", "2", "--threads", "1", "--checkpoint"]).arg(folder.join("run.json"));
+    command
+}
+
+/// How many generations a checkpoint holds; 0 without one.
+fn generations_kept(folder: &Path) -> usize {
+    let text = fs::read_to_string(folder.join("run.json")).unwrap_or_default();
+    let checkpoint: Value = serde_json::from_str(&text).unwrap_or_default();
+    checkpoint["state"]["history"].as_array().map_or(0, Vec::len)
+}
+
+/// Starts the evolution and kills it once it has kept so many generations.
+fn kill_after(generations: usize, folder: &Path) {
+    let mut child = resumable(folder).stdout(Stdio::null()).spawn().unwrap();
+    while generations_kept(folder) < generations {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before generation {generations}");
+        thread::sleep(Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    assert!(!child.wait().unwrap().success(), "it was killed");
+}
+
+/// An empty folder.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    // It need not be there.
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// The population that an evolution ends with.
+fn population(folder: &Path) -> Value {
+    let (status, said) = said(&mut resumable(folder));
+    let report: Value = serde_json::from_str(&said).unwrap();
+    assert!(status == 0 && report["population_hash"].is_string(), "{said}");
+    report["population_hash"].clone()
+}
+
+#[test]
+fn a_killed_evolution_goes_on_to_the_same_end() {
+    let (killed, whole) = (folder("killed"), folder("whole"));
+    for generations in [1, 2, 3, 5] {
+        kill_after(generations, &killed);
+    }
+    assert_eq!(population(&killed), population(&whole));
+}

@@ -1,0 +1,1 @@
+//! Tests beside libraries that answer the same questions in other ways, and the program that prints golden digests.
