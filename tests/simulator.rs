@@ -2,6 +2,8 @@
 
 #[path = "simulator/common.rs"]
 mod common;
+#[path = "simulator/scenes.rs"]
+mod scenes;
 
 #[path = "simulator/collisions.rs"]
 mod collisions;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the example `edges` and OpenCV on all images of a folder and prints where they differ, kernel by kernel.
+"""Runs `roverlab edges` and OpenCV on all images of a folder and prints where they differ, kernel by kernel.
 
 Definitions are OpenCV's. For Canny and Hough, the share of pixels and of lines that agree.
 """
@@ -49,7 +49,7 @@ def references(rgb):
 
 
 def edges(program, *options):
-    command = [program, "--json", "--definition", "opencv", "--repeat", "1", *map(str, options)]
+    command = [program, "edges", "--json", "--definition", "opencv", "--repeat", "1", *map(str, options)]
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
 
@@ -77,13 +77,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=pathlib.Path)
     options = parser.parse_args()
-    subprocess.run(["cargo", "build", "--quiet", "--release", "--example", "edges"], cwd=ROOT, check=True)
+    subprocess.run(["cargo", "build", "--quiet", "--release", "-p", "roverlab-cli"], cwd=ROOT, check=True)
     target = json.loads(
         subprocess.run(
             ["cargo", "metadata", "--format-version", "1", "--no-deps"], cwd=ROOT, check=True, capture_output=True
         ).stdout
     )["target_directory"]
-    program = pathlib.Path(target) / "release" / "examples" / "edges"
+    program = pathlib.Path(target) / "release" / "roverlab"
     worst, unequal, agreement, lines, segments = {}, {}, {}, [], []
     images = 0
     with tempfile.TemporaryDirectory() as name:

@@ -19,8 +19,8 @@ import time
 import mujoco
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-BUILD = ["cargo", "build", "--release", "--features", "physics", "--example", "starman"]
-PROGRAM = ROOT / "target/release/examples/starman"
+BUILD = ["cargo", "build", "--release", "-p", "roverlab-cli"]
+PROGRAM = ROOT / "target/release/roverlab"
 
 ROUNDS = 7
 GAITS = 50
@@ -86,7 +86,7 @@ def mujoco_step(step):
 
 def our_step():
     """Microseconds a step, with all that a run does besides."""
-    command = [PROGRAM, "--json", "--threads", "1", "--population", str(GAITS), "--generations", "1",
+    command = [PROGRAM, "starman", "--json", "--timing", "--threads", "1", "--population", str(GAITS), "--generations", "1",
                "--init", "uniform", "--seconds", str(SECONDS)]
     begin = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Times OpenCV and kornia-rs beside `cargo bench --bench vision`, on the same images, and prints one table.
+"""Times OpenCV and kornia-rs beside `cargo bench -p roverlab-bench --bench vision`, on the same images, and prints one table.
 
 Options: --quick for shorter measurements, --rounds N for how often ours and the peers take turns (3).
 """
@@ -164,7 +164,7 @@ def kornia_calls(first, _second):
 def ours(folder, quick):
     """Our times by kernel and size, and the images that they were taken on, in the folder."""
     file = folder / "ours.json"
-    command = ["cargo", "bench", "--quiet", "--bench", "vision", "--", "--json", str(file), "--images", str(folder)]
+    command = ["cargo", "bench", "--quiet", "-p", "roverlab-bench", "--bench", "vision", "--", "--json", str(file), "--images", str(folder)]
     subprocess.run(command + (["--quick"] if quick else []), cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     rows = json.loads(file.read_text())
     return {(row["kernel"], row["width"], row["height"]): row["microseconds"] for row in rows}

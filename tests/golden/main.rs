@@ -13,7 +13,8 @@ use std::fs;
 use std::time::Duration;
 
 use roverlab::random::Stream;
-use scenarios::{digest, scenarios, threads};
+use scenarios::simulator::threads;
+use scenarios::{digest, scenarios};
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/digests.txt");
 

@@ -11,7 +11,7 @@ use roverlab::io::{Clock, Drive, Motors};
 use roverlab::random::Stream;
 use roverlab::world::{Footprint, Object, ObjectKind, RobotSpec, Scene, Shape, Wall, World};
 
-use crate::common::{brick, cluttered, degrees_between, robots, start, with_robots};
+use crate::common::{degrees_between, robots, start};
 
 /// An S4 that looks along x at a wall whose face is at x = 1.
 fn before_a_wall(distance: f64) -> Scene {

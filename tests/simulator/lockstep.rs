@@ -10,7 +10,7 @@ use roverlab::io::wrappers::Traced;
 use roverlab::io::{Clock, DistanceSensors, Drive, Keys, Lidar, Psd, Radio, Result};
 use roverlab::random::Stream;
 
-use crate::common::{cluttered, robots};
+use crate::common::robots;
 
 /// Lets threads come in another order each time.
 struct Disturbance(Stream);

@@ -15,7 +15,7 @@ mod races;
 mod recordings;
 mod safety;
 mod scans;
-mod simulator;
+pub(crate) mod simulator;
 mod swarms;
 mod tracks;
 mod vision;
@@ -33,7 +33,6 @@ use roverlab::io::{Error, ErrorKind, Result};
 use roverlab::world::{Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
 #[cfg(test)]
-pub(crate) use simulator::threads;
 
 /// A named run.
 #[derive(Debug, Clone, Copy)]

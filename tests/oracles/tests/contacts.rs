@@ -14,10 +14,10 @@ use roverlab::io::sim::{Fleet, NoiseModel, SimOptions};
 use roverlab::random::Stream;
 use roverlab::world::{Footprint, RobotPlacement, RobotSpec, Scene, Shape};
 
-#[path = "../../simulator/common.rs"]
-mod common;
+#[path = "../../simulator/scenes.rs"]
+mod scenes;
 
-use common::{brick, cluttered, with_robots};
+use scenes::{brick, cluttered, with_robots};
 
 /// What a robot must not be in: walls, objects, other robots.
 fn things(scene: &Scene, poses: &[Pose], except: usize) -> Vec<(ParryPose, Box<dyn ParryShape>)> {

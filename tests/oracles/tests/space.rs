@@ -8,7 +8,7 @@ use parry2d_f64::shape::{Ball, Cuboid, Shape as ParryShape};
 use proptest::prelude::*;
 
 use roverlab::geometry::{Aabb, Point, Pose, Segment, Vector, cross, direction};
-use roverlab::world::space::{Scanner, Solid, Space, Span};
+use roverlab::world::space::{Scanner, Solid, SolidId, Space, Span};
 use roverlab::world::{Footprint, Wall};
 
 const Z: f64 = 0.1;
@@ -59,7 +59,7 @@ fn parry_shapes(walls: &[Wall], solids: &[Solid], z: f64) -> Vec<(ParryPose, Box
         let Segment { a, b } = wall.line;
         let along = b - a;
         let middle = a + along * 0.5;
-        let angle = crate::geometry::math::atan2(along.y, along.x);
+        let angle = roverlab::geometry::math::atan2(along.y, along.x);
         let half = ParryVector::new(0.5 * along.norm(), 0.5 * wall.thickness);
         (
             ParryPose::new(ParryVector::new(middle.x, middle.y), angle),
@@ -81,6 +81,7 @@ fn parry_shape(outline: &Footprint, pose: &Pose) -> (ParryPose, Box<dyn ParrySha
             let half = ParryVector::new(half.x, half.y);
             (ParryPose::new(ParryVector::new(middle.x, middle.y), pose.heading), Box::new(Cuboid::new(half)))
         }
+        _ => unreachable!("no other outline is drawn here"),
     }
 }
 
@@ -118,6 +119,7 @@ fn brute_force(walls: &[Wall], solids: &[Solid], eye: Point, d: Vector, z: f64) 
         Footprint::Rectangle(r) => {
             rectangle(s.pose.to_world(r.min + r.size() * 0.5), s.pose.forward(), r.size() * 0.5)
         }
+        _ => unreachable!("no other outline is drawn here"),
     });
     walls.chain(solids).fold(f64::INFINITY, f64::min)
 }
@@ -269,7 +271,7 @@ proptest! {
 
 /// A crowd on a floor with some walls, from the same numbers every time.
 fn crowd(walls: &[Wall], robots: usize) -> Space {
-    let mut stream = crate::random::Stream::new(11);
+    let mut stream = roverlab::random::Stream::new(11);
     let mut space = Space::new(walls);
     for _ in 0..robots {
         let pose = Pose::new(stream.between(-5.0, 5.0), stream.between(-5.0, 5.0), stream.between(-PI, PI));
@@ -287,7 +289,7 @@ fn scans_in_a_crowd_equal_rays() {
     let walls: Vec<Wall> = (-4..4)
         .map(|i| Wall::new(Point::new(f64::from(i), -3.0), Point::new(f64::from(i), 2.0 + f64::from(i))))
         .collect();
-    let mut stream = crate::random::Stream::new(12);
+    let mut stream = roverlab::random::Stream::new(12);
     for robots in [65, 300, 3000] {
         let space = crowd(&walls, robots);
         let mut scanner = Scanner::new(0.0, TAU / 360.0, 360, Z, 0.0, 8.0);

@@ -1,4 +1,4 @@
-//! Benchmarks of roverlab, and the worlds that they share; see `benches/`.
+//! Benchmarks of roverlab, and the worlds that they share; see the programs beside.
 
 use roverlab::geometry::{Point, Pose, direction};
 use roverlab::random::Stream;

@@ -1,0 +1,37 @@
+# What developers do often. Each recipe is one command of `.ci/run` or of Cargo, which need no `just`.
+
+# The recipes.
+default:
+    @just --list
+
+# All tests, with everything switched on.
+test:
+    .ci/run tests
+
+# Format and lints, the library with each feature alone, the documentation.
+lint:
+    .ci/run lint features documents
+
+# Every system as a command.
+smoke: build
+    .ci/run smoke
+
+# What decides whether a change is good.
+ci *arguments:
+    .ci/run {{arguments}}
+
+# The benchmarks, or those whose names hold a word.
+bench *words:
+    cargo bench -p roverlab-bench -- {{words}}
+
+# The lessons' pictures, in target/pictures.
+pictures:
+    cargo test --test lessons
+
+# New cases for all properties, ten times as many as usual.
+properties seed=`date +%N`:
+    PROPTEST_RNG_SEED=$(printf '%s' {{seed}} | sed 's/^0*//') PROPTEST_CASES=2560 cargo test --workspace --all-features
+
+[private]
+build:
+    cargo build --workspace
