@@ -57,8 +57,7 @@
 //! | 14 Formula SAE | the safety system's state machine, monitors, stopping distance | [`safety`] |
 //!
 //! Beside the chapters: [`geometry`] has poses, angles and units; [`random`] seeded random streams; [`world`] what a
-//! world and a robot are, with random courses in [`world::generate`]; `picture` (with the feature of that name) draws
-//! worlds and runs.
+//! world and a robot are, with random courses in [`world::generate`]; [`picture`] draws worlds and runs.
 //!
 //! # Conventions
 //!
@@ -67,27 +66,45 @@
 //!
 //! # Features
 //!
-//! None is on by default. `log` adds recordings, `picture` pictures as SVG, `png` the same as PNG; `proptest` adds random
-//! mazes and strategies for property tests (`maze::generate`), `testing` those and checks for planners of one's own;
-//! `petgraph` searches graphs of that crate; `rayon` runs vision kernels and evaluates populations on several threads;
-//! `checkpoint` saves evolutions; `physics` adds a walking robot.
+//! Each wing above is a feature of its name, and brings those that it imports; `io` has [`world`] too, and
+//! [`geometry`], [`kinematics`] and [`random`] are always there. All are on by default, as `picture` is. With
+//! `default-features = false, features = ["vision"]` the kernels of [`vision`] are compiled alone; `image` adds views of
+//! that crate's images.
+//!
+//! Off by default: `log` adds recordings, `png` pictures as PNG; `proptest` adds random mazes and strategies for
+//! property tests (`maze::generate`), `testing` those and checks for planners of one's own; `petgraph` searches graphs
+//! of that crate; `rayon` runs vision kernels and evaluates populations on several threads; `checkpoint` saves
+//! evolutions; `physics` adds a walking robot; `robios` drives a real EyeBot.
 
+// Where some wings are off, what they alone would use is left over, and links to them are plain text.
+#![cfg_attr(not(feature = "default"), allow(dead_code, unused_imports, rustdoc::broken_intra_doc_links))]
+
+#[cfg(feature = "drive")]
 pub mod drive;
+#[cfg(feature = "evolve")]
 pub mod evolve;
 pub mod geometry;
+#[cfg(feature = "io")]
 pub mod io;
 pub mod kinematics;
+#[cfg(feature = "maze")]
 pub mod maze;
+#[cfg(feature = "nav")]
 pub mod nav;
 #[cfg(feature = "picture")]
 pub mod picture;
+#[cfg(feature = "race")]
 pub mod race;
 pub mod random;
+#[cfg(feature = "safety")]
 pub mod safety;
+#[cfg(feature = "scan")]
 pub mod scan;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;
+#[cfg(feature = "vision")]
 pub mod vision;
+#[cfg(feature = "io")]
 pub mod world;
 
 /// The programs in the README run as tests.

@@ -1,5 +1,4 @@
 use crate::geometry::{Point, math};
-use crate::world::CameraSpec;
 
 /// How a level camera that looks straight ahead maps places on the floor to pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -10,12 +9,6 @@ pub struct CameraGeometry {
     pub height: f64,
     /// Metres ahead of the robot's middle.
     pub ahead: f64,
-}
-
-impl From<&CameraSpec> for CameraGeometry {
-    fn from(spec: &CameraSpec) -> Self {
-        Self { field_of_view: spec.field_of_view, height: spec.mount.z, ahead: spec.mount.x }
-    }
 }
 
 impl CameraGeometry {

@@ -1,8 +1,6 @@
-use image::{GrayImage, RgbImage};
-
 use super::{
-    CameraGeometry, Components, Error, HueLimits, HueRange, HueScale, NO_HUE, RgbView, hue,
-    hue_histogram_into, hue_match_into, maximum,
+    CameraGeometry, Components, Error, GrayView, GrayViewMut, HueLimits, HueRange, HueScale, NO_HUE, RgbView,
+    hue, hue_histogram_into, hue_match_into, maximum,
 };
 use crate::geometry::Point;
 
@@ -47,7 +45,7 @@ pub struct ColourFinder {
     /// The camera.
     pub camera: CameraGeometry,
     columns: Vec<u32>,
-    mask: GrayImage,
+    mask: Vec<u8>,
     components: Components,
 }
 
@@ -64,22 +62,27 @@ impl ColourFinder {
             min_pixels: 12,
             camera,
             columns: Vec::new(),
-            mask: GrayImage::default(),
+            mask: Vec::new(),
             components: Components::new(),
         })
     }
 
-    /// Where the colour is; `None` if there is not enough of it. Fails for an image without pixels.
-    pub fn find(&mut self, image: &RgbImage) -> Result<Option<Sighting>, Error> {
+    /// Where the colour is in an image or a view of one; `None` if there is not enough of it. Fails for an image
+    /// without pixels.
+    pub fn find<'a>(
+        &mut self,
+        image: impl TryInto<RgbView<'a>, Error: Into<Error>>,
+    ) -> Result<Option<Sighting>, Error> {
+        let image = image.try_into().map_err(Into::into)?;
         match self.method {
             FindMethod::Histogram => self.by_histogram(image),
             FindMethod::Blob => self.by_blob(image),
         }
     }
 
-    fn by_histogram(&mut self, image: &RgbImage) -> Result<Option<Sighting>, Error> {
-        self.columns.resize(image.width() as usize, 0);
-        hue_histogram_into(image.try_into()?, &mut self.columns, self.range, self.limits)?;
+    fn by_histogram(&mut self, image: RgbView<'_>) -> Result<Option<Sighting>, Error> {
+        self.columns.resize(image.width(), 0);
+        hue_histogram_into(image, &mut self.columns, self.range, self.limits)?;
         let Some((peak, most)) = maximum(&self.columns).filter(|&(_, most)| 8 * most >= self.min_pixels)
         else {
             return Ok(None);
@@ -94,21 +97,21 @@ impl ColourFinder {
     }
 
     /// The last row of a column that matches.
-    fn lowest(&self, image: &RgbImage, column: usize) -> usize {
-        let matches = |row: &u32| {
-            let pixel = image.get_pixel(column as u32, *row).0;
+    fn lowest(&self, image: RgbView<'_>, column: usize) -> usize {
+        let matches = |row: &usize| {
+            let pixel = image.row(*row).as_chunks().0[column];
             self.range.contains(hue(pixel, HueScale::Robios, self.limits))
         };
-        (0..image.height()).rev().find(matches).unwrap_or(0) as usize
+        (0..image.height()).rev().find(matches).unwrap_or(0)
     }
 
-    fn by_blob(&mut self, image: &RgbImage) -> Result<Option<Sighting>, Error> {
-        if self.mask.dimensions() != image.dimensions() {
-            self.mask = GrayImage::new(image.width(), image.height());
-        }
-        let mask = (&mut self.mask).try_into()?;
-        hue_match_into(image.try_into()?, mask, self.range, HueScale::Robios, self.limits)?;
-        let largest = self.components.largest((&self.mask).try_into()?, self.min_pixels as usize);
+    fn by_blob(&mut self, image: RgbView<'_>) -> Result<Option<Sighting>, Error> {
+        let (width, height) = image.size();
+        self.mask.resize(width * height, 0);
+        let mask = GrayViewMut::new(&mut self.mask, width, height)?;
+        hue_match_into(image, mask, self.range, HueScale::Robios, self.limits)?;
+        let mask = GrayView::new(&self.mask, width, height)?;
+        let largest = self.components.largest(mask, self.min_pixels as usize);
         let Some(blob) = largest else { return Ok(None) };
         let columns = (blob.min.0, blob.max.0);
         Ok(Some(self.sighting(image, columns, (blob.centroid.0, blob.max.1), blob.area as u32)))
@@ -117,26 +120,30 @@ impl ColourFinder {
     /// What is seen of something in some columns, from its middle column and the last row where it is.
     fn sighting(
         &self,
-        image: &RgbImage,
+        image: RgbView<'_>,
         columns: (usize, usize),
         (column, foot): (f64, usize),
         pixels: u32,
     ) -> Sighting {
-        let at_the_bottom = foot + 3 >= image.height() as usize;
-        let on_the_floor = || self.camera.floor(column, foot as f64 + 0.5, image.dimensions());
+        let (width, height) = (image.width() as u32, image.height() as u32);
+        let at_the_bottom = foot + 3 >= image.height();
+        let on_the_floor = || self.camera.floor(column, foot as f64 + 0.5, (width, height));
         let place = if at_the_bottom { None } else { on_the_floor() };
-        let bearing = self.camera.bearing(column, image.width());
+        let bearing = self.camera.bearing(column, width);
         Sighting { column, columns, pixels, bearing, place, at_the_bottom }
     }
 }
 
 /// The hue that most pixels in the middle of an image have, if there are enough: what is held before the camera to
 /// teach it. Neighbouring hues help each other.
-pub fn teach_hue(image: &RgbImage, limits: HueLimits) -> Result<Option<u8>, Error> {
+pub fn teach_hue<'a>(
+    image: impl TryInto<RgbView<'a>, Error: Into<Error>>,
+    limits: HueLimits,
+) -> Result<Option<u8>, Error> {
     // Hues of RoBIOS's circle, and how far those may be that help one.
     const CIRCLE: usize = 252;
     const REACH: usize = 4;
-    let view: RgbView<'_> = image.try_into()?;
+    let view = image.try_into().map_err(Into::into)?;
     let (width, height) = view.size();
     let (across, down) = ((width / 4).max(1), (height / 4).max(1));
     let part = view.region(((width - across) / 2, (height - down) / 2), across, down)?;

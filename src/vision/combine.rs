@@ -1,7 +1,6 @@
 use super::dispatch::{vectorised, vectorised_filter};
 use super::view::{flatten, require_size};
 use super::{Error, GrayView, GrayViewMut, RgbView, RgbViewMut};
-use crate::world::Colour;
 
 /// 255 where a pixel is above the threshold, 0 elsewhere (book, Program 11.7).
 pub fn threshold_into(input: GrayView<'_>, output: GrayViewMut<'_>, threshold: u8) -> Result<(), Error> {
@@ -11,17 +10,17 @@ pub fn threshold_into(input: GrayView<'_>, output: GrayViewMut<'_>, threshold: u
     Ok(())
 }
 
-/// The first image in gray, and a colour wherever the second one is not 0 (book, section 11.2; RoBIOS's
+/// The first image in gray, and a colour (red, green, blue) wherever the second one is not 0 (book, section 11.2; RoBIOS's
 /// `IPOverlayGray`).
 pub fn overlay_gray_into(
     base: GrayView<'_>,
     marks: GrayView<'_>,
-    colour: Colour,
+    colour: impl Into<[u8; 3]>,
     mut output: RgbViewMut<'_>,
 ) -> Result<(), Error> {
     require_size("second image", marks.size(), base.size())?;
     output.require_size(base.size())?;
-    mark(base, marks, [colour.red, colour.green, colour.blue], &mut output);
+    mark(base, marks, colour.into(), &mut output);
     Ok(())
 }
 

@@ -1,3 +1,5 @@
+use std::convert::Infallible;
+
 /// What is wrong with an image or a parameter.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -54,4 +56,11 @@ pub enum Error {
         /// The range.
         expected: &'static str,
     },
+}
+
+/// What takes an image takes a view of one too, which always is one.
+impl From<Infallible> for Error {
+    fn from(never: Infallible) -> Self {
+        match never {}
+    }
 }

@@ -50,6 +50,8 @@ mod hsi;
 mod hsv;
 mod hue;
 mod hue_match;
+#[cfg(feature = "image")]
+mod images;
 mod laplace;
 pub mod motion;
 #[cfg(feature = "rayon")]

@@ -1,5 +1,3 @@
-use image::{GrayImage, RgbImage};
-
 use super::Error;
 
 /// A borrowed image of `C` bytes a pixel. It has at least one pixel.
@@ -250,38 +248,4 @@ pub(super) fn flatten<'a, 'b, const C: usize, const D: usize>(
     output: ViewMut<'b, D>,
 ) -> (View<'a, C>, ViewMut<'b, D>) {
     if input.is_flat() && output.is_flat() { (input.flat(), output.flat()) } else { (input, output) }
-}
-
-impl<'a> TryFrom<&'a GrayImage> for GrayView<'a> {
-    type Error = Error;
-
-    fn try_from(image: &'a GrayImage) -> Result<Self, Error> {
-        Self::new(image.as_raw(), image.width() as usize, image.height() as usize)
-    }
-}
-
-impl<'a> TryFrom<&'a RgbImage> for RgbView<'a> {
-    type Error = Error;
-
-    fn try_from(image: &'a RgbImage) -> Result<Self, Error> {
-        Self::new(image.as_raw(), image.width() as usize, image.height() as usize)
-    }
-}
-
-impl<'a> TryFrom<&'a mut GrayImage> for GrayViewMut<'a> {
-    type Error = Error;
-
-    fn try_from(image: &'a mut GrayImage) -> Result<Self, Error> {
-        let (width, height) = (image.width() as usize, image.height() as usize);
-        Self::new(image, width, height)
-    }
-}
-
-impl<'a> TryFrom<&'a mut RgbImage> for RgbViewMut<'a> {
-    type Error = Error;
-
-    fn try_from(image: &'a mut RgbImage) -> Result<Self, Error> {
-        let (width, height) = (image.width() as usize, image.height() as usize);
-        Self::new(image, width, height)
-    }
 }

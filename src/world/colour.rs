@@ -34,6 +34,12 @@ impl Colour {
     }
 }
 
+impl From<Colour> for [u8; 3] {
+    fn from(colour: Colour) -> Self {
+        [colour.red, colour.green, colour.blue]
+    }
+}
+
 impl fmt::Display for Colour {
     /// `#rrggbb`, as in SVG.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -1,6 +1,7 @@
 //! Driving by colour (book, section 11.4 and the tasks of 11.6): driving to what a
 //! [`ColourFinder`](crate::vision::ColourFinder) finds, and pushing it home.
 
+mod camera;
 mod home;
 mod observation;
 mod scan_memory;

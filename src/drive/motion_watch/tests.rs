@@ -40,11 +40,12 @@ fn a_turn_is_taken_out_of_the_image() {
     let Turned { image: moved, from, to, .. } = compensator.turn(view(&first), view(&second), angle).unwrap();
     assert!(from == 0 || to == 160, "{from} {to}");
     assert!(to - from > 140);
-    let difference = |a: &GrayImage| {
-        let part = |image| view(image).region((from, 0), to - from, 120).unwrap();
-        crate::vision::mean_difference(part(a), part(&second)).unwrap()
+    let difference = |a: GrayView<'_>| {
+        let (corner, width) = ((from, 0), to - from);
+        let (a, b) = (a.region(corner, width, 120), view(&second).region(corner, width, 120));
+        crate::vision::mean_difference(a.unwrap(), b.unwrap()).unwrap()
     };
-    let (without, with) = (difference(&first), difference(moved));
+    let (without, with) = (difference(view(&first)), difference(moved));
     assert!(with < 0.4 * without, "{with} {without}");
 }
 

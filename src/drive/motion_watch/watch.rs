@@ -119,9 +119,8 @@ impl MotionWatch {
         if to < from + self.parameters.turning.block {
             return self.standing.compare(second, second);
         }
-        let moved: GrayView<'_> = seen.image.try_into()?;
         let (width, height) = (to - from, second.height());
-        let moved = moved.region((from, 0), width, height)?;
+        let moved = seen.image.region((from, 0), width, height)?;
         self.turning.compare_loosely(moved, second.region((from, 0), width, height)?, slack)
     }
 

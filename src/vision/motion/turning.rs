@@ -1,7 +1,5 @@
-use image::GrayImage;
-
 use crate::geometry::math;
-use crate::vision::{Error, GrayView};
+use crate::vision::{Error, GrayView, GrayViewMut};
 
 /// Takes the robot's own turn out of an image, so that what is left of its change is the motion of others (book, section
 /// 11.6).
@@ -14,14 +12,14 @@ use crate::vision::{Error, GrayView};
 #[derive(Debug, Clone)]
 pub struct TurnCompensator {
     field_of_view: f64,
-    turned: GrayImage,
+    turned: Vec<u8>,
 }
 
 /// An image as the camera would have seen it after a turn.
 #[derive(Debug, Clone, Copy)]
 pub struct Turned<'a> {
     /// The image; its columns outside of `from..to` mean nothing.
-    pub image: &'a GrayImage,
+    pub image: GrayView<'a>,
     /// The first column that both images show.
     pub from: usize,
     /// The column after the last one that both show.
@@ -44,7 +42,7 @@ impl TurnCompensator {
             let expected = "more than 0 and below 3 radians";
             return Err(Error::Parameter { parameter: "field of view", found: field_of_view, expected });
         }
-        Ok(Self { field_of_view, turned: GrayImage::default() })
+        Ok(Self { field_of_view, turned: Vec::new() })
     }
 
     /// The first image as the camera would have seen it after turning left by `angle`: the turn of odometry, which the
@@ -59,9 +57,8 @@ impl TurnCompensator {
         let (width, height) = first.size();
         let focal = 0.5 * width as f64 / math::tan(0.5 * self.field_of_view);
         let angle = registered(first, second, angle, focal);
-        if self.turned.dimensions() != (width as u32, height as u32) {
-            self.turned = GrayImage::new(width as u32, height as u32);
-        }
+        self.turned.resize(width * height, 0);
+        let mut turned = GrayViewMut::new(&mut self.turned, width, height)?;
         let (mut from, mut to) = (width, 0);
         for x in 0..width {
             let Some((column, scale)) = source(x as f64, width, angle, focal) else { continue };
@@ -69,10 +66,11 @@ impl TurnCompensator {
             for y in 0..height {
                 let middle = 0.5 * (height as f64 - 1.0);
                 let row = middle + (y as f64 - middle) * scale;
-                self.turned.put_pixel(x as u32, y as u32, image::Luma([sample(first, column, row)]));
+                turned.row_mut(y)[x] = sample(first, column, row);
             }
         }
-        Ok(Turned { image: &self.turned, from: from.min(to), to, shift: (angle * focal).abs() })
+        let image = GrayView::new(&self.turned, width, height)?;
+        Ok(Turned { image, from: from.min(to), to, shift: (angle * focal).abs() })
     }
 }
 

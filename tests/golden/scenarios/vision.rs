@@ -179,7 +179,7 @@ fn motion() -> Result<String> {
     let mut compensator = TurnCompensator::new(1.0).map_err(other)?;
     for angle in [0.02, -0.2] {
         let turned = compensator.turn(first, second, angle).map_err(other)?;
-        let digest = fnv(turned.image.as_raw().iter().copied());
+        let digest = fnv((0..turned.image.height()).flat_map(|row| turned.image.row(row)).copied());
         note(&mut log, "turned", &(turned.from, turned.to, turned.shift, digest));
     }
     Ok(log)
