@@ -1,5 +1,8 @@
 //! The bug family in the simulator: every algorithm on small worlds that are hard in one way each.
 
+#[allow(unreachable_pub, reason = "the library's own, which is public there with the feature `testing`")]
+#[path = "../src/testing/cases.rs"]
+mod cases;
 #[path = "bugs/worlds.rs"]
 mod worlds;
 
@@ -195,7 +198,7 @@ fn bounds_are_those_of_the_papers() {
 }
 
 proptest! {
-    #![proptest_config(roverlab::testing::cases(3))]
+    #![proptest_config(cases::cases(3))]
 
     #[test]
     fn verdicts_are_the_truth(seed in 0u64..1_000_000) {

@@ -1,5 +1,9 @@
 //! Pictures as files: what is shown where, and what happens when a file cannot be written.
 
+#[allow(unreachable_pub, reason = "the library's own, which is public there with the feature `testing`")]
+#[path = "../src/testing/cases.rs"]
+mod cases;
+
 use std::fs;
 use std::path::PathBuf;
 
@@ -31,7 +35,7 @@ fn circles(svg: &str, colour: Colour) -> Vec<(f64, f64)> {
 }
 
 proptest! {
-    #![proptest_config(roverlab::testing::cases(256))]
+    #![proptest_config(cases::cases(256))]
     #[test]
     fn the_picture_keeps_directions_and_proportions(
         x in 0.0..10.0f64, y in 0.0..6.0f64, dx in -3.0..3.0f64, dy in -3.0..3.0f64,

@@ -1,5 +1,5 @@
-//! Published maps with known numbers of cells, and pictures with known edges. They are no part of the project: the tests
-//! run when the environment variable `ROVERLAB_DATA` names the folder that holds `ros_maps/` and `images/`.
+//! Published maps with known numbers of cells, and pictures with known edges. They are no part of the project: the
+//! environment variable `ROVERLAB_DATA` names the folder that holds `ros_maps/` and `images/`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,13 +9,15 @@ use roverlab::vision::{self, Border, Canny, CannyThresholds, GaussianKernel, Sob
 use roverlab::world::Cell;
 use roverlab::world::formats::{load_scene, ros_map};
 
-fn maps() -> Option<PathBuf> {
-    std::env::var_os("ROVERLAB_DATA").map(|folder| Path::new(&folder).join("ros_maps"))
+fn published(folder: &str) -> PathBuf {
+    let data = std::env::var_os("ROVERLAB_DATA").expect("ROVERLAB_DATA names the folder of published data");
+    Path::new(&data).join(folder)
 }
 
 #[test]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
 fn cells_are_counted_as_published() {
-    let Some(folder) = maps() else { return };
+    let folder = published("ros_maps");
     let table = fs::read_to_string(folder.join("cell_counts.csv")).unwrap();
     let mut compared = 0;
     for line in table.lines().skip(1) {
@@ -38,8 +40,9 @@ fn cells_are_counted_as_published() {
 }
 
 #[test]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
 fn the_test_map_of_the_map_server_is_read_cell_by_cell() {
-    let Some(folder) = maps() else { return };
+    let folder = published("ros_maps");
     let folder = folder.join("nav2/nav2_map_server/test");
     let expected = fs::read_to_string(folder.join("testmap_expected.txt")).unwrap();
     let expected: Vec<u8> = expected
@@ -60,17 +63,17 @@ fn the_test_map_of_the_map_server_is_read_cell_by_cell() {
 }
 
 #[test]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
 fn a_missing_image_is_named_where_the_map_names_it() {
-    let Some(folder) = maps() else { return };
+    let folder = published("ros_maps");
     let error = load_scene(folder.join("nav2/nav2_system_tests/maps/empty_room.yaml")).unwrap_err();
     assert_eq!((error.line, error.column), (1, 8));
     assert_eq!(error.found, "`empty.pgm`, which does not exist");
 }
 
 /// imageproc's pictures: one that it was given, and what it made of it.
-fn pictures(name: &str, made: &str) -> Option<(GrayImage, GrayImage)> {
-    let folder = std::env::var_os("ROVERLAB_DATA")?;
-    let folder = Path::new(&folder).join("images/imageproc/tests/data");
+fn pictures(name: &str, made: &str) -> (GrayImage, GrayImage) {
+    let folder = published("images/imageproc/tests/data");
     let open = |name: &str| image::open(folder.join(name)).unwrap();
     let colour = open(name).into_rgb8();
     // Rec. 709, rounded down: how the pictures were made gray.
@@ -78,12 +81,13 @@ fn pictures(name: &str, made: &str) -> Option<(GrayImage, GrayImage)> {
         let [red, green, blue] = colour.get_pixel(x, y).0.map(u32::from);
         image::Luma([((2126 * red + 7152 * green + 722 * blue) / 10_000) as u8])
     });
-    Some((gray, open(&format!("truth/{made}")).into_luma8()))
+    (gray, open(&format!("truth/{made}")).into_luma8())
 }
 
 #[test]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
 fn gradients_are_those_of_imageproc_but_for_rounding() -> Result<(), vision::Error> {
-    let Some((elephant, truth)) = pictures("elephant.png", "elephant_gradients.png") else { return Ok(()) };
+    let (elephant, truth) = pictures("elephant.png", "elephant_gradients.png");
     let mut found = elephant.clone();
     vision::sobel_l2_into(
         (&elephant).try_into()?,
@@ -105,8 +109,9 @@ fn gradients_are_those_of_imageproc_but_for_rounding() -> Result<(), vision::Err
 }
 
 #[test]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
 fn edges_are_those_of_imageproc() -> Result<(), vision::Error> {
-    let Some((zebra, truth)) = pictures("zebra.png", "zebra_canny.png") else { return Ok(()) };
+    let (zebra, truth) = pictures("zebra.png", "zebra_canny.png");
     let (mut smooth, mut found) = (zebra.clone(), zebra.clone());
     let kernel = GaussianKernel::new(7, 1.4)?;
     vision::gaussian_into((&zebra).try_into()?, (&mut smooth).try_into()?, kernel)?;

@@ -1,5 +1,8 @@
 //! The simulator as a whole: motion, collisions, noise, time, radio and lockstep, through the public interface alone.
 
+#[allow(unreachable_pub, reason = "the library's own, which is public there with the feature `testing`")]
+#[path = "../src/testing/cases.rs"]
+mod cases;
 #[path = "simulator/common.rs"]
 mod common;
 #[path = "simulator/scenes.rs"]

@@ -30,7 +30,7 @@ fn every_property_draws_the_same_cases_for_everybody() {
         {
             properties += 1;
             let file = file.display();
-            assert!(next.contains("testing::cases("), "{file}: `{block}` is followed by `{next}`");
+            assert!(next.contains("cases("), "{file}: `{block}` is followed by `{next}`");
         }
     }
     assert!(properties > 100, "{properties} were found");

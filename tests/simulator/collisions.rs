@@ -4,14 +4,13 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use proptest::prelude::*;
-use roverlab::geometry::{Aabb, Point, Pose, Segment, Twist, direction, math};
-use roverlab::io::sim::{Fleet, NoiseModel, SimOptions, Simulation};
+use roverlab::geometry::{Point, Pose, Segment, Twist, math};
+use roverlab::io::sim::{Fleet, SimOptions, Simulation};
 use roverlab::io::{Clock, Drive, Motors};
-use roverlab::random::Stream;
-use roverlab::world::{Footprint, Object, ObjectKind, RobotSpec, Scene, Shape, Wall, World};
+use roverlab::world::{Object, ObjectKind, RobotSpec, Scene, Shape, Wall, World};
 
 use crate::common::{degrees_between, robots, start};
+use crate::scenes::{brick, with_robots};
 
 /// An S4 that looks along x at a wall whose face is at x = 1.
 fn before_a_wall(distance: f64) -> Scene {

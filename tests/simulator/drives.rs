@@ -130,7 +130,7 @@ fn what_a_car_cannot_do_is_refused() {
 }
 
 proptest! {
-    #![proptest_config(roverlab::testing::cases(24))]
+    #![proptest_config(crate::cases::cases(24))]
     #[test]
     fn manoeuvres_of_a_car_end_where_they_should(length in -1.0..1.0f64, share in -0.99..0.99f64) {
         let (mut robot, truth) = on_the_floor(RobotSpec::car(), exact());

@@ -11,6 +11,7 @@ use roverlab::io::{Clock, DistanceSensors, Drive, Keys, Lidar, Psd, Radio, Resul
 use roverlab::random::Stream;
 
 use crate::common::robots;
+use crate::scenes::cluttered;
 
 /// Lets threads come in another order each time.
 struct Disturbance(Stream);

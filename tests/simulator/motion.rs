@@ -73,7 +73,7 @@ fn give(robot: &mut SimRobot, command: &Command) {
 }
 
 proptest! {
-    #![proptest_config(roverlab::testing::cases(48))]
+    #![proptest_config(crate::cases::cases(48))]
 
     #[test]
     fn without_noise_the_truth_is_what_exact_odometry_says(

@@ -11,6 +11,12 @@ use crate::commands::dispatch;
 /// Small files that the project made itself.
 pub(crate) const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
 
+/// A folder of the published data, which are no part of the project.
+pub(crate) fn published(folder: &str) -> PathBuf {
+    let data = std::env::var_os("ROVERLAB_DATA").expect("ROVERLAB_DATA names the folder of published data");
+    Path::new(&data).join(folder)
+}
+
 /// A command's exit status, its report, and what it said on standard error.
 pub(crate) type Ended = (u8, Value, String);
 

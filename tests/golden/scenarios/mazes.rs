@@ -7,7 +7,7 @@ use roverlab::kinematics::OdometryErrors;
 use roverlab::maze::files::{MazeFormat, parse, print};
 use roverlab::maze::mms::{MmsMouse, Move, Referee};
 use roverlab::maze::{
-    Cell, CellDriveParameters, Direction, Explorer, FastPlanner, Goals, IncrementalFlood, LeftHand,
+    CellDriveParameters, Direction, Explorer, FastPlanner, Goals, IncrementalFlood, LeftHand,
     LeftHandParameters, LidarLeft, LidarLeftParameters, Maze, MazeRunner, Passages, Preference,
     RecursiveExplorer, Rig, RunLimits, RunnerParameters, Scale, Step, Straight, Trajectory, TwoPhaseExplorer,
     Unknown, distances_from_start, distances_to_goal, mouse, shortest_route,
@@ -272,7 +272,7 @@ fn generators() -> Result<String> {
     for maze in [perfect(9, 7, 74), braided(12, 12, 0.3, 75), competition(16, 76)] {
         let maze = maze.map_err(other)?;
         log += &print(&maze, MazeFormat::Text).map_err(other)?;
-        note(&mut log, "goals", &maze.goals().collect::<Vec<Cell>>());
+        note(&mut log, "goals", &maze.goals().collect::<Vec<_>>());
     }
     Ok(log)
 }

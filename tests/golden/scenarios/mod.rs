@@ -32,8 +32,6 @@ use roverlab::io::wrappers::Traced;
 use roverlab::io::{Error, ErrorKind, Result};
 use roverlab::world::{Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
-#[cfg(test)]
-
 /// A named run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scenario {
