@@ -1,5 +1,6 @@
-//! DistBug (book, sections 10.1 and 10.2): a robot drives to a goal through a world that it does not know. It follows the
-//! boundary of each obstacle that it meets, and leaves it where the lidar shows enough free way towards the goal.
+//! DistBug (book, sections 10.1 and 10.2): a robot drives to a goal through a world that it does not know. It
+//! follows the boundary of each obstacle that it meets, and leaves it where the lidar shows enough free way
+//! towards the goal.
 //!
 //! `cargo run --release --example distbug`
 
