@@ -11,7 +11,7 @@ use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, RobotSpec, Scene, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let (start, goal) = (Pose::new(1.0, 1.0, 0.0), Pose::new(2.7, 2.2, std::f64::consts::FRAC_PI_2));
+    let (start, goal) = (Pose::new(1.0, 1.0, 0.0), Pose::new(3.0, 2.4, units::from_deg(30.0)));
     let spec = RobotSpec::car();
     let DriveSpec::Ackermann { wheel_diameter, track, wheelbase, max_steering, max_wheel_speed, .. } =
         spec.drive
