@@ -12,10 +12,11 @@ use roverlab::world::{RobotSpec, Scene};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Obstacles with hollows into which the straight way to the goal leads.
-    let course = CourseFamily::LocalMinima.course(&mut Stream::new(3))?;
+    let course = CourseFamily::LocalMinima.course(&mut Stream::new(8))?;
     let spec = RobotSpec::s4();
     let radius = spec.footprint.bounding_radius();
     let scene = Scene::with_robot(course.world.clone(), spec, course.start);
+    // Over the cells of a grid of 10 mm, along edges and diagonals.
     let ways = Reachability::new(&course.world, radius, 0.01)?;
     let shortest =
         ways.shortest_path_length(course.start.position(), course.goal).ok_or("no way to the goal")?;
@@ -36,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let (length, ratio) = (truth.path_length, truth.path_length / shortest);
         println!("{:12} {length:>9.1} {ratio:>14.2} {time:>9.0}", kind.name());
         assert_eq!((outcome, truth.contacts), (BugOutcome::Reached, 0), "{kind}");
-        assert!(truth.pose.distance_to(course.goal) < 0.05 && ratio > 0.99, "{kind}");
+        assert!(truth.pose.distance_to(course.goal) < 0.05 && ratio > 0.9, "{kind}");
         if let Some(colour) = [BugKind::Bug1, BugKind::Bug2, BugKind::DistBug].iter().position(|&k| k == kind)
         {
             let style = Style::new(SERIES[colour]).labelled(kind.name());
