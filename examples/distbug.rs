@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use roverlab::geometry::{Point, Pose, direction, units};
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::nav::{DistBug, DistBugEvent, DistBugOutcome, DistBugParameters};
+use roverlab::nav::{DistBug, DistBugEvent as Event, DistBugOutcome, DistBugParameters};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, Marker, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
@@ -27,12 +27,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let outcome = bug.run(&mut robot, 600.0, |bug, time| {
         for event in bug.take_events() {
             let (mark, letter, point, words) = match event {
-                DistBugEvent::Hit { point, side } => {
-                    (Mark::HitPoint, 'H', point, format!("wall on the {side:?}"))
-                }
-                DistBugEvent::Leave { point, free } => {
-                    (Mark::LeavePoint, 'L', point, format!("{free:.2} m free"))
-                }
+                Event::Hit { point, side } => (Mark::HitPoint, 'H', point, format!("wall on the {side:?}")),
+                Event::Leave { point, free } => (Mark::LeavePoint, 'L', point, format!("{free:.2} m free")),
                 _ => continue,
             };
             // Every hit point is followed by its leave point.
@@ -69,7 +65,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// A C, a crescent, a hook, a room whose door looks away from the robot, a zig-zag and a block. In millimetres.
+/// A C, a crescent, a hook, a room with its door on the far side, a zig-zag and a block. In millimetres.
 fn world(goal: Point) -> World {
     let at = |&(x, y): &(f64, f64)| Point::new(units::from_mm(x), units::from_mm(y));
     let arc = |shift: f64, radius: f64| {
