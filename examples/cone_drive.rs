@@ -1,0 +1,59 @@
+//! Driving between cones as the book does it (section 14.5): the car steers for the middle of the nearest gap
+//! between cones in one scan. It has no map and no plan.
+//!
+//! `cargo run --release --example cone_drive`
+
+use roverlab::geometry::{Aabb, Point};
+use roverlab::io::sim::NoiseModel;
+use roverlab::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions, SharedRace};
+use roverlab::io::{Clock, Lidar, LidarSettings, Motors, Servos};
+use roverlab::picture::{Mark, Picture, Style};
+use roverlab::race::{GapDriver, Referee, TrackOptions, generate};
+use roverlab::world::{Colour, World};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // A legal track of Formula Student, from a seed.
+    let generated = generate(1, &TrackOptions::drawn(1))?;
+    let start = generated.track.start_pose().ok_or("the track has no start")?;
+    let blue = Colour::from_hex(0x1f_4f_d8);
+    let cones: Vec<RaceCone> =
+        generated.track.cones.iter().map(|cone| RaceCone::new(cone.position, blue)).collect();
+    let options = RaceOptions { noise: NoiseModel::real(), ..RaceOptions::default() };
+    let spec = RaceCarSpec::default();
+    let race = SharedRace::new(Race::new(&cones, &[(spec.clone(), start)], options)?);
+    let mut car = race.car(0)?;
+
+    // The referee looks at the wheels, in the car's frame from the middle of the rear axle.
+    let wheels = [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y));
+    let mut referee = Referee::new(generated.corridor.clone(), wheels);
+    // As the book sets it: 180 beams over 180 degrees.
+    car.configure_lidar(LidarSettings { field_of_view: std::f64::consts::PI, tilt: 0.0, points: 180 })?;
+    car.set_motor(1, 3.0 / spec.top_speed)?;
+    let (mut driver, mut path) = (GapDriver::default(), Vec::new());
+    while referee.verdict().lap_times.is_empty() && race.time() < 200.0 {
+        if let Some(position) = driver.step(&car.scan()?) {
+            car.set_servo(1, position)?;
+        }
+        for _ in 0..10 {
+            car.wait(0.01)?;
+            let truth = race.robot(0)?;
+            referee.see(race.time(), truth.pose, truth.contacts as usize);
+            path.push(truth.pose.position());
+        }
+    }
+
+    let verdict = referee.verdict();
+    let lap = verdict.lap_times.first().ok_or("no lap was driven")?;
+    println!("a lap of {:.0} m in {lap:.1} s at 3 m/s", generated.corridor.length());
+    println!("{} cones knocked over, {} times off the course", verdict.cones_hit, verdict.off_course);
+    assert_eq!((verdict.cones_hit, verdict.off_course), (0, 0));
+
+    let mut ground = World::empty(1.0, 1.0);
+    ground.floor = Aabb::around(cones.iter().map(|cone| cone.position)).ok_or("no cones")?.inflated(3.0);
+    let mut picture = Picture::new(&ground);
+    picture.title("For the nearest gap").true_path(path).mark(Mark::Start, start.position());
+    picture.points(cones.iter().map(|cone| cone.position), Style::new(blue).width(5.0).labelled("cone"));
+    std::fs::create_dir_all("target/pictures")?;
+    picture.save("target/pictures/cone_drive.svg")?;
+    Ok(())
+}

@@ -1,0 +1,69 @@
+//! A race between cones (book, section 14.5): in the first lap the car drives between the cones that its
+//! lidar sees, and makes a map of them. Then it drives the racing line of that map as fast as its tyres hold.
+//!
+//! `cargo run --release --example cone_race`
+
+use roverlab::geometry::{Aabb, Point};
+use roverlab::io::Drive;
+use roverlab::io::sim::NoiseModel;
+use roverlab::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions, SharedRace};
+use roverlab::picture::{Mark, Picture, Style};
+use roverlab::race::{ConeColour, RacePhase, Racer, RacerParameters, Referee, TrackOptions, generate};
+use roverlab::world::{Colour, World};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // A legal track of Formula Student, from a seed.
+    let generated = generate(1, &TrackOptions::drawn(1))?;
+    let start = generated.track.start_pose().ok_or("the track has no start")?;
+    let colour = |cone| match cone {
+        ConeColour::Blue => Colour::from_hex(0x1f_4f_d8),
+        ConeColour::Yellow => Colour::from_hex(0xf2_c8_11),
+        _ => Colour::from_hex(0xf0_70_10),
+    };
+    let cones: Vec<RaceCone> =
+        generated.track.cones.iter().map(|cone| RaceCone::new(cone.position, colour(cone.colour))).collect();
+    let options = RaceOptions { noise: NoiseModel::real(), ..RaceOptions::default() };
+    let race = SharedRace::new(Race::new(&cones, &[(RaceCarSpec::default(), start)], options)?);
+
+    // The referee looks at the wheels, in the car's frame from the middle of the rear axle.
+    let wheels = [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y));
+    let mut referee = Referee::new(generated.corridor.clone(), wheels);
+    let mut racer = Racer::new(RacerParameters { laps: 3, ..RacerParameters::default() });
+    let (mut path, mut first, mut failed) = (Vec::new(), 0, None);
+    let phase = racer.run(&mut race.car(0)?, 300.0, |car, racer| match (race.robot(0), car.speed()) {
+        (Ok(truth), Ok(speed)) => {
+            referee.see(race.time(), truth.pose, truth.contacts as usize);
+            path.push((truth.pose.position(), speed.linear));
+            if racer.phase() == RacePhase::Mapping {
+                first = path.len();
+            }
+        }
+        (Err(error), _) | (_, Err(error)) => failed = Some(error),
+    })?;
+    if let Some(error) = failed {
+        return Err(error.into());
+    }
+
+    let verdict = referee.verdict();
+    let length = generated.corridor.length();
+    println!("{phase:?}: {} cones of {} are in the map", racer.map().cones().count(), cones.len());
+    for (lap, time) in (1..).zip(&verdict.lap_times) {
+        println!("lap {lap}: {time:.2} s, {:.1} m/s in the mean", length / time);
+    }
+    println!("{} cones knocked over, {} times off the course", verdict.cones_hit, verdict.off_course);
+    assert_eq!((phase, verdict.cones_hit, verdict.off_course), (RacePhase::Finished, 0, 0));
+    assert!(verdict.lap_times.len() == 3 && verdict.lap_times[2] < 0.8 * verdict.lap_times[0]);
+
+    let mut ground = World::empty(1.0, 1.0);
+    ground.floor = Aabb::around(cones.iter().map(|cone| cone.position)).ok_or("no cones")?.inflated(3.0);
+    let mut picture = Picture::new(&ground);
+    picture.title("Mapped in one lap, raced in two").mark(Mark::Start, start.position());
+    for cone in &cones {
+        picture.points([cone.position], Style::new(cone.colour).width(5.0));
+    }
+    picture.line(path[..first].iter().map(|&(place, _)| place), Style::aid().labelled("first lap"));
+    picture.speed_path(path[first..].iter().copied());
+    std::fs::create_dir_all("target/pictures")?;
+    picture.save("target/pictures/cone_race.svg")?;
+    Ok(())
+}
