@@ -85,6 +85,6 @@ fn run(options: &Options, warnings: &mut Vec<String>) -> Result<Summary, String>
     } else {
         host::run_together(&programs, &plan, &scene, options, &folder)
     }?;
-    let (warnings, wall_time) = (std::mem::take(warnings), stopwatch.seconds());
+    let (warnings, wall_time) = (std::mem::take(warnings), options.timing.then(|| stopwatch.seconds()));
     Ok(Summary { verdicts, warnings, seed: plan.seed, noise: plan.noise, wall_time })
 }

@@ -71,6 +71,10 @@ pub(crate) struct Options {
     #[arg(long)]
     pub(crate) json: bool,
 
+    /// Report how long it took too, which differs from run to run.
+    #[arg(long)]
+    pub(crate) timing: bool,
+
     /// A script (.sim); or a program: an executable, Python (.py), C (.c) or C++ (.cpp, .cc). Or: install FOLDER, to
     /// copy library, headers and scripts there.
     #[arg(value_name = "PROGRAM", required = true)]
