@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use clap::CommandFactory;
 
 use crate::common::{Failure, parser, refused, run, run_plain, run_printing, written};
-use crate::maze_drive::{maze_explore, maze_left, maze_lidar};
+use crate::maze_drive::{explore as maze_explore, left as maze_left, lidar as maze_lidar};
 use crate::{
     a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, edges,
     follow_me, genetic, grid_benchmark, lidar_scan, localise, micromouse, motion, navigate, omni, quadtree,

@@ -18,8 +18,7 @@ use scenarios::{digest, scenarios};
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/digests.txt");
 
-const HEADER: &str =
-    "# FNV-1a digests of the logs of scenarios. Written by REGENERATE=1 cargo test --all-features --test golden.\n";
+const HEADER: &str = "# FNV-1a digests of the logs of scenarios. Written by REGENERATE=1 cargo test --all-features --test golden.\n";
 
 /// The digests of a file by their names.
 fn parse(text: &str) -> BTreeMap<&str, &str> {
@@ -75,7 +74,13 @@ fn logs_have_their_golden_digests() {
 /// Says so where a build leaves scenarios out.
 #[test]
 #[cfg_attr(
-    not(all(feature = "log", feature = "petgraph", feature = "physics", feature = "picture", feature = "proptest")),
+    not(all(
+        feature = "log",
+        feature = "petgraph",
+        feature = "physics",
+        feature = "picture",
+        feature = "proptest"
+    )),
     ignore = "some scenarios need features: cargo test --all-features --test golden"
 )]
 fn no_scenario_is_left_out() {

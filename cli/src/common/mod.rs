@@ -1,6 +1,6 @@
 //! What all commands share: their command line, the report that they print, and the way they end.
 //!
-//! A command is a `main` of a few lines and a function that does the work:
+//! A command is its options and a function that does the work, by the name `work`; `commands` lists it:
 //!
 //! ```ignore
 //! #[derive(Debug, clap::Parser)]
@@ -17,11 +17,9 @@
 //!     }
 //! }
 //!
-//! fn main() -> std::process::ExitCode {
-//!     common::main("distbug", |args: &Args| {
-//!         // ... simulate, draw the picture ...
-//!         Ok(Report::new(Outcome::verdict("reached")).field("hit_points", 3))
-//!     })
+//! pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+//!     // ... simulate, draw the picture ...
+//!     Ok(Report::new(Outcome::verdict("reached")).field("hit_points", 3))
 //! }
 //! ```
 //!
@@ -44,7 +42,7 @@
 //! reaches the report by itself. Runs that nobody records, as those of a campaign, use `Stage::simulated`. Robots that are
 //! stepped in one thread come from `common.troop(&scene, options)`, which is used as a `Fleet` is.
 //!
-//! `replay check` finds the program of a recording in `programs`, where the command is listed.
+//! `replay check` finds the command of a recording in `commands`.
 //!
 //! The command line of a recorded run is in the recording, but for what does not affect the run; `--replay` reads it
 //! from there. In place of the names of files are those that the files have in the recording, so a command reads the

@@ -60,7 +60,7 @@ struct Told {
 }
 
 /// The work of the command.
-pub(crate) fn explore(args: &ExploreArgs) -> Result<Report, Failure> {
+pub(crate) fn work(args: &ExploreArgs) -> Result<Report, Failure> {
     args.common.check_picture()?;
     let place = Place::new(&args.common, args.micromouse)?;
     let maze = place.maze();

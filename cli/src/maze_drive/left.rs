@@ -76,7 +76,7 @@ fn parameters(
 }
 
 /// The work of the command.
-pub(crate) fn left(args: &LeftArgs) -> Result<Report, Failure> {
+pub(crate) fn work(args: &LeftArgs) -> Result<Report, Failure> {
     args.common.check_picture()?;
     let place = Place::new(&args.common, args.micromouse)?;
     let maze = place.maze();

@@ -38,7 +38,7 @@ impl AsRef<CommonArgs> for LidarArgs {
 }
 
 /// The work of the command.
-pub(crate) fn lidar(args: &LidarArgs) -> Result<Report, Failure> {
+pub(crate) fn work(args: &LidarArgs) -> Result<Report, Failure> {
     args.common.check_picture()?;
     let place = Place::new(&args.common, false)?;
     let (maze, scale) = (place.maze(), place.scale);

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use super::support::{number, run};
+use super::support::{DATA, number, run, text};
 use crate::starman;
 use serde_json::Value;
 
@@ -84,6 +84,22 @@ fn resumable(folder: &Path) -> Value {
     let checkpoint = folder.join("run.json");
     let options = ["--leading", "2", "--threads", "1"];
     evolved(folder, &[&options[..], &["--checkpoint", checkpoint.to_str().unwrap()]].concat())
+}
+
+/// A checkpoint that an earlier commit kept after two of four generations.
+#[test]
+fn a_checkpoint_of_before_goes_on() {
+    let folder = folder("before");
+    let checkpoint = folder.join("starman.json");
+    fs::copy(Path::new(DATA).join("checkpoints/starman.json"), &checkpoint).unwrap();
+    let options = ["--population", "4", "--generations", "4", "--seconds", "4", "--leading", "2"];
+    let whole = run("starman", &options).1;
+    let resumed = run("starman", &[&options[..], &["--checkpoint", text(&checkpoint)]].concat()).1;
+    assert_eq!(
+        (&resumed["generations"], &resumed["population_hash"]),
+        (&4.into(), &whole["population_hash"])
+    );
+    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
