@@ -33,7 +33,6 @@ mod drive_errors;
 mod drivetrain;
 mod engine;
 mod fleet;
-mod lcd;
 mod mechanics;
 mod noise;
 mod omni;
@@ -49,14 +48,14 @@ pub mod starman;
 mod truth;
 mod wheels;
 
-pub use body::TrailPoint;
 pub use fleet::{Fleet, FleetRobot};
-pub use lcd::Lcd;
 pub use noise::NoiseModel;
 pub use options::SimOptions;
 pub use robot::SimRobot;
 pub use simulation::Simulation;
-pub use truth::{RobotTruth, Truth};
+pub use truth::Truth;
+
+pub use super::{Lcd, RobotTruth, TrailPoint};
 
 /// Seconds in which the world advances at a time.
 pub const TICK: f64 = 0.010;
