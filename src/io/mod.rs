@@ -13,6 +13,7 @@ mod display;
 mod drive;
 pub(crate) mod error;
 mod keys;
+mod lcd;
 mod lidar;
 mod mock;
 mod psd;
@@ -24,6 +25,8 @@ pub mod log;
 #[cfg(feature = "robios")]
 pub mod robios;
 pub mod sim;
+mod troop;
+mod truth;
 
 pub use actuators::{Encoders, Motors, Servos};
 pub use camera::{Camera, Resolution};
@@ -32,10 +35,13 @@ pub use display::{Display, DisplayOption, Fill, Font, FontFamily, FontStyle, Pic
 pub use drive::Drive;
 pub use error::{Error, ErrorKind, Result};
 pub use keys::{Key, Keys};
+pub use lcd::Lcd;
 pub use lidar::{Lidar, LidarScan, LidarSettings};
 pub use mock::{Call, MockRobot, Script};
 pub use psd::{DistanceSensors, Psd};
 pub use radio::{Radio, RadioMessage};
+pub use troop::{Behaviour, Troop};
+pub use truth::{RobotTruth, TrailPoint, Witness};
 
 /// A full robot: every capability at once.
 pub trait RobotIo:

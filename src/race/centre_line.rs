@@ -3,36 +3,13 @@ use super::corridor::Corridor;
 use super::error::PlanError;
 use super::generate::LONGEST;
 use super::mesh::Mesh;
+use super::pair::{CentreLineParameters, Pair, Way};
 use super::sides::sides;
-use super::walk::{Pair, Walker, Way};
+use super::walk::Walker;
 use crate::geometry::{Point, Pose, Segment, Vector, cross, math};
 
 #[cfg(test)]
 mod tests;
-
-/// What the way between cones is expected to look like.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CentreLineParameters {
-    /// Metres from edge to edge, from least to most.
-    pub width: [f64; 2],
-    /// Metres from cone to cone along an edge at most, where none is missing.
-    pub spacing: f64,
-    /// Metres between stations of the corridor.
-    pub step: f64,
-    /// What a cone of the wrong colour costs; 0 to be colour-blind. Infinity where colours are certain: no cone is passed on the
-    /// wrong side, and none whose colour is known is taken for a false one.
-    pub colour: f64,
-    /// Metres of the shortest loop; infinity where a way must not close.
-    pub shortest_loop: f64,
-    /// Metres that the way is followed at most where it does not close.
-    pub horizon: f64,
-}
-
-impl Default for CentreLineParameters {
-    fn default() -> Self {
-        Self { width: [2.5, 6.5], spacing: 5.6, step: 1.0, colour: 4.0, shortest_loop: 15.0, horizon: 40.0 }
-    }
-}
 
 /// The way between cones: both edges, and the corridor between them.
 #[derive(Debug, Clone, PartialEq)]

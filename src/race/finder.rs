@@ -1,5 +1,6 @@
 use super::cone::Cone;
-use super::lane::{Lane, LaneParameters, lane};
+use super::lane::lane;
+use super::lane_model::{Lane, LaneParameters};
 use crate::geometry::Pose;
 
 /// Finds the lane ahead from moment to moment, by the cones that a car knows there, whoever has found them.

@@ -10,7 +10,7 @@ use nalgebra::SMatrix;
 
 use super::cone::Cone;
 use super::curve::{ASIDE, BENDS, Beside, Curve, KNOTS, STEPS, TURNED, UNKNOWNS, Unknowns, WIDENS, WIDTH};
-use super::lane::{Lane, LaneParameters, Way};
+use super::lane_model::{Lane, LaneParameters, Way};
 use super::rows::{Passage, leads_back, passes};
 use crate::geometry::{Point, Pose, math};
 

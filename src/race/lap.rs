@@ -2,7 +2,7 @@
 
 use super::corridor::Corridor;
 use super::error::PlanError;
-use super::lane::LaneParameters;
+use super::lane_model::LaneParameters;
 use super::spline::ClosedSpline;
 use crate::geometry::{Point, Pose, math};
 

@@ -2,7 +2,7 @@
 
 use super::cone::Cone;
 use super::error::PlanError;
-use super::walk::Pair;
+use super::pair::Pair;
 use crate::geometry::{Point, Vector, cross};
 
 /// The triangulation of some cones. A triangle has three half-edges, each of which stands for the gap between its two cones, as

@@ -1,12 +1,14 @@
 use super::ClosedSpline;
-use super::centre_line::{CentreLine, CentreLineParameters};
+use super::centre_line::CentreLine;
 use super::cone::Cone;
 use super::corridor::{Corridor, Station};
 use super::error::PlanError;
 use super::hold::Hold;
-use super::lane::{Lane, LaneParameters, Way, lane_where};
+use super::lane::lane_where;
+use super::lane_model::{Lane, LaneParameters, Way};
 use super::lap::around_lap;
 use super::map::{ConeMap, ConeMapParameters};
+use super::pair::CentreLineParameters;
 use super::profile::{CarLimits, SpeedProfile};
 use super::racing_line::{CarOutline, LineSolver, RacingLineParameters};
 use super::reckoning::Reckoning;

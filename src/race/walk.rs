@@ -1,19 +1,9 @@
 //! From triangle to triangle between cones.
 
-use super::centre_line::CentreLineParameters;
 use super::cone::Cone;
 use super::mesh::{Mesh, triangle};
+use super::pair::{CentreLineParameters, Pair, Way};
 use crate::geometry::{Point, Pose, Vector, cross};
-
-/// Indices of a left and a right cone with the way between them.
-pub(super) type Pair = [usize; 2];
-
-/// A way between cones.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Way {
-    pub(super) pairs: Vec<Pair>,
-    pub(super) closed: bool,
-}
 
 /// Ways that are followed at a time.
 const BEAM: usize = 8;

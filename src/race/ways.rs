@@ -1,6 +1,6 @@
 //! Rough ways ahead of a car, near which its lane may lie.
 
-use super::lane::Lane;
+use super::lane_model::Lane;
 use crate::geometry::{Point, Pose, direction, math};
 
 /// Metres from station to station beyond the end of what is known.

@@ -18,7 +18,7 @@ extern "C" fn ring() {
 fn set(times: (f64, f64)) -> Option<(f64, f64)> {
     let earlier = if is_virtual() { enter(|robios| Ok(robios.set_alarm(times, ring))) } else { None };
     if earlier.is_some() {
-        super::watch::start();
+        super::runtime::watch_program();
     }
     earlier
 }

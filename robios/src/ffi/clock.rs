@@ -8,12 +8,14 @@
 
 use std::ffi::{c_int, c_long, c_uint, c_ulong, c_void};
 use std::sync::atomic::{AtomicU8, Ordering};
-use std::time::Duration;
 
 use libc::{clockid_t, pthread_attr_t, pthread_t, time_t, timespec, timeval};
 
 use super::memory::{input, output};
-use super::runtime::{enter, is_alive, is_ours, note_thread, sleep_for};
+use super::real_time::{BILLION, real_seconds, real_time};
+use super::runtime::enter;
+use super::sleep::sleep_for;
+use super::threads::{is_alive, is_ours, note_thread};
 use crate::plan::names;
 use crate::robios::EPOCH;
 
@@ -51,8 +53,6 @@ fn sleep_virtually(seconds: f64) -> Option<()> {
     if is_virtual() { sleep_for(seconds) } else { None }
 }
 
-const BILLION: f64 = 1e9;
-
 fn seconds(time: timespec) -> Option<f64> {
     let sane = time.tv_sec >= 0 && (0..1_000_000_000).contains(&time.tv_nsec);
     sane.then_some(time.tv_sec as f64 + time.tv_nsec as f64 / BILLION)
@@ -61,14 +61,6 @@ fn seconds(time: timespec) -> Option<f64> {
 fn spec(seconds: f64) -> timespec {
     let whole = seconds.floor();
     timespec { tv_sec: whole as time_t, tv_nsec: ((seconds - whole) * BILLION) as c_long }
-}
-
-/// Sleeps for a real time.
-pub(super) fn real_nap(time: Duration) {
-    let time =
-        timespec { tv_sec: time.as_secs() as time_t, tv_nsec: c_long::from(time.subsec_nanos() as i32) };
-    // SAFETY: the kernel reads the time, which lives until it returns, and writes nothing.
-    unsafe { libc::syscall(libc::SYS_nanosleep, &raw const time, std::ptr::null_mut::<timespec>()) };
 }
 
 #[unsafe(no_mangle)]
@@ -147,19 +139,6 @@ extern "C" fn clock_gettime(clock: clockid_t, time: *mut timespec) -> c_int {
     }
     // SAFETY: the kernel checks the pointer.
     unsafe { libc::syscall(libc::SYS_clock_gettime, clock, time) as c_int }
-}
-
-fn real_time() -> timespec {
-    let mut time = spec(0.0);
-    // SAFETY: the kernel writes to a time that lives until it returns.
-    unsafe { libc::syscall(libc::SYS_clock_gettime, libc::CLOCK_REALTIME, &raw mut time) };
-    time
-}
-
-/// Real seconds since 1970.
-pub(super) fn real_seconds() -> f64 {
-    let time = real_time();
-    time.tv_sec as f64 + time.tv_nsec as f64 / BILLION
 }
 
 fn wall_time() -> timespec {

@@ -3,7 +3,8 @@ use std::ffi::c_int;
 use roverlab::io::sim::TICK;
 
 use super::memory::scatter;
-use super::runtime::{code, enter, may_block, sleep_for};
+use super::runtime::{code, enter};
+use super::sleep::{may_block, sleep_for};
 
 #[unsafe(no_mangle)]
 extern "C" fn VWSetSpeed(linear: c_int, angular: c_int) -> c_int {

@@ -1,7 +1,8 @@
 use std::ffi::c_int;
 
 use super::memory::scatter;
-use super::runtime::{code, enter, wait_for};
+use super::runtime::{code, enter};
+use super::sleep::wait_for;
 
 #[unsafe(no_mangle)]
 extern "C" fn KEYGet() -> c_int {

@@ -15,6 +15,7 @@ mod camera;
 mod clock;
 mod display;
 mod drive;
+mod globals;
 mod images;
 mod keys;
 mod lines;
@@ -22,9 +23,12 @@ mod memory;
 #[cfg(target_os = "linux")]
 mod older;
 mod radio;
+mod real_time;
 mod runtime;
 mod sensing;
+mod sleep;
 mod system;
+mod threads;
 #[cfg(target_os = "linux")]
 mod turns;
 mod variadic;

@@ -7,7 +7,8 @@ use libc::{pthread_t, sem_t};
 
 use super::drive::{VWDone, VWRemain, VWWait};
 use super::lines::{AUBeep, AUDone};
-use super::runtime::{code, enter, sleep_for};
+use super::runtime::{code, enter};
+use super::sleep::sleep_for;
 
 #[unsafe(no_mangle)]
 extern "C" fn VWDriveRemain() -> c_int {
@@ -116,7 +117,7 @@ extern "C" fn MTSleep(time: c_int) -> c_int {
 /// Starts a thread, which gets its identifier as its argument.
 #[unsafe(no_mangle)]
 extern "C" fn MTSpawn(function: Option<Body>, identifier: c_int) -> Task {
-    super::runtime::note_thread();
+    super::threads::note_thread();
     let mut thread: pthread_t = 0;
     if let Some(function) = function {
         let argument = std::ptr::without_provenance_mut(identifier as usize);

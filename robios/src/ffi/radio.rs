@@ -3,7 +3,8 @@ use std::ffi::{c_char, c_int};
 use roverlab::io::sim::TICK;
 
 use super::memory::{bytes, output};
-use super::runtime::{code, enter, may_block, sleep_for};
+use super::runtime::{code, enter};
+use super::sleep::{may_block, sleep_for};
 
 #[unsafe(no_mangle)]
 extern "C" fn RADIOInit() -> c_int {

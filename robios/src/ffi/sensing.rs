@@ -1,17 +1,8 @@
 use std::ffi::c_int;
-use std::sync::atomic::{AtomicI32, Ordering};
 
+use super::globals::publish_points;
 use super::memory::{output, scatter};
 use super::runtime::{code, enter};
-
-/// How many distances `LIDARGet` writes.
-#[unsafe(no_mangle)]
-static LIDAR_RESOLUTION: AtomicI32 = AtomicI32::new(360);
-
-/// Robots' scanners differ: a program learns by this number how many points theirs has.
-pub(super) fn publish_points(points: usize) {
-    LIDAR_RESOLUTION.store(points as i32, Ordering::Relaxed);
-}
 
 #[unsafe(no_mangle)]
 extern "C" fn PSDGet(psd: c_int) -> c_int {

@@ -2,8 +2,8 @@ use std::ffi::{c_char, c_int};
 use std::process::{Command, Stdio};
 
 use super::memory::{output_text, scatter, text};
-use super::runtime::{code, enter, sleep_for};
-use super::watch;
+use super::runtime::{code, enter, watch_program};
+use super::sleep::sleep_for;
 use crate::robios::Callback;
 
 /// Bytes that are written to memory whose size the program does not state.
@@ -74,7 +74,7 @@ extern "C" fn OSWait(milliseconds: c_int) -> c_int {
 extern "C" fn OSAttachTimer(scale: c_int, function: Option<Callback>) -> c_int {
     let timer = function.and_then(|function| enter(|robios| robios.os_attach_timer(scale, function)));
     if timer.is_some() {
-        watch::start();
+        watch_program();
     }
     timer.unwrap_or(0)
 }
@@ -125,7 +125,7 @@ extern "C" fn eyesim_sleep(seconds: f64) -> c_int {
 /// Notes that the program has started a thread, for `eye.py`.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_note_thread() {
-    super::runtime::note_thread();
+    super::threads::note_thread();
 }
 
 /// Programs for the X window system ask for it.

@@ -4,7 +4,22 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use super::runtime::{Unasked, calls, nap, pass_unasked, set_ours};
+use super::real_time::nap;
+use super::threads::{calls, set_ours};
+
+/// What became of time that was to pass without a call.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Unasked {
+    /// It passed, or there was no reason that it should.
+    Passed,
+    /// Somebody is calling.
+    Busy,
+    /// There is no robot any more.
+    Over,
+}
+
+/// Lets time pass that nobody has asked for: so many seconds to where the next timer is due, or without timers.
+type Pass = fn(f64, f64) -> Unasked;
 
 /// Real time between two looks.
 const LOOK: Duration = Duration::from_millis(5);
@@ -22,12 +37,12 @@ const SLOW_DOUBLING: u32 = 400;
 static WATCHING: AtomicBool = AtomicBool::new(false);
 
 /// Starts the thread that watches, unless it is there.
-pub(super) fn start() {
+pub(super) fn start(pass: Pass) {
     if WATCHING.swap(true, Ordering::Relaxed) {
         return;
     }
     set_ours(true);
-    let started = std::thread::Builder::new().name("robios".into()).spawn(watch);
+    let started = std::thread::Builder::new().name("robios".into()).spawn(move || watch(pass));
     set_ours(false);
     // Without the thread, time passes as the program calls.
     drop(started);
@@ -40,7 +55,7 @@ fn step(doublings: u32) -> f64 {
 
 /// With timers, time passes as the real one at first, and then faster and faster: a program that computes for a while
 /// loses little, and one that waits need not wait for long. Without timers it begins later, and grows faster more slowly.
-fn watch() {
+fn watch(pass: Pass) {
     set_ours(true);
     let (mut before, mut idle) = (calls(), 0_u32);
     loop {
@@ -51,7 +66,7 @@ fn watch() {
         let Some(waited) = idle.checked_sub(PATIENCE) else { continue };
         let fast = step(waited / DOUBLING);
         let slow = idle.checked_sub(LONG).map_or(0.0, |waited| step(waited / SLOW_DOUBLING));
-        match pass_unasked(fast, slow) {
+        match pass(fast, slow) {
             Unasked::Passed => {}
             Unasked::Busy => idle = 0,
             Unasked::Over => return,

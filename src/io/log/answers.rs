@@ -2,6 +2,7 @@
 
 use image::RgbImage;
 
+use super::answer::Answers;
 use super::open_loop::OpenLoop;
 use super::parts::{ScanHead, Size};
 use super::replay::Replay;
@@ -14,17 +15,6 @@ use crate::io::{
     Viewport,
 };
 use crate::world::Colour;
-
-/// What a recording answers to a call of a robot's.
-pub(super) trait Answers {
-    /// `take` makes the answer of the recorded result and of the bulk before it.
-    fn answer<T>(
-        &mut self,
-        method: &str,
-        arguments: &Values,
-        take: impl FnOnce(&Values, &[u8]) -> Option<T>,
-    ) -> Result<T>;
-}
 
 /// The ranges or the pixels in a recorded scan or image.
 fn bulk_of(message: &[u8]) -> &[u8] {

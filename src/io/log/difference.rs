@@ -2,8 +2,8 @@ use std::fmt;
 
 use super::Log;
 use super::call::{self, Call};
-use super::player::seconds;
 use super::recording::Kind;
+use super::stamp::seconds;
 
 /// Where two recordings part.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
 use super::Log;
 use super::call::Call;
-use super::player::seconds;
 use super::recording::Kind;
+use super::stamp::seconds;
 
 /// A recorded call in plain form, for tables and pictures.
 #[derive(Debug, Clone, PartialEq)]

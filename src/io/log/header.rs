@@ -6,6 +6,8 @@ pub const SCHEMA_VERSION: u32 = 1;
 
 /// The name of the MCAP metadata record that makes a file a recording of this project.
 pub(super) const METADATA: &str = "roverlab";
+/// How files of ours name what wrote them.
+pub(super) const LIBRARY: &str = "roverlab";
 
 /// The name of the field that guards the others: MCAP has checksums of chunks and attachments, but none of metadata.
 const CHECKSUM: &str = "checksum";

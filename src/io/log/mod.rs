@@ -21,6 +21,7 @@
 //!
 //! Robots are numbered from 1 in topics. A metadata record named `roverlab` holds the [`Header`].
 
+mod answer;
 mod answers;
 mod call;
 mod determinism;
@@ -28,10 +29,12 @@ mod difference;
 mod entry;
 mod error;
 mod header;
+mod messages;
 mod open_loop;
 mod parts;
 mod player;
 mod port;
+mod position;
 mod reader;
 mod recorder;
 mod recording;
@@ -40,6 +43,8 @@ mod replay;
 mod scene;
 mod schema;
 mod shadow;
+mod stamp;
+mod topics;
 mod troop;
 mod truth;
 mod values;
@@ -57,9 +62,11 @@ pub use recorder::Recorder;
 pub use recording::Log;
 pub use recover::{Recovery, recover};
 pub use replay::Replay;
-pub use troop::{Behaviour, RecordedTroop, ReplayTroop, Troop};
-pub use truth::{RecordedTruth, ReplayTruth, Witness};
+pub use troop::{RecordedTroop, ReplayTroop};
+pub use truth::{RecordedTruth, ReplayTruth};
 pub use writer::LogWriter;
+
+pub use super::{Behaviour, Troop, Witness};
 
 #[cfg(test)]
 mod tests;

@@ -1,11 +1,10 @@
 use std::collections::BTreeMap;
 
-use super::answers::Answers;
+use super::answer::Answers;
 use super::call::{self, Call};
-use super::player::seconds;
 use super::recording::Kind;
+use super::stamp::{nanoseconds, seconds};
 use super::values::Values;
-use super::writer::nanoseconds;
 use super::{Log, LogError};
 use crate::io::{Clock, Error, ErrorKind, Key, Result};
 

@@ -1,28 +1,15 @@
 use std::fmt;
 use std::io::Write;
 
-use image::RgbImage;
-
 use super::call;
-use super::schema::Schema;
+use super::messages::{Frames, raw_image};
 use super::shadow::Shadow;
+use super::stamp::Nanoseconds;
+use super::topics::{Channel, LCD, frame, odometry_frame};
 use super::values::{Put, Values};
 use super::wire::Fields;
-use super::writer::{Channel, LogWriter, Nanoseconds, frame, odometry_frame};
-use crate::geometry::Pose;
-use crate::io::sim::Lcd;
-use crate::io::{Error, LidarScan, Result};
-
-/// The channels of a robot.
-pub(super) const CALLS: Channel = ("calls", Schema::Call);
-pub(super) const TRUTH: Channel = ("truth", Schema::Call);
-pub(super) const LIDAR: Channel = ("lidar", Schema::LaserScan);
-pub(super) const CAMERA: Channel = ("camera", Schema::RawImage);
-pub(super) const LCD: Channel = ("lcd", Schema::RawImage);
-pub(super) const ODOMETRY: Channel = ("odometry", Schema::PoseInFrame);
-pub(super) const TRANSFORMS: Channel = ("transforms", Schema::FrameTransform);
-/// What stands in the world.
-pub(super) const SCENE: Channel = ("/scene", Schema::SceneUpdate);
+use super::writer::LogWriter;
+use crate::io::{Error, Lcd, Result};
 
 /// A robot's way into a recording: it makes messages of calls and of what they show.
 pub(super) struct Port<W: Write> {
@@ -133,60 +120,10 @@ impl<W: Write> Port<W> {
     }
 }
 
-/// What the messages of a robot refer to.
-#[derive(Debug)]
-pub(super) struct Frames<'a> {
-    pub(super) time: Nanoseconds,
-    pub(super) robot: &'a str,
-    pub(super) odometry: &'a str,
-}
-
-/// A `foxglove.LaserScan`.
-pub(super) fn laser_scan(out: &mut Fields<'_>, frames: &Frames<'_>, scan: &LidarScan) {
-    let gaps = scan.ranges.len().saturating_sub(1) as f64;
-    out.time(1, frames.time);
-    out.text(2, frames.robot);
-    out.message(3, |pose| write_pose(pose, &scan.mount, 0.0));
-    out.double(4, scan.angle_min);
-    out.double(5, scan.angle_min + scan.angle_increment * gaps);
-    out.doubles(6, &scan.ranges);
-}
-
-/// A `foxglove.RawImage` of 8 bits a channel.
-pub(super) fn raw_image(out: &mut Fields<'_>, frames: &Frames<'_>, image: &RgbImage) {
-    let (width, height) = image.dimensions();
-    out.time(1, frames.time);
-    out.fixed32(2, width);
-    out.fixed32(3, height);
-    out.text(4, "rgb8");
-    out.fixed32(5, 3 * width);
-    out.text(7, frames.robot);
-    out.bytes(6, image.as_raw());
-}
-
-/// A `foxglove.PoseInFrame` of odometry.
-pub(super) fn pose_in_frame(out: &mut Fields<'_>, frames: &Frames<'_>, pose: &Pose) {
-    out.time(1, frames.time);
-    out.text(2, frames.odometry);
-    out.message(3, |message| write_pose(message, pose, 0.0));
-}
-
-/// A `foxglove.FrameTransform` from odometry's frame to the robot's.
-pub(super) fn frame_transform(out: &mut Fields<'_>, frames: &Frames<'_>, pose: &Pose) {
-    transform(out, frames.time, frames.odometry, frames.robot, pose);
-}
-
-/// A `foxglove.FrameTransform`.
-pub(super) fn transform(out: &mut Fields<'_>, time: Nanoseconds, parent: &str, child: &str, pose: &Pose) {
-    out.time(1, time);
-    out.text(2, parent);
-    out.text(3, child);
-    out.vector(4, pose.x, pose.y, 0.0);
-    out.heading(5, pose.heading);
-}
-
-/// A `foxglove.Pose` at a height.
-pub(super) fn write_pose(out: &mut Fields<'_>, pose: &Pose, height: f64) {
-    out.vector(1, pose.x, pose.y, height);
-    out.heading(2, pose.heading);
+impl<W: Write> LogWriter<W> {
+    /// A way into the recording for a robot that drives from now on.
+    pub(super) fn port(&self, index: usize) -> Port<W> {
+        self.open(index);
+        Port::new(self.clone(), index)
+    }
 }

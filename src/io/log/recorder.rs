@@ -2,11 +2,14 @@ use std::io::Write;
 
 use image::RgbImage;
 
+use super::messages::{self, Frames};
 use super::parts::{ScanHead, Size};
-use super::port::{self, CALLS, CAMERA, Frames, LIDAR, ODOMETRY, Port, TRANSFORMS};
+use super::port::Port;
+use super::stamp::nanoseconds;
+use super::topics::{CALLS, CAMERA, Channel, LIDAR, ODOMETRY, TRANSFORMS};
 use super::values::Put;
 use super::wire::Fields;
-use super::writer::{Channel, nanoseconds};
+use super::writer::LogWriter;
 use crate::geometry::{Pose, Twist};
 use crate::io::{
     Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys, Lidar,
@@ -25,6 +28,14 @@ use crate::world::Colour;
 pub struct Recorder<R, W: Write> {
     inner: R,
     port: Port<W>,
+}
+
+impl<W: Write> LogWriter<W> {
+    /// Records a robot under an index of its own, from 0. When several robots drive at once, call this for all of
+    /// them before the first one does.
+    pub fn recorder<R>(&self, robot: R, index: usize) -> Recorder<R, W> {
+        Recorder::new(robot, self.port(index))
+    }
 }
 
 impl<R, W: Write> Recorder<R, W> {
@@ -114,17 +125,17 @@ macro_rules! recorded {
     };
     (@Lidar $self:ident scan_into($scan:ident)) => {{
         let (call, ask) = (("scan_into", LIDAR), |inner: &mut R, scan: &mut LidarScan| inner.scan_into(scan));
-        $self.record_bulk(call, $scan, ask, port::laser_scan, ScanHead::of)
+        $self.record_bulk(call, $scan, ask, messages::laser_scan, ScanHead::of)
     }};
     (@Camera $self:ident image_into($image:ident)) => {{
         let (call, ask) = (("image_into", CAMERA), |inner: &mut R, image: &mut RgbImage| inner.image_into(image));
-        $self.record_bulk(call, $image, ask, port::raw_image, Size::of)
+        $self.record_bulk(call, $image, ask, messages::raw_image, Size::of)
     }};
     (@Drive $self:ident pose()) => {{
         let result = recorded!(@ $self pose());
         if let Ok(pose) = &result {
-            $self.port.show(ODOMETRY, |out, frames| port::pose_in_frame(out, frames, pose));
-            $self.port.show(TRANSFORMS, |out, frames| port::frame_transform(out, frames, pose));
+            $self.port.show(ODOMETRY, |out, frames| messages::pose_in_frame(out, frames, pose));
+            $self.port.show(TRANSFORMS, |out, frames| messages::frame_transform(out, frames, pose));
         }
         result
     }};

@@ -6,12 +6,13 @@ use std::sync::Arc;
 
 use mcap::records::{Record, op};
 
+use super::header::LIBRARY;
 use super::header::{METADATA, Written};
-use super::player::seconds;
 use super::reader::{self, Framed};
-use super::scene::WORLD;
+use super::stamp::Nanoseconds;
+use super::stamp::seconds;
+use super::topics::WORLD;
 use super::wire::{self, Field};
-use super::writer::{LIBRARY, Nanoseconds};
 use super::{Attachment, Header, LogError, SCHEMA_VERSION};
 use crate::geometry::{Pose, math};
 

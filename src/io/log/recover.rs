@@ -2,9 +2,10 @@ use mcap::records::{Record, op};
 use mcap::write::NoSeek;
 use mcap::{McapError, Writer};
 
+use super::header::LIBRARY;
 use super::header::METADATA;
 use super::reader::{self, Framed};
-use super::writer::{LIBRARY, write_options};
+use super::writer::write_options;
 use super::{Compression, Header, LogError};
 
 /// What could be saved of a damaged recording.

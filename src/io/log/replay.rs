@@ -1,7 +1,9 @@
-use super::answers::Answers;
+use super::answer::Answers;
 use super::call::{self, Call};
-use super::player::{Player, Position, seconds};
+use super::player::Player;
+use super::position::Position;
 use super::recording::Kind;
+use super::stamp::seconds;
 use super::values::Values;
 use super::{Log, LogError};
 use crate::io::{Clock, Error, ErrorKind, Result};
@@ -17,6 +19,13 @@ pub struct Replay {
     position: Position,
     /// What differed.
     difference: Option<String>,
+}
+
+impl Player {
+    /// A robot, by its index.
+    pub fn robot(&self, robot: usize) -> std::result::Result<Replay, LogError> {
+        self.position(robot).map(Replay::at)
+    }
 }
 
 impl Replay {

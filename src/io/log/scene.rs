@@ -1,20 +1,36 @@
 //! What of a world viewers show: `foxglove.SceneUpdate`.
 
-use super::port::write_pose;
+use std::io::Write;
+
+use super::LogWriter;
+use super::messages::{transform, write_pose};
+use super::topics::{SCENE, TRANSFORMS, WORLD, odometry_frame};
 use super::wire::Fields;
 use crate::geometry::{Pose, math};
 use crate::world::{Colour, Marker, Object, Scene, Shape, Wall};
-
-/// The frame of everything that stands.
-pub(super) const WORLD: &str = "world";
 
 // Numbers of fields in a `foxglove.SceneEntity`.
 const CUBES: u32 = 8;
 const SPHERES: u32 = 9;
 const CYLINDERS: u32 = 10;
 
+impl<W: Write> LogWriter<W> {
+    /// Writes what stands in a scene, and where its robots start, for viewers. It belongs at the beginning.
+    pub fn show(&self, scene: &Scene) {
+        let mut message = Vec::new();
+        scene_update(&mut Fields(&mut message), scene);
+        self.push(0, Some(0), SCENE, &message);
+        for (index, robot) in scene.robots.iter().enumerate() {
+            message.clear();
+            let child = odometry_frame(index);
+            transform(&mut Fields(&mut message), 0, WORLD, &child, &robot.pose);
+            self.push(index, Some(0), TRANSFORMS, &message);
+        }
+    }
+}
+
 /// Walls, objects and marks of a scene, as entities that stay.
-pub(super) fn scene_update(out: &mut Fields<'_>, scene: &Scene) {
+fn scene_update(out: &mut Fields<'_>, scene: &Scene) {
     let world = &scene.world;
     entity(out, "floor", |entity| {
         let size = world.floor.max - world.floor.min;

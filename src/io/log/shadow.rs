@@ -1,8 +1,8 @@
 use image::RgbImage;
 
-use super::writer::Nanoseconds;
+use super::stamp::Nanoseconds;
+use crate::io::Lcd;
 use crate::io::Result;
-use crate::io::sim::Lcd;
 
 /// What a recorded robot's display shows, drawn once more for viewers.
 ///

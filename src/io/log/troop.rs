@@ -2,130 +2,17 @@ use std::io::Write;
 use std::ops::ControlFlow;
 
 use super::call::{self, Call};
-use super::player::{Player, Position, seconds};
+use super::player::Player;
 use super::port::Port;
+use super::position::Position;
 use super::recording::Kind;
+use super::stamp::{nanoseconds, seconds};
 use super::truth::Notes;
 use super::values::Values;
-use super::writer::nanoseconds;
-use super::{LogWriter, Recorder, Replay, ReplayTruth, Witness};
+use super::{LogWriter, Recorder, Replay, ReplayTruth};
 use crate::geometry::Pose;
-use crate::io::sim::{Fleet, RobotTruth};
-use crate::io::{Error, ErrorKind, Result, RobotIo};
-
-/// What a robot of a [`Troop`] does at each of its steps, until it breaks.
-pub type Behaviour<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<()>> + 'a>;
-
-/// Robots whose behaviours are stepped in one thread: a simulator's [`Fleet`], one that is recorded, or the recording of
-/// one.
-///
-/// ```
-/// use std::ops::ControlFlow;
-/// use roverlab::geometry::{Pose, Twist};
-/// use roverlab::io::log::{Header, Log, LogWriter, Player, Troop};
-/// use roverlab::io::sim::{Fleet, SimOptions};
-/// use roverlab::io::{Drive, Psd, Result};
-/// use roverlab::world::{RobotSpec, Scene, World};
-///
-/// fn approach<'a>(troop: &mut dyn Troop<'a>) -> Result<Pose> {
-///     troop.control(0, 0.1, Box::new(|robot| {
-///         let free = robot.distance(Psd::FRONT)?;
-///         robot.set_speed(Twist::new(0.5 * (free - 0.2), 0.0))?;
-///         Ok(ControlFlow::Continue(()))
-///     }))?;
-///     troop.run_for(5.0)?;
-///     troop.pose(0)
-/// }
-///
-/// # fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
-/// let scene = Scene::with_robot(World::walled(2.0, 2.0), RobotSpec::s4(), Pose::new(1.0, 1.0, 0.0));
-/// let writer = LogWriter::new(Vec::new(), &Header::new("approach", [""; 0]))?;
-/// let mut recorded = writer.troop(Fleet::new(&scene, SimOptions::default())?);
-/// let pose = approach(&mut recorded)?;
-/// assert!(pose.x > 1.6, "it has driven to the wall: {pose:?}");
-/// drop(recorded);
-///
-/// let log = Log::read(writer.finish()?)?;
-/// assert_eq!(approach(&mut Player::new(&log).troop())?, pose);
-/// # Ok(())
-/// # }
-/// ```
-pub trait Troop<'a> {
-    /// How many robots there are.
-    fn robots(&self) -> usize;
-
-    /// Gives a robot a behaviour, which is called every `period` seconds until it breaks.
-    fn control(&mut self, robot: usize, period: f64, behaviour: Behaviour<'a>) -> Result<()>;
-
-    /// Steps each behaviour when it is due, for `seconds` or until all behaviours have ended. The first error of a
-    /// behaviour ends the run.
-    fn run_for(&mut self, seconds: f64) -> Result<()>;
-
-    /// Seconds since the start.
-    fn time(&mut self) -> Result<f64>;
-
-    /// A robot's true pose in the world.
-    fn pose(&mut self, robot: usize) -> Result<Pose>;
-
-    /// All that is true about a robot.
-    fn truth(&mut self, robot: usize) -> Result<RobotTruth>;
-}
-
-impl<'a> Troop<'a> for Fleet<'a> {
-    fn robots(&self) -> usize {
-        self.len()
-    }
-
-    fn control(&mut self, robot: usize, period: f64, mut behaviour: Behaviour<'a>) -> Result<()> {
-        Fleet::control(self, robot, period, move |robot| behaviour(robot))
-    }
-
-    fn run_for(&mut self, seconds: f64) -> Result<()> {
-        Fleet::run_for(self, seconds)
-    }
-
-    fn time(&mut self) -> Result<f64> {
-        Ok(Fleet::time(self))
-    }
-
-    fn pose(&mut self, robot: usize) -> Result<Pose> {
-        Fleet::pose(self, robot).ok_or_else(|| no_robot(robot, self.len()))
-    }
-
-    fn truth(&mut self, robot: usize) -> Result<RobotTruth> {
-        Fleet::truth(self, robot)
-    }
-}
-
-impl<'a, T: Troop<'a> + ?Sized> Troop<'a> for Box<T> {
-    fn robots(&self) -> usize {
-        (**self).robots()
-    }
-
-    fn control(&mut self, robot: usize, period: f64, behaviour: Behaviour<'a>) -> Result<()> {
-        (**self).control(robot, period, behaviour)
-    }
-
-    fn run_for(&mut self, seconds: f64) -> Result<()> {
-        (**self).run_for(seconds)
-    }
-
-    fn time(&mut self) -> Result<f64> {
-        (**self).time()
-    }
-
-    fn pose(&mut self, robot: usize) -> Result<Pose> {
-        (**self).pose(robot)
-    }
-
-    fn truth(&mut self, robot: usize) -> Result<RobotTruth> {
-        (**self).truth(robot)
-    }
-}
-
-fn no_robot(robot: usize, robots: usize) -> Error {
-    Error::new(ErrorKind::InvalidInput, format!("found no robot {robot}; expected an index below {robots}"))
-}
+use crate::io::troop::no_robot;
+use crate::io::{Behaviour, Error, ErrorKind, Result, RobotIo, RobotTruth, Troop, Witness};
 
 /// A troop that is recorded, made by [`LogWriter::troop`]: each robot's calls as those of a
 /// [`Recorder`], with the ends of the runs among them.
@@ -134,6 +21,13 @@ pub struct RecordedTroop<T, W: Write> {
     inner: T,
     writer: LogWriter<W>,
     notes: Vec<Notes<W>>,
+}
+
+impl<W: Write> LogWriter<W> {
+    /// Records robots that are stepped in one thread, under the indices that they have.
+    pub fn troop<'a, T: Troop<'a>>(&self, troop: T) -> RecordedTroop<T, W> {
+        RecordedTroop::new(troop, self.clone())
+    }
 }
 
 impl<T, W: Write> RecordedTroop<T, W> {
@@ -271,6 +165,13 @@ impl Orders {
 
 fn ended(what: &str) -> Error {
     Error::new(ErrorKind::EndOfLog, format!("the recording has ended before {what}"))
+}
+
+impl Player {
+    /// The robots of a recorded troop, which are stepped in one thread.
+    pub fn troop<'a>(&self) -> ReplayTroop<'a> {
+        ReplayTroop::new(self)
+    }
 }
 
 impl<'a> ReplayTroop<'a> {

@@ -2,71 +2,29 @@ use std::collections::BTreeMap;
 use std::io::Write;
 
 use super::call::Call;
-use super::player::Position;
-use super::port::{Port, TRUTH};
+use super::player::Player;
+use super::port::Port;
+use super::position::Position;
 use super::recording::Kind;
+use super::stamp::Nanoseconds;
+use super::topics::TRUTH;
 use super::values::{Put, Take, Taking, Values};
-use super::writer::Nanoseconds;
+use super::{LogError, LogWriter};
 use crate::geometry::{Point, Pose};
-use crate::io::sim::{RobotTruth, TrailPoint, Truth};
-use crate::io::{Error, ErrorKind, Result};
-
-/// Who knows what is true in a world: a simulator, or the recording of what one said.
-pub trait Witness {
-    /// Seconds since the start of the world.
-    fn time(&mut self) -> Result<f64>;
-
-    /// A robot's pose in the world.
-    fn pose(&mut self, robot: usize) -> Result<Pose>;
-
-    /// All that is true about a robot.
-    fn robot(&mut self, robot: usize) -> Result<RobotTruth>;
-
-    /// An object's pose in the world, by its index in the scene: robots may have pushed it.
-    fn object(&mut self, object: usize) -> Result<Pose>;
-}
-
-impl Witness for Truth {
-    fn time(&mut self) -> Result<f64> {
-        Ok(Truth::time(self))
-    }
-
-    fn pose(&mut self, robot: usize) -> Result<Pose> {
-        Truth::pose(self, robot)
-    }
-
-    fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
-        Truth::robot(self, robot)
-    }
-
-    fn object(&mut self, object: usize) -> Result<Pose> {
-        Truth::object(self, object)
-    }
-}
-
-impl<T: Witness + ?Sized> Witness for Box<T> {
-    fn time(&mut self) -> Result<f64> {
-        (**self).time()
-    }
-
-    fn pose(&mut self, robot: usize) -> Result<Pose> {
-        (**self).pose(robot)
-    }
-
-    fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
-        (**self).robot(robot)
-    }
-
-    fn object(&mut self, object: usize) -> Result<Pose> {
-        (**self).object(object)
-    }
-}
+use crate::io::{Error, ErrorKind, Result, RobotTruth, TrailPoint, Witness};
 
 /// A witness whose answers are recorded, made by [`LogWriter::witness`](super::LogWriter::witness).
 #[derive(Debug)]
 pub struct RecordedTruth<T, W: Write> {
     inner: T,
     notes: Notes<W>,
+}
+
+impl<W: Write> LogWriter<W> {
+    /// Records what a witness says who watches a robot, by the robot's index.
+    pub fn witness<T: Witness>(&self, witness: T, robot: usize) -> RecordedTruth<T, W> {
+        RecordedTruth::new(witness, Port::beside(self.clone(), robot))
+    }
 }
 
 impl<T: Witness, W: Write> RecordedTruth<T, W> {
@@ -241,6 +199,13 @@ pub struct ReplayTruth {
     poses: BTreeMap<usize, Pose>,
     objects: BTreeMap<usize, Pose>,
     robots: BTreeMap<usize, RobotTruth>,
+}
+
+impl Player {
+    /// What was true while a robot drove, as somebody asked who watched it.
+    pub fn truth(&self, robot: usize) -> std::result::Result<ReplayTruth, LogError> {
+        self.position(robot).map(ReplayTruth::new)
+    }
 }
 
 /// A question about the truth.

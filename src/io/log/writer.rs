@@ -8,25 +8,10 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{McapError, WriteOptions, Writer};
 
-use super::header::METADATA;
-use super::port::{Port, SCENE, TRANSFORMS, transform};
-use super::scene::{WORLD, scene_update};
-use super::schema::Schema;
-use super::wire::Fields;
-use super::{Compression, Header, RecordedTroop, RecordedTruth, Recorder, Troop, Witness};
-use crate::world::Scene;
-
-/// A channel of a recording: the part of its topic behind the robot's name, and what it carries.
-pub(super) type Channel = (&'static str, Schema);
-
-/// Nanoseconds of recorded time.
-pub(super) type Nanoseconds = u64;
-
-/// Seconds as a recording holds them; what is no time is 0.
-pub(super) fn nanoseconds(seconds: f64) -> Nanoseconds {
-    // Casting clips what is out of range.
-    (seconds * 1e9).round() as u64
-}
+use super::header::{LIBRARY, METADATA};
+use super::stamp::Nanoseconds;
+use super::topics::{Channel, frame};
+use super::{Compression, Header};
 
 /// A recording that is being written: an MCAP file, into anything that takes bytes.
 ///
@@ -111,9 +96,6 @@ struct Message {
     data: Vec<u8>,
 }
 
-/// How files of ours name what wrote them.
-pub(super) const LIBRARY: &str = "roverlab";
-
 /// A chunk that holds more bytes than this ends.
 const CHUNK_BYTES: usize = 1 << 20;
 const SECOND: u64 = 1_000_000_000;
@@ -162,41 +144,6 @@ impl<W: Write> LogWriter<W> {
     /// for each robot. For robots that drive in threads of their own and do not wait for each other in any other way.
     pub fn hold_at_most(&self, bytes: usize) {
         self.lock().most_ahead = Some(bytes);
-    }
-
-    /// Records a robot under an index of its own, from 0. When several robots drive at once, call this for all of
-    /// them before the first one does.
-    pub fn recorder<R>(&self, robot: R, index: usize) -> Recorder<R, W> {
-        Recorder::new(robot, self.port(index))
-    }
-
-    /// A way into the recording for a robot that drives from now on.
-    pub(super) fn port(&self, index: usize) -> Port<W> {
-        self.lock().track(index).open = true;
-        Port::new(self.clone(), index)
-    }
-
-    /// Records robots that are stepped in one thread, under the indices that they have.
-    pub fn troop<'a, T: Troop<'a>>(&self, troop: T) -> RecordedTroop<T, W> {
-        RecordedTroop::new(troop, self.clone())
-    }
-
-    /// Writes what stands in a scene, and where its robots start, for viewers. It belongs at the beginning.
-    pub fn show(&self, scene: &Scene) {
-        let mut message = Vec::new();
-        scene_update(&mut Fields(&mut message), scene);
-        self.push(0, Some(0), SCENE, &message);
-        for (index, robot) in scene.robots.iter().enumerate() {
-            message.clear();
-            let child = odometry_frame(index);
-            transform(&mut Fields(&mut message), 0, WORLD, &child, &robot.pose);
-            self.push(index, Some(0), TRANSFORMS, &message);
-        }
-    }
-
-    /// Records what a witness says who watches a robot, by the robot's index.
-    pub fn witness<T: Witness>(&self, witness: T, robot: usize) -> RecordedTruth<T, W> {
-        RecordedTruth::new(witness, Port::beside(self.clone(), robot))
     }
 
     /// Ends the recording, and returns the sink; or the first error that it gave. What recorders that still exist
@@ -251,6 +198,11 @@ impl<W: Write> LogWriter<W> {
         while shared.is_recording() && shared.is_far_ahead(track) {
             shared = self.written.wait(shared).unwrap_or_else(PoisonError::into_inner);
         }
+    }
+
+    /// Notes that a robot drives: the others' messages wait for its.
+    pub(super) fn open(&self, track: usize) {
+        self.lock().track(track).open = true;
     }
 
     /// Notes that a robot drives no more: the others need not wait for it.
@@ -333,16 +285,6 @@ fn full_topic(track: usize, topic: &str) -> String {
     if topic.starts_with('/') { topic.to_owned() } else { format!("/{}/{topic}", frame(track)) }
 }
 
-/// The name of a robot's own frame.
-pub(super) fn frame(track: usize) -> String {
-    format!("robot{}", track + 1)
-}
-
-/// The name of the frame in which a robot's odometry is.
-pub(super) fn odometry_frame(track: usize) -> String {
-    format!("{}/odometry", frame(track))
-}
-
 fn as_io(error: McapError) -> io::Error {
     match error {
         McapError::Io(error) => error,
@@ -354,7 +296,7 @@ fn as_io(error: McapError) -> io::Error {
 mod tests {
     use std::thread;
 
-    use super::super::port::CALLS;
+    use super::super::topics::CALLS;
     use super::*;
 
     const MOST: usize = 100;

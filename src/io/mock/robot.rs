@@ -6,8 +6,7 @@ use super::call::{Call, difference};
 use super::ideal::IdealDrive;
 use super::script::Script;
 use crate::geometry::{Pose, Twist};
-use crate::io::sim::Lcd;
-use crate::io::{Error, ErrorKind, Key, LidarScan, Pixel, Psd, RadioMessage, Resolution, Result};
+use crate::io::{Error, ErrorKind, Key, Lcd, LidarScan, Pixel, Psd, RadioMessage, Resolution, Result};
 use crate::kinematics::Displacement;
 
 /// A robot for unit tests of programs: its sensors read what a script says, and it writes down every command.

@@ -46,7 +46,6 @@ macro_rules! functions {
         impl Functions {
             /// The function, or an error that names it.
             #[allow(non_snake_case, reason = "RoBIOS's own names")]
-            #[cfg_attr(not(feature = "log"), allow(dead_code, reason = "the truth is asked for with it alone"))]
             pub(super) fn $name(
                 &self,
             ) -> Result<unsafe extern "C" fn($($argument),* $(, $more)?) -> $result> {

@@ -24,10 +24,9 @@
 #![allow(unsafe_code)]
 
 mod library;
+mod numbers;
 mod robot;
-#[cfg(feature = "log")]
 mod truth;
 
 pub use robot::RobiosRobot;
-#[cfg(feature = "log")]
 pub use truth::RobiosTruth;

@@ -6,7 +6,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use image::RgbImage;
 
 use super::library::Functions;
-use crate::geometry::{Pose, Twist, normalize_angle, units};
+use super::numbers::{NOTHING, degrees, metres, millimetres, radians, range, whole};
+use super::truth::{RobiosTruth, Told};
+use crate::geometry::{Pose, Twist, normalize_angle};
 use crate::io::{
     Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
     FontFamily, FontStyle, Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio,
@@ -30,16 +32,6 @@ pub struct RobiosRobot {
     turns: bool,
 }
 
-/// What a library has said last.
-#[derive(Debug, Clone, Copy, Default)]
-#[cfg_attr(not(feature = "log"), allow(dead_code, reason = "who asks for the truth logs it"))]
-pub(super) struct Told {
-    pub(super) odometry: Pose,
-    pub(super) time: f64,
-}
-
-/// What RoBIOS says where there is nothing within range.
-const NOTHING: c_int = 9999;
 /// Bytes of the longest radio message that is received.
 const LONGEST_MESSAGE: usize = 1024;
 /// RoBIOS's numbers of the soft keys.
@@ -70,35 +62,6 @@ fn succeeded(name: &str, code: c_int) -> Result<()> {
     Err(Error::new(ErrorKind::Other, format!("{name} returned {code}; expected 0, the code of success")))
 }
 
-/// A number as RoBIOS takes it.
-fn whole(name: &str, value: f64) -> Result<c_int> {
-    let rounded = value.round();
-    if rounded.abs() <= f64::from(c_int::MAX) {
-        return Ok(rounded as c_int);
-    }
-    Err(Error::invalid_input(name, value, "a number that RoBIOS can hold"))
-}
-
-fn millimetres(name: &str, metres: f64) -> Result<c_int> {
-    whole(name, units::to_mm(metres))
-}
-
-fn degrees(name: &str, radians: f64) -> Result<c_int> {
-    whole(name, units::to_deg(radians))
-}
-
-fn metres(millimetres: c_int) -> f64 {
-    units::from_mm(millimetres.into())
-}
-
-fn radians(degrees: c_int) -> f64 {
-    units::from_deg(degrees.into())
-}
-
-fn range(distance: c_int) -> f64 {
-    if distance >= NOTHING { f64::INFINITY } else { metres(distance.max(0)) }
-}
-
 /// A text as C takes it, up to its first zero byte.
 fn text(text: &str) -> CString {
     let end = text.find('\0').unwrap_or(text.len());
@@ -107,16 +70,6 @@ fn text(text: &str) -> CString {
 
 fn number(colour: Colour) -> c_int {
     c_int::from(colour.red) << 16 | c_int::from(colour.green) << 8 | c_int::from(colour.blue)
-}
-
-/// Where a robot truly is, if its library is a simulator that tells it.
-#[cfg(feature = "log")]
-pub(super) fn simulated_pose(robios: &Functions) -> Option<Pose> {
-    let (mut x, mut y, mut z, mut phi) = (0, 0, 0, 0);
-    let function = robios.SIMGetRobot().ok()?;
-    // SAFETY: the library is loaded, and the numbers live until the function returns.
-    unsafe { function(0, &raw mut x, &raw mut y, &raw mut z, &raw mut phi) };
-    Some(Pose::new(metres(x), metres(y), radians(phi)))
 }
 
 fn fills(fill: Fill) -> c_int {
@@ -140,9 +93,8 @@ impl RobiosRobot {
     }
 
     /// What is known about the robot where somebody asks for the truth. It starts at a pose in the world.
-    #[cfg(feature = "log")]
-    pub fn truth(&self, start: Pose) -> super::RobiosTruth {
-        super::RobiosTruth::new(Arc::clone(&self.robios), Arc::clone(&self.told), start)
+    pub fn truth(&self, start: Pose) -> RobiosTruth {
+        RobiosTruth::new(Arc::clone(&self.robios), Arc::clone(&self.told), start)
     }
 
     fn note(&mut self, note: impl FnOnce(&mut Told)) {

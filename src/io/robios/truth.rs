@@ -1,11 +1,16 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::library::Functions;
-use super::robot::{Told, simulated_pose};
+use super::numbers::{metres, radians};
 use crate::geometry::Pose;
-use crate::io::log::Witness;
-use crate::io::sim::RobotTruth;
-use crate::io::{Error, ErrorKind, Result};
+use crate::io::{Error, ErrorKind, Result, RobotTruth, Witness};
+
+/// What a library has said last.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Told {
+    pub(super) odometry: Pose,
+    pub(super) time: f64,
+}
 
 /// What is known about the robot behind a library where a program asks for the truth: on a simulator, where the robot
 /// truly is, if the library tells it (`SIMGetRobot`); otherwise where its odometry said that it was, when the program
@@ -36,6 +41,15 @@ impl RobiosTruth {
         self.last = Some(pose);
         pose
     }
+}
+
+/// Where a robot truly is, if its library is a simulator that tells it.
+fn simulated_pose(robios: &Functions) -> Option<Pose> {
+    let (mut x, mut y, mut z, mut phi) = (0, 0, 0, 0);
+    let function = robios.SIMGetRobot().ok()?;
+    // SAFETY: the library is loaded, and the numbers live until the function returns.
+    unsafe { function(0, &raw mut x, &raw mut y, &raw mut z, &raw mut phi) };
+    Some(Pose::new(metres(x), metres(y), radians(phi)))
 }
 
 fn only_one(robot: usize) -> Result<()> {

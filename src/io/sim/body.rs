@@ -1,12 +1,12 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use super::SimOptions;
 use super::camera::CameraDevice;
 use super::course::Course;
 use super::mechanics::Powertrain;
-use super::{Lcd, SimOptions};
 use crate::geometry::{Point, Pose, Vector, direction};
-use crate::io::{Error, Key, LidarSettings, Psd, RadioMessage, Result};
+use crate::io::{Error, Key, Lcd, LidarSettings, Psd, RadioMessage, Result, TrailPoint};
 use crate::random::Stream;
 use crate::world::space::{Scanner, SolidId, Span};
 use crate::world::{Footprint, RobotPlacement, RobotSpec};
@@ -48,17 +48,6 @@ pub(super) struct Body {
 pub(super) struct KeyPress {
     pub(super) time: f64,
     pub(super) key: Key,
-}
-
-/// Where a robot was at a time, truly and by its own odometry.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrailPoint {
-    /// Seconds since the start.
-    pub time: f64,
-    /// The true pose in the world.
-    pub pose: Pose,
-    /// What its odometry said, in its own frame.
-    pub odometry: Pose,
 }
 
 /// What a robot touches, and has touched.

@@ -1,7 +1,7 @@
 use super::autopilot::Autopilot;
 use super::course::Course;
 use super::drive_errors::DriveErrors;
-use super::mechanics::Mechanics;
+use super::drive_mechanics::Mechanics;
 use super::wheels::{WheelSpec, Wheels};
 use super::{NoiseModel, TICK};
 use crate::geometry::{Pose, Twist, units};

@@ -2,7 +2,7 @@ use super::NoiseModel;
 use super::autopilot::Autopilot;
 use super::course::Course;
 use super::drive_errors::DriveErrors;
-use super::mechanics::Mechanics;
+use super::drive_mechanics::Mechanics;
 use super::wheels::{WheelSpec, Wheels};
 use crate::geometry::{Pose, Twist};
 use crate::io::Result;

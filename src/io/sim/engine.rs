@@ -2,8 +2,8 @@ use image::RgbImage;
 
 use super::body::Body;
 use super::camera::{CameraDevice, Moment, Studio};
+use super::movable::{Movable, movables};
 use super::options::ticks_in;
-use super::pushing::{Movable, movables};
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
 use crate::geometry::{Pose, Twist};
 use crate::io::error::{require_finite, require_positive};

@@ -1,16 +1,17 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
+use super::SimOptions;
 use super::body::Body;
 use super::engine::Engine;
 use super::engine::no_robot;
 use super::options::ticks_in;
 use super::robot::{check_duration, time_is_over};
 use super::truth::robot_truth;
-use super::{RobotTruth, SimOptions};
 use crate::geometry::Pose;
 use crate::io::error::require_positive;
-use crate::io::{Error, ErrorKind, Key, Result};
+use crate::io::troop;
+use crate::io::{Error, ErrorKind, Key, Result, RobotTruth, Troop};
 use crate::world::Scene;
 
 /// Any number of robots whose behaviours are stepped in one thread.
@@ -189,4 +190,30 @@ fn cannot_wait() -> Error {
         ErrorKind::Unsupported,
         "a behaviour in a fleet cannot wait; it is called again when it is due",
     )
+}
+
+impl<'a> Troop<'a> for Fleet<'a> {
+    fn robots(&self) -> usize {
+        self.len()
+    }
+
+    fn control(&mut self, robot: usize, period: f64, mut behaviour: troop::Behaviour<'a>) -> Result<()> {
+        Fleet::control(self, robot, period, move |robot| behaviour(robot))
+    }
+
+    fn run_for(&mut self, seconds: f64) -> Result<()> {
+        Fleet::run_for(self, seconds)
+    }
+
+    fn time(&mut self) -> Result<f64> {
+        Ok(Fleet::time(self))
+    }
+
+    fn pose(&mut self, robot: usize) -> Result<Pose> {
+        Fleet::pose(self, robot).ok_or_else(|| troop::no_robot(robot, self.len()))
+    }
+
+    fn truth(&mut self, robot: usize) -> Result<RobotTruth> {
+        Fleet::truth(self, robot)
+    }
 }

@@ -30,11 +30,12 @@ mod car;
 mod collision;
 mod course;
 mod drive_errors;
+mod drive_mechanics;
 mod drivetrain;
 mod engine;
 mod fleet;
-mod lcd;
 mod mechanics;
+mod movable;
 mod noise;
 mod omni;
 mod options;
@@ -49,14 +50,14 @@ pub mod starman;
 mod truth;
 mod wheels;
 
-pub use body::TrailPoint;
 pub use fleet::{Fleet, FleetRobot};
-pub use lcd::Lcd;
 pub use noise::NoiseModel;
 pub use options::SimOptions;
 pub use robot::SimRobot;
 pub use simulation::Simulation;
-pub use truth::{RobotTruth, Truth};
+pub use truth::Truth;
+
+pub use super::{Lcd, RobotTruth, TrailPoint};
 
 /// Seconds in which the world advances at a time.
 pub const TICK: f64 = 0.010;

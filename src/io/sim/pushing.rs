@@ -2,29 +2,12 @@
 
 use super::engine::Engine;
 use crate::geometry::{Pose, Vector};
-use crate::world::World;
 use crate::world::space::{Contact, SolidId};
-
-/// An object and what it takes to push it.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Movable {
-    pub(super) solid: SolidId,
-    /// Kilograms; infinite for what is fixed.
-    mass: f64,
-}
 
 /// What a push goes beyond the rim of the robot, in metres: nothing lies within another thing after it.
 const CLEAR: f64 = 1e-6;
 /// The deepest that a thing may come to lie in another one by a push.
 const TOLERANCE: f64 = 1e-5;
-
-pub(super) fn movables(world: &World, solids: &[SolidId]) -> Vec<Movable> {
-    let movable = |(&solid, object): (&SolidId, &crate::world::Object)| {
-        let mass = if object.kind.fixed { f64::INFINITY } else { object.kind.mass };
-        Movable { solid, mass }
-    };
-    solids.iter().zip(&world.objects).map(movable).collect()
-}
 
 impl Engine {
     /// Pushes what a robot at a pose would be in, as far as it can be pushed. Returns whether anything moved.

@@ -1,32 +1,14 @@
 use std::sync::Arc;
 
-use super::TrailPoint;
 use super::engine::{Engine, Thing};
 use super::shared::Shared;
-use crate::geometry::{Point, Pose};
-use crate::io::{Error, Result};
+use crate::geometry::Pose;
+use crate::io::{Error, Result, RobotTruth, Witness};
 
 /// What is true in a simulated world. No robot reaches it; verdicts, pictures and tests do.
 #[derive(Debug, Clone)]
 pub struct Truth {
     shared: Arc<Shared>,
-}
-
-/// What is true about one robot.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RobotTruth {
-    /// Its pose in the world.
-    pub pose: Pose,
-    /// What its odometry says, relative to its start.
-    pub odometry: Pose,
-    /// How often it has come into contact with a wall, an object or a robot.
-    pub contacts: u32,
-    /// Where it first touched each time; at most the first 1,000.
-    pub contact_places: Vec<Point>,
-    /// Metres that its middle has moved.
-    pub path_length: f64,
-    /// Where it was, if the options ask for a trail.
-    pub trail: Vec<TrailPoint>,
 }
 
 impl Truth {
@@ -116,4 +98,22 @@ pub(super) fn robot_truth(engine: &Engine, robot: usize) -> Result<RobotTruth> {
         path_length: body.path_length,
         trail: body.trail.clone(),
     })
+}
+
+impl Witness for Truth {
+    fn time(&mut self) -> Result<f64> {
+        Ok(Truth::time(self))
+    }
+
+    fn pose(&mut self, robot: usize) -> Result<Pose> {
+        Truth::pose(self, robot)
+    }
+
+    fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
+        Truth::robot(self, robot)
+    }
+
+    fn object(&mut self, object: usize) -> Result<Pose> {
+        Truth::object(self, object)
+    }
 }

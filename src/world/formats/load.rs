@@ -169,9 +169,3 @@ fn kind(name: &str) -> Kind {
         _ => Kind::Other,
     }
 }
-
-/// The name of a file without folders and ending: the name of robots and objects that state none.
-pub(super) fn stem(file: &str) -> String {
-    let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
-    Path::new(name).file_stem().map_or_else(|| name.into(), |stem| stem.to_string_lossy().into_owned())
-}

@@ -28,5 +28,5 @@ pub use load::{
 pub use source::{DiskFiles, FileSource, MemoryFiles, SourceFile};
 
 pub(crate) use lexer::shown;
-use load::stem;
+use source::stem;
 pub(crate) use yaml_events::YamlEvents;

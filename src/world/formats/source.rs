@@ -144,6 +144,12 @@ pub(super) fn check_length(text: &str, file: &str) -> Result<(), FormatError> {
     Err(FormatError::new(file, Location::START, "a larger file", expected))
 }
 
+/// The name of a file without folders and ending: the name of robots and objects that state none.
+pub(super) fn stem(file: &str) -> String {
+    let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
+    Path::new(name).file_stem().map_or_else(|| name.into(), |stem| stem.to_string_lossy().into_owned())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,8 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use super::brush::Brush;
 use super::figure::{Figure, Outline, beside, stroke};
-use super::repertoire::Brush;
 use super::straight::points;
 use crate::geometry::{Point, Pose, direction};
 

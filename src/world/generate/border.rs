@@ -3,8 +3,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use super::brush::Brush;
 use super::figure::{Figure, Outline, stroke};
-use super::repertoire::Brush;
 use super::round::{arc, wave};
 use super::straight::points;
 use crate::geometry::{Point, Pose};

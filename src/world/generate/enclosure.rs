@@ -1,6 +1,6 @@
 use super::border::{self, Field};
+use super::brush::{Brush, Drawing};
 use super::figure::Figure;
-use super::repertoire::{Brush, Drawing};
 use super::{bent, round, straight};
 
 /// A figure that shuts a part of the field off.

@@ -3,8 +3,9 @@ use std::sync::Arc;
 
 use super::CourseOptions;
 use super::border::Field;
+use super::brush::{Brush, Drawing};
 use super::figure::{Figure, Outline, distance_between};
-use super::repertoire::{Brush, Drawing, ObstacleKind};
+use super::repertoire::ObstacleKind;
 use crate::geometry::{Aabb, Point, Pose};
 use crate::random::Stream;
 use crate::world::{Object, ObjectKind, Shape, Wall, World};

@@ -12,6 +12,7 @@
 
 mod bent;
 mod border;
+mod brush;
 mod contour;
 mod course;
 mod decor;

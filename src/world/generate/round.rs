@@ -2,8 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+use super::brush::Brush;
 use super::figure::{Figure, Outline, divided, stroke};
-use super::repertoire::Brush;
 use crate::geometry::{Point, direction, math};
 
 /// A disc.

@@ -2,8 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use super::brush::Brush;
 use super::figure::{Figure, Outline};
-use super::repertoire::Brush;
 use crate::geometry::{Point, Pose, direction};
 
 /// A convex polygon of three to eight corners on an ellipse.

@@ -6,11 +6,10 @@ use image::RgbImage;
 
 use super::world::Race;
 use crate::geometry::{Pose, Twist};
-use crate::io::sim::RobotTruth;
 use crate::io::{
     Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font, Key, Keys,
     Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution, Result,
-    Servos, Viewport,
+    RobotTruth, Servos, Viewport, Witness,
 };
 use crate::world::Colour;
 
@@ -49,8 +48,7 @@ impl SharedRace {
     }
 }
 
-#[cfg(feature = "log")]
-impl crate::io::log::Witness for SharedRace {
+impl Witness for SharedRace {
     fn time(&mut self) -> Result<f64> {
         Ok(SharedRace::time(self))
     }

@@ -209,7 +209,6 @@ impl Race {
     }
 
     /// Where a cone stands or stood.
-    #[cfg(feature = "log")]
     pub(super) fn cone_pose(&self, index: usize) -> Result<Pose> {
         let place = self.cones.get(index).map(|cone| cone.cone.position);
         let pose = place.map(|place| Pose::new(place.x, place.y, 0.0));

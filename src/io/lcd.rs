@@ -29,7 +29,7 @@ const DEFAULT_LABEL: (Colour, Colour) = (Colour::WHITE, Colour::from_hex(0x0040_
 /// labels are shown, of which rows 18 to 20 lie below an image in the default [`Viewport`].
 ///
 /// ```
-/// use roverlab::io::sim::Lcd;
+/// use roverlab::io::Lcd;
 /// use roverlab::io::{Display, Fill};
 /// use roverlab::world::Colour;
 ///

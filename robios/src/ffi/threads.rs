@@ -1,0 +1,113 @@
+//! The process that the robot belongs to, and the threads that call it.
+
+use std::cell::Cell;
+use std::sync::atomic::{AtomicBool, AtomicI32, AtomicU64, AtomicUsize, Ordering};
+
+/// The process that the robot belongs to; a child after `fork` has none.
+static OWNER: AtomicI32 = AtomicI32::new(0);
+/// Calls so far, but for those of threads that sleep.
+static CALLS: AtomicU64 = AtomicU64::new(0);
+/// Threads that call, and whether the program has started any.
+static THREADS: AtomicUsize = AtomicUsize::new(0);
+static STARTED_THREADS: AtomicBool = AtomicBool::new(false);
+
+thread_local! {
+    /// Whether this thread is within a call: a signal handler that calls again must not wait for itself.
+    static INSIDE: Cell<bool> = const { Cell::new(false) };
+    /// Counts this thread while it lives.
+    static PRESENT: Present = Present::new();
+    /// Whether this thread is the library's own, or about to start one: it is none of the program's.
+    static OURS: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Says whether this thread acts for the library.
+pub(super) fn set_ours(ours: bool) {
+    let _ = OURS.try_with(|flag| flag.set(ours));
+}
+
+pub(super) fn is_the_programs() -> bool {
+    !OURS.try_with(Cell::get).unwrap_or(false)
+}
+
+/// Calls so far.
+pub(super) fn calls() -> u64 {
+    CALLS.load(Ordering::Relaxed)
+}
+
+/// Counts a call, unless it is the library's own.
+pub(super) fn count_call() {
+    if is_the_programs() {
+        CALLS.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+/// Counts this thread from now on, unless it is the library's own.
+pub(super) fn be_present() {
+    if is_the_programs() {
+        let _ = PRESENT.try_with(|_| ());
+    }
+}
+
+struct Present;
+
+impl Present {
+    fn new() -> Self {
+        THREADS.fetch_add(1, Ordering::Relaxed);
+        Self
+    }
+}
+
+impl Drop for Present {
+    fn drop(&mut self) {
+        THREADS.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+/// Marks this thread as being within a call.
+pub(super) struct Inside;
+
+impl Inside {
+    pub(super) fn new() -> Option<Self> {
+        let free = INSIDE.try_with(|inside| !inside.replace(true)).unwrap_or(false);
+        // Made only where it is needed: to drop it is to say that the thread has left.
+        if free { Some(Self) } else { None }
+    }
+}
+
+impl Drop for Inside {
+    fn drop(&mut self) {
+        let _ = INSIDE.try_with(|inside| inside.set(false));
+    }
+}
+
+/// Whether the robot belongs to this process, or to nobody yet.
+pub(super) fn is_ours() -> bool {
+    let owner = OWNER.load(Ordering::Acquire);
+    owner == 0 || owner == process()
+}
+
+/// Says that the robot belongs to this process.
+pub(super) fn own() {
+    OWNER.store(process(), Ordering::Release);
+}
+
+fn process() -> i32 {
+    std::process::id() as i32
+}
+
+/// Whether there is a robot in virtual time already.
+#[cfg(target_os = "linux")]
+pub(super) fn is_alive() -> bool {
+    OWNER.load(Ordering::Acquire) != 0
+}
+
+/// Notes that the program has started a thread.
+pub(super) fn note_thread() {
+    if is_the_programs() {
+        STARTED_THREADS.store(true, Ordering::Relaxed);
+    }
+}
+
+pub(super) fn alone() -> bool {
+    !STARTED_THREADS.load(Ordering::Relaxed) && THREADS.load(Ordering::Relaxed) <= 1
+}

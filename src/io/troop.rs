@@ -1,0 +1,92 @@
+use std::ops::ControlFlow;
+
+use super::{Error, ErrorKind, Result, RobotIo, RobotTruth};
+use crate::geometry::Pose;
+
+/// What a robot of a [`Troop`] does at each of its steps, until it breaks.
+pub type Behaviour<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<()>> + 'a>;
+
+/// Robots whose behaviours are stepped in one thread: a simulator's [`Fleet`], one that is recorded, or the recording of
+/// one.
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use roverlab::geometry::{Pose, Twist};
+/// use roverlab::io::log::{Header, Log, LogWriter, Player, Troop};
+/// use roverlab::io::sim::{Fleet, SimOptions};
+/// use roverlab::io::{Drive, Psd, Result};
+/// use roverlab::world::{RobotSpec, Scene, World};
+///
+/// fn approach<'a>(troop: &mut dyn Troop<'a>) -> Result<Pose> {
+///     troop.control(0, 0.1, Box::new(|robot| {
+///         let free = robot.distance(Psd::FRONT)?;
+///         robot.set_speed(Twist::new(0.5 * (free - 0.2), 0.0))?;
+///         Ok(ControlFlow::Continue(()))
+///     }))?;
+///     troop.run_for(5.0)?;
+///     troop.pose(0)
+/// }
+///
+/// # fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
+/// let scene = Scene::with_robot(World::walled(2.0, 2.0), RobotSpec::s4(), Pose::new(1.0, 1.0, 0.0));
+/// let writer = LogWriter::new(Vec::new(), &Header::new("approach", [""; 0]))?;
+/// let mut recorded = writer.troop(Fleet::new(&scene, SimOptions::default())?);
+/// let pose = approach(&mut recorded)?;
+/// assert!(pose.x > 1.6, "it has driven to the wall: {pose:?}");
+/// drop(recorded);
+///
+/// let log = Log::read(writer.finish()?)?;
+/// assert_eq!(approach(&mut Player::new(&log).troop())?, pose);
+/// # Ok(())
+/// # }
+/// ```
+pub trait Troop<'a> {
+    /// How many robots there are.
+    fn robots(&self) -> usize;
+
+    /// Gives a robot a behaviour, which is called every `period` seconds until it breaks.
+    fn control(&mut self, robot: usize, period: f64, behaviour: Behaviour<'a>) -> Result<()>;
+
+    /// Steps each behaviour when it is due, for `seconds` or until all behaviours have ended. The first error of a
+    /// behaviour ends the run.
+    fn run_for(&mut self, seconds: f64) -> Result<()>;
+
+    /// Seconds since the start.
+    fn time(&mut self) -> Result<f64>;
+
+    /// A robot's true pose in the world.
+    fn pose(&mut self, robot: usize) -> Result<Pose>;
+
+    /// All that is true about a robot.
+    fn truth(&mut self, robot: usize) -> Result<RobotTruth>;
+}
+
+impl<'a, T: Troop<'a> + ?Sized> Troop<'a> for Box<T> {
+    fn robots(&self) -> usize {
+        (**self).robots()
+    }
+
+    fn control(&mut self, robot: usize, period: f64, behaviour: Behaviour<'a>) -> Result<()> {
+        (**self).control(robot, period, behaviour)
+    }
+
+    fn run_for(&mut self, seconds: f64) -> Result<()> {
+        (**self).run_for(seconds)
+    }
+
+    fn time(&mut self) -> Result<f64> {
+        (**self).time()
+    }
+
+    fn pose(&mut self, robot: usize) -> Result<Pose> {
+        (**self).pose(robot)
+    }
+
+    fn truth(&mut self, robot: usize) -> Result<RobotTruth> {
+        (**self).truth(robot)
+    }
+}
+
+pub(crate) fn no_robot(robot: usize, robots: usize) -> Error {
+    Error::new(ErrorKind::InvalidInput, format!("found no robot {robot}; expected an index below {robots}"))
+}
