@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         generated.track.cones.iter().map(|cone| RaceCone::new(cone.position, blue)).collect();
     let options = RaceOptions { noise: NoiseModel::real(), ..RaceOptions::default() };
     let spec = RaceCarSpec::default();
-    let race = SharedRace::new(Race::new(&cones, &[(spec.clone(), start)], options)?);
+    let race = SharedRace::new(Race::new(&cones, &[(spec, start)], options)?);
     let mut car = race.car(0)?;
 
     // The referee looks at the wheels, in the car's frame from the middle of the rear axle.

@@ -14,11 +14,10 @@ use roverlab::scan::{LocalisationMap, Localiser, LocaliserParameters};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let mut world = World::walled(3.2, 2.4);
-    world.walls.push(Wall::new(Point::new(2.3, 0.0), Point::new(2.3, 0.9)));
+    let mut world = World::walled(2.2, 1.6);
+    world.walls.push(Wall::new(Point::new(1.5, 0.0), Point::new(1.5, 0.7)));
     let crates = Arc::new(ObjectKind::predefined("crate").ok_or("no such object")?);
-    world.objects.push(Object::new(Arc::clone(&crates), Pose::new(0.9, 0.8, 0.3)));
-    world.objects.push(Object::new(crates, Pose::new(2.2, 1.7, 0.0)));
+    world.objects.push(Object::new(crates, Pose::new(0.8, 0.8, 0.3)));
 
     // The plan covers what the robot's disc can reach from its start.
     let start = Pose::new(0.2, 0.2, 0.0);

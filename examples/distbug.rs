@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             };
             // Every hit point is followed by its leave point.
             let (name, point) = (format!("{letter}{}", marks.len() / 2 + 1), start.to_world(point));
-            println!("{time:5.1} s: {name} at ({:.2}, {:.2}) m, {words}", point.x, point.y);
+            println!("{time:5.1} s: {mark:?} {name} at ({:.2}, {:.2}) m, {words}", point.x, point.y);
             marks.push((mark, point, name));
         }
         let here = start.compose(&bug.pose());

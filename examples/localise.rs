@@ -1,4 +1,4 @@
-//! Localisation (book, section 4.3): a robot with a map of an office does not know where in it it stands. It
+//! Localisation (book, section 4.3): a robot has a map of an office, but is not told where it stands. It
 //! drives about, compares its scans with the map, and stops when one place alone explains all that it has
 //! seen.
 //!

@@ -18,10 +18,9 @@ struct Tiny {
 }
 
 impl Tiny {
-    fn go(&mut self, length: f64, angle: f64, seconds: f64) -> Result<()> {
+    fn go(&mut self, length: f64, angle: f64, seconds: f64) {
         self.pose = advance(self.pose, Displacement { length, angle });
         self.time += seconds;
-        Ok(())
     }
 }
 
@@ -31,7 +30,8 @@ impl Clock for Tiny {
     }
 
     fn wait(&mut self, seconds: f64) -> Result<()> {
-        self.go(self.speed.linear * seconds, self.speed.angular * seconds, seconds)
+        self.go(self.speed.linear * seconds, self.speed.angular * seconds, seconds);
+        Ok(())
     }
 }
 
@@ -61,12 +61,14 @@ impl Drive for Tiny {
 
     fn turn(&mut self, angle: f64, speed: f64) -> Result<()> {
         self.speed = Twist::STOP;
-        self.go(0.0, angle, (angle / speed).abs())
+        self.go(0.0, angle, (angle / speed).abs());
+        Ok(())
     }
 
     fn curve(&mut self, length: f64, angle: f64, speed: f64) -> Result<()> {
         self.speed = Twist::STOP;
-        self.go(length, angle, (length / speed).abs())
+        self.go(length, angle, (length / speed).abs());
+        Ok(())
     }
 
     fn remaining(&mut self) -> Result<f64> {

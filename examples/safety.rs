@@ -9,6 +9,7 @@ use std::cell::RefCell;
 use roverlab::geometry::{Pose, Twist, units};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{Clock, Drive};
+use roverlab::safety::SafetyState::{Armed, Auto, EmergencyStop, Manual, SafeStop};
 use roverlab::safety::{Beat, Panel, Requests, SafetyState, Supervised, SupervisorParameters};
 use roverlab::world::{RobotSpec, Scene, World};
 
@@ -18,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let truth = simulation.truth();
 
     // The base station: what its people press at which time, and what it hears of the robot.
-    let heard = RefCell::new(vec![(SafetyState::Manual, 0.0)]);
+    let heard = RefCell::new(vec![(Manual, 0.0)]);
     let station = |now: f64, beat: Beat| {
         let mut heard = heard.borrow_mut();
         if heard.last().is_some_and(|&(state, _)| state != beat.state) {
@@ -57,7 +58,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let stop = car.last_stop().ok_or("it never stopped")?;
     drop(car);
 
-    use SafetyState::{Armed, Auto, EmergencyStop, Manual, SafeStop};
     let heard = heard.into_inner();
     let states: Vec<SafetyState> = heard.iter().map(|&(state, _)| state).collect();
     assert_eq!(states, [Manual, Armed, Auto, SafeStop, Armed, Auto, EmergencyStop]);
