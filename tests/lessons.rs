@@ -55,6 +55,8 @@ lessons!(
     motion,
     navigate,
     omni,
+    #[cfg(feature = "testing")]
+    own_planner,
     own_robot,
     path_following,
     quadtree,

@@ -15,7 +15,7 @@ fn published(folder: &str) -> PathBuf {
 }
 
 #[test]
-#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn cells_are_counted_as_published() {
     let folder = published("ros_maps");
     let table = fs::read_to_string(folder.join("cell_counts.csv")).unwrap();
@@ -40,7 +40,7 @@ fn cells_are_counted_as_published() {
 }
 
 #[test]
-#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn the_test_map_of_the_map_server_is_read_cell_by_cell() {
     let folder = published("ros_maps");
     let folder = folder.join("nav2/nav2_map_server/test");
@@ -63,7 +63,7 @@ fn the_test_map_of_the_map_server_is_read_cell_by_cell() {
 }
 
 #[test]
-#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn a_missing_image_is_named_where_the_map_names_it() {
     let folder = published("ros_maps");
     let error = load_scene(folder.join("nav2/nav2_system_tests/maps/empty_room.yaml")).unwrap_err();
@@ -85,7 +85,7 @@ fn pictures(name: &str, made: &str) -> (GrayImage, GrayImage) {
 }
 
 #[test]
-#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn gradients_are_those_of_imageproc_but_for_rounding() -> Result<(), vision::Error> {
     let (elephant, truth) = pictures("elephant.png", "elephant_gradients.png");
     let mut found = elephant.clone();
@@ -109,7 +109,7 @@ fn gradients_are_those_of_imageproc_but_for_rounding() -> Result<(), vision::Err
 }
 
 #[test]
-#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn edges_are_those_of_imageproc() -> Result<(), vision::Error> {
     let (zebra, truth) = pictures("zebra.png", "zebra_canny.png");
     let (mut smooth, mut found) = (zebra.clone(), zebra.clone());

@@ -53,7 +53,8 @@ impl Source {
             let name = path.file_stem().unwrap().to_str().unwrap();
             if name == "tests" || name.ends_with("_tests") {
                 continue;
-            } else if path.is_dir() {
+            }
+            if path.is_dir() {
                 self.read(&path, &join(module, name));
             } else if name == "mod" || name == "lib" {
                 self.contents.insert(module.to_owned());

@@ -27,7 +27,7 @@ fn name(path: &std::path::Path) -> String {
 }
 
 #[test]
-#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn published_cone_maps_have_a_way_between_their_cones() {
     let mut paths = files("fssim/fssim_gazebo/models/track/tracks_yaml", "yaml");
     paths.extend(files("eufs/eufs_tracks/csv", "csv"));
@@ -51,7 +51,7 @@ fn published_cone_maps_have_a_way_between_their_cones() {
 }
 
 #[test]
-#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn published_circuits_bend_no_more_than_the_published_lines() {
     // That of the car of `io::sim::race`, 1.4 m wide.
     const HALF_WIDTH: f64 = 0.7;
@@ -261,7 +261,7 @@ fn broken_logs_are_told_where() {
 }
 
 #[test]
-#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn a_lane_is_found_in_each_frame_of_a_real_drive() {
     let logs = files("ft-fsd", "json").into_iter().filter(|path| name(path).starts_with("fsg"));
     for path in logs {

@@ -62,7 +62,7 @@ fn logs_have_their_golden_digests() {
     }
     let expected = fs::read_to_string(FILE).unwrap_or_else(|error| panic!("{FILE}: {error}"));
     let is_run = |line: &&str| !left_out.iter().any(|name| line.starts_with(&format!("{name} ")));
-    let expected: String = expected.lines().filter(is_run).map(|line| format!("{line}\n")).collect();
+    let expected = expected.lines().filter(is_run).collect::<Vec<_>>().join("\n");
     let differences = differences(&expected, &found);
     assert!(
         differences.is_empty(),

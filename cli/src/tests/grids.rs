@@ -109,7 +109,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 /// Some queries of every published scenario file: as long as published by all octile planners, at most as long in any
 /// direction, and little longer than that through a quadtree.
 #[test]
-#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn published_lengths_are_met() {
     let folder = published("movingai");
     let (mut compared, mut ratios) = (0, Vec::new());

@@ -22,7 +22,7 @@ fn the_left_hand_finds_the_goal_when_controlled() {
 }
 
 #[test]
-#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn the_left_hand_touches_no_wall_of_published_mazes() {
     let folder = published("micromouse/kerikun11/data");
     let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();

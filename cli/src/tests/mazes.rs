@@ -75,7 +75,7 @@ fn what_was_explored_is_told_even_if_the_fast_run_fails() {
 
 /// Where odometry is far off and a corridor long, a robot must not take a wall for that of the next cell.
 #[test]
-#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn long_corridors_are_explored_right_with_odometry_that_is_far_off() {
     let folder = published("micromouse");
     for (name, seconds) in [("32MM2022HX", 38.590_468), ("32MM2012HX", 25.228_637)] {
@@ -197,14 +197,14 @@ fn a_file_that_is_missing_is_named() {
 
 /// What merely shows a maze, and prose, is no maze.
 #[test]
-#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn prose_about_mazes_is_no_maze() {
     let text = published("micromouse").join("mms/FORMATS-from-README.md");
     assert!(files::load(&text).is_err(), "{}", text.display());
 }
 
 #[test]
-#[ignore = "needs published data: ROVERLAB_DATA=FOLDER cargo test -- --ignored"]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn published_mazes_have_the_known_answers() {
     let folder = published("micromouse");
     let table = fs::read_to_string(folder.join("shortest.csv")).unwrap();
