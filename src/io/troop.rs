@@ -6,7 +6,7 @@ use crate::geometry::Pose;
 /// What a robot of a [`Troop`] does at each of its steps, until it breaks.
 pub type Behaviour<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<()>> + 'a>;
 
-/// Robots whose behaviours are stepped in one thread: a simulator's [`Fleet`], one that is recorded, or the recording of
+/// Robots whose behaviours are stepped in one thread: a simulator's [`Fleet`](crate::io::sim::Fleet), one that is recorded, or the recording of
 /// one.
 ///
 /// ```
