@@ -1,11 +1,12 @@
 //! The planners of `roverlab::nav::grid` beside their peers: the same queries, costs compared first, then times.
 //!
-//! `cargo bench -p roverlab-bench --bench planners` prints a table for each map with the median time of a query and, at the end, geometric
-//! means of the ratios over the maps of 512 cells and more. Published maps take part where the environment variable
-//! `ROVERLAB_DATA` names the folder that holds `movingai/`; others are made here. `-- --scaling` shows how the planners and
-//! the decomposition into a quadtree grow up to 4096 x 4096 cells instead, with fewer queries on larger maps.
-//! `--queries N` and `--repeat N` say how many queries a map has got and how often each is asked, the fastest time of
-//! which counts; `--maps TEXT` takes the maps alone whose names hold a text, `--own` none but those made here.
+//! `cargo bench -p roverlab-bench --bench planners` prints a table for each map with the median time of a
+//! query and, at the end, geometric means of the ratios over the maps of 512 cells and more. Published maps
+//! take part where the environment variable `ROVERLAB_DATA` names the folder that holds `movingai/`; others
+//! are made here. `-- --scaling` shows how the planners and the decomposition into a quadtree grow up to 4096
+//! x 4096 cells instead, with fewer queries on larger maps. `--queries N` and `--repeat N` say how many
+//! queries a map has got and how often each is asked, the fastest time of which counts; `--maps TEXT` takes
+//! the maps alone whose names hold a text, `--own` none but those made here.
 
 #[path = "planners/compare.rs"]
 mod compare;

@@ -1,7 +1,8 @@
 //! Every kernel of `roverlab::vision` at three resolutions, beside imageproc's and beside a copy of the memory.
 //!
-//! `cargo bench -p roverlab-bench --bench vision` prints the table. `-- --json FILE` writes the times as JSON, `-- --images FOLDER` the images
-//! that they were taken on, for `benches/peers/vision.py`; `-- --quick` measures for a shorter time.
+//! `cargo bench -p roverlab-bench --bench vision` prints the table. `-- --json FILE` writes the times as
+//! JSON, `-- --images FOLDER` the images that they were taken on, for `benches/peers/vision.py`; `-- --quick`
+//! measures for a shorter time.
 
 #[path = "vision/clock.rs"]
 mod clock;

@@ -1,5 +1,5 @@
-//! Tests that a plain `cargo test` leaves out, as they need features that are off by default, or packages of their own.
-//! They show as ignored, each with the command that runs them.
+//! Tests that a plain `cargo test` leaves out, as they need features that are off by default, or packages of
+//! their own. They show as ignored, each with the command that runs them.
 
 /// A name that shows as ignored while a feature is off.
 macro_rules! left_out {

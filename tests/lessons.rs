@@ -1,6 +1,7 @@
 //! Every example runs to its end: it asserts its own result.
 //!
-//! Cargo builds the examples before it runs all tests. For some of these alone: `cargo test --examples --test lessons`.
+//! Cargo builds the examples before it runs all tests. For some of these alone: `cargo test --examples --test
+//! lessons`.
 
 use std::fs;
 use std::path::{Path, PathBuf};

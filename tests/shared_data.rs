@@ -1,5 +1,5 @@
-//! Published maps with known numbers of cells, and pictures with known edges. They are no part of the project: the
-//! environment variable `ROVERLAB_DATA` names the folder that holds `ros_maps/` and `images/`.
+//! Published maps with known numbers of cells, and pictures with known edges. They are no part of the
+//! project: the environment variable `ROVERLAB_DATA` names the folder that holds `ros_maps/` and `images/`.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,5 @@
-//! Which part of the library may use which: what `docs/ARCHITECTURE.md` says, held against the paths in the source.
-//! Tests and comments are left out.
+//! Which part of the library may use which: what `docs/ARCHITECTURE.md` says, held against the paths in the
+//! source. Tests and comments are left out.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -21,7 +21,8 @@ type Run = fn(Vec<OsString>, &mut dyn Write, &mut dyn Write) -> u8;
 /// One of the commands.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Command {
-    /// The name in reports and recordings: words joined by underscores. On the command line they are joined by hyphens.
+    /// The name in reports and recordings: words joined by underscores. On the command line they are joined
+    /// by hyphens.
     pub(crate) name: &'static str,
     /// Runs it. The first word is its name.
     pub(crate) run: Run,

@@ -6,8 +6,8 @@ use crate::geometry::Pose;
 /// What a robot of a [`Troop`] does at each of its steps, until it breaks.
 pub type Behaviour<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<()>> + 'a>;
 
-/// Robots whose behaviours are stepped in one thread: a simulator's [`Fleet`](crate::io::sim::Fleet), one that is
-/// recorded, or the recording of one.
+/// Robots whose behaviours are stepped in one thread: a simulator's [`Fleet`](crate::io::sim::Fleet), one
+/// that is recorded, or the recording of one.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -40,8 +40,8 @@ pub trait Troop<'a> {
     /// Gives a robot a behaviour, which is called every `period` seconds until it breaks.
     fn control(&mut self, robot: usize, period: f64, behaviour: Behaviour<'a>) -> Result<()>;
 
-    /// Steps each behaviour when it is due, for `seconds` or until all behaviours have ended. The first error of a
-    /// behaviour ends the run.
+    /// Steps each behaviour when it is due, for `seconds` or until all behaviours have ended. The first error
+    /// of a behaviour ends the run.
     fn run_for(&mut self, seconds: f64) -> Result<()>;
 
     /// Seconds since the start.

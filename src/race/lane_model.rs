@@ -1,6 +1,7 @@
 use crate::geometry::{Point, Pose};
 
-/// What a lane is looked for with. All numbers are greater than 0 and finite, and it looks no farther ahead than 1000 m.
+/// What a lane is looked for with. All numbers are greater than 0 and finite, and it looks no farther ahead
+/// than 1000 m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaneParameters {
     /// Metres ahead of the car.
@@ -68,7 +69,8 @@ pub(super) struct Way<'w> {
     /// Where it was just now, oldest first.
     pub(super) behind: &'w [Pose],
     pub(super) car: Pose,
-    /// The way by which it came: it does not lead back there. Where a circuit crosses itself, it goes straight on.
+    /// The way by which it came: it does not lead back there. Where a circuit crosses itself, it goes
+    /// straight on.
     pub(super) earlier: &'w [Pose],
     /// What is no cone and not to be touched.
     pub(super) others: &'w [Point],

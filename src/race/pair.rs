@@ -7,8 +7,8 @@ pub struct CentreLineParameters {
     pub spacing: f64,
     /// Metres between stations of the corridor.
     pub step: f64,
-    /// What a cone of the wrong colour costs; 0 to be colour-blind. Infinity where colours are certain: no cone is passed on the
-    /// wrong side, and none whose colour is known is taken for a false one.
+    /// What a cone of the wrong colour costs; 0 to be colour-blind. Infinity where colours are certain: no
+    /// cone is passed on the wrong side, and none whose colour is known is taken for a false one.
     pub colour: f64,
     /// Metres of the shortest loop; infinity where a way must not close.
     pub shortest_loop: f64,

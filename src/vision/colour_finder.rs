@@ -67,8 +67,8 @@ impl ColourFinder {
         })
     }
 
-    /// Where the colour is in an image or a view of one; `None` if there is not enough of it. Fails for an image
-    /// without pixels.
+    /// Where the colour is in an image or a view of one; `None` if there is not enough of it. Fails for an
+    /// image without pixels.
     pub fn find<'a>(
         &mut self,
         image: impl TryInto<RgbView<'a>, Error: Into<Error>>,

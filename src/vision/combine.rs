@@ -10,7 +10,8 @@ pub fn threshold_into(input: GrayView<'_>, output: GrayViewMut<'_>, threshold: u
     Ok(())
 }
 
-/// The first image in gray, and a colour (red, green, blue) wherever the second one is not 0 (book, section 11.2; RoBIOS's
+/// The first image in gray, and a colour (red, green, blue) wherever the second one is not 0 (book, section
+/// 11.2; RoBIOS's
 /// `IPOverlayGray`).
 pub fn overlay_gray_into(
     base: GrayView<'_>,

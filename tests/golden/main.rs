@@ -2,8 +2,8 @@
 //! however these are scheduled. The digests of whole runs of every system stand in
 //! `digests.txt`.
 //!
-//! `REGENERATE=1 cargo test --all-features --test golden` writes that file anew, after a change that is meant to change runs.
-//! `cargo run -p roverlab-oracles NAME` prints a run's log, to see where two of them part.
+//! `REGENERATE=1 cargo test --all-features --test golden` writes that file anew, after a change that is meant
+//! to change runs. `cargo run -p roverlab-oracles NAME` prints a run's log, to see where two of them part.
 
 mod scenarios;
 
@@ -18,7 +18,8 @@ use scenarios::{digest, scenarios};
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/digests.txt");
 
-const HEADER: &str = "# FNV-1a digests of the logs of scenarios. Written by REGENERATE=1 cargo test --all-features --test golden.\n";
+const HEADER: &str = "# FNV-1a digests of the logs of scenarios, written by\n\
+                      # REGENERATE=1 cargo test --all-features --test golden\n";
 
 /// The digests of a file by their names.
 fn parse(text: &str) -> BTreeMap<&str, &str> {

@@ -1,5 +1,6 @@
-//! Prints the digests of the runs that `tests/golden` keeps, one line each: `cargo run -p roverlab-oracles`. With a
-//! scenario's name, prints that run's log: `cargo run -p roverlab-oracles arcs`. For platforms without a test harness.
+//! Prints the digests of the runs that `tests/golden` keeps, one line each: `cargo run -p roverlab-oracles`.
+//! With a scenario's name, prints that run's log: `cargo run -p roverlab-oracles arcs`. For platforms without
+//! a test harness.
 
 mod scenarios;
 

@@ -145,7 +145,8 @@ proptest! {
         robot.curve(length, angle, speed).unwrap();
         let mut last = robot.remaining().unwrap();
         let whole = if length == 0.0 { angle } else { length };
-        // Of a manoeuvre that ends where the robot stands, as its encoders see it, nothing is left from the start.
+        // Of a manoeuvre that ends where the robot stands, as its encoders see it, nothing is left from the
+        // start.
         let resolution = if ideal_encoders { 5e-5 } else { 0.5 * ENCODER_TICK };
         let is_seen = length.abs() + 0.045 * angle.abs() > resolution;
         let expected = if is_seen { whole.abs() } else { 0.0 };

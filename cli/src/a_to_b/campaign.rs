@@ -99,6 +99,7 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
     Ok(Report {
         sim_time: Some(rows.iter().map(|row| row.sim_time).sum()),
         collisions: Some(rows.iter().map(|row| row.contacts).sum()),
+        mixed_noise: true,
         ..Report::new(outcome)
     }
     .table("rows", table::json(&rows)))

@@ -12,8 +12,8 @@ const HEADING: f64 = 0.0;
 const POLE_DISTANCE: f64 = 0.4;
 const POLE_RADIUS: f64 = 0.04;
 
-/// The command's own scene: an empty floor of 4 m x 4 m, with a marker at the goal. Without one it is the book's, 1450 mm
-/// ahead and 650 mm to the left.
+/// The command's own scene: an empty floor of 4 m x 4 m, with a marker at the goal. Without one it is the
+/// book's, 1450 mm ahead and 650 mm to the left.
 pub(crate) fn scene(goal: Option<GoalOption>) -> Scene {
     let mut world = World::empty(4.0, 4.0);
     let start = Pose::from_mm_deg(1000.0, 1000.0, 0.0);

@@ -58,11 +58,7 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-impl AsRef<CommonArgs> for Args {
-    fn as_ref(&self) -> &CommonArgs {
-        &self.common
-    }
-}
+crate::common::shares_options!(Args, common: CommonArgs);
 
 /// What the robot does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

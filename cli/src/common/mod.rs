@@ -11,11 +11,7 @@
 //!     common: CommonArgs,
 //! }
 //!
-//! impl AsRef<CommonArgs> for Args {
-//!     fn as_ref(&self) -> &CommonArgs {
-//!         &self.common
-//!     }
-//! }
+//! crate::common::shares_options!(Args, common: CommonArgs);
 //!
 //! pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 //!     // ... simulate, draw the picture ...
@@ -45,9 +41,23 @@
 //! `replay check` finds the command of a recording in `commands`.
 //!
 //! The command line of a recorded run is in the recording, but for what does not affect the run; `--replay` reads it
-//! from there. In place of the names of files are those that the files have in the recording, so a command reads the
-//! file of an option of its own by `common.read("option", path)`, and the option stands in the list `FILES` of
+//! from there. In place of the names of files are those that the files have in the recording, so a command
+//! reads the file of an option of its own by `common.read("option", path)`, and the option stands in the list
+//! `FILES` of
 //! `command_line`; `common.trip` does so for `--world` and `--robot`.
+
+/// Gives out the shared options of a command line.
+macro_rules! shares_options {
+    ($args:ty, $field:ident: $options:ty) => {
+        impl AsRef<$options> for $args {
+            fn as_ref(&self) -> &$options {
+                &self.$field
+            }
+        }
+    };
+}
+
+pub(crate) use shares_options;
 
 mod args;
 mod command_line;

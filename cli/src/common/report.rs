@@ -50,6 +50,9 @@ pub(crate) struct Report {
     /// What went wrong after the run, such as a picture that could not be saved. The run did not fail by it, but the
     /// program did.
     pub(crate) trouble: Option<String>,
+    /// Whether the runs have several levels of noise, which the fields tell; that of the options is none of
+    /// them.
+    pub(crate) mixed_noise: bool,
     /// What people read instead of a summary, if there is such.
     pub(crate) words: Option<String>,
     /// The command's own fields; see [`Report::field`].
@@ -98,6 +101,7 @@ impl Report {
             odometry: None,
             error: None,
             trouble: None,
+            mixed_noise: false,
             words: None,
             fields: Vec::new(),
             tables: Vec::new(),
@@ -126,8 +130,8 @@ impl Report {
         self.field(name, rows)
     }
 
-    /// Adds a time on the wall clock or a rate, rounded to a millionth; its name ends in its unit. One that is not finite
-    /// becomes `null`.
+    /// Adds a time on the wall clock or a rate, rounded to a millionth; its name ends in its unit. One that
+    /// is not finite becomes `null`.
     #[must_use]
     pub(crate) fn timing(mut self, name: &'static str, value: f64) -> Self {
         self.timing.push((name, rounded(value)));

@@ -9,8 +9,9 @@ use super::report::{Header, rounded};
 use super::wall_clock::Stopwatch;
 use super::{CommonArgs, Failure, PlainArgs, Report};
 
-/// Runs a command: reads the command line, does the work, prints the report or one message. Returns the exit status,
-/// which says how it went. 0: the behaviour came to a verdict; 1: it failed; 2: the command line or an input file is wrong.
+/// Runs a command: reads the command line, does the work, prints the report or one message. Returns the exit
+/// status, which says how it went. 0: the behaviour came to a verdict; 1: it failed; 2: the command line or
+/// an input file is wrong.
 pub(crate) fn run<A>(
     command: &'static str,
     command_line: impl IntoIterator<Item = OsString>,
@@ -40,7 +41,8 @@ where
         }
         common.check_recorded()?;
         report.timing.insert(0, ("wall_time_s", rounded(stopwatch.seconds())));
-        let (seed, noise, timing) = (common.seed, Some(common.noise), common.timing);
+        let (seed, timing) = (common.seed, common.timing);
+        let noise = (!report.mixed_noise).then_some(common.noise);
         Ok(report.printed(Header { command, seed, noise, timing }, common.json))
     })
 }

@@ -97,8 +97,8 @@ impl DerefMut for StagedTroop<'_> {
     }
 }
 
-/// One robot with a world of its own kind: made by the command or replayed, and recorded if the options ask for it.
-/// For all else as a [`Stage`].
+/// One robot with a world of its own kind: made by the command or replayed, and recorded if the options ask
+/// for it. For all else as a [`Stage`].
 pub(crate) struct StagedRobot {
     // Let go before the recording is finished.
     robot: Driven,

@@ -96,8 +96,8 @@ impl CommonArgs {
         Ok(Trip { scene, goal })
     }
 
-    /// The scene that the options describe, for a command without a goal: `--world`, or `own` without it, with the
-    /// robot and the start that the options give, or else the world.
+    /// The scene that the options describe, for a command without a goal: `--world`, or `own` without it,
+    /// with the robot and the start that the options give, or else the world.
     pub(crate) fn placed(&self, own: impl FnOnce() -> Scene) -> Result<Scene, Failure> {
         self.placed_of(&StandIn::default(), own)
     }

@@ -123,11 +123,7 @@ impl Args {
     }
 }
 
-impl AsRef<CommonArgs> for Args {
-    fn as_ref(&self) -> &CommonArgs {
-        &self.common
-    }
-}
+crate::common::shares_options!(Args, common: CommonArgs);
 
 /// What sees the cones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -32,20 +32,21 @@ JSON fields:
 Outcomes: reached, unreachable, timed_out, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
-    /// Drive through many generated courses and compare the verdicts with the truth.
-    #[arg(long)]
+    /// Drive through many generated courses and compare the verdicts with the truth. Their noise is that of
+    /// --levels, and the time of each is generous for its size.
+    #[arg(long, conflicts_with_all = ["noise", "time_limit", "realtime", "quantised", "supervised"])]
     pub(crate) campaign: bool,
 
     /// How many courses a campaign draws. Each has the next seed.
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", default_value_t = 1000, requires = "campaign", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) worlds: u64,
 
     /// Levels of noise of a campaign.
-    #[arg(long, value_name = "F,...", default_value = "0,1,2", value_delimiter = ',', value_parser = parse_noise, allow_hyphen_values = true)]
+    #[arg(long, value_name = "F,...", default_value = "0,1,2", requires = "campaign", value_delimiter = ',', value_parser = parse_noise, allow_hyphen_values = true)]
     pub(crate) levels: Vec<f64>,
 
     /// How many threads drive in a campaign [default: one for each core].
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", requires = "campaign", allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZero<usize>>,
 
     /// Write the courses of a campaign that went wrong into this folder, as .sim and .wld.
@@ -56,8 +57,4 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-impl AsRef<CommonArgs> for Args {
-    fn as_ref(&self) -> &CommonArgs {
-        &self.common
-    }
-}
+crate::common::shares_options!(Args, common: CommonArgs);

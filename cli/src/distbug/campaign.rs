@@ -20,6 +20,7 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
     let sim_time = runs().map(|run| run.sim_time).sum();
     Ok(Report {
         sim_time: Some(sim_time),
+        mixed_noise: true,
         collisions: Some(runs().map(|run| u64::from(run.contacts)).sum()),
         ..Report::new(if good { Outcome::verdict("passed") } else { Outcome::failure("wrong") })
     }

@@ -4,8 +4,8 @@ use std::sync::Arc;
 use roverlab::geometry::{Point, Pose, direction, units};
 use roverlab::world::{Colour, Marker, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
-/// The command's own world, 4.5 m by 4.5 m, with a robot and a marker at its goal: a C, a crescent, a hook and a room
-/// with a door on the far side lie between them.
+/// The command's own world, 4.5 m by 4.5 m, with a robot and a marker at its goal: a C, a crescent, a hook
+/// and a room with a door on the far side lie between them.
 pub(crate) fn scene() -> Scene {
     let mut world = World::walled(4.5, 4.5);
     c_shape(&mut world);

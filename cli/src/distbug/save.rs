@@ -15,7 +15,8 @@ pub(super) fn prepare(folder: &Path) -> Result<(), Failure> {
     })
 }
 
-/// Writes the courses on which a run went wrong: `course-SEED.sim`, which the command `distbug` can run, and the
+/// Writes the courses on which a run went wrong: `course-SEED.sim`, which the command `distbug` can run, and
+/// the
 /// `course-SEED.wld` that it names.
 pub(super) fn failures(trials: &[Trial], folder: &Path) -> Result<(), Failure> {
     trials

@@ -143,11 +143,7 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-impl AsRef<CommonArgs> for Args {
-    fn as_ref(&self) -> &CommonArgs {
-        &self.common
-    }
-}
+crate::common::shares_options!(Args, common: CommonArgs);
 
 /// Whose definition of a kernel counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

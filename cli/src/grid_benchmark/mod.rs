@@ -50,11 +50,7 @@ pub(crate) struct Args {
     pub(crate) plain: PlainArgs,
 }
 
-impl AsRef<PlainArgs> for Args {
-    fn as_ref(&self) -> &PlainArgs {
-        &self.plain
-    }
-}
+crate::common::shares_options!(Args, plain: PlainArgs);
 
 /// The planners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -48,11 +48,7 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-impl AsRef<CommonArgs> for Args {
-    fn as_ref(&self) -> &CommonArgs {
-        &self.common
-    }
-}
+crate::common::shares_options!(Args, common: CommonArgs);
 
 fn parse_patience(text: &str) -> Result<f64, String> {
     let patience = text.parse().ok().filter(|patience: &f64| (1.0..=1e5).contains(patience));

@@ -43,11 +43,7 @@ pub(crate) struct ExploreArgs {
     pub(crate) common: CommonArgs,
 }
 
-impl AsRef<CommonArgs> for ExploreArgs {
-    fn as_ref(&self) -> &CommonArgs {
-        &self.common
-    }
-}
+crate::common::shares_options!(ExploreArgs, common: CommonArgs);
 
 /// What the robot says after its drive.
 #[derive(Debug, Clone)]

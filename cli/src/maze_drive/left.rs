@@ -47,11 +47,7 @@ pub(crate) struct LeftArgs {
     pub(crate) common: CommonArgs,
 }
 
-impl AsRef<CommonArgs> for LeftArgs {
-    fn as_ref(&self) -> &CommonArgs {
-        &self.common
-    }
-}
+crate::common::shares_options!(LeftArgs, common: CommonArgs);
 
 /// How a robot drives through a place.
 fn parameters(

@@ -31,11 +31,7 @@ pub(crate) struct LidarArgs {
     pub(crate) common: CommonArgs,
 }
 
-impl AsRef<CommonArgs> for LidarArgs {
-    fn as_ref(&self) -> &CommonArgs {
-        &self.common
-    }
-}
+crate::common::shares_options!(LidarArgs, common: CommonArgs);
 
 /// The work of the command.
 pub(crate) fn work(args: &LidarArgs) -> Result<Report, Failure> {

@@ -115,8 +115,4 @@ impl Args {
     }
 }
 
-impl AsRef<CommonArgs> for Args {
-    fn as_ref(&self) -> &CommonArgs {
-        &self.common
-    }
-}
+crate::common::shares_options!(Args, common: CommonArgs);

@@ -22,8 +22,8 @@ const PIPE: usize = 1024;
 const NONSENSE: u64 = 1000;
 const LINES: u64 = 2_000_000;
 
-/// A mouse for the simulator, if the command line asks for one: commands go to standard output, and what is left to
-/// say to standard error. Returns the exit status.
+/// A mouse for the simulator, if the command line asks for one: commands go to standard output, and what is
+/// left to say to standard error. Returns the exit status.
 pub(crate) fn drive_for_another(words: &[OsString]) -> Option<u8> {
     let [_, command, options @ ..] = words else { return None };
     if command != "micromouse" || !options.iter().any(|word| word == "--mms") {

@@ -44,11 +44,7 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-impl AsRef<CommonArgs> for Args {
-    fn as_ref(&self) -> &CommonArgs {
-        &self.common
-    }
-}
+crate::common::shares_options!(Args, common: CommonArgs);
 
 fn parse_light(text: &str) -> Result<f64, String> {
     let light = text.parse().ok().filter(|light: &f64| (0.0..=10.0).contains(light));

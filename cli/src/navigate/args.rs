@@ -60,11 +60,7 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-impl AsRef<CommonArgs> for Args {
-    fn as_ref(&self) -> &CommonArgs {
-        &self.common
-    }
-}
+crate::common::shares_options!(Args, common: CommonArgs);
 
 impl Args {
     /// Fails if there is no room for the wished clearance.

@@ -45,11 +45,7 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-impl AsRef<CommonArgs> for Args {
-    fn as_ref(&self) -> &CommonArgs {
-        &self.common
-    }
-}
+crate::common::shares_options!(Args, common: CommonArgs);
 
 /// A task of section 7.4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -54,11 +54,7 @@ pub(crate) struct Args {
     pub(crate) plain: PlainArgs,
 }
 
-impl AsRef<PlainArgs> for Args {
-    fn as_ref(&self) -> &PlainArgs {
-        &self.plain
-    }
-}
+crate::common::shares_options!(Args, plain: PlainArgs);
 
 fn cell(text: &str) -> Result<GridCell, String> {
     let numbers: Option<Vec<usize>> = text.split(',').map(|number| number.trim().parse().ok()).collect();

@@ -147,11 +147,7 @@ pub(crate) enum Cross {
     OnePoint,
 }
 
-impl AsRef<CommonArgs> for Args {
-    fn as_ref(&self) -> &CommonArgs {
-        &self.common
-    }
-}
+crate::common::shares_options!(Args, common: CommonArgs);
 
 impl Args {
     pub(crate) fn trials(&self) -> Trials {

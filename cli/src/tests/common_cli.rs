@@ -23,11 +23,7 @@ struct Args {
     laps: u32,
 }
 
-impl AsRef<CommonArgs> for Args {
-    fn as_ref(&self) -> &CommonArgs {
-        &self.common
-    }
-}
+crate::common::shares_options!(Args, common: CommonArgs);
 
 /// What a program did.
 struct Ended {

@@ -1,4 +1,5 @@
-//! The command `distbug` as a whole: worlds from files, options, faults, verdicts, pictures and exit statuses.
+//! The command `distbug` as a whole: worlds from files, options, faults, verdicts, pictures and exit
+//! statuses.
 
 use std::fs;
 use std::path::PathBuf;

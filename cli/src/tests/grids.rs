@@ -1,5 +1,5 @@
-//! The planners on grids through the command `grid-benchmark`, on small maps of the project, and on published maps where
-//! the environment variable `ROVERLAB_DATA` names the folder that holds `movingai/`.
+//! The planners on grids through the command `grid-benchmark`, on small maps of the project, and on published
+//! maps where the environment variable `ROVERLAB_DATA` names the folder that holds `movingai/`.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,7 @@
 //! The command `micromouse` as a whole, and published mazes with known answers.
 //!
-//! The published mazes are no part of the project: the environment variable `ROVERLAB_DATA` names the folder that holds
+//! The published mazes are no part of the project: the environment variable `ROVERLAB_DATA` names the folder
+//! that holds
 //! `micromouse/`.
 
 use std::fs;

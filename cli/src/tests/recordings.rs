@@ -259,8 +259,8 @@ fn a_recording_has_no_files_written() {
     assert!(status == 2 && err.contains("no such file in the recording"), "{err}");
 }
 
-/// Small recordings that were made once, perhaps on another machine. After a change that is meant to change runs, the first
-/// one is made anew by `REGENERATE=1 cargo test -p roverlab-cli recordings`.
+/// Small recordings that were made once, perhaps on another machine. After a change that is meant to change
+/// runs, the first one is made anew by `REGENERATE=1 cargo test -p roverlab-cli recordings`.
 #[test]
 fn recordings_of_before_check() {
     let data = Path::new(DATA).join("logs");

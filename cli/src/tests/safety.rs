@@ -37,7 +37,8 @@ const OVAL: [&str; 2] = ["--track", "../tests/data/cones/oval.csv"];
 
 type Drive = fn(&[&str]) -> Ended;
 
-/// The commands in which a robot drives that is supervised, and seconds into their runs at which something goes wrong.
+/// The commands in which a robot drives that is supervised, and seconds into their runs at which something
+/// goes wrong.
 const PROGRAMS: [(&str, [f64; 2], Drive); 18] = [
     ("a_to_b", [2.0, 3.1], |options| run("a_to_b", options)),
     ("ackermann", [2.0, 3.1], |options| run("ackermann", options)),
@@ -156,8 +157,9 @@ fn a_fast_car_without_a_link_is_seen_to_stand() {
     std::fs::remove_dir_all(folder).unwrap();
 }
 
-/// Nobody watches the robots of these commands, so they say so: a safety system lets time pass for its robot while it waits, and
-/// here several robots share one thread, or the runs are many and nobody asks how each one stopped.
+/// Nobody watches the robots of these commands, so they say so: a safety system lets time pass for its robot
+/// while it waits, and here several robots share one thread, or the runs are many and nobody asks how each
+/// one stopped.
 #[test]
 fn commands_without_a_supervised_robot_say_so() {
     let programs: [(&str, Drive); 4] = [

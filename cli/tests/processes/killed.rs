@@ -11,8 +11,8 @@ use serde_json::Value;
 
 use super::{roverlab, said};
 
-/// Kills recording processes at random times; `ROVERLAB_KILLS` says how many. What is on disk is the beginning of the
-/// whole recording, and all of its complete chunks can be saved.
+/// Kills recording processes at random times; `ROVERLAB_KILLS` says how many. What is on disk is the
+/// beginning of the whole recording, and all of its complete chunks can be saved.
 #[test]
 #[allow(clippy::disallowed_methods, reason = "processes are killed at times on the wall clock")]
 fn a_killed_process_loses_its_last_chunk_at_most() {

@@ -1,8 +1,8 @@
-//! Commands drive the robot behind the library (`--robios`) as they drive the simulated one that rounds as RoBIOS does
-//! (`--quantised`): the same calls with the same answers at the same times.
+//! Commands drive the robot behind the library (`--robios`) as they drive the simulated one that rounds as
+//! RoBIOS does (`--quantised`): the same calls with the same answers at the same times.
 //!
-//! The library is the one of this project. Its robot belongs to its process, so each run through it is a process of
-//! its own.
+//! The library is the one of this project. Its robot belongs to its process, so each run through it is a
+//! process of its own.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

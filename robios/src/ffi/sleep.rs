@@ -29,7 +29,8 @@ const GRACE: Duration = Duration::from_micros(50);
 static ENDS: Mutex<BTreeMap<u64, f64>> = Mutex::new(BTreeMap::new());
 static SLEEPERS: AtomicU64 = AtomicU64::new(0);
 
-/// Looks at them as within a call, so that a signal handler that sleeps meanwhile does not wait for this thread.
+/// Looks at them as within a call, so that a signal handler that sleeps meanwhile does not wait for this
+/// thread.
 fn at_ends<T>(look: impl FnOnce(&mut BTreeMap<u64, f64>) -> T) -> T {
     let _inside = Inside::new();
     look(&mut ENDS.lock().unwrap_or_else(PoisonError::into_inner))
@@ -75,8 +76,8 @@ impl Drop for Sleeper {
 
 /// Lets the program wait until a time, in seconds since the start. Timers' functions are called in between.
 ///
-/// A program with one thread skips the time. Of several threads, one that sleeps lets the world go on by a tick
-/// whenever the others have had the opportunity to do something and have not taken it.
+/// A program with one thread skips the time. Of several threads, one that sleeps lets the world go on by a
+/// tick whenever the others have had the opportunity to do something and have not taken it.
 fn sleep_until(end: f64) -> Option<()> {
     let (mut sleeper, mut turn) = (Sleeper::new(end), Turn::default());
     loop {

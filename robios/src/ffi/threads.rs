@@ -20,6 +20,9 @@ thread_local! {
     static OURS: Cell<bool> = const { Cell::new(false) };
 }
 
+// A thread that is ending has lost its flags, and there is nothing left to keep in them: so failures of
+// `try_with` are passed over in this file.
+
 /// Says whether this thread acts for the library.
 pub(super) fn set_ours(ours: bool) {
     let _ = OURS.try_with(|flag| flag.set(ours));

@@ -18,7 +18,8 @@ pub(super) enum Unasked {
     Over,
 }
 
-/// Lets time pass that nobody has asked for: so many seconds to where the next timer is due, or without timers.
+/// Lets time pass that nobody has asked for: so many seconds to where the next timer is due, or without
+/// timers.
 type Pass = fn(f64, f64) -> Unasked;
 
 /// Real time between two looks.

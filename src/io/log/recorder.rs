@@ -31,8 +31,8 @@ pub struct Recorder<R, W: Write> {
 }
 
 impl<W: Write> LogWriter<W> {
-    /// Records a robot under an index of its own, from 0. When several robots drive at once, call this for all of
-    /// them before the first one does.
+    /// Records a robot under an index of its own, from 0. When several robots drive at once, call this for
+    /// all of them before the first one does.
     pub fn recorder<R>(&self, robot: R, index: usize) -> Recorder<R, W> {
         Recorder::new(robot, self.port(index))
     }

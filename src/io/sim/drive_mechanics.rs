@@ -10,8 +10,8 @@ pub(super) trait Mechanics {
     /// Drives at a speed, as near to it as the drive can, until the next command.
     fn set_twist(&mut self, twist: Twist);
 
-    /// The shortest time that a motion along one arc takes at a speed, which the wheels may not reach. Fails if the
-    /// robot cannot drive the arc.
+    /// The shortest time that a motion along one arc takes at a speed, which the wheels may not reach. Fails
+    /// if the robot cannot drive the arc.
     fn least_seconds(&self, motion: Displacement, speed: f64) -> Result<f64>;
 
     /// Starts a motion along one arc. `speed` is along the arc in m/s, or in rad/s for a turn on the spot.

@@ -65,7 +65,8 @@ fn placed(outline: &Footprint, pose: &Pose, margin: f64) -> (ParryPose, Box<dyn 
     }
 }
 
-/// Robots that drive about at random, with a new command every 0.1 s; checks after each that nobody is in anything.
+/// Robots that drive about at random, with a new command every 0.1 s; checks after each that nobody is in
+/// anything.
 fn drive_about(scene: &Scene, seed: u64, noise: f64, seconds: f64) -> Result<u32, TestCaseError> {
     let options = SimOptions { seed, noise: NoiseModel::real().scaled(noise), ..SimOptions::default() };
     let mut fleet = Fleet::new(scene, options).unwrap();
