@@ -8,7 +8,7 @@ use clap::Parser;
 use serde_json::Value;
 
 fn args(options: &[&str]) -> Args {
-    Args::try_parse_from(std::iter::once(&"distbug").chain(options)).unwrap()
+    Args::try_parse_from(["distbug", "--campaign"].iter().chain(options)).unwrap()
 }
 
 fn run(options: &[&str]) -> (u8, String, String) {
@@ -66,5 +66,14 @@ fn wrong_options_are_refused() {
         let (status, out, err) = run(&options);
         assert_eq!((status, out.as_str(), err.lines().count()), (2, "", 1), "{options:?}: {err}");
         assert!(err.contains(part), "{err}");
+    }
+}
+
+/// What a campaign does not heed is refused, and what only a campaign heeds is refused without one.
+#[test]
+fn options_without_a_meaning_are_refused() {
+    for options in [["--campaign", "--noise=0"], ["--campaign", "--time-limit=9"], ["--json", "--levels=0"]] {
+        let (status, out, err) = said("distbug", &options);
+        assert_eq!((status, out.as_str(), err.lines().count()), (2, "", 1), "{options:?}: {err}");
     }
 }
