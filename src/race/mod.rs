@@ -68,7 +68,7 @@ pub use files::{
     write_eufs, write_fssim, write_tum,
 };
 pub use finder::LaneFinder;
-pub use gap::GapDriver;
+pub use gap::{GapCommand, GapDriver};
 pub use generate::{GeneratedTrack, TrackOptions, generate, lined};
 pub use hold::Hold;
 pub use lane::lane;
@@ -76,7 +76,7 @@ pub use lane_model::{Lane, LaneParameters};
 pub use map::{ConeMap, ConeMapParameters};
 pub use pair::CentreLineParameters;
 pub use profile::{CarLimits, SpeedProfile};
-pub use racer::{RacePhase, Racer, RacerParameters};
+pub use racer::{RaceOutcome, RacePhase, Racer, RacerParameters};
 pub use racing_line::{CarOutline, LineSolver, RacingLine, RacingLineParameters, minimum_curvature};
 pub use referee::{Referee, Verdict};
 pub use sight::{Sighting, sightings};

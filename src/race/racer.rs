@@ -1,3 +1,5 @@
+use std::ops::ControlFlow;
+
 use super::ClosedSpline;
 use super::centre_line::CentreLine;
 use super::cone::Cone;
@@ -16,7 +18,8 @@ use super::sight::{Sighting, sightings};
 use super::tracker::{LineTracker, TrackerParameters};
 use super::tyres::Tyres;
 use crate::geometry::{Point, Pose, Twist};
-use crate::io::{self, Clock, Drive, Lidar, LidarScan};
+use crate::io::control::{Behaviour, Decision, LidarObservation, Senses, halts};
+use crate::io::{self, Drive, Lidar, LidarScan};
 
 #[cfg(test)]
 mod tests;
@@ -91,6 +94,22 @@ pub enum RacePhase {
     /// or brakes.
     Lost,
 }
+
+/// How a race, or an event, ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum RaceOutcome {
+    /// The car has driven all laps, or to the finish, and stands.
+    Finished,
+    /// It was lost, and stands.
+    Lost,
+    /// The time was over first.
+    TimedOut,
+    /// Who watched had seen enough.
+    Stopped,
+}
+
+halts!(RaceOutcome);
 
 /// Races on a track that it does not know: between the cones that it sees in the first lap, on the racing line in all others.
 #[derive(Debug, Clone)]
@@ -307,31 +326,6 @@ impl Racer {
         matches!(self.phase, RacePhase::Finished | RacePhase::Lost) && speed.linear.abs() < STILL
     }
 
-    /// Races until all laps are driven and it stands, or it is lost and stands, or a time is over. `watch` is told of
-    /// every decision.
-    pub fn run<R: Clock + Drive + Lidar>(
-        &mut self,
-        robot: &mut R,
-        seconds: f64,
-        mut watch: impl FnMut(&mut R, &Self),
-    ) -> io::Result<RacePhase> {
-        let mut scan = LidarScan::default();
-        let end = robot.now()? + seconds;
-        while robot.now()? < end {
-            robot.scan_into(&mut scan)?;
-            let (pose, speed) = (robot.pose()?, robot.speed()?);
-            let command = self.step(pose, speed, &scan);
-            robot.set_speed(command)?;
-            watch(robot, self);
-            if self.is_done(speed) {
-                break;
-            }
-            robot.wait(self.parameters.period)?;
-        }
-        robot.set_speed(Twist::default())?;
-        Ok(self.phase)
-    }
-
     /// Counts laps at the line, and ends the race.
     fn count(&mut self) {
         if self.phase == RacePhase::Lost {
@@ -517,4 +511,29 @@ fn without_kinks(points: &mut [Point]) {
 
 fn curvature_of(twist: Twist) -> f64 {
     if twist.linear.abs() < 1e-6 { 0.0 } else { twist.angular / twist.linear }
+}
+
+impl Behaviour for Racer {
+    type Observation = LidarObservation;
+    type Command = Twist;
+    type Outcome = RaceOutcome;
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn step(&mut self, _time: f64, seen: &LidarObservation) -> Decision<Self> {
+        let command = Racer::step(self, seen.odometry, seen.speed, &seen.scan);
+        Ok(match self.phase {
+            _ if !self.is_done(seen.speed) => ControlFlow::Continue(command),
+            RacePhase::Lost => ControlFlow::Break(RaceOutcome::Lost),
+            _ => ControlFlow::Break(RaceOutcome::Finished),
+        })
+    }
+}
+
+impl<R: Drive + Lidar + ?Sized> Senses<R> for Racer {
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LidarObservation) -> io::Result<()> {
+        seen.read(robot)
+    }
 }

@@ -14,7 +14,7 @@ use roverlab::drive::{
 };
 use roverlab::geometry::{Point, Pose, units};
 use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
-use roverlab::io::{self, Clock, Drive, Lidar, LidarScan};
+use roverlab::io::{self, Clock, Drive, Lidar, LidarScan, control};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
 use roverlab::scan::{LocalisationMap, Localiser, LocaliserParameters};
@@ -183,7 +183,7 @@ fn random_share(
     let stream = Stream::new(conditions.seed).child("random drive", 0);
     let mut drive = RandomDrive::new(random, stream).map_err(Failure::input)?;
     let mut robot = simulation.robot(0).map_err(Failure::input)?;
-    drive.run(&mut robot, seconds, |_| {
+    control::run(&mut robot, &mut drive, seconds, |_, _, _| {
         if let Ok(pose) = truth.pose(0) {
             map.cover(pose.position());
         }

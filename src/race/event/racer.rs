@@ -1,13 +1,16 @@
+use std::ops::ControlFlow;
+
 use super::layout::{EventLayout, EventShape};
 use super::line;
 use crate::geometry::{Point, Pose, Twist};
-use crate::io::{self, Clock, Drive, Lidar, LidarScan};
+use crate::io::control::{Behaviour, Decision, LidarObservation, Senses};
+use crate::io::{self, Drive, Lidar, LidarScan};
 use crate::race::cone::{Cone, ConeColour};
 use crate::race::error::PlanError;
 use crate::race::hold::Hold;
 use crate::race::map::{ConeMap, ConeMapParameters};
 use crate::race::profile::{CarLimits, SpeedProfile};
-use crate::race::racer::RacerParameters;
+use crate::race::racer::{RaceOutcome, RacerParameters};
 use crate::race::racing_line::CarOutline;
 use crate::race::reckoning::Reckoning;
 use crate::race::sight::{Sighting, sightings};
@@ -189,30 +192,6 @@ impl EventRacer {
         }
     }
 
-    /// Drives until it stands behind the finish, or is lost and stands, or a time is over. `watch` is told of every decision.
-    pub fn run<R: Clock + Drive + Lidar>(
-        &mut self,
-        robot: &mut R,
-        seconds: f64,
-        mut watch: impl FnMut(&mut R, &Self),
-    ) -> io::Result<EventPhase> {
-        let mut scan = LidarScan::default();
-        let end = robot.now()? + seconds;
-        while robot.now()? < end {
-            robot.scan_into(&mut scan)?;
-            let (pose, speed) = (robot.pose()?, robot.speed()?);
-            let command = self.step(pose, speed, &scan);
-            robot.set_speed(command)?;
-            watch(robot, self);
-            if self.is_done(speed) {
-                break;
-            }
-            robot.wait(self.parameters.period)?;
-        }
-        robot.set_speed(Twist::default())?;
-        Ok(self.phase)
-    }
-
     /// Whether it stands and drives no more.
     pub fn is_done(&self, speed: Twist) -> bool {
         matches!(self.phase, EventPhase::Finished | EventPhase::Lost) && speed.linear.abs() < STILL
@@ -360,4 +339,29 @@ fn slowed(command: Twist, fastest: f64) -> Twist {
     }
     let share = fastest.max(1e-3) / command.linear;
     Twist::new(fastest.max(1e-3), command.angular * share)
+}
+
+impl Behaviour for EventRacer {
+    type Observation = LidarObservation;
+    type Command = Twist;
+    type Outcome = RaceOutcome;
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn step(&mut self, _time: f64, seen: &LidarObservation) -> Decision<Self> {
+        let command = EventRacer::step(self, seen.odometry, seen.speed, &seen.scan);
+        Ok(match self.phase {
+            _ if !self.is_done(seen.speed) => ControlFlow::Continue(command),
+            EventPhase::Lost => ControlFlow::Break(RaceOutcome::Lost),
+            _ => ControlFlow::Break(RaceOutcome::Finished),
+        })
+    }
+}
+
+impl<R: Drive + Lidar + ?Sized> Senses<R> for EventRacer {
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LidarObservation) -> io::Result<()> {
+        seen.read(robot)
+    }
 }
