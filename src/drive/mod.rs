@@ -43,7 +43,7 @@ mod way;
 pub use a_to_b::{AToB, AToBObservation, AToBOutcome, AToBParameters, Goal, Method};
 pub use car::{CarCommand, CarDriver, CarObservation, CarOutcome, CarParameters, CarToB};
 pub use chase::{Chase, ChaseObservation, ChaseOutcome, ChaseParameters};
-pub use coverage::{CoverageMap, CoverageParameters, CoveragePlan, Tour, TourParameters};
+pub use coverage::{CoverageMap, CoverageParameters, CoveragePlan, Tour, TourOutcome, TourParameters};
 pub use cruise::{Cruise, CruiseParameters};
 pub use follow_me::{FollowMeObservation, FollowMeParameters, Follower, robots_in};
 pub use follower::{FollowerParameters, PathFollower, Steering};

@@ -128,7 +128,7 @@ fn nearest<'a>(walls: impl Iterator<Item = &'a Wall>, point: Point) -> f64 {
 
 #[cfg(test)]
 mod tests {
-use roverlab::maze::{Maze, Scale};
+    use roverlab::maze::{Maze, Scale};
 
     use super::*;
 

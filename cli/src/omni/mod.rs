@@ -191,7 +191,13 @@ fn distance_to_way(place: Point, way: &[Point]) -> f64 {
 }
 
 /// The way, where the robot was, and how it stood there.
-fn picture(args: &Args, trip: &Trip, run: &Run<OmniOutcome>, way: &[Point], conditions: &Conditions) -> Picture {
+fn picture(
+    args: &Args,
+    trip: &Trip,
+    run: &Run<OmniOutcome>,
+    way: &[Point],
+    conditions: &Conditions,
+) -> Picture {
     let outline = trip.spec().footprint;
     let mut picture = Picture::new(&trip.scene.world);
     picture.title(match args.task {

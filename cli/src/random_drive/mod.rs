@@ -7,9 +7,9 @@ use std::sync::Arc;
 
 use roverlab::drive::{CoverageMap, CoverageParameters, RandomDrive, RandomDriveParameters};
 use roverlab::geometry::{Point, Pose, units};
-use roverlab::io::sim::SimOptions;
 use roverlab::io::RobotIo;
 use roverlab::io::control::{self, Behaviour};
+use roverlab::io::sim::SimOptions;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
 use roverlab::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
@@ -175,7 +175,8 @@ fn together(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure>
     let mut fleet = common.troop(scene, options)?;
     for (robot, turns) in turns.iter().cloned().enumerate() {
         let mut drive = behaviour(scene, robot, common.seed)?;
-        let (period, mut run) = (drive.period(), control::Run::new(&drive, f64::INFINITY).map_err(Failure::input)?);
+        let (period, mut run) =
+            (drive.period(), control::Run::new(&drive, f64::INFINITY).map_err(Failure::input)?);
         let step = move |robot: &mut dyn RobotIo| {
             let flow = run.step(robot, &mut drive)?;
             turns.set(drive.turns());
