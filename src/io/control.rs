@@ -109,15 +109,15 @@ pub enum Halt {
 
 /// Makes ends from outside outcomes of an enum with variants of their names.
 macro_rules! halts {
-    ($($outcome:ty),+) => {
-        $(impl From<crate::io::control::Halt> for $outcome {
+    ($outcome:ty) => {
+        impl From<crate::io::control::Halt> for $outcome {
             fn from(halt: crate::io::control::Halt) -> Self {
                 match halt {
                     crate::io::control::Halt::TimedOut => Self::TimedOut,
                     crate::io::control::Halt::Stopped => Self::Stopped,
                 }
             }
-        })+
+        }
     };
 }
 pub(crate) use halts;

@@ -1,5 +1,3 @@
-use std::ops::ControlFlow;
-
 use super::ClosedSpline;
 use super::centre_line::CentreLine;
 use super::cone::Cone;
@@ -18,8 +16,7 @@ use super::sight::{Sighting, sightings};
 use super::tracker::{LineTracker, TrackerParameters};
 use super::tyres::Tyres;
 use crate::geometry::{Point, Pose, Twist};
-use crate::io::control::{Behaviour, Decision, LidarObservation, Senses, halts};
-use crate::io::{self, Drive, Lidar, LidarScan};
+use crate::io::LidarScan;
 
 #[cfg(test)]
 mod tests;
@@ -95,26 +92,10 @@ pub enum RacePhase {
     Lost,
 }
 
-/// How a race, or an event, ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum RaceOutcome {
-    /// The car has driven all laps, or to the finish, and stands.
-    Finished,
-    /// It was lost, and stands.
-    Lost,
-    /// The time was over first.
-    TimedOut,
-    /// Who watched had seen enough.
-    Stopped,
-}
-
-halts!(RaceOutcome);
-
 /// Races on a track that it does not know: between the cones that it sees in the first lap, on the racing line in all others.
 #[derive(Debug, Clone)]
 pub struct Racer {
-    parameters: RacerParameters,
+    pub(super) parameters: RacerParameters,
     map: ConeMap,
     phase: RacePhase,
     laps: usize,
@@ -511,29 +492,4 @@ fn without_kinks(points: &mut [Point]) {
 
 fn curvature_of(twist: Twist) -> f64 {
     if twist.linear.abs() < 1e-6 { 0.0 } else { twist.angular / twist.linear }
-}
-
-impl Behaviour for Racer {
-    type Observation = LidarObservation;
-    type Command = Twist;
-    type Outcome = RaceOutcome;
-
-    fn period(&self) -> f64 {
-        self.parameters.period
-    }
-
-    fn step(&mut self, _time: f64, seen: &LidarObservation) -> Decision<Self> {
-        let command = Racer::step(self, seen.odometry, seen.speed, &seen.scan);
-        Ok(match self.phase {
-            _ if !self.is_done(seen.speed) => ControlFlow::Continue(command),
-            RacePhase::Lost => ControlFlow::Break(RaceOutcome::Lost),
-            _ => ControlFlow::Break(RaceOutcome::Finished),
-        })
-    }
-}
-
-impl<R: Drive + Lidar + ?Sized> Senses<R> for Racer {
-    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LidarObservation) -> io::Result<()> {
-        seen.read(robot)
-    }
 }

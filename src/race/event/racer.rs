@@ -1,16 +1,13 @@
-use std::ops::ControlFlow;
-
 use super::layout::{EventLayout, EventShape};
 use super::line;
 use crate::geometry::{Point, Pose, Twist};
-use crate::io::control::{Behaviour, Decision, LidarObservation, Senses};
-use crate::io::{self, Drive, Lidar, LidarScan};
+use crate::io::LidarScan;
 use crate::race::cone::{Cone, ConeColour};
 use crate::race::error::PlanError;
 use crate::race::hold::Hold;
 use crate::race::map::{ConeMap, ConeMapParameters};
 use crate::race::profile::{CarLimits, SpeedProfile};
-use crate::race::racer::{RaceOutcome, RacerParameters};
+use crate::race::racer::RacerParameters;
 use crate::race::racing_line::CarOutline;
 use crate::race::reckoning::Reckoning;
 use crate::race::sight::{Sighting, sightings};
@@ -83,7 +80,7 @@ pub enum EventPhase {
 /// lane that there is behind a finish. That of a skidpad leads around the inner cones as near as is safe.
 #[derive(Debug, Clone)]
 pub struct EventRacer {
-    parameters: EventParameters,
+    pub(in crate::race) parameters: EventParameters,
     event: EventShape,
     map: ConeMap,
     reckoning: Reckoning,
@@ -339,29 +336,4 @@ fn slowed(command: Twist, fastest: f64) -> Twist {
     }
     let share = fastest.max(1e-3) / command.linear;
     Twist::new(fastest.max(1e-3), command.angular * share)
-}
-
-impl Behaviour for EventRacer {
-    type Observation = LidarObservation;
-    type Command = Twist;
-    type Outcome = RaceOutcome;
-
-    fn period(&self) -> f64 {
-        self.parameters.period
-    }
-
-    fn step(&mut self, _time: f64, seen: &LidarObservation) -> Decision<Self> {
-        let command = EventRacer::step(self, seen.odometry, seen.speed, &seen.scan);
-        Ok(match self.phase {
-            _ if !self.is_done(seen.speed) => ControlFlow::Continue(command),
-            EventPhase::Lost => ControlFlow::Break(RaceOutcome::Lost),
-            _ => ControlFlow::Break(RaceOutcome::Finished),
-        })
-    }
-}
-
-impl<R: Drive + Lidar + ?Sized> Senses<R> for EventRacer {
-    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LidarObservation) -> io::Result<()> {
-        seen.read(robot)
-    }
 }
