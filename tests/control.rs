@@ -315,7 +315,7 @@ impl<R: ?Sized> Senses<R> for Plain {
     }
 }
 
-/// A robot whose clock shows what a function makes of the time, and whose drive fails if wished.
+/// A robot whose clock shows what a function makes of the time, and which cannot be stopped if wished.
 struct Odd {
     time: f64,
     shown: fn(f64) -> f64,
@@ -342,7 +342,7 @@ impl Odd {
 
 impl Drive for Odd {
     fn set_speed(&mut self, twist: Twist) -> Result<()> {
-        if !self.drive {
+        if !self.drive && twist == Twist::STOP {
             return Err(Error::new(ErrorKind::Other, "the drive is broken"));
         }
         self.told.push(twist);
@@ -432,15 +432,13 @@ fn the_first_error_is_told_and_the_robot_is_stopped() {
     let error = run(&mut robot, &mut behaviour, 9.0, |_, _, _| {}).unwrap_err();
     assert_eq!(error.to_string(), "the behaviour is at its wits' end");
     assert_eq!((robot.told.len(), robot.told[2]), (3, Twist::STOP));
-    // The drive fails as well: that comes second.
+    // A robot that cannot be stopped comes second.
+    robot.drive = false;
     let mut behaviour = Plain { at: 3, ending: broken, ..Plain::default() };
-    let ended = run(&mut robot, &mut behaviour, 9.0, |robot, behaviour, _| robot.drive = behaviour.steps < 2);
+    let ended = run(&mut robot, &mut behaviour, 9.0, |_, _, _| {});
     assert_eq!(ended.unwrap_err().to_string(), "the behaviour is at its wits' end");
-    // Where nothing else is wrong, a robot that cannot be stopped is.
-    robot.drive = true;
-    let ended = run(&mut robot, &mut Plain::default(), 0.35, |robot, _, step| {
-        robot.drive = step.time < robot.time + 1.0 && robot.told.len() < 6;
-    });
+    // Where nothing else is wrong, it is the error.
+    let ended = run(&mut robot, &mut Plain::default(), 0.35, |_, _, _| {});
     assert_eq!(ended.unwrap_err().to_string(), "the drive is broken");
     // So is one of who watches.
     robot.drive = true;
