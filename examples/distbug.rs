@@ -60,7 +60,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (mark, point, name) in marks {
         picture.mark_named(mark, point, name);
     }
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/distbug.svg")?;
     Ok(())
 }
