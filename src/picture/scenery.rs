@@ -20,10 +20,11 @@ const HATCH: &str = "hills";
 pub(super) fn floor(world: &World, frame: &Frame, to_scale: bool) -> Group {
     let colour = if world.water_level.is_some_and(|level| level > 0.0) { WATER } else { FLOOR };
     let bounds = on_page(world.floor, frame);
-    let mut group = Group::new()
-        .add(rectangle(bounds, colour))
-        .add(if to_scale { grid(&world.floor, frame) } else { Group::new() })
-        .add(rectangle(bounds, colour).set("fill", "none").set("stroke", EDGE.to_string()));
+    let mut group = Group::new().add(rectangle(bounds, colour));
+    if to_scale {
+        group = group.add(grid(&world.floor, frame));
+    }
+    group = group.add(rectangle(bounds, colour).set("fill", "none").set("stroke", EDGE.to_string()));
     if let Some(terrain) = &world.terrain {
         group = group.add(hatch()).add(hills(terrain, world.floor.min, frame));
     }

@@ -6,7 +6,7 @@ use crate::tokens::{closing, is_word, tokens};
 
 /// The modules of a library, as their files declare them. Those that only tests have are none.
 #[derive(Default)]
-pub struct Source {
+pub(crate) struct Source {
     /// The paths that each file names, in the module in which they stand.
     files: BTreeMap<String, Vec<(String, Vec<String>)>>,
     /// Files whose folder is named after them.
@@ -24,7 +24,7 @@ const STEPS: usize = 16;
 
 impl Source {
     /// Reads `lib.rs`, and what is declared there and below. `read` has the text of a file.
-    pub fn read(read: &dyn Fn(&str) -> Option<String>) -> Self {
+    pub(crate) fn read(read: &dyn Fn(&str) -> Option<String>) -> Self {
         let mut source = Self::default();
         source.file("", "lib.rs", true, read);
         source
@@ -94,12 +94,12 @@ impl Source {
     }
 
     /// Whether a module's file lists what is in its folder.
-    pub fn is_table_of_contents(&self, module: &str) -> bool {
+    pub(crate) fn is_table_of_contents(&self, module: &str) -> bool {
         self.contents.contains(module)
     }
 
     /// Which file uses which, by their modules.
-    pub fn arrows(&self) -> BTreeMap<String, BTreeSet<String>> {
+    pub(crate) fn arrows(&self) -> BTreeMap<String, BTreeSet<String>> {
         let uses = |(file, paths): (&String, &Vec<(String, Vec<String>)>)| {
             let homes = paths.iter().filter_map(|(module, path)| self.home(module, path, STEPS));
             let files = homes.map(|home| self.file_of(home)).filter(|used| used != file);
@@ -143,7 +143,9 @@ impl Source {
         if self.modules.contains(&full) {
             return if rest.is_empty() { Some(full) } else { self.named(&full, rest, steps).or(Some(full)) };
         }
-        if let Some((from, target)) = self.names.get(&full).filter(|(_, target)| target != &[first.clone()]) {
+        if let Some((from, target)) =
+            self.names.get(&full).filter(|(_, target)| target.as_slice() != std::slice::from_ref(first))
+        {
             return self.home(from, &[target, rest].concat(), steps);
         }
         let globs = self.globs.get(module).into_iter().flatten();

@@ -1,7 +1,7 @@
 //! The words and marks of Rust code.
 
 /// A file as words and marks, `::` being one mark, without comments, texts, characters and lifetimes.
-pub fn tokens(text: &str) -> Vec<String> {
+pub(crate) fn tokens(text: &str) -> Vec<String> {
     let mut tokens: Vec<String> = Vec::new();
     let mut rest = text;
     while let Some(first) = rest.chars().next() {
@@ -39,7 +39,7 @@ fn is_name(c: char) -> bool {
 }
 
 /// Whether a token is a name or a keyword.
-pub fn is_word(token: &str) -> bool {
+pub(crate) fn is_word(token: &str) -> bool {
     token.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
@@ -96,7 +96,7 @@ fn character_or_lifetime(text: &str) -> usize {
 }
 
 /// Where a bracket that opens at `open` is closed, or the end.
-pub fn closing(tokens: &[String], open: usize) -> usize {
+pub(crate) fn closing(tokens: &[String], open: usize) -> usize {
     let mut depth = 0;
     for (at, token) in tokens.iter().enumerate().skip(open) {
         match token.as_str() {
