@@ -135,6 +135,7 @@ pub(crate) fn dispatch(mut words: Vec<OsString>, out: &mut dyn Write, err: &mut 
 fn program() -> clap::Command {
     clap::Command::new("roverlab")
         .about("Every system of the library roverlab as a command")
+        .version(env!("CARGO_PKG_VERSION"))
         .subcommand_required(true)
         .subcommand(clap::Command::new("systems").about("Lists every system, with a line each"))
         .subcommands(COMMANDS.iter().map(|command| (command.parser)()))

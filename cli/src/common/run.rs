@@ -67,7 +67,8 @@ pub(crate) fn run_plain<A: clap::Parser + AsRef<PlainArgs> + Heeds>(
 /// The parser of a command's command line, with the name that it has there.
 pub(crate) fn parser<A: clap::CommandFactory>(name: &str) -> clap::Command {
     let shown = name.replace('_', "-");
-    A::command().bin_name(format!("roverlab {shown}")).name(shown)
+    // What is missing on a command line is told, as all that is wrong with one.
+    A::command().bin_name(format!("roverlab {shown}")).name(shown).arg_required_else_help(false)
 }
 
 /// What is left to be printed when a program's work is done.
