@@ -5,6 +5,7 @@
 
 use roverlab::drive::{CarDriver, CarOutcome, CarParameters, CarToB, Goal, Method};
 use roverlab::geometry::{Pose, angle_difference, units};
+use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::kinematics::Ackermann;
 use roverlab::picture::{Mark, Picture, Style};
@@ -29,7 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let target = Goal::pose(start.inverse().compose(&goal));
     let mut drive = CarToB::new(Method::Spline, target, driver, CarParameters::default())?;
     let plan = drive.plan(Pose::default())?.ok_or("the car is at its goal")?;
-    let outcome = drive.run(&mut simulation.robot(0)?, 60.0, |_, _| {})?;
+    let outcome = run(&mut simulation.robot(0)?, &mut drive, 60.0, |_, _, _| {})?;
 
     let truth = simulation.truth().robot(0)?;
     let missed = units::to_mm(truth.pose.distance_to(goal.position()));

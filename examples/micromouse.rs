@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     known.set_goals(maze.goals());
     let NoiseModel { wheel_scale, wheel_mismatch, track, slip, .. } = noise;
     let rig = Rig::new(&spec, OdometryErrors { wheel_scale, wheel_mismatch, track, slip }, noise.range)?;
-    let mut runner = MazeRunner::new(&mut robot, rig, known, scale, RunnerParameters::MICROMOUSE)?;
+    let mut runner = MazeRunner::new(&mut robot, rig, known, scale, RunnerParameters::MICROMOUSE, 1200.0)?;
     let mut explorer = TwoPhaseExplorer::new(Goals::StepsAndTime(Box::new(runner.planner())));
     let found = runner.explore(&mut explorer, &mut |_| {})?;
     let (seconds, unknown) = (found.time, runner.maze().unknown_walls());

@@ -29,7 +29,7 @@
 //! let stage = args.common.stage(&scene, SimOptions::with_noise(args.common.noise, args.common.seed))?;
 //! let mut robot = stage.robot(0)?; // instead of `simulation.robot(0)`; --fault is in it
 //! let mut truth = stage.truth(0)?; // instead of `simulation.truth()`: for verdicts and pictures
-//! behaviour.run(&mut robot, limit, |_| path.push(truth.pose(0)))?;
+//! control::run(&mut robot, &mut behaviour, limit, |_, _, _| path.push(truth.pose(0)))?;
 //! drop(robot); // lets go of the world, as a simulated robot does
 //! let end = truth.robot(0)?;
 //! ```
