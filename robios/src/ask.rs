@@ -4,7 +4,7 @@ use std::fmt;
 
 use image::RgbImage;
 use roverlab::geometry::{Pose, Twist};
-use roverlab::io::sim::{Simulation, TICK, Truth};
+use roverlab::io::sim::{SimOptions, Simulation, TICK, Truth};
 use roverlab::io::{
     Error, ErrorKind, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result, RobotIo,
 };
@@ -119,12 +119,35 @@ pub struct Identity {
     pub call_duration: f64,
     /// Seconds after which every call fails; infinity if there is no such time.
     pub time_limit: f64,
+    /// Whether a reading is the same when it is taken again at the same time, and nobody minds if it is not.
+    pub exact: bool,
+    /// Whether it has a camera.
+    pub camera: bool,
 }
 
 /// EyeSim drives motors with percentages of this speed, in metres per second, whatever they could do.
 const FULL_SPEED: f64 = 0.4;
 /// The same for cars.
 const FULL_SPEED_OF_CARS: f64 = 0.5;
+
+/// On what terms a program drives its robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Terms {
+    /// Seconds that a call takes.
+    pub call_duration: f64,
+    /// Seconds after which every call fails.
+    pub time_limit: Option<f64>,
+    /// Whether readings may be remembered as long as nothing can have changed them.
+    pub exact: bool,
+}
+
+impl Terms {
+    /// Those of a simulation. Readings with noise are drawn anew each time.
+    pub fn of(options: &SimOptions) -> Self {
+        let exact = options.noise.range == 0.0;
+        Self { call_duration: options.call_duration, time_limit: options.time_limit, exact }
+    }
+}
 
 /// Someone who drives one robot of a simulation.
 pub struct Seat {
@@ -153,9 +176,9 @@ impl Seat {
         simulation: &Simulation,
         scene: &Scene,
         index: usize,
-        times: (f64, Option<f64>),
+        terms: Terms,
     ) -> Result<Self> {
-        Ok(Self::of(Box::new(simulation.robot(index)?), simulation, scene, index, times))
+        Ok(Self::of(Box::new(simulation.robot(index)?), simulation, scene, index, terms))
     }
 
     /// Takes a robot that has been taken, and may have been wrapped.
@@ -168,7 +191,7 @@ impl Seat {
         simulation: &Simulation,
         scene: &Scene,
         index: usize,
-        (call_duration, time_limit): (f64, Option<f64>),
+        terms: Terms,
     ) -> Self {
         let spec = &scene.robots[index].spec;
         let (top_speed, full_speed, tick_length) = speeds(spec);
@@ -182,8 +205,10 @@ impl Seat {
             tick_length,
             lidar_points: spec.lidar.map_or(0, |lidar| lidar.points as u32),
             full_turn: spec.lidar.is_none_or(|lidar| lidar.field_of_view > std::f64::consts::TAU - 1e-9),
-            call_duration,
-            time_limit: time_limit.unwrap_or(f64::INFINITY),
+            call_duration: terms.call_duration,
+            time_limit: terms.time_limit.unwrap_or(f64::INFINITY),
+            exact: terms.exact,
+            camera: spec.camera.is_some(),
         };
         let robots = scene.robots.iter().map(|robot| robot.elevation).collect();
         let objects = scene.world.objects.iter().map(|object| object.elevation).collect();

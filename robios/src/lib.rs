@@ -44,11 +44,13 @@
 //! `collisions_after_end`.
 
 pub mod ask;
+pub mod costs;
 mod ffi;
 pub mod files;
 pub mod keyboard;
 pub mod keys;
 pub mod link;
+pub mod memory;
 pub mod plan;
 pub mod process;
 pub mod report;

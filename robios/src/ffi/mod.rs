@@ -11,6 +11,7 @@ mod actuators;
 #[cfg(target_os = "linux")]
 mod alarm;
 mod camera;
+mod computing;
 #[cfg(target_os = "linux")]
 mod clock;
 mod display;

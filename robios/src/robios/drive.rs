@@ -26,7 +26,7 @@ impl Robios {
 
     /// Since when the robot stands; now, if it drives.
     pub(super) fn standing_since(&mut self) -> Result<f64> {
-        if self.moving == Moving::Manoeuvre && self.flag(&Request::IsDone)? {
+        if self.moving == Moving::Manoeuvre && self.queue.is_empty() && self.flag(&Request::IsDone)? {
             self.drives(Moving::No);
         }
         Ok(if self.moving == Moving::No { self.standing_since } else { self.now() })
@@ -107,7 +107,8 @@ impl Robios {
 
     /// `VWWait`, for a program that has nothing else to do.
     pub fn vw_wait(&mut self) -> Result<()> {
-        self.order(&Request::WaitDone)
+        self.order(&Request::WaitDone)?;
+        self.finish_frame()
     }
 
     /// `VWStalled`: 3 for both wheels, 0 for none.
