@@ -144,7 +144,9 @@ impl Frames {
                 [name, kind, time] => (name, kind, time),
                 _ => return wrong(words[0], "a call, its kind, and milliseconds"),
             };
-            let Some(cost) = self.costs.get_mut(name) else { return wrong(name, "the name of a RoBIOS call") };
+            let Some(cost) = self.costs.get_mut(name) else {
+                return wrong(name, "the name of a RoBIOS call");
+            };
             let kind = match kind {
                 "local" => Kind::Local,
                 "one-way" => Kind::OneWay,
@@ -225,8 +227,17 @@ mod tests {
         let frames = Frames::new(60.0);
         // These touch neither robot nor clock, or are others under another name.
         let aside = [
-            "MTSpawn", "MTGetUID", "MTKill", "SEMAInit", "SEMALock", "SEMAUnlock", "XInitThreads", "LCDFontSize",
-            "MOTORPIDoff", "AUCheckTone", "AUCheckPlay",
+            "MTSpawn",
+            "MTGetUID",
+            "MTKill",
+            "SEMAInit",
+            "SEMALock",
+            "SEMAUnlock",
+            "XInitThreads",
+            "LCDFontSize",
+            "MOTORPIDoff",
+            "AUCheckTone",
+            "AUCheckPlay",
         ];
         let mut count = 0;
         for name in names.filter(|name| !name.starts_with("IPP") && !aside.contains(name)) {

@@ -56,4 +56,5 @@ pub mod process;
 pub mod report;
 pub mod robios;
 pub mod screen;
+mod walker;
 pub mod wire;

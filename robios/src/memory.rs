@@ -257,7 +257,9 @@ fn anonymous_file() -> io::Result<OwnedFd> {
     let seals = libc::F_SEAL_SHRINK | libc::F_SEAL_GROW | libc::F_SEAL_SEAL;
     // A program cannot cut off what the runner looks at.
     // SAFETY: changes the size of a file, and what may become of it.
-    if unsafe { libc::ftruncate(number, SIZE as i64) != 0 || libc::fcntl(number, libc::F_ADD_SEALS, seals) != 0 } {
+    if unsafe {
+        libc::ftruncate(number, SIZE as i64) != 0 || libc::fcntl(number, libc::F_ADD_SEALS, seals) != 0
+    } {
         return Err(io::Error::last_os_error());
     }
     Ok(file)
@@ -283,7 +285,9 @@ fn wait(word: &AtomicU32, value: u32, patience: Duration) {
     };
     let nothing = std::ptr::null::<u32>();
     // SAFETY: the kernel compares a word of memory that is mapped, and reads a time that lives until it returns.
-    unsafe { libc::syscall(libc::SYS_futex, word.as_ptr(), libc::FUTEX_WAIT, value, &raw const time, nothing, 0) };
+    unsafe {
+        libc::syscall(libc::SYS_futex, word.as_ptr(), libc::FUTEX_WAIT, value, &raw const time, nothing, 0)
+    };
 }
 
 #[cfg(target_os = "linux")]

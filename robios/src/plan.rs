@@ -122,7 +122,8 @@ impl Plan {
         if let Some(value) = text(names::CPU_TIME) {
             plan.cpu_time = number(names::CPU_TIME, &value)?;
         }
-        let rate = text(names::FRAME_RATE).map_or(Ok(FRAME_RATE), |value| number(names::FRAME_RATE, &value))?;
+        let rate =
+            text(names::FRAME_RATE).map_or(Ok(FRAME_RATE), |value| number(names::FRAME_RATE, &value))?;
         if let Some(value) = text(names::COSTS) {
             plan.costs = Costs::parse(&value, rate)?;
         }

@@ -57,7 +57,8 @@ fn stand_by(program: libc::pid_t, memory: &Memory) -> ! {
     // kernel writes to a number that lives until it returns; and ends this process.
     unsafe {
         let mut most = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
-        let limit = if libc::getrlimit(libc::RLIMIT_NOFILE, &raw mut most) == 0 { most.rlim_cur } else { 256 };
+        let limit =
+            if libc::getrlimit(libc::RLIMIT_NOFILE, &raw mut most) == 0 { most.rlim_cur } else { 256 };
         for file in 0..limit.min(65_536) as RawFd {
             libc::close(file);
         }

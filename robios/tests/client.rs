@@ -26,7 +26,15 @@ const OUTPUT: &str = "CLIENT_OUTPUT";
 fn plan() -> Plan {
     let start = Some(Pose::from_mm_deg(1000.0, 1200.0, 30.0));
     let world = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs/corner.wld");
-    Plan { world: Some(world), start, noise: NOISE, seed: 4, time_limit: 1000.0, costs: Costs::Free, ..Plan::default() }
+    Plan {
+        world: Some(world),
+        start,
+        noise: NOISE,
+        seed: 4,
+        time_limit: 1000.0,
+        costs: Costs::Free,
+        ..Plan::default()
+    }
 }
 
 /// What a robot does in a job. Errors are part of the log.

@@ -11,9 +11,9 @@ mod actuators;
 #[cfg(target_os = "linux")]
 mod alarm;
 mod camera;
-mod computing;
 #[cfg(target_os = "linux")]
 mod clock;
+mod computing;
 mod display;
 mod drive;
 mod globals;

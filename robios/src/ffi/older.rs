@@ -48,7 +48,9 @@ extern "C" fn LCDLineInvert(x1: c_int, y1: c_int, x2: c_int, y2: c_int) -> c_int
     let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(near);
     let steps = (x2 - x1).abs().max((y2 - y1).abs()).max(1);
     let at = |from: c_int, to: c_int, step: c_int| from + (2 * (to - from) * step + steps) / (2 * steps);
-    code(enter("LCDLineInvert", |robios| robios.lcd_invert((0..=steps).map(|step| (at(x1, x2, step), at(y1, y2, step))))))
+    code(enter("LCDLineInvert", |robios| {
+        robios.lcd_invert((0..=steps).map(|step| (at(x1, x2, step), at(y1, y2, step))))
+    }))
 }
 
 #[unsafe(no_mangle)]

@@ -69,7 +69,8 @@ extern "C" fn eyesim_RADIOCheckFrom(from: *mut c_int) -> c_int {
 
 #[unsafe(no_mangle)]
 extern "C" fn RADIOStatus(ids: *mut c_int) -> c_int {
-    let numbers = enter("RADIOStatus", |robios| robios.charge().and_then(|()| robios.robot_numbers())).unwrap_or_default();
+    let numbers = enter("RADIOStatus", |robios| robios.charge().and_then(|()| robios.robot_numbers()))
+        .unwrap_or_default();
     let numbers: Vec<c_int> = numbers.into_iter().map(|number| number as c_int).collect();
     if output(ids, &numbers) { numbers.len() as c_int } else { 0 }
 }

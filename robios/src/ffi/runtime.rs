@@ -212,7 +212,8 @@ fn link(plan: &Plan) -> std::result::Result<Box<dyn Link>, String> {
     if env::var_os(names::SHARED).is_none() {
         return Ok(Box::new(own_world(plan)?));
     }
-    let memory = memory().ok_or("the memory of the runner is not there; expected a program that it has started")?;
+    let memory =
+        memory().ok_or("the memory of the runner is not there; expected a program that it has started")?;
     Ok(Box::new(Remote::new(Arc::clone(memory))))
 }
 

@@ -93,5 +93,6 @@ extern "C" fn SIMGetRobotCount() -> c_int {
 
 #[unsafe(no_mangle)]
 extern "C" fn SIMGetObjectCount() -> c_int {
-    enter("SIMGetObjectCount", |robios| robios.charge().map(|()| robios.identity().objects as i32)).unwrap_or(0)
+    enter("SIMGetObjectCount", |robios| robios.charge().map(|()| robios.identity().objects as i32))
+        .unwrap_or(0)
 }

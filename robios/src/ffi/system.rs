@@ -72,7 +72,8 @@ extern "C" fn OSWait(milliseconds: c_int) -> c_int {
 /// Returns the timer's handle, or 0.
 #[unsafe(no_mangle)]
 extern "C" fn OSAttachTimer(scale: c_int, function: Option<Callback>) -> c_int {
-    let timer = function.and_then(|function| enter("OSAttachTimer", |robios| robios.os_attach_timer(scale, function)));
+    let timer = function
+        .and_then(|function| enter("OSAttachTimer", |robios| robios.os_attach_timer(scale, function)));
     if timer.is_some() {
         watch_program();
     }

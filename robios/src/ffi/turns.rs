@@ -40,7 +40,8 @@ pub(super) struct Stillness(BTreeMap<u32, u64>);
 impl Stillness {
     /// Looks. To be called by a thread that is not the program's.
     pub(super) fn holds(&mut self) -> bool {
-        let waiting = |thread: u32| spent(thread).filter(|_| state(thread) == Some('S')).map(|time| (thread, time));
+        let waiting =
+            |thread: u32| spent(thread).filter(|_| state(thread) == Some('S')).map(|time| (thread, time));
         let threads = others().into_iter().filter(|&thread| state(thread) != Some('Z'));
         let now: Option<BTreeMap<u32, u64>> = threads.map(waiting).collect();
         let before = std::mem::replace(&mut self.0, now.clone().unwrap_or_default());

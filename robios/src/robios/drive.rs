@@ -82,6 +82,9 @@ impl Robios {
     }
 
     fn manoeuvre(&mut self, length: f64, angle: f64, speed: f64) -> Result<()> {
+        if speed == 0.0 {
+            return Err(invalid("speed", speed, "more than 0 in size"));
+        }
         self.turns = length == 0.0;
         self.order(&Request::Curve(length, angle, speed.abs()))?;
         self.turning = 0;
@@ -168,7 +171,10 @@ impl Robios {
         self.servos[index] = angle;
         let position = f64::from(angle - 128) / 128.0;
         match self.order(&Request::Servo(index as u8, position)) {
-            Err(error) if error.kind() == roverlab::io::ErrorKind::Unsupported => Ok(()),
+            Err(error) if error.kind() == roverlab::io::ErrorKind::Unsupported => {
+                self.note(&format!("{error}; its position is remembered alone"));
+                Ok(())
+            }
             result => result,
         }
     }

@@ -35,7 +35,9 @@ impl Robios {
     /// The numbers of all robots, in the order in which they were placed.
     pub fn robot_numbers(&mut self) -> Result<Vec<u32>> {
         if self.numbers.is_empty() {
-            let Reply::Numbers(numbers) = self.ask_now(&Request::Numbers)? else { return Err(super::foreign()) };
+            let Reply::Numbers(numbers) = self.ask_now(&Request::Numbers)? else {
+                return Err(super::foreign());
+            };
             self.numbers = numbers;
         }
         Ok(self.numbers.clone())

@@ -21,8 +21,8 @@ pub(super) struct Queue {
     due: Option<Cost>,
     /// The first frame that is free.
     free: u64,
-    /// When they are served, in nanoseconds since the start, and what they are.
-    orders: VecDeque<(u64, Request)>,
+    /// When they are served, in nanoseconds since the start, which call gave them, and what they are.
+    orders: VecDeque<(u64, &'static str, Request)>,
 }
 
 /// Orders that may wait; whoever gives more waits himself, as the buffers of a connection hold about so many.
@@ -39,8 +39,8 @@ impl Queue {
     }
 
     /// The next order whose frame has come.
-    fn next_before(&mut self, now: u64) -> Option<(u64, Request)> {
-        let is_due = self.orders.front().is_some_and(|&(slot, _)| slot <= now);
+    fn next_before(&mut self, now: u64) -> Option<(u64, &'static str, Request)> {
+        let is_due = self.orders.front().is_some_and(|order| order.0 <= now);
         if is_due { self.orders.pop_front() } else { None }
     }
 
@@ -160,7 +160,7 @@ impl Robios {
             }
             Some(_) => None,
             // The rest of a call whose first order waits.
-            None => self.queue.orders.back().map(|&(slot, _)| slot),
+            None => self.queue.orders.back().map(|order| order.0),
         };
         let Some(slot) = slot else {
             return match self.ask(request)? {
@@ -168,7 +168,7 @@ impl Robios {
                 _ => Err(foreign()),
             };
         };
-        self.queue.orders.push_back((slot, request.clone()));
+        self.queue.orders.push_back((slot, self.call, request.clone()));
         if self.queue.orders.len() > MOST_ORDERS {
             let first = self.queue.orders[0].0;
             let now = self.clock();
@@ -183,13 +183,15 @@ impl Robios {
             return Ok(());
         }
         let now = self.clock();
-        while let Some((slot, request)) = self.queue.next_before(now) {
+        while let Some((slot, call, request)) = self.queue.next_before(now) {
             self.recent.readings.clear();
             let wait = slot.saturating_sub(self.link_clock()) as f64 / NANOSECONDS;
             match self.link.ask(wait, &request) {
                 // The program has gone on, and does not hear of it.
                 Err(error) if matches!(error.kind(), ErrorKind::Unsupported | ErrorKind::InvalidInput) => {
-                    self.note(&format!("an order to the robot failed: {error}"));
+                    let present = std::mem::replace(&mut self.call, call);
+                    self.note(&error.to_string());
+                    self.call = present;
                 }
                 answer => drop(answer?),
             }
@@ -200,7 +202,7 @@ impl Robios {
 
     /// Gives the world all orders, and lets the time pass that this takes.
     pub(super) fn deliver_all(&mut self) -> Result<()> {
-        if let Some(&(last, _)) = self.queue.orders.back() {
+        if let Some(&(last, ..)) = self.queue.orders.back() {
             let now = self.clock();
             self.set_clock(last.max(now));
         }

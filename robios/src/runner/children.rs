@@ -97,7 +97,9 @@ pub(crate) fn start(
     }
     command.envs(variables).env(names::KEYS, &options.keys);
     command.env(names::MEMORY, file_of_memory.as_raw_fd().to_string());
-    command.env(names::COSTS, options.costs_by_whole_name()).env(names::FRAME_RATE, options.frame_rate.to_string());
+    command
+        .env(names::COSTS, options.costs_by_whole_name())
+        .env(names::FRAME_RATE, options.frame_rate.to_string());
     command.env(names::CPU_TIME, options.cpu_time.to_string());
     command.env_remove(names::KEYBOARD);
     let keyboard = if options.is_live() { keyboard(program, &mut command)? } else { None };

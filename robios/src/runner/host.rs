@@ -173,11 +173,7 @@ fn truth(world: &World, robot: usize, time: f64, contacts: u64) -> Truth {
 }
 
 /// Answers a program until it ends, and waits for its end.
-fn attend(
-    mut seat: Seat,
-    running: Result<Running, String>,
-    (real_limit, hang_limit): (f64, f64),
-) -> Served {
+fn attend(mut seat: Seat, running: Result<Running, String>, (real_limit, hang_limit): (f64, f64)) -> Served {
     let mut running = match running {
         Ok(running) => running,
         Err(message) => {
@@ -213,8 +209,7 @@ fn serve(seat: &mut Seat, running: &mut Running, hang_limit: f64) -> Option<Endi
             Asked::Question(frame) => frame,
             Asked::Left => return None,
             Asked::TooLong(length) => {
-                let message =
-                    format!("a question of {length} bytes; expected at most {LONGEST_REQUEST}");
+                let message = format!("a question of {length} bytes; expected at most {LONGEST_REQUEST}");
                 return Some(Ending::Offence(message));
             }
             Asked::Nothing if running.has_ended() => return None,

@@ -84,7 +84,10 @@ fn run(options: &Options, warnings: &mut Vec<String>) -> Result<Summary, String>
     let (scene, odd) = plan.scene()?;
     warn(warnings, odd);
     if options.cpu_time > 0.0 {
-        warn(warnings, ["--cpu-time: what a program computes is charged, so runs are not reproducible".into()]);
+        warn(
+            warnings,
+            ["--cpu-time: what a program computes is charged, so runs are not reproducible".into()],
+        );
     }
     let folder = work_folder::WorkFolder::new()?;
     let programs = programs::of(options, &scene, &folder)?;

@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 
-use eyesim::keys::KeyPlan;
 use eyesim::costs::Costs;
+use eyesim::keys::KeyPlan;
 use eyesim::plan::{FRAME_RATE, Plan, parse_pose};
 use roverlab::geometry::Pose;
 use roverlab::picture::FileType;

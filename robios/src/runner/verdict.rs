@@ -144,10 +144,14 @@ impl Verdict {
 pub(crate) fn name_deadlocks(verdicts: &mut [Verdict]) {
     let waits: Vec<_> = verdicts
         .iter()
-        .map(|verdict| verdict.listening_since.filter(|_| verdict.listens()).map(|since| (verdict.name(), since)))
+        .map(|verdict| {
+            verdict.listening_since.filter(|_| verdict.listens()).map(|since| (verdict.name(), since))
+        })
         .collect();
     for (index, verdict) in verdicts.iter_mut().enumerate() {
-        let (Some((_, since)), Ending::OutOfTime(message)) = (&waits[index], &mut verdict.ending) else { continue };
+        let (Some((_, since)), Ending::OutOfTime(message)) = (&waits[index], &mut verdict.ending) else {
+            continue;
+        };
         let others = waits.iter().enumerate().filter(|&(other, _)| other != index);
         let others: Vec<String> = others
             .filter_map(|(_, wait)| wait.as_ref())

@@ -427,7 +427,8 @@ mod tests {
     #[test]
     fn bars_and_letters_count_in_any_column() {
         let bars = world(" _ _ _\n|  _ _|\n|_ __|\n1000\n");
-        let right: Vec<Segment> = lines(&bars).into_iter().filter(|s| s.a.x == s.b.x && s.a.x > 0.0).collect();
+        let right: Vec<Segment> =
+            lines(&bars).into_iter().filter(|s| s.a.x == s.b.x && s.a.x > 0.0).collect();
         assert_eq!(right, [segment(3.0, 0.0, 3.0, 2.0)], "the edge goes all the way up");
         let letters = world(" _ _\n| S |\n|_ a|\n1000\n");
         let places: Vec<(char, Point)> = letters.places.iter().map(|p| (p.letter, p.position)).collect();
