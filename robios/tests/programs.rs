@@ -11,8 +11,12 @@ use serde_json::Value;
 
 #[path = "programs/endings.rs"]
 mod endings;
+#[path = "programs/limits.rs"]
+mod limits;
 #[path = "programs/scripts.rs"]
 mod scripts;
+#[path = "programs/time.rs"]
+mod time;
 
 fn programs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs")
@@ -223,7 +227,8 @@ fn robots_share_a_world() {
     folder.copy("square.c", "square.c");
     let script =
         folder.write("can.sim", "S4 500 600 90 simulation.x\nS4 1500 600 180 square.x\ncan 1000 1200 0\n");
-    let all = report(&[script.to_str().unwrap()]);
+    // With the first call, before the other robot has driven off.
+    let all = report(&["--call-costs", "free", script.to_str().unwrap()]);
     assert_eq!((&all["robots"][0]["exit"], &all["robots"][1]["exit"]), (&0.into(), &0.into()), "{all}");
     assert_eq!(all["robots"][0]["pose"]["x_mm"], 800.0);
 }

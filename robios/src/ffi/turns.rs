@@ -32,8 +32,8 @@ impl Turn {
     }
 }
 
-/// Whether the program's threads have all been waiting for something outside of it since an earlier look: for another
-/// process, a pipe, each other.
+/// Whether the program's threads have all been waiting since an earlier look while it has a child process: for that, most
+/// likely, whose time is the real one.
 #[derive(Debug, Default)]
 pub(super) struct Stillness(BTreeMap<u32, u64>);
 
@@ -45,8 +45,16 @@ impl Stillness {
         let threads = others().into_iter().filter(|&thread| state(thread) != Some('Z'));
         let now: Option<BTreeMap<u32, u64>> = threads.map(waiting).collect();
         let before = std::mem::replace(&mut self.0, now.clone().unwrap_or_default());
-        now.is_some_and(|now| !now.is_empty() && now == before)
+        now.is_some_and(|now| !now.is_empty() && now == before) && has_child()
     }
+}
+
+fn has_child() -> bool {
+    // SAFETY: an all-zero record of this type is valid.
+    let mut child: libc::siginfo_t = unsafe { std::mem::zeroed() };
+    let look = libc::WEXITED | libc::WNOHANG | libc::WNOWAIT;
+    // SAFETY: the kernel writes to a record that lives until it returns, and leaves the children as they are.
+    unsafe { libc::waitid(libc::P_ALL, 0, &raw mut child, look) == 0 }
 }
 
 /// Whether the thread in which the program began has ended, and all others that it has started. To be called by a

@@ -33,8 +33,8 @@ const PATIENCE: u32 = 4;
 const DOUBLING: u32 = 20;
 /// Most seconds that pass at a look.
 const MOST: f64 = 0.2;
-/// Looks in which a program has to wait for something outside of it before time passes: what keeps it waiting that long
-/// is not the machine.
+/// Looks in which a program has to wait for another process before time passes: what keeps it waiting that long is not
+/// the machine.
 const WAITING: u32 = 40;
 /// Looks without a call after which time passes for a program without timers: most that compute are done by then.
 const LONG: u32 = 1000;
@@ -64,7 +64,7 @@ fn step(doublings: u32) -> f64 {
 
 /// With timers, time passes as the real one at first, and then faster and faster: a program that computes for a while
 /// loses little, and one that waits need not wait for long. Without timers it begins later, and grows faster more slowly.
-/// While the program waits for something outside of it, time passes as the real one.
+/// While the program waits for another process, time passes as the real one.
 fn watch(pass: Pass, is_shared: bool) {
     set_ours(true);
     let (mut before, mut idle) = (calls(), 0_u32);
