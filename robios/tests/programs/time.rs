@@ -1,5 +1,6 @@
 //! What calls take, what a run reports beyond its outcome, and that it is the same each time.
 
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde_json::Value;
@@ -17,7 +18,7 @@ fn loops_take_as_long_as_on_eyesim() {
     }
     let folder = Folder::new("time-loops");
     let costs =
-        folder.write("costs", "PSDGet query 33.3  # slower\nVWSetSpeed local 1\n").display().to_string();
+        folder.write("costs", "PSDGet query 40  # slower\nVWSetSpeed local 1\n").display().to_string();
     let count = |calls: &str, options: &[&str]| -> i32 {
         let file = folder.write("count.c", &COUNT.replace("CALLS", calls));
         let told = report(&[options, &[file.to_str().unwrap()]].concat());
@@ -219,6 +220,20 @@ fn opencv_is_found() {
     assert_eq!(told["lcd_text"], "42", "{told}");
 }
 
+/// Compiles a program as the script for it does, beside its source text.
+fn compiled(file: &Path) -> PathBuf {
+    let folder = Path::new(env!("CARGO_BIN_EXE_robios")).parent().unwrap();
+    let library =
+        [folder.to_owned(), folder.join("deps")].into_iter().find(|f| f.join("libeyesim.so").is_file());
+    let program = file.with_extension("x");
+    let done = Command::new(Path::new(env!("CARGO_MANIFEST_DIR")).join("bin/gccsim"))
+        .args([file.as_os_str(), "-o".as_ref(), program.as_os_str()])
+        .env("ROBIOS_LIBRARY_DIR", library.unwrap_or_default())
+        .status();
+    assert!(done.unwrap().success());
+    program
+}
+
 /// Programs with timers or threads that wait by the real clock are left out: see `eyesim`'s documentation.
 #[test]
 fn fifty_runs_under_load_are_the_same_each_time() {
@@ -233,7 +248,8 @@ fn fifty_runs_under_load_are_the_same_each_time() {
     for name in
         ["square", "driving", "sensors", "motors", "display", "camera", "images", "lines", "chapter04"]
     {
-        let file = folder.copy(&format!("{name}.c"), &format!("{name}.c")).display().to_string();
+        let file = folder.copy(&format!("{name}.c"), &format!("{name}.c"));
+        let file = compiled(&file).display().to_string();
         runs.extend(
             [("0", "1"), ("1", "1"), ("1", "2"), ("2", "3"), ("5", "4")].map(|noise| (noise, file.clone())),
         );
