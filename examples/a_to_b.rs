@@ -47,7 +47,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         picture.line(truth.trail.iter().map(|point| point.pose.position()), style);
         picture.robot_with(truth.pose, &RobotSpec::s4().footprint, Style::new(colour));
     }
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/a_to_b.svg")?;
     Ok(())
 }

@@ -49,7 +49,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     picture.true_path(truth.trail.iter().map(|point| point.pose.position()));
     picture.robot_with(start, &spec.footprint, pale).robot(truth.pose, &spec.footprint);
     picture.mark(Mark::Start, start.position()).mark(Mark::Goal, goal.position());
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/ackermann.svg")?;
     Ok(())
 }

@@ -50,7 +50,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             picture.line(truth.trail.iter().map(|point| point.pose.position()), style);
         }
     }
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/bug_compare.svg")?;
     Ok(())
 }

@@ -65,7 +65,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     picture.title("To the red can").mark(Mark::Start, start.position());
     picture.true_path(truth.trail.iter().map(|point| point.pose.position()));
     picture.robot(truth.pose, &spec.footprint);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/color_tracking.svg")?;
     Ok(())
 }

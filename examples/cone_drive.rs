@@ -50,7 +50,6 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     let mut picture = Picture::new(&ground);
     picture.title("For the nearest gap").true_path(path).mark(Mark::Start, start.position());
     picture.points(cones.iter().map(|cone| cone.position), Style::new(blue).width(5.0).labelled("cone"));
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/cone_drive.svg")?;
     Ok(())
 }

@@ -62,7 +62,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     picture.line(path[..first].iter().map(|&(place, _)| place), Style::aid().labelled("first lap"));
     picture.speed_path(path[first..].iter().copied());
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/cone_race.svg")?;
     Ok(())
 }

@@ -65,7 +65,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .mark(Mark::Start, start.position());
     picture.points(map.cells(false), Style::new(Colour::RED).labelled("left out"));
     picture.robot(truth.pose, &RobotSpec::s4().footprint);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/coverage.svg")?;
     Ok(())
 }

@@ -49,7 +49,6 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     let (first, last) = (evolution.history()[0], evolution.history()[11]);
     assert!(last.best > 0.5 * first.best && last.mean > first.mean && unseen < 0.01);
 
-    std::fs::create_dir_all("target/pictures")?;
     chart(evolution.history()).save("target/pictures/genetic.svg")?;
     Ok(())
 }

@@ -68,7 +68,6 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     picture.points(robot.scan()?.points().map(|point| place.to_world(point)), Style::lidar());
     picture.true_path(truth.trail.iter().map(|point| point.pose.position()));
     picture.robot(truth.pose, &RobotSpec::s4().footprint);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/localise.svg")?;
     Ok(())
 }

@@ -67,7 +67,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .line(path[..explored].to_vec(), Style::aid().width(1.6));
     picture.true_path(path[explored - 1..].to_vec()).robot(truth.pose, &spec.footprint);
     picture.mark(Mark::Start, start.position()).mark(Mark::Goal, scale.centre(route.end()));
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/maze_explore.svg")?;
     Ok(())
 }

@@ -56,7 +56,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     picture.title("Left hand on the wall").true_path(truth.trail.iter().map(|point| point.pose.position()));
     picture.mark(Mark::Start, start.position()).mark(Mark::Goal, scale.centre(goal));
     picture.robot(truth.pose, &spec.footprint);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/maze_left.svg")?;
     Ok(())
 }

@@ -64,7 +64,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     picture.true_path(end.trail.iter().map(|point| point.pose.position()));
     picture.mark(Mark::Start, start.position()).mark(Mark::Goal, goal);
     picture.robot(end.pose, &RobotSpec::s4().footprint);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/maze_lidar.svg")?;
     Ok(())
 }

@@ -70,7 +70,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     picture.title("Exploration, and the fast run").line(path[..explored].to_vec(), Style::aid().width(1.6));
     picture.true_path(path[explored - 1..].to_vec()).mark(Mark::Start, start.position());
     picture.robot(truth.pose, &spec.footprint).mark(Mark::Goal, scale.centre(plan.route.end()));
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/micromouse.svg")?;
     Ok(())
 }

@@ -73,7 +73,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .true_path(truth.trail.iter().map(|point| point.pose.position()))
         .robot(truth.pose, &spec.footprint);
     picture.mark(Mark::Start, start.position()).mark(Mark::Goal, goal);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/navigate.svg")?;
     Ok(())
 }

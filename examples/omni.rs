@@ -60,7 +60,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         picture.robot_with(point.pose, &spec.footprint, pale);
     }
     picture.robot(truth.pose, &spec.footprint).mark(Mark::Start, start.position()).mark(Mark::Goal, goal);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/omni.svg")?;
     Ok(())
 }

@@ -51,7 +51,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         picture.true_path(truth.trail.iter().map(|point| point.pose.position()));
         picture.mark(Mark::Start, robot.pose.position()).robot(truth.pose, &robot.spec.footprint);
     }
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/random_drive.svg")?;
     Ok(())
 }

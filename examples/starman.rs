@@ -50,7 +50,6 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
             picture.line(limb.map(at), style.clone());
         }
     }
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/starman.svg")?;
     Ok(())
 }

@@ -39,7 +39,6 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     // The follower has reached the last place but one, where it was sent last.
     let (x, y) = PLACES[2];
     assert!(truths[1].pose.distance_to(Point::new(x, y)) < 0.1);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/two_robots.svg")?;
     Ok(())
 }

@@ -42,7 +42,6 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
         assert!(truth.contacts == 0 && length > 4.0 && (180.0..230.0).contains(&mean), "{name}");
         picture.line(path, Style::new(colour).labelled(name));
     }
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/wall_following.svg")?;
     Ok(())
 }

@@ -30,7 +30,6 @@ mod fast;
 pub mod files;
 mod flood;
 mod follow;
-#[cfg(any(test, feature = "proptest"))]
 pub mod generate;
 pub mod mms;
 mod model;

@@ -22,7 +22,7 @@ use roverlab::random::Stream;
 use roverlab::scan::{LocalisationMap, Localiser, LocaliserParameters};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
+use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, rounded};
 use crate::driving::{Conditions, Run, check_lidar, drawn, paced, world_with_others};
 
 /// The command line of `coverage`.
@@ -58,7 +58,10 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("campaign", OF_ONE_RUN),
+    ("!campaign", &["rooms"]),
+]);
 
 /// The share of the floor that is enough.
 const ENOUGH: f64 = 0.98;

@@ -45,7 +45,9 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("task=square", &["spin"]),
+]);
 
 /// A task of section 7.4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -27,10 +27,7 @@ pub(super) const SCENARIOS: &[Scenario] = &[
     Scenario::new("maze-lidar", lidar),
     Scenario::new("micromouse", micromouse),
     Scenario::new("mms", mms),
-    #[cfg(feature = "proptest")]
     Scenario::new("maze-generators", generators),
-    #[cfg(not(feature = "proptest"))]
-    Scenario::without("maze-generators", "built without the feature `proptest`"),
 ];
 
 const MAZE: &str = "\
@@ -264,7 +261,6 @@ fn mms() -> Result<String> {
     Ok(log)
 }
 
-#[cfg(feature = "proptest")]
 fn generators() -> Result<String> {
     use roverlab::maze::generate::{braided, competition, perfect};
 
