@@ -411,7 +411,10 @@ impl Seat {
         Ok(Some(match *request {
             Request::Pose => Reply::Pose(walker.odometry(), 0.0),
             Request::RobotAt(_) => Reply::Pose(walker.pose(), walker.height()),
-            Request::SetPose(pose) => done(walker.set_odometry(pose)),
+            Request::SetPose(pose) => {
+                walker.set_odometry(pose);
+                Reply::Done
+            }
             Request::PlaceRobot(_, pose) => done(walker.place(pose)?),
             Request::Servo(servo, position) => done(walker.set_servo(servo, position)?),
             Request::Remaining => Reply::Number(0.0),

@@ -256,7 +256,7 @@ impl Question {
     /// The question as a frame.
     pub fn encode(&self) -> Vec<u8> {
         let w = Writer::new().number(self.debt).byte(self.wanted.len() as u8);
-        let w = self.wanted.iter().fold(w, |w, request| w.request(request));
+        let w = self.wanted.iter().fold(w, Writer::request);
         w.request(&self.request).0
     }
 
@@ -286,7 +286,7 @@ impl Answer {
     /// The answer as a frame.
     pub fn encode(&self) -> Vec<u8> {
         let w = Writer::new().number(self.now).byte(self.readings.len() as u8);
-        let w = self.readings.iter().fold(w, |w, reading| w.reply(reading));
+        let w = self.readings.iter().fold(w, Writer::reply);
         match &self.reply {
             Err(error) => {
                 let kind = KINDS.iter().position(|&kind| kind == error.kind()).unwrap_or(KINDS.len() - 1);

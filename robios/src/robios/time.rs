@@ -119,12 +119,11 @@ impl Robios {
         self.deliver()?;
         let lasts = self.lasts(request);
         let known = if lasts { self.recall(request) } else { None };
-        let reply = match known {
-            Some(reply) => Ok(reply),
-            None => {
-                let debt = std::mem::take(&mut self.debt);
-                self.ask_link(debt, request)
-            }
+        let reply = if let Some(reply) = known {
+            Ok(reply)
+        } else {
+            let debt = std::mem::take(&mut self.debt);
+            self.ask_link(debt, request)
         };
         if !self.has_frames() {
             // A call that fails takes its time too.

@@ -133,7 +133,9 @@ fn collect(
         match results.recv_timeout(patience) {
             Ok((number, end)) => served[number] = Some(end),
             Err(mpsc::RecvTimeoutError::Timeout) if !killed => {
-                processes.iter().for_each(|&process| process::kill_all(process));
+                for &process in processes {
+                    process::kill_all(process);
+                }
                 killed = true;
             }
             Err(_) => break,
