@@ -12,7 +12,7 @@ use super::real_time::nap;
 use super::runtime::{enter, enter_quietly};
 use super::threads::{Inside, alone, calls};
 #[cfg(target_os = "linux")]
-use super::turns::{Turn, own_number};
+use super::turns::{Turn, is_there, own_number};
 use crate::keys::Waiting;
 use crate::robios::Robios;
 
@@ -48,8 +48,10 @@ struct Sleeper {
     waits: u32,
 }
 
-/// Looks after which whoever should have woken up is forgotten: its thread has been cancelled.
-const MOST_WAITS: u32 = 2000;
+/// Looks after which whoever should have woken up and has ended is forgotten: its thread has been cancelled.
+const SOME_WAITS: u32 = 200;
+/// Looks after which anybody is who should have woken up: it has left its sleep in a way of its own.
+const MOST_WAITS: u32 = 20_000;
 
 impl Sleeper {
     fn new(end: f64) -> Self {
@@ -66,10 +68,18 @@ impl Sleeper {
             if rest > 0.0 { robios.pass(rest.min(TICK)).map(|()| true) } else { Ok(false) }
         })?;
         self.waits = if passed { 0 } else { self.waits + 1 };
-        if self.waits > MOST_WAITS {
-            at_ends(|ends| ends.retain(|&number, _| number == self.number));
-        }
+        self.forget_others();
         Some(())
+    }
+
+    /// Forgets those who should have woken up and never will.
+    fn forget_others(&self) {
+        if self.waits.is_multiple_of(SOME_WAITS) {
+            let lost = self.waits >= MOST_WAITS;
+            at_ends(|ends| {
+                ends.retain(|&number, &mut (_, thread)| number == self.number || !lost && is_there(thread))
+            });
+        }
     }
 
     /// Whether it is this thread's turn to wake up, of all that should have: those who sleep wake in the order of their
@@ -80,7 +90,8 @@ impl Sleeper {
             !ends.iter().any(earlier)
         });
         self.waits += 1;
-        (first && turn.is_long_over(&asleep())) || self.waits > MOST_WAITS
+        self.forget_others();
+        first && turn.is_long_over(&asleep())
     }
 }
 
@@ -144,6 +155,11 @@ struct Turn;
 #[cfg(not(target_os = "linux"))]
 fn own_number() -> u32 {
     0
+}
+
+#[cfg(not(target_os = "linux"))]
+fn is_there(_: u32) -> bool {
+    true
 }
 
 #[cfg(not(target_os = "linux"))]

@@ -10,15 +10,17 @@ use std::fs;
 pub(super) struct Turn {
     /// Nanoseconds on a processor of every thread, when it was first seen, and at the last look.
     spent: BTreeMap<u32, (u64, u64)>,
+    /// The threads at the last look, if it was over for all of them.
+    quiet: Option<Vec<u32>>,
     looks: u32,
 }
 
 /// Nanoseconds on a processor that a thread gets to make a call: one that makes none is busy with something else.
-const SHARE: u64 = 200_000;
+const SHARE: u64 = 1_000_000;
 /// Nanoseconds that a thread gets to go on until it waits, before another one wakes up.
-const LONG_SHARE: u64 = 1_000_000;
-/// Looks after which time passes whatever the threads do.
-const MOST_LOOKS: u32 = 2000;
+const LONG_SHARE: u64 = 5_000_000;
+/// Looks after which time passes whatever the threads do: on a busy machine, one that could run may wait long.
+const MOST_LOOKS: u32 = 20_000;
 
 impl Turn {
     /// Whether every other thread waits for something, or has had its share of a processor. Those that sleep by the
@@ -34,11 +36,16 @@ impl Turn {
 
     fn is_over_after(&mut self, share: u64, asleep: &[u32]) -> bool {
         self.looks += 1;
+        let awake: Vec<u32> = others().into_iter().filter(|thread| !asleep.contains(thread)).collect();
         let mut over = true;
-        for thread in others().into_iter().filter(|thread| !asleep.contains(thread)) {
+        for &thread in &awake {
             over &= self.is_over_for(thread, share);
         }
-        over || self.looks > MOST_LOOKS
+        // Threads are looked at one after the other: one may have woken another up and ended meanwhile.
+        let quiet = over.then_some(awake);
+        let still = over && self.quiet == quiet;
+        self.quiet = quiet;
+        still || self.looks > MOST_LOOKS
     }
 
     /// A thread that was found waiting twice, and has done nothing in between, waits for more than its turn at a lock.
@@ -86,6 +93,11 @@ fn has_child() -> bool {
 pub(super) fn have_all_ended() -> bool {
     let first = std::process::id();
     state(first) == Some('Z') && others().into_iter().all(|thread| thread == first)
+}
+
+/// Whether there still is a thread of a number.
+pub(super) fn is_there(thread: u32) -> bool {
+    state(thread).is_some()
 }
 
 /// The number of the thread that asks.
