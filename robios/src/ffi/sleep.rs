@@ -28,12 +28,18 @@ const GRACE: Duration = Duration::from_micros(50);
 /// When the threads that sleep wake up, in seconds since the start, and their numbers.
 static ENDS: Mutex<BTreeMap<u64, (f64, u32)>> = Mutex::new(BTreeMap::new());
 static SLEEPERS: AtomicU64 = AtomicU64::new(0);
+/// Threads that have started another one and let it run: it does not take them long, so nobody wakes up meanwhile.
+static STARTERS: AtomicU64 = AtomicU64::new(0);
 
 /// Looks at them as within a call, so that a signal handler that sleeps meanwhile does not wait for this
 /// thread.
 fn at_ends<T>(look: impl FnOnce(&mut BTreeMap<u64, (f64, u32)>) -> T) -> T {
     let _inside = Inside::new();
     look(&mut ENDS.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
+fn nobody_starts() -> bool {
+    STARTERS.load(Ordering::Relaxed) == 0
 }
 
 /// The numbers of the threads that sleep.
@@ -91,7 +97,7 @@ impl Sleeper {
         });
         self.waits += 1;
         self.forget_others();
-        first && turn.is_long_over(&asleep())
+        first && nobody_starts() && turn.is_long_over(&asleep())
     }
 }
 
@@ -129,7 +135,7 @@ fn sleep_until(end: f64) -> Option<()> {
             continue;
         }
         nap(GRACE);
-        if calls() != before {
+        if calls() != before || !nobody_starts() {
             turn = Turn::default();
         } else if turn.is_over(&asleep()) {
             turn = Turn::default();
@@ -142,9 +148,11 @@ fn sleep_until(end: f64) -> Option<()> {
 #[cfg(target_os = "linux")]
 pub(super) fn let_others_run() {
     let mut turn = Turn::default();
+    STARTERS.fetch_add(1, Ordering::Relaxed);
     while !turn.is_long_over(&asleep()) {
         nap(GRACE);
     }
+    STARTERS.fetch_sub(1, Ordering::Relaxed);
 }
 
 /// Where nobody tells what threads do, they have had their turn after a nap.

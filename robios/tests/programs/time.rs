@@ -264,7 +264,7 @@ fn fifty_runs_under_load_are_the_same_each_time() {
     let script = folder.write("two.sim", "S4 400 600 0 radio.x\nLabBot 1000 600 180 radio.x\n");
     runs.extend(["1", "2"].map(|seed| (("1", seed), script.display().to_string())));
     let threads = folder.write("turns.c", TURNS);
-    for file in [folder.copy("threads.c", "threads.c"), folder.copy("crowd.c", "crowd.c"), threads] {
+    for file in [folder.copy("threads.c", "threads.c"), folder.copy("older.c", "older.c"), threads] {
         runs.push((("1", "2"), compiled(&file).display().to_string()));
     }
     assert_eq!(runs.len(), 50);
