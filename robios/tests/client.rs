@@ -11,6 +11,7 @@ use eyesim::costs::Costs;
 use eyesim::plan::{Plan, names};
 use roverlab::drive::{RandomDrive, RandomDriveParameters};
 use roverlab::geometry::{Point, Pose, Twist};
+use roverlab::io::control::run;
 use roverlab::io::robios::RobiosRobot;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::wrappers::{Quantised, Stamp, Traced};
@@ -43,11 +44,11 @@ fn work(job: &str, robot: &mut impl RobotIo) {
         "tour" => tour(robot),
         "random" => {
             let drive = RandomDrive::new(RandomDriveParameters::default(), Stream::new(7));
-            let _ = drive.and_then(|mut drive| drive.run(robot, 40.0, |_| {}));
+            let _ = drive.and_then(|mut drive| run(robot, &mut drive, 40.0, |_, _, _| {}));
         }
         _ => {
             let bug = DistBug::new(Point::new(1.5, 0.9), DistBugParameters::default());
-            let _ = bug.and_then(|mut bug| bug.run(robot, 120.0, |_, _| {}));
+            let _ = bug.and_then(|mut bug| run(robot, &mut bug, 120.0, |_, _, _| {}));
         }
     }
 }
