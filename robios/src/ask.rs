@@ -71,6 +71,22 @@ pub enum Request {
     PlaceObject(u32, Pose),
 }
 
+impl Request {
+    /// Whether it is a reading of few bytes, which changes nothing and nothing of which is known but by the tick.
+    pub fn is_brief(&self) -> bool {
+        matches!(
+            self,
+            Self::Speed
+                | Self::Pose
+                | Self::Remaining
+                | Self::IsDone
+                | Self::IsStalled
+                | Self::Distance(_)
+                | Self::Encoder(_)
+        )
+    }
+}
+
 /// What the world answers.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Reply {
@@ -132,6 +148,8 @@ const FULL_SPEED: f64 = 0.4;
 /// The same for cars.
 const FULL_SPEED_OF_CARS: f64 = 0.5;
 
+/// Readings that come along with an answer.
+pub const MOST_READINGS: usize = 16;
 /// Seconds after which the body of a walker follows it.
 const STRIDE: f64 = 0.05;
 
@@ -165,6 +183,8 @@ pub struct Seat {
     elevations: (Vec<f64>, Vec<f64>),
     scan: LidarScan,
     walker: Option<Walker>,
+    /// Seconds that readings have taken which were not called for.
+    ahead: f64,
 }
 
 impl fmt::Debug for Seat {
@@ -216,7 +236,17 @@ impl Seat {
         let robots = scene.robots.iter().map(|robot| robot.elevation).collect();
         let objects = scene.world.objects.iter().map(|object| object.elevation).collect();
         let (truth, scan) = (simulation.truth(), LidarScan::default());
-        Self { robot, truth, identity, index, numbers, elevations: (robots, objects), scan, walker }
+        Self {
+            robot,
+            truth,
+            identity,
+            index,
+            numbers,
+            elevations: (robots, objects),
+            scan,
+            walker,
+            ahead: 0.0,
+        }
     }
 
     /// Who the robot is.
@@ -234,6 +264,11 @@ impl Seat {
         self.index
     }
 
+    /// Where a walker believes to be, and how far it has walked; of one on wheels, the world knows.
+    pub fn walked(&self) -> Option<(Pose, f64)> {
+        self.walker.as_ref().map(|walker| (walker.odometry(), walker.walked()))
+    }
+
     /// The robot's own time in seconds.
     pub fn now(&mut self) -> f64 {
         self.robot.peek_time().unwrap_or_default()
@@ -241,6 +276,7 @@ impl Seat {
 
     /// Lets `debt` seconds pass that calls without the world have taken, and answers.
     pub fn ask(&mut self, debt: f64, request: &Request) -> Result<Reply> {
+        let debt = debt - std::mem::take(&mut self.ahead);
         if debt > 0.0 {
             self.wait((debt - self.identity.call_duration).max(0.0))?;
         }
@@ -302,6 +338,15 @@ impl Seat {
                 self.moves(|truth, by| truth.move_object(by, index, pose))?
             }
         })
+    }
+
+    /// Readings at the end of the last request, which take no time of the program's; as many as can be taken.
+    pub fn readings(&mut self, wanted: &[Request]) -> Vec<Reply> {
+        let begin = self.now();
+        let brief = wanted.iter().take(MOST_READINGS).take_while(|request| request.is_brief());
+        let readings = brief.map_while(|request| self.ask(0.0, request).ok()).collect();
+        self.ahead = self.now() - begin;
+        readings
     }
 
     /// Lets seconds pass, and the time of a call.
@@ -366,7 +411,10 @@ impl Seat {
         Ok(Some(match *request {
             Request::Pose => Reply::Pose(walker.odometry(), 0.0),
             Request::RobotAt(_) => Reply::Pose(walker.pose(), walker.height()),
-            Request::SetPose(pose) => done(walker.set_odometry(pose)),
+            Request::SetPose(pose) => {
+                walker.set_odometry(pose);
+                Reply::Done
+            }
             Request::PlaceRobot(_, pose) => done(walker.place(pose)?),
             Request::Servo(servo, position) => done(walker.set_servo(servo, position)?),
             Request::Remaining => Reply::Number(0.0),

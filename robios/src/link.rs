@@ -14,8 +14,9 @@ use crate::wire::{Answer, Question};
 
 /// Somebody who answers requests.
 pub trait Link: fmt::Debug + Send {
-    /// Lets `debt` seconds pass that calls without the world have taken, and answers.
-    fn ask(&mut self, debt: f64, request: &Request) -> Result<Reply>;
+    /// Lets `debt` seconds pass that calls without the world have taken, and answers. Some of the readings that are wanted
+    /// at the end may come along, in their order.
+    fn ask(&mut self, debt: f64, wanted: &[Request], request: &Request) -> Result<(Reply, Vec<Reply>)>;
 
     /// The robot's own time at the last answer.
     fn now(&mut self) -> f64;
@@ -40,8 +41,9 @@ pub struct Truth {
 }
 
 impl Link for Seat {
-    fn ask(&mut self, debt: f64, request: &Request) -> Result<Reply> {
-        Seat::ask(self, debt, request)
+    fn ask(&mut self, debt: f64, _wanted: &[Request], request: &Request) -> Result<(Reply, Vec<Reply>)> {
+        // Whoever wants to know more asks again, which is cheap here.
+        Seat::ask(self, debt, request).map(|reply| (reply, Vec::new()))
     }
 
     fn now(&mut self) -> f64 {
@@ -50,11 +52,12 @@ impl Link for Seat {
 
     fn truth(&mut self) -> Option<Truth> {
         let robot = Seat::truth(self).robot(self.index()).ok()?;
+        let (odometry, path_length) = self.walked().unwrap_or((robot.odometry, robot.path_length));
         Some(Truth {
             time: Seat::truth(self).time(),
             pose: robot.pose,
-            odometry: robot.odometry,
-            path_length: robot.path_length,
+            odometry,
+            path_length,
             contacts: robot.contacts,
         })
     }
@@ -90,13 +93,13 @@ impl Drop for Remote {
 }
 
 impl Link for Remote {
-    fn ask(&mut self, debt: f64, request: &Request) -> Result<Reply> {
-        let question = Question { debt, request: request.clone() };
+    fn ask(&mut self, debt: f64, wanted: &[Request], request: &Request) -> Result<(Reply, Vec<Reply>)> {
+        let question = Question { debt, wanted: wanted.to_vec(), request: request.clone() };
         let answer = Answer::decode(&self.memory.ask(&question.encode()));
         let answer =
             answer.ok_or_else(|| Error::new(ErrorKind::Disconnected, "the world's answer makes no sense"))?;
         self.now = answer.now;
-        answer.reply
+        Ok((answer.reply?, answer.readings))
     }
 
     fn now(&mut self) -> f64 {

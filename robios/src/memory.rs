@@ -48,7 +48,7 @@ const SPINS: u32 = 2000;
 /// The memory.
 #[derive(Debug)]
 pub struct Memory {
-    start: *mut u8,
+    start: *mut u32,
     spins: u32,
 }
 
@@ -119,19 +119,20 @@ impl Memory {
 
     fn word(&self, word: Word) -> &AtomicU32 {
         // SAFETY: a multiple of four below the size, and words are only touched as atomic ones.
-        unsafe { AtomicU32::from_ptr(self.start.cast::<u32>().add(16 * word as usize)) }
+        unsafe { AtomicU32::from_ptr(self.start.add(16 * word as usize)) }
     }
 
     fn write(&self, at: usize, bytes: &[u8]) {
         let room = SIZE.saturating_sub(at).min(bytes.len());
         // SAFETY: the place and as many bytes lie within the memory, and what is copied does not.
-        unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), self.start.add(at), room) };
+        unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), self.start.cast::<u8>().add(at), room) };
     }
 
     fn read(&self, at: usize, length: usize) -> Vec<u8> {
         let mut bytes = vec![0; SIZE.saturating_sub(at).min(length)];
+        let (length, target) = (bytes.len(), bytes.as_mut_ptr());
         // SAFETY: as for `write`.
-        unsafe { std::ptr::copy_nonoverlapping(self.start.add(at), bytes.as_mut_ptr(), bytes.len()) };
+        unsafe { std::ptr::copy_nonoverlapping(self.start.cast::<u8>().add(at), target, length) };
         bytes
     }
 

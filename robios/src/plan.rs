@@ -93,7 +93,7 @@ pub mod names {
 
 /// Frames that EyeSim renders in a second, unless somebody says otherwise.
 pub const FRAME_RATE: f64 = 60.0;
-/// Seconds of a call in the simulator where calls are charged before they come there: the least that it takes.
+/// Seconds of a call in the simulator, the least that it takes: calls are charged before they come there.
 const NO_TIME: f64 = 1e-6;
 
 /// Metres from wall to wall of the world that there is when nobody says anything.
@@ -192,8 +192,7 @@ impl Plan {
     /// How the simulation runs. Robots push what is loose, as EyeSim's do.
     pub fn options(&self) -> SimOptions {
         let options = SimOptions::with_noise(self.noise, self.seed);
-        let call_duration = if self.costs == Costs::Free { options.call_duration } else { NO_TIME };
-        SimOptions { call_duration, time_limit: Some(self.time_limit), pushing: true, ..options }
+        SimOptions { call_duration: NO_TIME, time_limit: Some(self.time_limit), pushing: true, ..options }
     }
 }
 

@@ -16,6 +16,8 @@ pub(crate) struct Walker {
     origin: Pose,
     /// Seconds that it has lived.
     time: f64,
+    /// Metres that it has moved, forth and back.
+    walked: f64,
     /// The servos' positions, from -1 to 1.
     positions: [f64; LIMBS],
 }
@@ -35,13 +37,22 @@ impl Walker {
             return None;
         }
         let starman = Starman::new(&StarmanSpec::default()).ok()?;
-        Some(Self { starman, start, origin: Pose::default(), time: 0.0, positions: [0.0; LIMBS] })
+        Some(Self {
+            starman,
+            start,
+            origin: Pose::default(),
+            time: 0.0,
+            walked: 0.0,
+            positions: [0.0; LIMBS],
+        })
     }
 
     /// Lets it live until a time.
     pub(crate) fn live_until(&mut self, time: f64) -> Result<()> {
         if time > self.time {
+            let before = self.travelled();
             self.starman.wait(time - self.time)?;
+            self.walked += (self.travelled() - before).abs();
             self.time = time;
         }
         Ok(())
@@ -59,6 +70,11 @@ impl Walker {
     /// Metres that it has come along its plane.
     fn travelled(&self) -> f64 {
         self.starman.truth().posture.body.0
+    }
+
+    /// Metres that it has moved.
+    pub(crate) fn walked(&self) -> f64 {
+        self.walked
     }
 
     /// Where it is.

@@ -1,8 +1,8 @@
 //! Requests and replies as bytes, for programs that share a world with others and live in processes of their own.
 //!
-//! A request is the seconds that the program has spent, a number for what is asked, and its arguments; a reply is the
-//! robot's time, a number, and the answer or the error. Numbers are little-endian. Whatever comes in is checked: nonsense
-//! is an error.
+//! A question is the seconds that the program has spent, the readings that it will want to know too, and the request: a
+//! number for what is asked, and its arguments. An answer is the robot's time, these readings, and the reply: a number,
+//! and what is answered or the error. Numbers are little-endian. Whatever comes in is checked: nonsense is an error.
 
 use image::RgbImage;
 use roverlab::geometry::{Pose, Twist};
@@ -20,6 +20,8 @@ pub const LONGEST_REQUEST: usize = 70_000;
 pub struct Question {
     /// Seconds.
     pub debt: f64,
+    /// What the program has read lately, and will want to read again once the request is done.
+    pub wanted: Vec<Request>,
     /// What is asked.
     pub request: Request,
 }
@@ -29,6 +31,8 @@ pub struct Question {
 pub struct Answer {
     /// Seconds.
     pub now: f64,
+    /// The readings that were wanted.
+    pub readings: Vec<Reply>,
     /// What is answered.
     pub reply: Result<Reply>,
 }
@@ -63,47 +67,10 @@ impl Writer {
     fn pose(self, pose: Pose) -> Self {
         self.number(pose.x).number(pose.y).number(pose.heading)
     }
-}
 
-struct Reader<'a>(&'a [u8]);
-
-impl<'a> Reader<'a> {
-    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
-        let (head, rest) = self.0.split_first_chunk::<N>()?;
-        self.0 = rest;
-        Some(*head)
-    }
-
-    fn byte(&mut self) -> Option<u8> {
-        self.take::<1>().map(|[byte]| byte)
-    }
-
-    fn word(&mut self) -> Option<u32> {
-        self.take().map(u32::from_le_bytes)
-    }
-
-    fn number(&mut self) -> Option<f64> {
-        self.take().map(f64::from_le_bytes)
-    }
-
-    fn pose(&mut self) -> Option<Pose> {
-        Some(Pose::new(self.number()?, self.number()?, self.number()?))
-    }
-
-    fn rest(&mut self) -> &'a [u8] {
-        std::mem::take(&mut self.0)
-    }
-
-    fn finish<T>(self, value: T) -> Option<T> {
-        self.0.is_empty().then_some(value)
-    }
-}
-
-impl Question {
-    /// The question as a frame.
-    pub fn encode(&self) -> Vec<u8> {
-        let w = Writer::new().number(self.debt);
-        match self.request {
+    fn request(self, request: &Request) -> Self {
+        let w = self;
+        match *request {
             Request::Identity => w.byte(0),
             Request::Pass(seconds) => w.byte(1).number(seconds),
             Request::SetSpeed(twist) => w.byte(2).number(twist.linear).number(twist.angular),
@@ -134,14 +101,68 @@ impl Question {
             Request::PlaceObject(id, pose) => w.byte(25).word(id).pose(pose),
             Request::Numbers => w.byte(26),
         }
-        .0
     }
 
-    /// A question from the bytes of a frame; `None` if they are none.
-    pub fn decode(frame: &[u8]) -> Option<Self> {
-        let mut r = Reader(frame);
-        let debt = r.number()?;
-        let request = match r.byte()? {
+    fn reply(self, reply: &Reply) -> Self {
+        let w = self;
+        match reply {
+            Reply::Done => w.byte(0),
+            Reply::Flag(flag) => w.byte(1).byte(u8::from(*flag)),
+            Reply::Number(number) => w.byte(2).number(*number),
+            Reply::Count(count) => w.byte(3).bytes(&count.to_le_bytes()),
+            Reply::Twist(twist) => w.byte(4).number(twist.linear).number(twist.angular),
+            Reply::Pose(pose, elevation) => w.byte(5).pose(*pose).number(*elevation),
+            Reply::Ranges(ranges) => ranges.iter().fold(w.byte(6), |w, &range| w.number(range)),
+            Reply::Image(image) => w.byte(7).word(image.width()).word(image.height()).bytes(image),
+            Reply::Message(None) => w.byte(8),
+            Reply::Message(Some(message)) => w.byte(9).word(message.from).bytes(&message.data),
+            Reply::Numbers(numbers) => numbers.iter().fold(w.byte(11), |w, &number| w.word(number)),
+            Reply::Identity(identity) => w
+                .byte(10)
+                .word(identity.id)
+                .word(identity.robots)
+                .word(identity.objects)
+                .word(identity.lidar_points)
+                .number(identity.top_speed)
+                .number(identity.full_speed)
+                .number(identity.tick_length)
+                .byte(u8::from(identity.full_turn))
+                .number(identity.call_duration)
+                .number(identity.time_limit)
+                .byte(u8::from(identity.exact))
+                .byte(u8::from(identity.camera)),
+        }
+    }
+}
+
+struct Reader<'a>(&'a [u8]);
+
+impl<'a> Reader<'a> {
+    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (head, rest) = self.0.split_first_chunk::<N>()?;
+        self.0 = rest;
+        Some(*head)
+    }
+
+    fn byte(&mut self) -> Option<u8> {
+        self.take::<1>().map(|[byte]| byte)
+    }
+
+    fn word(&mut self) -> Option<u32> {
+        self.take().map(u32::from_le_bytes)
+    }
+
+    fn number(&mut self) -> Option<f64> {
+        self.take().map(f64::from_le_bytes)
+    }
+
+    fn pose(&mut self) -> Option<Pose> {
+        Some(Pose::new(self.number()?, self.number()?, self.number()?))
+    }
+
+    fn request(&mut self) -> Option<Request> {
+        let r = self;
+        Some(match r.byte()? {
             0 => Request::Identity,
             1 => Request::Pass(r.number()?),
             2 => Request::SetSpeed(Twist::new(r.number()?, r.number()?)),
@@ -173,9 +194,81 @@ impl Question {
             25 => Request::PlaceObject(r.word()?, r.pose()?),
             26 => Request::Numbers,
             _ => return None,
-        };
+        })
+    }
+
+    fn reply(&mut self) -> Option<Reply> {
+        let r = self;
+        Some(match r.byte()? {
+            0 => Reply::Done,
+            1 => Reply::Flag(r.byte()? != 0),
+            2 => Reply::Number(r.number()?),
+            3 => Reply::Count(i64::from_le_bytes(r.take()?)),
+            4 => Reply::Twist(Twist::new(r.number()?, r.number()?)),
+            5 => Reply::Pose(r.pose()?, r.number()?),
+            6 => {
+                let (ranges, odd) = r.rest().as_chunks();
+                odd.is_empty().then_some(())?;
+                Reply::Ranges(ranges.iter().map(|&range| f64::from_le_bytes(range)).collect())
+            }
+            7 => {
+                let (width, height) = (r.word()?, r.word()?);
+                Reply::Image(RgbImage::from_raw(width, height, r.rest().to_vec())?)
+            }
+            8 => Reply::Message(None),
+            9 => Reply::Message(Some(RadioMessage { from: r.word()?, data: r.rest().to_vec() })),
+            10 => {
+                let (id, robots, objects, lidar_points) = (r.word()?, r.word()?, r.word()?, r.word()?);
+                Reply::Identity(Identity {
+                    id,
+                    robots,
+                    objects,
+                    lidar_points,
+                    top_speed: r.number()?,
+                    full_speed: r.number()?,
+                    tick_length: r.number()?,
+                    full_turn: r.byte()? != 0,
+                    call_duration: r.number()?,
+                    time_limit: r.number()?,
+                    exact: r.byte()? != 0,
+                    camera: r.byte()? != 0,
+                })
+            }
+            11 => {
+                let (numbers, odd) = r.rest().as_chunks();
+                odd.is_empty().then_some(())?;
+                Reply::Numbers(numbers.iter().map(|&number| u32::from_le_bytes(number)).collect())
+            }
+            _ => return None,
+        })
+    }
+
+    fn rest(&mut self) -> &'a [u8] {
+        std::mem::take(&mut self.0)
+    }
+
+    fn finish<T>(self, value: T) -> Option<T> {
+        self.0.is_empty().then_some(value)
+    }
+}
+
+impl Question {
+    /// The question as a frame.
+    pub fn encode(&self) -> Vec<u8> {
+        let w = Writer::new().number(self.debt).byte(self.wanted.len() as u8);
+        let w = self.wanted.iter().fold(w, Writer::request);
+        w.request(&self.request).0
+    }
+
+    /// A question from the bytes of a frame; `None` if they are none.
+    pub fn decode(frame: &[u8]) -> Option<Self> {
+        let mut r = Reader(frame);
+        let debt = r.number()?;
+        let count = r.byte()?;
+        let wanted = (0..count).map(|_| r.request()).collect::<Option<_>>()?;
+        let request = r.request()?;
         let debt_is_sound = debt.is_finite() && debt >= 0.0;
-        r.finish(Self { debt, request }).filter(|_| debt_is_sound)
+        r.finish(Self { debt, wanted, request }).filter(|_| debt_is_sound)
     }
 }
 
@@ -192,37 +285,14 @@ const KINDS: [ErrorKind; 7] = [
 impl Answer {
     /// The answer as a frame.
     pub fn encode(&self) -> Vec<u8> {
-        let w = Writer::new().number(self.now);
+        let w = Writer::new().number(self.now).byte(self.readings.len() as u8);
+        let w = self.readings.iter().fold(w, Writer::reply);
         match &self.reply {
             Err(error) => {
                 let kind = KINDS.iter().position(|&kind| kind == error.kind()).unwrap_or(KINDS.len() - 1);
                 w.byte(255).byte(kind as u8).bytes(error.to_string().as_bytes())
             }
-            Ok(Reply::Done) => w.byte(0),
-            Ok(Reply::Flag(flag)) => w.byte(1).byte(u8::from(*flag)),
-            Ok(Reply::Number(number)) => w.byte(2).number(*number),
-            Ok(Reply::Count(count)) => w.byte(3).bytes(&count.to_le_bytes()),
-            Ok(Reply::Twist(twist)) => w.byte(4).number(twist.linear).number(twist.angular),
-            Ok(Reply::Pose(pose, elevation)) => w.byte(5).pose(*pose).number(*elevation),
-            Ok(Reply::Ranges(ranges)) => ranges.iter().fold(w.byte(6), |w, &range| w.number(range)),
-            Ok(Reply::Image(image)) => w.byte(7).word(image.width()).word(image.height()).bytes(image),
-            Ok(Reply::Message(None)) => w.byte(8),
-            Ok(Reply::Message(Some(message))) => w.byte(9).word(message.from).bytes(&message.data),
-            Ok(Reply::Numbers(numbers)) => numbers.iter().fold(w.byte(11), |w, &number| w.word(number)),
-            Ok(Reply::Identity(identity)) => w
-                .byte(10)
-                .word(identity.id)
-                .word(identity.robots)
-                .word(identity.objects)
-                .word(identity.lidar_points)
-                .number(identity.top_speed)
-                .number(identity.full_speed)
-                .number(identity.tick_length)
-                .byte(u8::from(identity.full_turn))
-                .number(identity.call_duration)
-                .number(identity.time_limit)
-                .byte(u8::from(identity.exact))
-                .byte(u8::from(identity.camera)),
+            Ok(reply) => w.reply(reply),
         }
         .0
     }
@@ -231,53 +301,17 @@ impl Answer {
     pub fn decode(frame: &[u8]) -> Option<Self> {
         let mut r = Reader(frame);
         let now = r.number()?;
-        let reply = match r.byte()? {
-            0 => Ok(Reply::Done),
-            1 => Ok(Reply::Flag(r.byte()? != 0)),
-            2 => Ok(Reply::Number(r.number()?)),
-            3 => Ok(Reply::Count(i64::from_le_bytes(r.take()?))),
-            4 => Ok(Reply::Twist(Twist::new(r.number()?, r.number()?))),
-            5 => Ok(Reply::Pose(r.pose()?, r.number()?)),
-            6 => {
-                let (ranges, odd) = r.rest().as_chunks();
-                odd.is_empty().then_some(())?;
-                Ok(Reply::Ranges(ranges.iter().map(|&range| f64::from_le_bytes(range)).collect()))
-            }
-            7 => {
-                let (width, height) = (r.word()?, r.word()?);
-                Ok(Reply::Image(RgbImage::from_raw(width, height, r.rest().to_vec())?))
-            }
-            8 => Ok(Reply::Message(None)),
-            9 => Ok(Reply::Message(Some(RadioMessage { from: r.word()?, data: r.rest().to_vec() }))),
-            10 => {
-                let (id, robots, objects, lidar_points) = (r.word()?, r.word()?, r.word()?, r.word()?);
-                Ok(Reply::Identity(Identity {
-                    id,
-                    robots,
-                    objects,
-                    lidar_points,
-                    top_speed: r.number()?,
-                    full_speed: r.number()?,
-                    tick_length: r.number()?,
-                    full_turn: r.byte()? != 0,
-                    call_duration: r.number()?,
-                    time_limit: r.number()?,
-                    exact: r.byte()? != 0,
-                    camera: r.byte()? != 0,
-                }))
-            }
-            11 => {
-                let (numbers, odd) = r.rest().as_chunks();
-                odd.is_empty().then_some(())?;
-                Ok(Reply::Numbers(numbers.iter().map(|&number| u32::from_le_bytes(number)).collect()))
-            }
-            255 => {
-                let kind = *KINDS.get(usize::from(r.byte()?))?;
-                Err(Error::new(kind, String::from_utf8_lossy(r.rest())))
-            }
-            _ => return None,
+        let count = r.byte()?;
+        let readings = (0..count).map(|_| r.reply()).collect::<Option<_>>()?;
+        let mut ahead = Reader(r.0);
+        let reply = if ahead.byte()? == 255 {
+            r = ahead;
+            let kind = *KINDS.get(usize::from(r.byte()?))?;
+            Err(Error::new(kind, String::from_utf8_lossy(r.rest())))
+        } else {
+            Ok(r.reply()?)
         };
-        r.finish(Self { now, reply })
+        r.finish(Self { now, readings, reply })
     }
 }
 
@@ -301,7 +335,8 @@ mod tests {
             Request::PlaceObject(9, pose),
             Request::Servo(2, -0.5),
         ] {
-            let question = Question { debt: 0.25, request };
+            let question =
+                Question { debt: 0.25, wanted: vec![Request::Pose, Request::Distance(3)], request };
             assert_eq!(Question::decode(&question.encode()), Some(question));
         }
     }
@@ -317,12 +352,17 @@ mod tests {
             Reply::Image(RgbImage::from_pixel(2, 1, image::Rgb([1, 2, 3]))),
             Reply::Message(Some(RadioMessage { from: 2, data: b"hello".to_vec() })),
         ] {
-            let bytes = Answer { now: 1.5, reply: Ok(reply.clone()) }.encode();
+            let bytes = Answer {
+                now: 1.5,
+                readings: vec![Reply::Number(2.0), Reply::Flag(false)],
+                reply: Ok(reply.clone()),
+            }
+            .encode();
             let answer = Answer::decode(&bytes).unwrap();
-            assert_eq!((answer.now, answer.reply.unwrap()), (1.5, reply));
+            assert_eq!((answer.now, answer.readings.len(), answer.reply.unwrap()), (1.5, 2, reply));
         }
         let error = Error::new(ErrorKind::TimedOut, "over");
-        let bytes = Answer { now: 0.0, reply: Err(error) }.encode();
+        let bytes = Answer { now: 0.0, readings: Vec::new(), reply: Err(error) }.encode();
         let error = Answer::decode(&bytes).unwrap().reply.unwrap_err();
         assert_eq!((error.kind(), error.to_string()), (ErrorKind::TimedOut, "over".to_owned()));
     }
@@ -335,7 +375,7 @@ mod tests {
             let _ = Question::decode(&bytes);
             let _ = Answer::decode(&bytes);
         }
-        let endless = Question { debt: f64::INFINITY, request: Request::Pose }.encode();
+        let endless = Question { debt: f64::INFINITY, wanted: Vec::new(), request: Request::Pose }.encode();
         assert_eq!(Question::decode(&endless), None);
     }
 }

@@ -13,7 +13,7 @@ use roverlab::drive::{RandomDrive, RandomDriveParameters};
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::control::run;
 use roverlab::io::robios::RobiosRobot;
-use roverlab::io::sim::Simulation;
+use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::wrappers::{Quantised, Stamp, Traced};
 use roverlab::io::{ErrorKind, Fill, LidarSettings, Picture, Psd, Resolution, Result, RobotIo, Viewport};
 use roverlab::nav::{DistBug, DistBugParameters};
@@ -160,7 +160,8 @@ fn compare(job: &str) {
     let seat = Seat::take(&simulation, &scene, 0, Terms::of(&plan().options())).unwrap();
     let scale = seat.identity().full_speed / seat.identity().top_speed;
     drop(seat);
-    let simulation = Simulation::new(&scene, plan().options()).unwrap();
+    let options = SimOptions { call_duration: 1e-4, ..plan().options() };
+    let simulation = Simulation::new(&scene, options).unwrap();
     let direct = trace(Quantised::new(simulation.robot(0).unwrap()).with_motor_scale(scale), job);
     for (number, (found, expected)) in through_library.lines().zip(direct.lines()).enumerate() {
         assert_eq!(found, expected, "{job}, line {}", number + 1);

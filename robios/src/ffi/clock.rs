@@ -14,8 +14,8 @@ use libc::{clockid_t, pthread_attr_t, pthread_t, time_t, timespec, timeval};
 use super::memory::{input, output};
 use super::real_time::{BILLION, real_seconds, real_time};
 use super::runtime::enter;
-use super::sleep::sleep_for;
-use super::threads::{is_alive, is_ours, note_thread};
+use super::sleep::{let_others_run, sleep_for};
+use super::threads::{is_alive, is_ours, is_the_programs, note_thread};
 use crate::plan::names;
 use crate::robios::EPOCH;
 
@@ -194,10 +194,14 @@ extern "C" fn pthread_create(
         return libc::ENOSYS;
     }
     // SAFETY: the C library's function of this name has this type, and gets what the program has passed.
-    unsafe {
+    let result = unsafe {
         let create = std::mem::transmute::<*mut c_void, Create>(found);
         create(thread, attributes, start, argument)
+    };
+    if result == 0 && is_the_programs() && is_virtual() {
+        let_others_run();
     }
+    result
 }
 
 type ConditionWait = unsafe extern "C" fn(*mut c_void, *mut c_void, clockid_t, *const timespec) -> c_int;

@@ -12,7 +12,7 @@ use super::real_time::nap;
 use super::runtime::{enter, enter_quietly};
 use super::threads::{Inside, alone, calls};
 #[cfg(target_os = "linux")]
-use super::turns::Turn;
+use super::turns::{Turn, is_there, own_number};
 use crate::keys::Waiting;
 use crate::robios::Robios;
 
@@ -25,15 +25,26 @@ pub(super) fn sleep_for(call: &'static str, seconds: f64) -> Option<()> {
 /// Real time between two looks of a thread that sleeps at what other threads do.
 const GRACE: Duration = Duration::from_micros(50);
 
-/// When the threads that sleep wake up, in seconds since the start.
-static ENDS: Mutex<BTreeMap<u64, f64>> = Mutex::new(BTreeMap::new());
+/// When the threads that sleep wake up, in seconds since the start, and their numbers.
+static ENDS: Mutex<BTreeMap<u64, (f64, u32)>> = Mutex::new(BTreeMap::new());
 static SLEEPERS: AtomicU64 = AtomicU64::new(0);
+/// Threads that have started another one and let it run: it does not take them long, so nobody wakes up meanwhile.
+static STARTERS: AtomicU64 = AtomicU64::new(0);
 
 /// Looks at them as within a call, so that a signal handler that sleeps meanwhile does not wait for this
 /// thread.
-fn at_ends<T>(look: impl FnOnce(&mut BTreeMap<u64, f64>) -> T) -> T {
+fn at_ends<T>(look: impl FnOnce(&mut BTreeMap<u64, (f64, u32)>) -> T) -> T {
     let _inside = Inside::new();
     look(&mut ENDS.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
+fn nobody_starts() -> bool {
+    STARTERS.load(Ordering::Relaxed) == 0
+}
+
+/// The numbers of the threads that sleep.
+fn asleep() -> Vec<u32> {
+    at_ends(|ends| ends.values().map(|&(_, thread)| thread).collect())
 }
 
 /// A thread that sleeps.
@@ -43,28 +54,50 @@ struct Sleeper {
     waits: u32,
 }
 
-/// Looks after which whoever should have woken up is forgotten: its thread has been cancelled.
-const MOST_WAITS: u32 = 2000;
+/// Looks after which whoever should have woken up and has ended is forgotten: its thread has been cancelled.
+const SOME_WAITS: u32 = 200;
+/// Looks after which anybody is who should have woken up: it has left its sleep in a way of its own.
+const MOST_WAITS: u32 = 20_000;
 
 impl Sleeper {
     fn new(end: f64) -> Self {
         let number = SLEEPERS.fetch_add(1, Ordering::Relaxed);
-        at_ends(|ends| ends.insert(number, end));
+        at_ends(|ends| ends.insert(number, (end, own_number())));
         Self { number, waits: 0 }
     }
 
     /// Lets a tick pass, but no more than until somebody wakes up, and nothing before who is due has done so.
     fn pass(&mut self) -> Option<()> {
-        let earliest = at_ends(|ends| ends.values().copied().fold(f64::INFINITY, f64::min));
+        let earliest = at_ends(|ends| ends.values().map(|&(end, _)| end).fold(f64::INFINITY, f64::min));
         let passed = enter_quietly(|robios| {
             let rest = earliest - robios.now();
             if rest > 0.0 { robios.pass(rest.min(TICK)).map(|()| true) } else { Ok(false) }
         })?;
         self.waits = if passed { 0 } else { self.waits + 1 };
-        if self.waits > MOST_WAITS {
-            at_ends(|ends| ends.retain(|&number, _| number == self.number));
-        }
+        self.forget_others();
         Some(())
+    }
+
+    /// Forgets those who should have woken up and never will.
+    fn forget_others(&self) {
+        if self.waits.is_multiple_of(SOME_WAITS) {
+            let lost = self.waits >= MOST_WAITS;
+            at_ends(|ends| {
+                ends.retain(|&number, &mut (_, thread)| number == self.number || !lost && is_there(thread))
+            });
+        }
+    }
+
+    /// Whether it is this thread's turn to wake up, of all that should have: those who sleep wake in the order of their
+    /// times, and each one when the one before waits again, so that the system does not decide who calls first.
+    fn may_wake(&mut self, turn: &mut Turn, end: f64) -> bool {
+        let first = at_ends(|ends| {
+            let earlier = |(&number, &(other, _)): (&u64, &(f64, u32))| (other, number) < (end, self.number);
+            !ends.iter().any(earlier)
+        });
+        self.waits += 1;
+        self.forget_others();
+        first && nobody_starts() && turn.is_long_over(&asleep())
     }
 }
 
@@ -80,6 +113,7 @@ impl Drop for Sleeper {
 /// tick whenever the others have had the opportunity to do something and have not taken it.
 fn sleep_until(end: f64) -> Option<()> {
     let (mut sleeper, mut turn) = (Sleeper::new(end), Turn::default());
+    let mut waking: Option<Turn> = None;
     loop {
         let (alone, before) = (alone(), calls());
         let rest = enter_quietly(|robios| {
@@ -90,20 +124,35 @@ fn sleep_until(end: f64) -> Option<()> {
             }
             Ok(end - robios.now())
         })?;
-        if rest <= 0.0 {
-            return Some(());
+        if alone && rest > 0.0 {
+            continue;
         }
-        if alone {
+        if rest <= 0.0 {
+            if alone || sleeper.may_wake(waking.get_or_insert_default(), end) {
+                return Some(());
+            }
+            nap(GRACE);
             continue;
         }
         nap(GRACE);
-        if calls() != before {
+        if calls() != before || !nobody_starts() {
             turn = Turn::default();
-        } else if turn.is_over() {
+        } else if turn.is_over(&asleep()) {
             turn = Turn::default();
             sleeper.pass()?;
         }
     }
+}
+
+/// Lets the program's other threads go on until they wait: a thread that has just been started is the first to run.
+#[cfg(target_os = "linux")]
+pub(super) fn let_others_run() {
+    let mut turn = Turn::default();
+    STARTERS.fetch_add(1, Ordering::Relaxed);
+    while !turn.is_long_over(&asleep()) {
+        nap(GRACE);
+    }
+    STARTERS.fetch_sub(1, Ordering::Relaxed);
 }
 
 /// Where nobody tells what threads do, they have had their turn after a nap.
@@ -112,9 +161,24 @@ fn sleep_until(end: f64) -> Option<()> {
 struct Turn;
 
 #[cfg(not(target_os = "linux"))]
+fn own_number() -> u32 {
+    0
+}
+
+#[cfg(not(target_os = "linux"))]
+fn is_there(_: u32) -> bool {
+    true
+}
+
+#[cfg(not(target_os = "linux"))]
 impl Turn {
     #[allow(clippy::unused_self, reason = "as where it is known")]
-    fn is_over(&mut self) -> bool {
+    fn is_over(&mut self, _asleep: &[u32]) -> bool {
+        true
+    }
+
+    #[allow(clippy::unused_self, reason = "as where it is known")]
+    fn is_long_over(&mut self, _asleep: &[u32]) -> bool {
         true
     }
 }

@@ -8,27 +8,58 @@ use std::fs;
 /// What the other threads have done since one of them looked for the first time.
 #[derive(Debug, Default)]
 pub(super) struct Turn {
-    /// Nanoseconds on a processor of every thread that could run, when it was first seen.
-    spent: BTreeMap<u32, u64>,
+    /// Nanoseconds on a processor of every thread, when it was first seen, and at the last look.
+    spent: BTreeMap<u32, (u64, u64)>,
+    /// The threads at the last look, if it was over for all of them.
+    quiet: Option<Vec<u32>>,
     looks: u32,
 }
 
 /// Nanoseconds on a processor that a thread gets to make a call: one that makes none is busy with something else.
-const SHARE: u64 = 200_000;
-/// Looks after which time passes whatever the threads do.
-const MOST_LOOKS: u32 = 2000;
+const SHARE: u64 = 1_000_000;
+/// Nanoseconds that a thread gets to go on until it waits, before another one wakes up.
+const LONG_SHARE: u64 = 5_000_000;
+/// Looks after which time passes whatever the threads do: on a busy machine, one that could run may wait long.
+const MOST_LOOKS: u32 = 20_000;
 
 impl Turn {
-    /// Whether every other thread waits for something, or has had its share of a processor.
-    pub(super) fn is_over(&mut self) -> bool {
-        self.looks += 1;
-        self.looks > MOST_LOOKS || others().into_iter().all(|thread| self.has_had_its_share(thread))
+    /// Whether every other thread waits for something, or has had its share of a processor. Those that sleep by the
+    /// program's clock are known to wait.
+    pub(super) fn is_over(&mut self, asleep: &[u32]) -> bool {
+        self.is_over_after(SHARE, asleep)
     }
 
-    fn has_had_its_share(&mut self, thread: u32) -> bool {
+    /// As [`is_over`](Turn::is_over), with a share in which a thread that does not wait does most of what it does at a time.
+    pub(super) fn is_long_over(&mut self, asleep: &[u32]) -> bool {
+        self.is_over_after(LONG_SHARE, asleep)
+    }
+
+    fn is_over_after(&mut self, share: u64, asleep: &[u32]) -> bool {
+        self.looks += 1;
+        let awake: Vec<u32> = others().into_iter().filter(|thread| !asleep.contains(thread)).collect();
+        let mut over = true;
+        for &thread in &awake {
+            over &= self.is_over_for(thread, share);
+        }
+        // Threads are looked at one after the other: one may have woken another up and ended meanwhile.
+        let quiet = over.then_some(awake);
+        let still = over && self.quiet == quiet;
+        self.quiet = quiet;
+        still || self.looks > MOST_LOOKS
+    }
+
+    /// A thread that was found waiting twice, and has done nothing in between, waits for more than its turn at a lock.
+    fn is_over_for(&mut self, thread: u32, share: u64) -> bool {
         // A system that does not tell what threads have spent does not tell truly whether they could run.
-        let Some(now) = spent(thread).filter(|_| can_run(thread)) else { return true };
-        now.saturating_sub(*self.spent.entry(thread).or_insert(now)) >= SHARE
+        let Some(now) = spent(thread) else { return true };
+        let known = self.spent.get(&thread).copied();
+        let (first, last) = known.unwrap_or((now, now));
+        self.spent.insert(thread, (first, now));
+        match state(thread) {
+            Some('S') => known.is_some() && now == last,
+            Some('R' | 'D') => now.saturating_sub(first) >= share,
+            _ => true,
+        }
     }
 }
 
@@ -64,10 +95,20 @@ pub(super) fn have_all_ended() -> bool {
     state(first) == Some('Z') && others().into_iter().all(|thread| thread == first)
 }
 
+/// Whether there still is a thread of a number.
+pub(super) fn is_there(thread: u32) -> bool {
+    state(thread).is_some()
+}
+
+/// The number of the thread that asks.
+pub(super) fn own_number() -> u32 {
+    // SAFETY: asks for a number.
+    unsafe { libc::gettid() as u32 }
+}
+
 /// The threads of this process but for the one that asks.
 fn others() -> Vec<u32> {
-    // SAFETY: asks for a number.
-    let own = unsafe { libc::gettid() } as u32;
+    let own = own_number();
     let Ok(entries) = fs::read_dir("/proc/self/task") else { return Vec::new() };
     let numbers = entries.filter_map(|entry| entry.ok()?.file_name().to_str()?.parse().ok());
     numbers.filter(|&thread| thread != own).collect()
@@ -75,11 +116,6 @@ fn others() -> Vec<u32> {
 
 fn file(thread: u32, name: &str) -> Option<String> {
     fs::read_to_string(format!("/proc/self/task/{thread}/{name}")).ok()
-}
-
-/// Whether a thread is on a processor, or waits for one.
-fn can_run(thread: u32) -> bool {
-    state(thread) == Some('R')
 }
 
 /// A thread's state: `R` runs or could run, `S` waits, `Z` has ended.

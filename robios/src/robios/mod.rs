@@ -113,7 +113,9 @@ pub struct Outlets {
 impl Robios {
     /// A robot at the other end of a link.
     pub fn new(mut link: Box<dyn Link>, keys: KeyDesk, costs: Costs, outlets: Outlets) -> Result<Self> {
-        let Reply::Identity(identity) = link.ask(0.0, &Request::Identity)? else { return Err(foreign()) };
+        let (Reply::Identity(identity), _) = link.ask(0.0, &[], &Request::Identity)? else {
+            return Err(foreign());
+        };
         Ok(Self {
             link,
             identity,

@@ -10,7 +10,7 @@ use roverlab::io::sim::TICK;
 use roverlab::io::{ErrorKind, Result};
 
 use super::{NANOSECONDS, Robios, foreign};
-use crate::ask::{Reply, Request};
+use crate::ask::{MOST_READINGS, Reply, Request};
 use crate::costs::{Cost, Costs, Kind};
 
 /// The queue of a robot's requests.
@@ -28,6 +28,8 @@ pub(super) struct Queue {
 /// Orders that may wait; whoever gives more waits himself, as the buffers of a connection hold about so many.
 const MOST_ORDERS: usize = 10_000;
 const TICK_NANOSECONDS: u64 = (TICK * NANOSECONDS) as u64;
+/// Nanoseconds of a call with [`Costs::Free`].
+const FREE_CALL: u64 = 100_000;
 
 impl Queue {
     pub(super) fn new(costs: Costs) -> Self {
@@ -58,6 +60,8 @@ impl Queue {
 pub(super) struct Recent {
     tick: u64,
     readings: Vec<(Request, Reply)>,
+    /// What has been read since the world was asked last, which is likely to be read again.
+    used: Vec<Request>,
 }
 
 impl Robios {
@@ -113,20 +117,58 @@ impl Robios {
     /// Asks the world out of turn.
     pub(super) fn ask_now(&mut self, request: &Request) -> Result<Reply> {
         self.deliver()?;
+        let lasts = self.lasts(request);
+        let known = if lasts { self.recall(request) } else { None };
+        let reply = if let Some(reply) = known {
+            Ok(reply)
+        } else {
+            let debt = std::mem::take(&mut self.debt);
+            self.ask_link(debt, request)
+        };
+        if !self.has_frames() {
+            // A call that fails takes its time too.
+            self.debt += FREE_CALL - self.call_in_world();
+        }
+        let reply = reply?;
+        let used = &mut self.recent.used;
+        if lasts && request.is_brief() && used.len() < MOST_READINGS && !used.contains(request) {
+            used.push(request.clone());
+        }
+        self.settle()?;
+        Ok(reply)
+    }
+
+    /// Nanoseconds of a call in the simulator, which has been charged where the world was asked.
+    fn call_in_world(&self) -> u64 {
+        (self.identity.call_duration * NANOSECONDS).round() as u64
+    }
+
+    /// What has been read at this tick already.
+    fn recall(&mut self, request: &Request) -> Option<Reply> {
         let tick = self.clock() / TICK_NANOSECONDS;
+        let known = self.recent.readings.iter().filter(|_| self.recent.tick == tick);
+        let reply = known.clone().find(|(known, _)| known == request).map(|(_, reply)| reply.clone());
+        if reply.is_some() {
+            self.debt += self.call_in_world();
+        }
+        reply
+    }
+
+    /// Lets so many nanoseconds pass, and asks the world, whatever is known.
+    fn ask_link(&mut self, debt: u64, request: &Request) -> Result<Reply> {
+        let worthwhile = self.identity.exact && !self.has_frames();
+        let wanted = if worthwhile { std::mem::take(&mut self.recent.used) } else { Vec::new() };
+        let (reply, readings) = self.link.ask(debt as f64 / NANOSECONDS, &wanted, request)?;
+        let end = self.link_clock().saturating_sub(self.call_in_world());
+        let tick = end / TICK_NANOSECONDS;
         let lasts = self.lasts(request);
         if !lasts || self.recent.tick != tick {
             self.recent.readings.clear();
         }
-        let known = self.recent.readings.iter().find(|(known, _)| known == request);
-        if let Some(reply) = known.map(|(_, reply)| reply.clone()) {
-            self.spend(self.identity.call_duration)?;
-            return Ok(reply);
-        }
-        let debt = std::mem::take(&mut self.debt) as f64 / NANOSECONDS;
-        let reply = self.link.ask(debt, request)?;
+        self.recent.tick = tick;
+        let known = wanted.into_iter().zip(readings);
+        self.recent.readings.extend(known.filter(|(known, _)| known != request));
         if lasts {
-            self.recent.tick = tick;
             self.recent.readings.push((request.clone(), reply.clone()));
         }
         Ok(reply)
@@ -184,9 +226,8 @@ impl Robios {
         }
         let now = self.clock();
         while let Some((slot, call, request)) = self.queue.next_before(now) {
-            self.recent.readings.clear();
-            let wait = slot.saturating_sub(self.link_clock()) as f64 / NANOSECONDS;
-            match self.link.ask(wait, &request) {
+            let wait = slot.saturating_sub(self.link_clock());
+            match self.ask_link(wait, &request) {
                 // The program has gone on, and does not hear of it.
                 Err(error) if matches!(error.kind(), ErrorKind::Unsupported | ErrorKind::InvalidInput) => {
                     let present = std::mem::replace(&mut self.call, call);
@@ -212,7 +253,7 @@ impl Robios {
     /// Counts a call that the world has no part in.
     pub fn charge(&mut self) -> Result<()> {
         match (&self.queue.costs, self.queue.due.take()) {
-            (Costs::Free, _) => return self.spend(self.identity.call_duration),
+            (Costs::Free, _) => self.debt += FREE_CALL,
             (_, None) => {}
             (_, Some(Cost { kind: Kind::Query, nanoseconds, .. })) => {
                 self.wait_for_turn();
@@ -237,12 +278,6 @@ impl Robios {
         self.charge()
     }
 
-    /// Lets seconds pass without asking the world, as long as they are few.
-    fn spend(&mut self, seconds: f64) -> Result<()> {
-        self.debt += (seconds * NANOSECONDS).round() as u64;
-        self.settle()
-    }
-
     /// Lets the world catch up with the program, once it lags by a tick.
     fn settle(&mut self) -> Result<()> {
         if self.debt < TICK_NANOSECONDS && self.now() < self.identity.time_limit {
@@ -253,18 +288,16 @@ impl Robios {
 
     fn catch_up(&mut self) -> Result<()> {
         self.deliver()?;
-        self.recent.readings.clear();
-        let debt = std::mem::take(&mut self.debt) as f64 / NANOSECONDS;
         // The request is a call itself.
-        let rest = (debt - self.identity.call_duration).max(0.0);
-        self.link.ask(0.0, &Request::Pass(rest)).map(|_| ())
+        let rest = std::mem::take(&mut self.debt).saturating_sub(self.call_in_world());
+        self.ask_link(0, &Request::Pass(rest as f64 / NANOSECONDS)).map(|_| ())
     }
 
     /// Lets seconds pass, and the time that the call takes.
     pub fn pass(&mut self, seconds: f64) -> Result<()> {
         let seconds = seconds.max(0.0);
         match self.queue.costs {
-            Costs::Free => self.order(&Request::Pass(seconds)),
+            Costs::Free => self.ask_now(&Request::Pass(seconds)).map(|_| ()),
             Costs::Frames(_) => {
                 // The call is the wait.
                 self.queue.due = None;

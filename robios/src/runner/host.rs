@@ -32,6 +32,8 @@ struct Served {
     time: f64,
     /// Its robot's contacts until then.
     contacts: u64,
+    /// Where it believes to be and how far it has gone, if only its seat knows.
+    walked: Option<(Pose, f64)>,
     /// How the program ended, and what it has reported.
     ending: Ending,
     report: Report,
@@ -102,11 +104,15 @@ pub(crate) fn run_together(
         let served = served.unwrap_or_else(|| Served {
             time: world.time(),
             contacts: world.robot(program.robot).map_or(0, |robot| robot.contacts.into()),
+            walked: None,
             ending: Ending::OutOfTime(format!("ended after {} real seconds", options.real_limit)),
             report: Report::default(),
         });
         let time = program_time(served.time, served.report.time).min(options.time_limit);
-        let truth = truth(&world, program.robot, time, served.contacts);
+        let mut truth = truth(&world, program.robot, time, served.contacts);
+        if let Some((odometry, path_length)) = served.walked {
+            truth = Truth { odometry, path_length, ..truth };
+        }
         Verdict::new(program, served.ending, &served.report, truth)
     });
     Ok(verdicts.collect())
@@ -127,7 +133,9 @@ fn collect(
         match results.recv_timeout(patience) {
             Ok((number, end)) => served[number] = Some(end),
             Err(mpsc::RecvTimeoutError::Timeout) if !killed => {
-                processes.iter().for_each(|&process| process::kill_all(process));
+                for &process in processes {
+                    process::kill_all(process);
+                }
                 killed = true;
             }
             Err(_) => break,
@@ -178,12 +186,12 @@ fn attend(mut seat: Seat, running: Result<Running, String>, (real_limit, hang_li
         Ok(running) => running,
         Err(message) => {
             let ending = Ending::NotStarted(message);
-            return Served { time: seat.now(), contacts: 0, ending, report: Report::default() };
+            return Served { time: seat.now(), contacts: 0, walked: None, ending, report: Report::default() };
         }
     };
     let offence = serve(&mut seat, &mut running, hang_limit);
     let contacts = seat.truth().robot(seat.index()).map_or(0, |robot| robot.contacts.into());
-    let time = seat.now();
+    let (time, walked) = (seat.now(), seat.walked());
     // The world goes on without the robot's program.
     drop(seat);
     if offence.is_some() {
@@ -194,7 +202,7 @@ fn attend(mut seat: Seat, running: Result<Running, String>, (real_limit, hang_li
         Some(offence) if !matches!(ending, Ending::Exit(..)) => offence,
         _ => ending,
     };
-    Served { time, contacts, ending, report }
+    Served { time, contacts, walked, ending, report }
 }
 
 /// How long a program is waited for before it is looked whether it has ended without a word.
@@ -222,13 +230,15 @@ fn serve(seat: &mut Seat, running: &mut Running, hang_limit: f64) -> Option<Endi
                 return Some(Ending::OutOfTime(message));
             }
         };
-        let Some(Question { debt, request }) = Question::decode(&frame) else {
+        let Some(Question { debt, wanted, request }) = Question::decode(&frame) else {
             let message = format!("a question of {} bytes that makes no sense", frame.len());
             return Some(Ending::Offence(message));
         };
         let reply = seat.ask(debt, &request);
         let over = reply.as_ref().is_err_and(|error| error.kind() == ErrorKind::TimedOut);
-        memory.answer(&Answer { now: seat.now(), reply }.encode());
+        let now = seat.now();
+        let readings = if reply.is_ok() { seat.readings(&wanted) } else { Vec::new() };
+        memory.answer(&Answer { now, readings, reply }.encode());
         if over {
             return None;
         }

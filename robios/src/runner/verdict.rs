@@ -157,10 +157,12 @@ pub(crate) fn name_deadlocks(verdicts: &mut [Verdict]) {
             .filter_map(|(_, wait)| wait.as_ref())
             .map(|(name, since)| format!("{name} (since {since:.2} s)"))
             .collect();
-        *message += &format!("; it has waited for a radio message since {since:.2} s");
-        if !others.is_empty() {
-            *message += &format!(", and so has {}: none of them sends", others.join(", "));
-        }
+        let others = if others.is_empty() {
+            String::new()
+        } else {
+            format!(", and so has {}: none of them sends", others.join(", "))
+        };
+        *message = format!("{message}; it has waited for a radio message since {since:.2} s{others}");
     }
 }
 

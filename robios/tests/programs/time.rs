@@ -220,6 +220,13 @@ fn opencv_is_found() {
     assert_eq!(told["lcd_text"], "42", "{told}");
 }
 
+/// Threads that print in turn, with a lock, as the book's do.
+const TURNS: &str = "#include \"eyebot.h\"\nstatic pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;\n\
+    static void *print(void *number) { int id = (int)(intptr_t)number, i; for (i = 0; i < 10; i++) {\n\
+    pthread_mutex_lock(&lock); LCDPrintf(\"%d.%d \", id, i); pthread_mutex_unlock(&lock); sleep(id); } return NULL; }\n\
+    int main() { pthread_t threads[3]; intptr_t i; for (i = 1; i < 4; i++)\n\
+    pthread_create(&threads[i - 1], NULL, print, (void *)i); KEYWait(KEY4); pthread_exit(NULL); }\n";
+
 /// Compiles a program as the script for it does, beside its source text.
 fn compiled(file: &Path) -> PathBuf {
     let folder = Path::new(env!("CARGO_BIN_EXE_robios")).parent().unwrap();
@@ -234,7 +241,7 @@ fn compiled(file: &Path) -> PathBuf {
     program
 }
 
-/// Programs with timers or threads that wait by the real clock are left out: see `eyesim`'s documentation.
+/// Of programs with threads, those whose threads sleep or wait for each other.
 #[test]
 fn fifty_runs_under_load_are_the_same_each_time() {
     if !compiler() {
@@ -255,7 +262,11 @@ fn fifty_runs_under_load_are_the_same_each_time() {
         );
     }
     let script = folder.write("two.sim", "S4 400 600 0 radio.x\nLabBot 1000 600 180 radio.x\n");
-    runs.extend(["1", "2", "3", "4", "5"].map(|seed| (("1", seed), script.display().to_string())));
+    runs.extend(["1", "2"].map(|seed| (("1", seed), script.display().to_string())));
+    let threads = folder.write("turns.c", TURNS);
+    for file in [folder.copy("threads.c", "threads.c"), folder.copy("older.c", "older.c"), threads] {
+        runs.push((("1", "2"), compiled(&file).display().to_string()));
+    }
     assert_eq!(runs.len(), 50);
     let run = |((noise, seed), file): &((&str, &str), String)| {
         let log = folder.0.join("log.mcap").display().to_string();
