@@ -34,6 +34,7 @@ mod drive_mechanics;
 mod drivetrain;
 mod engine;
 mod fleet;
+mod lockstep;
 mod mechanics;
 mod movable;
 mod noise;
@@ -43,7 +44,6 @@ mod pushing;
 pub mod race;
 mod robot;
 mod robot_traits;
-mod shared;
 mod simulation;
 #[cfg(feature = "physics")]
 pub mod starman;
