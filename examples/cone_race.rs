@@ -3,44 +3,39 @@
 //!
 //! `cargo run --release --example cone_race`
 
-use roverlab::geometry::{Aabb, Point};
+use roverlab::geometry::Point;
 use roverlab::io::Drive;
-use roverlab::io::sim::NoiseModel;
-use roverlab::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions, SharedRace};
+use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::picture::{Mark, Picture, Style};
-use roverlab::race::{ConeColour, RacePhase, Racer, RacerParameters, Referee, TrackOptions, generate};
-use roverlab::world::{Colour, World};
+use roverlab::race::{RacePhase, Racer, RacerParameters, Referee, TrackOptions, generate};
+use roverlab::world::World;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A track by the rules of Formula Student, but a short one.
     let options = TrackOptions { length: [120.0, 180.0], ..TrackOptions::default() };
     let generated = generate(1, &options)?;
     let start = generated.track.start_pose().ok_or("the track has no start")?;
-    let colour = |cone| match cone {
-        ConeColour::Blue => Colour::from_hex(0x1f_4f_d8),
-        ConeColour::Yellow => Colour::from_hex(0xf2_c8_11),
-        _ => Colour::from_hex(0xf0_70_10),
-    };
-    let cones: Vec<RaceCone> =
-        generated.track.cones.iter().map(|cone| RaceCone::new(cone.position, colour(cone.colour))).collect();
-    let options = RaceOptions { noise: NoiseModel::real(), ..RaceOptions::default() };
-    let race = SharedRace::new(Race::new(&cones, &[(RaceCarSpec::default(), start)], options)?);
+    let cones = &generated.track.cones;
+    let scene = generated.track.scene(&[start]);
+    let simulation = Simulation::new(&scene, SimOptions::default())?;
+    let race = simulation.truth();
 
     // The referee looks at the wheels, in the car's frame from the middle of the rear axle.
     let wheels = [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y));
     let mut referee = Referee::new(generated.corridor.clone(), wheels);
     let mut racer = Racer::new(RacerParameters { laps: 2, period: 0.08, ..RacerParameters::default() });
     let (mut path, mut first, mut failed) = (Vec::new(), 0, None);
-    let phase = racer.run(&mut race.car(0)?, 300.0, |car, racer| match (race.robot(0), car.speed()) {
-        (Ok(truth), Ok(speed)) => {
-            referee.see(race.time(), truth.pose, truth.contacts as usize);
-            path.push((truth.pose.position(), speed.linear));
-            if racer.phase() == RacePhase::Mapping {
-                first = path.len();
+    let phase =
+        racer.run(&mut simulation.robot(0)?, 300.0, |car, racer| match (race.robot(0), car.speed()) {
+            (Ok(truth), Ok(speed)) => {
+                referee.see(race.time(), truth.pose, truth.contacts as usize);
+                path.push((truth.pose.position(), speed.linear));
+                if racer.phase() == RacePhase::Mapping {
+                    first = path.len();
+                }
             }
-        }
-        (Err(error), _) | (_, Err(error)) => failed = Some(error),
-    })?;
+            (Err(error), _) | (_, Err(error)) => failed = Some(error),
+        })?;
     if let Some(error) = failed {
         return Err(error.into());
     }
@@ -55,12 +50,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     assert_eq!((phase, verdict.cones_hit, verdict.off_course), (RacePhase::Finished, 0, 0));
     assert!(verdict.lap_times.len() == 2 && verdict.lap_times[1] < 0.8 * verdict.lap_times[0]);
 
-    let mut ground = World::empty(1.0, 1.0);
-    ground.floor = Aabb::around(cones.iter().map(|cone| cone.position)).ok_or("no cones")?.inflated(3.0);
-    let mut picture = Picture::new(&ground);
+    let mut picture = Picture::new(&World { objects: Vec::new(), ..scene.world });
     picture.title("Mapped in one lap, raced in the next").mark(Mark::Start, start.position());
-    for cone in &cones {
-        picture.points([cone.position], Style::new(cone.colour).width(5.0));
+    for cone in cones {
+        picture.points([cone.position], Style::new(cone.colour.paint()).width(5.0));
     }
     picture.line(path[..first].iter().map(|&(place, _)| place), Style::aid().labelled("first lap"));
     picture.speed_path(path[first..].iter().copied());

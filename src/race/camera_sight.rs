@@ -193,35 +193,37 @@ impl CameraMount {
 mod tests {
     use super::*;
     use crate::geometry::{Point, Pose};
-    use crate::io::sim::NoiseModel;
-    use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions};
+    use crate::io::sim::{SimOptions, SimRobot, Simulation};
     use crate::io::{Camera, Resolution};
-    use crate::world::Colour;
+    use crate::race::{Cone, ConeTrack};
 
     /// One that has seen an image.
     fn sight() -> CameraSight {
         CameraSight { size: [640.0, 480.0], ..CameraSight::default() }
     }
 
+    /// A car before cones.
+    fn car_before(cones: &[Cone], noise: f64) -> SimRobot {
+        let track = ConeTrack { cones: cones.to_vec(), ..ConeTrack::default() };
+        let scene = track.scene(&[Pose::default()]);
+        Simulation::new(&scene, SimOptions::with_noise(noise, 1)).unwrap().robot(0).unwrap()
+    }
+
     #[test]
     fn cones_are_found_in_place_and_colour() {
-        let painted = [
-            (Point::new(5.0, 1.5), 0x1f_4f_d8, ConeColour::Blue),
-            (Point::new(5.5, -1.5), 0xf2_c8_11, ConeColour::Yellow),
-            (Point::new(9.0, 0.5), 0xf0_70_10, ConeColour::Orange),
+        let cones = [
+            Cone::new(Point::new(5.0, 1.5), ConeColour::Blue),
+            Cone::new(Point::new(5.5, -1.5), ConeColour::Yellow),
+            Cone::new(Point::new(9.0, 0.5), ConeColour::Orange),
         ];
-        let cones: Vec<RaceCone> =
-            painted.iter().map(|(place, paint, _)| RaceCone::new(*place, Colour::from_hex(*paint))).collect();
         for noise in [0.0, 1.0] {
-            let options = RaceOptions { noise: NoiseModel::real().scaled(noise), ..RaceOptions::default() };
-            let mut race = Race::new(&cones, &[(RaceCarSpec::default(), Pose::default())], options).unwrap();
-            let mut car = race.car(0).unwrap();
+            let mut car = car_before(&cones, noise);
             car.set_resolution(Resolution::Vga).unwrap();
             let found = CameraSight::new(CameraMount::default()).find(&car.image().unwrap());
             assert_eq!(found.len(), 3, "{found:?}");
-            for (place, _, colour) in painted {
+            for Cone { position, colour } in cones {
                 let seen = found.iter().find(|seen| seen.colour == colour).unwrap();
-                let away = (seen.position - place).norm();
+                let away = (seen.position - position).norm();
                 assert!(away < 3.0 * seen.error && seen.is_cone(), "{colour:?}: {away} m off, {seen:?}");
             }
         }
@@ -280,10 +282,8 @@ mod tests {
 
     #[test]
     fn finer_images_show_cones_farther_off() {
-        let cones = [RaceCone::new(Point::new(18.0, 1.0), Colour::from_hex(0x1f_4f_d8))];
-        let options = RaceOptions { noise: NoiseModel::ideal(), ..RaceOptions::default() };
-        let mut race = Race::new(&cones, &[(RaceCarSpec::default(), Pose::default())], options).unwrap();
-        let mut car = race.car(0).unwrap();
+        let cones = [Cone::new(Point::new(18.0, 1.0), ConeColour::Blue)];
+        let mut car = car_before(&cones, 0.0);
         let mut sight = CameraSight::new(CameraMount::default());
         for (resolution, seen) in [(Resolution::Vga, 0), (Resolution::Cam1Mp, 1)] {
             car.set_resolution(resolution).unwrap();

@@ -24,6 +24,7 @@
 //! ```
 
 mod autopilot;
+mod bicycle;
 mod body;
 mod camera;
 mod car;
@@ -41,7 +42,6 @@ mod noise;
 mod omni;
 mod options;
 mod pushing;
-pub mod race;
 mod robot;
 mod robot_traits;
 mod simulation;

@@ -43,6 +43,14 @@ impl Truth {
         })
     }
 
+    /// Whether an object has been knocked over, by its index in the scene.
+    pub fn has_fallen(&self, object: usize) -> Result<bool> {
+        self.object(object)?;
+        let state = self.shared.lock();
+        let solid = state.world.space.solid(state.world.movables[object].solid);
+        Ok(solid.top <= solid.bottom)
+    }
+
     /// Puts a robot somewhere else at the beginning of the next tick, on behalf of the program of the robot `by`.
     ///
     /// What programs in lockstep move in this way depends on ticks alone, never on which of them was faster: in one tick,
