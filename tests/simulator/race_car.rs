@@ -156,7 +156,7 @@ fn cones_fall_and_are_gone() {
     car.set_speed(Twist::new(4.0, 0.0)).unwrap();
     car.wait(4.0).unwrap();
     let now = truth.robot(0).unwrap();
-    assert_eq!((now.contacts, now.contact_places), (1, vec![Point::new(10.0, 0.5)]));
+    assert_eq!((now.contacts, now.contact_places.as_slice()), (1, &[Point::new(10.0, 0.5)][..]));
     assert_eq!([0, 1, 2].map(|cone| truth.has_fallen(cone).unwrap()), [true, false, false]);
     assert!(!car.is_stalled().unwrap() && now.pose.x > 13.0, "a cone does not hold it: {now:?}");
     assert!(truth.has_fallen(3).is_err());

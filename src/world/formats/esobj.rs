@@ -257,6 +257,15 @@ mod tests {
     }
 
     #[test]
+    fn a_cone_that_falls_survives() {
+        let shape = Shape::Cone { radius: 0.129, top: 0.025, height: 0.325 };
+        let kind = ObjectKind { falls: true, ..ObjectKind::new("Cone", shape, Colour::BLUE) };
+        assert_eq!(object(&print(&kind)), kind);
+        let error = parse("cone 129 -3 325\n", "a.esObj").unwrap_err();
+        assert!(error.to_string().starts_with("a.esObj:1:10: found `-3`"), "{error}");
+    }
+
+    #[test]
     fn predefined_objects_survive() {
         for name in ["can", "soccer", "golf", "crate"] {
             let kind = ObjectKind::predefined(name).unwrap();
