@@ -163,7 +163,7 @@ fn cones_fall_and_are_gone() {
     // A hand puts it up again.
     truth.set_object(0, Pose::new(20.0, 0.0, 0.0)).unwrap();
     assert!(!truth.has_fallen(0).unwrap());
-    car.wait(4.0).unwrap();
+    car.wait(2.5).unwrap();
     assert_eq!(truth.robot(0).unwrap().contacts, 2);
 }
 
@@ -172,14 +172,15 @@ fn a_camera_sees_a_cone_until_it_falls() {
     let race = race(&[(6.0, 0.3)], &[Pose::default()], SimOptions::ideal());
     let mut car = race.robot(0).unwrap();
     car.set_resolution(Resolution::Vga).unwrap();
-    let blue = |image: image::RgbImage| image.pixels().filter(|p| p[2] > p[0] + 60).count();
+    let blue = |image: image::RgbImage| image.pixels().filter(|p| p[2] > p[0].saturating_add(60)).count();
     let before = blue(car.image().unwrap());
-    assert!(before > 200, "{before}");
+    assert!(before > 80, "{before}");
     car.straight(8.0, 3.0).unwrap();
     car.wait_done().unwrap();
     car.straight(-8.0, 3.0).unwrap();
     car.wait_done().unwrap();
-    assert_eq!(blue(car.image().unwrap()), 0);
+    assert!(race.truth().has_fallen(0).unwrap(), "{:?}", race.truth().robot(0));
+    assert_eq!(blue(car.image().unwrap()), 0, "{:?}", race.truth().robot(0));
 }
 
 #[test]
@@ -217,9 +218,11 @@ fn a_script_places_cars_and_cones() {
     let files = [
         ("racer.robi", robi::print(&RobotSpec::race_car())),
         ("cone.esObj", esobj::print(&ConeColour::Blue.kind())),
+        ("field.wld", "floor 40000 20000\n".to_owned()),
     ];
     let mut files = MemoryFiles(files.map(|(name, text)| (name.to_owned(), text.into_bytes())).into());
-    let script = "robot racer.robi\nobject cone.esObj\nRaceCar 0 0 0\ncone-blue 9000 200 0\n";
+    let script =
+        "world field.wld\nrobot racer.robi\nobject cone.esObj\nRaceCar 3000 5000 0\ncone-blue 12000 5200 0\n";
     let scene = sim::parse(script, "race.sim", &mut files).unwrap().value;
     assert_eq!(*scene.robots[0].spec, RobotSpec::race_car());
     let simulation = Simulation::new(&scene, SimOptions::default()).unwrap();

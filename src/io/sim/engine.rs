@@ -154,6 +154,8 @@ impl Engine {
         }
         if moving {
             self.move_bodies(&motions);
+        } else {
+            self.bodies.iter_mut().for_each(|body| body.touch.held_ticks = 0);
         }
         self.motions = motions;
         self.deliver();

@@ -22,7 +22,7 @@ use roverlab::nav::{BugKind, BugParameters, DistBug, NavigateParameters, Navigat
 use roverlab::race::{Cone, ConeTrack, EventParameters, EventRacer, GapDriver, Racer, RacerParameters};
 use roverlab::random::Stream;
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
-use roverlab::world::{Colour, RobotSpec, Scene, World};
+use roverlab::world::{RobotSpec, Scene, World};
 
 use super::{Scenario, noise, note, note_truth, other, room, text};
 

@@ -158,14 +158,14 @@ fn two_cars() -> Result<String> {
     let start = track.start_pose().unwrap_or_default();
     let scene = track.scene(&[start, start.compose(&Pose::new(6.0, 0.0, 0.0))]);
     let parameters = RacerParameters::default();
-    let (mut racer, log) = (Racer::new(parameters), RefCell::new(String::new()));
+    let (mut racer, mut seen) = (Racer::new(parameters), LidarScan::default());
+    let log = RefCell::new(String::new());
     {
         let mut fleet = Fleet::new(&scene, SimOptions { seed: 63, ..SimOptions::default() })?;
-        let mut scan = LidarScan::default();
         fleet.control(0, parameters.period, |car| {
-            car.scan_into(&mut scan)?;
+            car.scan_into(&mut seen)?;
             let (pose, speed) = (car.pose()?, car.speed()?);
-            car.set_speed(racer.step(pose, speed, &scan))?;
+            car.set_speed(racer.step(pose, speed, &seen))?;
             Ok(ControlFlow::Continue(()))
         })?;
         let (mut map, mut finder) = (ConeMap::new(parameters.map), LaneFinder::new(parameters.lane));
