@@ -53,7 +53,7 @@
 //! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search, any-angle paths, quadtrees | [`nav::grid`], [`world`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
 //! | 12 Evolution | genetic algorithms, evolution strategy with covariance adaptation | [`evolve`] |
-//! | 14 Formula SAE | tracks of cones, the way between them, racing lines, referee; racing cars | [`race`], [`io::sim::race`] |
+//! | 14 Formula SAE | tracks of cones, the way between them, racing lines, referee; racing cars | [`race`], [`io::sim`] |
 //! | 14 Formula SAE | the safety system's state machine, monitors, stopping distance | [`safety`] |
 //!
 //! Beside the chapters: [`geometry`] has poses, angles and units; [`random`] seeded random streams; [`world`] what a
@@ -71,9 +71,8 @@
 //! `default-features = false, features = ["vision"]` the kernels of [`vision`] are compiled alone; `image` adds views of
 //! that crate's images.
 //!
-//! Off by default: `log` adds recordings, `png` pictures as PNG; `proptest` adds random mazes and strategies
-//! for property tests (`maze::generate`), `testing` those and checks for planners of one's own; `petgraph`
-//! searches graphs of that crate; `rayon` runs vision kernels and evaluates populations on several threads;
+//! Off by default: `log` adds recordings, `png` pictures as PNG; `testing` strategies for property tests and checks for
+//! planners of one's own; `petgraph` searches graphs of that crate; `rayon` runs vision kernels and evaluates populations on several threads;
 //! `checkpoint` saves evolutions; `physics` adds a walking robot; `robios` drives a real EyeBot.
 
 // Where some wings are off, what they alone would use is left over, and links to them are plain text.

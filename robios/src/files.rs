@@ -7,6 +7,8 @@ use std::path::{Component, Path, PathBuf};
 use roverlab::world::RobotSpec;
 use roverlab::world::formats::{DiskFiles, FileSource, SourceFile, robi};
 
+use crate::walker::is_walker;
+
 /// Files on disk, and stand-ins for those that are not there: a robot of the kind that the folder's name says, a small
 /// object. A world has none, since the reader of scripts gets over that itself.
 #[derive(Debug, Default)]
@@ -26,6 +28,10 @@ impl LenientFiles {
         let name = reference.rsplit(['/', '\\']).next().unwrap_or(reference);
         let (stem, ending) = name.rsplit_once('.')?;
         let (what, text) = match ending.to_ascii_lowercase().as_str() {
+            "robi" if is_walker(stem) => {
+                let spec = RobotSpec { name: stem.to_owned(), ..RobotSpec::s4() };
+                ("the walking robot that is built in", robi::print(&spec))
+            }
             "robi" => {
                 let spec = RobotSpec { name: stem.to_owned(), ..like(reference) };
                 ("a robot like the built-in ones", robi::print(&spec))

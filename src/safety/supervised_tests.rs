@@ -1,5 +1,6 @@
 use super::*;
 use crate::geometry::{Point, Pose, Twist, math};
+use crate::io::control;
 use crate::io::sim::{SimOptions, Simulation, TICK};
 use crate::io::wrappers::{Fault, Faulty};
 use crate::io::{
@@ -270,7 +271,7 @@ fn programs_run_supervised_as_they_are() {
     )
     .unwrap();
     car.wait(0.2).unwrap();
-    GapDriver::default().run(&mut car, 0.1, 15.0).unwrap();
+    control::run(&mut car, &mut GapDriver::default(), 15.0, |_, _, _| {}).unwrap();
     assert_eq!(car.state(), SafetyState::EmergencyStop);
     let x = race.truth().pose(0).unwrap().x;
     assert!(speed(&race, &mut car) < 0.01 && x > 15.0 && x < 40.0, "{x}");

@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 use super::*;
 use crate::geometry::{Point, Pose, direction};
 use crate::io::sim::{SimOptions, Simulation, TICK};
-use crate::io::{Camera, Clock, Drive, Lidar, LidarScan, Resolution};
+use crate::io::{Camera, Clock, Drive, Lidar, LidarScan, Resolution, control};
 use crate::race::{
-    CameraMount, CameraSight, CarLimits, CarOutline, Cone, ConeColour, ConeTrack, Event, Verdict,
+    CameraMount, CameraSight, CarLimits, CarOutline, Cone, ConeColour, ConeTrack, Event, RaceOutcome, Verdict,
 };
 use crate::world::RobotSpec;
 
@@ -171,8 +171,8 @@ fn without_cones_it_stops_and_says_so() {
         EventRacer::skidpad(EventParameters::default()),
     ] {
         let world = world(&ConeTrack { start: Some(Pose::default()), ..ConeTrack::default() }, 1);
-        let phase = racer.run(&mut world.robot(0).unwrap(), 20.0, |_, _| ()).unwrap();
-        assert_eq!((phase, racer.layout()), (EventPhase::Lost, None));
+        let outcome = control::run(&mut world.robot(0).unwrap(), &mut racer, 20.0, |_, _, _| {}).unwrap();
+        assert_eq!((outcome, racer.layout()), (RaceOutcome::Lost, None));
         let truth = world.truth().robot(0).unwrap();
         assert!(truth.path_length < 0.1 && world.truth().time() < 5.0, "{truth:?}");
     }
@@ -207,8 +207,8 @@ fn time_may_be_over_before_the_finish() {
     let track = skidpad(9.125, 7.625, 10.625);
     let mut racer = racer_for(&EventCourse::of(&track, &OUTLINE).unwrap());
     let world = world(&track, 1);
-    let phase = racer.run(&mut world.robot(0).unwrap(), 5.0, |_, _| ()).unwrap();
-    assert_eq!(phase, EventPhase::Driving);
+    let outcome = control::run(&mut world.robot(0).unwrap(), &mut racer, 5.0, |_, _, _| {}).unwrap();
+    assert_eq!((outcome, racer.phase()), (RaceOutcome::TimedOut, EventPhase::Driving));
     assert!(world.truth().time() < 5.1);
 }
 
