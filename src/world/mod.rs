@@ -23,7 +23,7 @@ pub use colour::Colour;
 pub use grid::{Cell, GridError, OccupancyGrid};
 pub use object::{Billboard, Marker, Object, ObjectKind, Shape};
 pub use robot::{
-    CameraSpec, DriveSpec, Footprint, LidarSpec, MotorSpec, Mount, PsdSpec, RobotSpec, SpecError,
+    CameraSpec, CarDynamics, DriveSpec, Footprint, LidarSpec, MotorSpec, Mount, PsdSpec, RobotSpec, SpecError,
 };
 pub use scene::{Place, RobotPlacement, Scene, Settings, Terrain, World};
 pub use wall::Wall;

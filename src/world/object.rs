@@ -17,6 +17,15 @@ pub enum Shape {
         /// Metres from foot to top.
         height: f64,
     },
+    /// A blunt cone.
+    Cone {
+        /// Metres from the axis to the edge of its foot.
+        radius: f64,
+        /// Metres from the axis to the edge of its top.
+        top: f64,
+        /// Metres from foot to top.
+        height: f64,
+    },
     /// A ball.
     Sphere {
         /// Metres.
@@ -37,7 +46,7 @@ impl Shape {
     /// Metres from the foot to the top.
     pub fn height(&self) -> f64 {
         match *self {
-            Shape::Cylinder { height, .. } | Shape::Box { height, .. } => height,
+            Shape::Cylinder { height, .. } | Shape::Cone { height, .. } | Shape::Box { height, .. } => height,
             Shape::Sphere { radius } => 2.0 * radius,
         }
     }
@@ -46,6 +55,7 @@ impl Shape {
     pub fn bounding_radius(&self) -> f64 {
         match *self {
             Shape::Cylinder { radius, .. } | Shape::Sphere { radius } => radius,
+            Shape::Cone { radius, top, .. } => radius.max(top),
             Shape::Box { length, width, .. } => 0.5 * crate::geometry::math::hypot(length, width),
         }
     }
@@ -64,6 +74,9 @@ pub struct ObjectKind {
     pub mass: f64,
     /// Whether it stays where it is when something pushes it.
     pub fixed: bool,
+    /// Whether it falls over when a robot that weighs no less than it does touches it. It lies flat then: nothing
+    /// meets it and no sensor sees it.
+    pub falls: bool,
     /// Cubic metres of water that it displaces, for things that float.
     pub buoyancy: Option<f64>,
     /// The 3D model that EyeSim shows, if any.
@@ -81,6 +94,7 @@ impl ObjectKind {
             colour,
             mass: 1.0,
             fixed: false,
+            falls: false,
             buoyancy: None,
             model: None,
             body: Body::default(),

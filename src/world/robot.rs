@@ -59,6 +59,8 @@ pub enum DriveSpec {
         max_wheel_speed: f64,
         /// Encoder ticks in one turn of a wheel.
         ticks_per_turn: f64,
+        /// Its mass and its tyres, for a car so fast that they matter; without it, wheels roll and never slip.
+        dynamics: Option<CarDynamics>,
     },
     /// Four Mecanum wheels.
     Omni {
@@ -73,6 +75,63 @@ pub enum DriveSpec {
         /// Encoder ticks in one turn of a wheel.
         ticks_per_turn: f64,
     },
+}
+
+impl DriveSpec {
+    /// The fastest rim speed of its wheels, in metres per second.
+    pub fn top_speed(&self) -> f64 {
+        match *self {
+            Self::Differential { wheel_diameter, max_wheel_speed, .. }
+            | Self::Ackermann { wheel_diameter, max_wheel_speed, .. }
+            | Self::Omni { wheel_diameter, max_wheel_speed, .. } => 0.5 * wheel_diameter * max_wheel_speed,
+        }
+    }
+
+    /// Mass and tyres of a fast car.
+    pub fn dynamics(&self) -> Option<CarDynamics> {
+        match *self {
+            Self::Ackermann { dynamics, .. } => dynamics,
+            Self::Differential { .. } | Self::Omni { .. } => None,
+        }
+    }
+}
+
+/// Mass and tyres of a car: the dynamic bicycle model, with an axle's two tyres in one and no transfer of load.
+///
+/// The car accelerates as its [`MotorSpec`] says: the time constant is that with which its speed controller closes a
+/// difference, and the acceleration the motors' greatest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CarDynamics {
+    /// Metres from the rear axle to the centre of mass.
+    pub mass_centre: f64,
+    /// The radius of gyration about the upright axis, in metres.
+    pub gyration: f64,
+    /// The radius of the friction circle as an acceleration, in m/s².
+    pub grip: f64,
+    /// The cornering force of a tyre for its load and its slip angle, in 1/rad.
+    pub stiffness: f64,
+    /// Grip and stiffness of the front tyres as a share of those of the rear ones: less than 1, so that the front
+    /// slides first.
+    pub balance: f64,
+    /// The greatest deceleration by the brakes, in m/s².
+    pub brake: f64,
+    /// Radians per second at which the steering turns.
+    pub steering_rate: f64,
+}
+
+impl Default for CarDynamics {
+    /// A student's Formula car.
+    fn default() -> Self {
+        Self {
+            mass_centre: 0.75,
+            gyration: 0.70,
+            grip: 12.0,
+            stiffness: 22.0,
+            balance: 0.9,
+            brake: 11.0,
+            steering_rate: 2.0,
+        }
+    }
 }
 
 /// What a robot's motors can do.
@@ -297,6 +356,7 @@ impl RobotSpec {
                 max_steering: units::from_deg(30.0),
                 max_wheel_speed: units::from_deg(900.0),
                 ticks_per_turn: 1300.0,
+                dynamics: None,
             },
             footprint: Footprint::Rectangle(Aabb::new(
                 Point::new(back, -half_width),
@@ -319,6 +379,54 @@ impl RobotSpec {
             }),
             ..Self::s4()
         }
+    }
+
+    /// A student's Formula car (book, section 14.5), with a motor at each wheel, a low lidar at its nose and a camera
+    /// above the driver's head.
+    pub fn race_car() -> Self {
+        let (nose, half_width) = (2.15, 0.70);
+        Self {
+            name: "RaceCar".into(),
+            drive: DriveSpec::Ackermann {
+                wheel_diameter: 0.50,
+                track: 1.20,
+                wheelbase: 1.55,
+                max_steering: 0.60,
+                max_wheel_speed: 120.0,
+                ticks_per_turn: 1000.0,
+                dynamics: Some(CarDynamics::default()),
+            },
+            motor: MotorSpec { time_constant: 1.0 / 12.0, max_acceleration: 8.0 },
+            footprint: Footprint::Rectangle(Aabb::new(
+                Point::new(-0.45, -half_width),
+                Point::new(nose, half_width),
+            )),
+            height: 1.20,
+            mass: 250.0,
+            psds: Vec::new(),
+            lidar: Some(LidarSpec {
+                // Where the cones of a track are 65 mm in radius.
+                mount: Mount { x: nose, z: 0.20, ..Mount::default() },
+                field_of_view: std::f64::consts::PI,
+                tilt: 0.0,
+                points: 901,
+                max_range: 25.0,
+            }),
+            camera: Some(CameraSpec {
+                mount: Mount { x: 0.6, z: 1.1, ..Mount::default() },
+                tilt: -0.16,
+                max_pan: 0.0,
+                max_tilt: 0.0,
+                field_of_view: 1.75,
+                fisheye: false,
+            }),
+            ..Self::s4()
+        }
+    }
+
+    /// How fast it can brake, in metres per second squared.
+    pub fn deceleration(&self) -> f64 {
+        self.drive.dynamics().map_or(self.motor.max_acceleration, |dynamics| dynamics.brake)
     }
 
     /// A robot that every scene knows by name, without regard to case: `S4`, `LabBot` or `Omni`.
@@ -357,6 +465,7 @@ impl RobotSpec {
                 max_wheel_speed,
                 ticks_per_turn,
                 max_steering,
+                dynamics,
             } => {
                 positive("wheel diameter", wheel_diameter)?;
                 positive("track", track)?;
@@ -364,6 +473,19 @@ impl RobotSpec {
                 positive("maximal steering", max_steering)?;
                 positive("maximal wheel speed", max_wheel_speed)?;
                 positive("ticks per turn", ticks_per_turn)?;
+                if let Some(dynamics) = dynamics {
+                    let within = |parameter, value: f64, most: f64, expected| {
+                        check(parameter, value, value > 0.0 && value < most, expected)
+                    };
+                    within("mass centre", dynamics.mass_centre, wheelbase, "a place between the axles")?;
+                    // The integration is stable for cars that are not stiffer or lighter than these.
+                    within("radius of gyration", dynamics.gyration, 100.0, "more than 0 and less than 100")?;
+                    within("grip", dynamics.grip, 100.0, "more than 0 and less than 100")?;
+                    within("tyre stiffness", dynamics.stiffness, 100.0, "more than 0 and less than 100")?;
+                    within("balance of the tyres", dynamics.balance, 10.0, "more than 0 and less than 10")?;
+                    within("brake", dynamics.brake, 100.0, "more than 0 and less than 100")?;
+                    within("steering rate", dynamics.steering_rate, 100.0, "more than 0 and less than 100")?;
+                }
             }
             DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn } => {
                 positive("wheel diameter", wheel_diameter)?;

@@ -11,6 +11,8 @@
 //! | `[collider] capsule X Y Z R H AXIS` | a solid capsule along `x`, `y` or `z` |
 //! | `buoyancy VOLUME` | cubic metres of water that it displaces |
 //! | `fixed` | nothing moves it |
+//! | `falls` | robots knock it over; a line of our own, which EyeSim skips |
+//! | `cone R TOP HEIGHT` | its shape is a cone with these radii of foot and top instead; a line of our own |
 //! | `colour R G B` | its colour; a line of our own, which EyeSim skips |
 //!
 //! The model's axes point right, up and forward. The object's shape is the upright one that holds all its colliders.
@@ -36,7 +38,7 @@ pub const DEFAULT_SHAPE: Shape = Shape::Cylinder { radius: 0.05, height: 0.1 };
 pub fn parse(text: &str, file: &str) -> Result<Parsed<ObjectKind>, FormatError> {
     check_length(text, file)?;
     let kind = ObjectKind::new(super::stem(file), DEFAULT_SHAPE, DEFAULT_COLOUR);
-    let mut reader = Reader { kind, notes: Notes::new(file) };
+    let mut reader = Reader { kind, cone: None, notes: Notes::new(file) };
     for (number, text) in lexer::numbered(text) {
         if let Some(line) = lexer::line(file, number, text)? {
             reader.line(&line)?;
@@ -47,6 +49,7 @@ pub fn parse(text: &str, file: &str) -> Result<Parsed<ObjectKind>, FormatError> 
 
 struct Reader<'f> {
     kind: ObjectKind,
+    cone: Option<Shape>,
     notes: Notes<'f>,
 }
 
@@ -78,6 +81,13 @@ impl Reader<'_> {
             }
             "buoyancy" => self.kind.buoyancy = Some(args.plain("a volume in cubic metres", 0.0..=1e9)?),
             "fixed" => self.kind.fixed = true,
+            "falls" => self.kind.falls = true,
+            "cone" => {
+                let radius = args.positive_size("the radius of the cone's foot")?;
+                let top = args.positive_size("the radius of the cone's top")?;
+                let height = args.positive_size("the cone's height")?;
+                self.cone = Some(Shape::Cone { radius, top, height });
+            }
             "colour" | "color" => self.kind.colour = args.colour("the object")?,
             _ => {
                 let message = format!("unknown keyword {}; the line is skipped", shown(line.words[0].text));
@@ -138,6 +148,7 @@ impl Reader<'_> {
                 }
             }
         }
+        self.kind.shape = self.cone.unwrap_or(self.kind.shape);
         self.notes.finish(self.kind)
     }
 }
@@ -166,8 +177,14 @@ fn write_kind(text: &mut String, kind: &ObjectKind) -> std::fmt::Result {
     if let Some(volume) = kind.buoyancy {
         writeln!(text, "buoyancy {}", number::print(volume, 0))?;
     }
+    if let Shape::Cone { radius, top, height } = kind.shape {
+        writeln!(text, "cone {}", [radius, top, height].map(millimetres).join(" "))?;
+    }
     if kind.fixed {
         writeln!(text, "fixed")?;
+    }
+    if kind.falls {
+        writeln!(text, "falls")?;
     }
     if kind.colour != DEFAULT_COLOUR {
         writeln!(text, "colour {} {} {}", kind.colour.red, kind.colour.green, kind.colour.blue)?;
@@ -237,6 +254,15 @@ mod tests {
         assert_eq!(parsed.value.shape, DEFAULT_SHAPE);
         assert_eq!(parsed.value.buoyancy, Some(0.5));
         assert_eq!(parsed.warnings.len(), 1);
+    }
+
+    #[test]
+    fn a_cone_that_falls_survives() {
+        let shape = Shape::Cone { radius: 0.129, top: 0.025, height: 0.325 };
+        let kind = ObjectKind { falls: true, ..ObjectKind::new("Cone", shape, Colour::BLUE) };
+        assert_eq!(object(&print(&kind)), kind);
+        let error = parse("cone 129 -3 325\n", "a.esObj").unwrap_err();
+        assert!(error.to_string().starts_with("a.esObj:1:10: found `-3`"), "{error}");
     }
 
     #[test]

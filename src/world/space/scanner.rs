@@ -147,7 +147,7 @@ impl Space {
             return false;
         }
         match &placed.shape {
-            Shape::Disc { centre, radius } => buffer.draw_disc(*centre, *radius),
+            Shape::Disc { centre, .. } => buffer.draw_disc(*centre, placed.radius_at(z)),
             Shape::Box(shape) => {
                 let stroke = buffer.stroke(shape);
                 if !stroke.inside {
@@ -287,7 +287,7 @@ mod tests {
             Footprint::Disc { radius: 0.1 },
             Footprint::Rectangle(Aabb::new(Point::new(-0.1, -0.1), Point::new(0.1, 0.1))),
         ] {
-            let id = space.add(Solid { outline, pose, bottom: 0.0, top: 0.15 });
+            let id = space.add(Solid::new(outline, pose, 0.0, 0.15));
             let mut scanner = Scanner::new(0.0, FRAC_PI_2, 4, 0.1, 0.0, 10.0);
             let mut ranges = [0.0; 4];
             space.scan(&mut scanner, &pose, Some(id), &mut ranges);
@@ -335,7 +335,7 @@ mod tests {
             let mut space = Space::new(&walls);
             for &(x, y, radius, bottom) in &discs {
                 let pose = Pose::new(x, y, 0.0);
-                space.add(Solid { outline: Footprint::Disc { radius }, pose, bottom, top: bottom + 0.1 });
+                space.add(Solid::new(Footprint::Disc { radius }, pose, bottom, bottom + 0.1));
             }
             let filled = |p: Point, h: f64| {
                 let in_wall = |w: &Wall| {

@@ -41,6 +41,8 @@ struct Thing {
 enum Form {
     Ball(f64),
     Cylinder(f64),
+    /// The radii of its foot and its top.
+    Cone(f64, f64),
     Cuboid(Aabb),
 }
 
@@ -111,6 +113,10 @@ impl Scenery {
 impl Thing {
     fn draw(&self, carpenter: &mut Carpenter, canvas: &mut Canvas, view: &View, space: &Space) {
         let solid = space.solid(self.solid);
+        // What has fallen is not seen.
+        if solid.top <= solid.bottom {
+            return;
+        }
         let whole = Standing { bottom: solid.bottom, top: solid.bottom + self.height, colour: self.colour };
         self.draw_part(carpenter, canvas, view, &solid.pose, whole);
     }
@@ -132,7 +138,7 @@ impl Thing {
     /// A box in the middle of a robot's front that stands out a little.
     fn front(&self) -> Aabb {
         let (reach, half) = match self.form {
-            Form::Ball(radius) | Form::Cylinder(radius) => (radius, 0.45 * radius),
+            Form::Ball(radius) | Form::Cylinder(radius) | Form::Cone(radius, _) => (radius, 0.45 * radius),
             Form::Cuboid(Aabb { min, max }) => (max.x, 0.22 * (max.y - min.y)),
         };
         Aabb::new(Point::new(0.5 * reach, -half), Point::new(1.03 * reach, half))
@@ -151,6 +157,7 @@ impl Thing {
                 draw_ball(canvas, view, [pose.x, pose.y, body.bottom + radius], radius, body.colour);
             }
             Form::Cylinder(radius) => carpenter.cylinder(canvas, view, pose.position(), radius, body),
+            Form::Cone(foot, top) => carpenter.cone(canvas, view, pose.position(), [foot, top], body),
             Form::Cuboid(Aabb { min, max }) => {
                 let forward = direction(pose.heading);
                 let left = Vector::new(-forward.y, forward.x);
@@ -178,6 +185,7 @@ fn thing(solid: SolidId, object: &Object) -> Thing {
     let form = match kind.shape {
         Shape::Sphere { radius } => Form::Ball(radius),
         Shape::Cylinder { radius, .. } => Form::Cylinder(radius),
+        Shape::Cone { radius, top, .. } => Form::Cone(radius, top),
         Shape::Box { length, width, .. } => {
             let corner = Point::new(0.5 * length, 0.5 * width);
             Form::Cuboid(Aabb::new(-corner, corner))

@@ -5,7 +5,22 @@ use super::super::error::FormatError;
 use super::super::lexer::Line;
 use super::super::limits::MAX_DEGREES;
 use crate::geometry::{Aabb, Point, units};
-use crate::world::{Axis, Collider, Footprint};
+use crate::world::{Axis, CarDynamics, Collider, Footprint};
+
+/// A `dynamics` line.
+pub(super) fn dynamics(args: &mut Args<'_, '_>) -> Result<CarDynamics, FormatError> {
+    Ok(CarDynamics {
+        mass_centre: args.positive_size("the distance of the mass from the driven axle")?,
+        gyration: args.positive_size("the radius of gyration")?,
+        grip: args.positive_size("the grip per second squared")?,
+        stiffness: args.plain("the tyres' stiffness per radian", f64::MIN_POSITIVE..=1e3)?,
+        balance: args.plain("the share of the front tyres", f64::MIN_POSITIVE..=1e3)?,
+        brake: args.positive_size("the highest deceleration per second squared")?,
+        steering_rate: units::from_deg(
+            args.degrees("the steering's rate per second", f64::MIN_POSITIVE..=1e4)?,
+        ),
+    })
+}
 
 /// A `wheel` line.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -10,7 +10,9 @@ use super::mounts::{self, Columns, Raw};
 use super::parts::{self, Wheel};
 use crate::geometry::units;
 use crate::world::formats::{number, stem};
-use crate::world::{Body, CameraSpec, DriveSpec, Footprint, LidarSpec, Mount, PsdSpec, RobotSpec};
+use crate::world::{
+    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, LidarSpec, Mount, PsdSpec, RobotSpec,
+};
 
 /// The largest steering angle of cars that state none, in radians: 30 degrees.
 pub(super) const DEFAULT_STEERING: f64 = std::f64::consts::FRAC_PI_6;
@@ -52,6 +54,7 @@ struct Reader<'f> {
     wheel: Option<Wheel>,
     turn_axle: Option<f64>,
     steering: f64,
+    dynamics: Option<CarDynamics>,
     psds: Vec<Psd>,
     lidar_mount: Option<Raw>,
     lidar_range: Option<f64>,
@@ -77,6 +80,7 @@ impl<'f> Reader<'f> {
             wheel: None,
             turn_axle: None,
             steering: DEFAULT_STEERING,
+            dynamics: None,
             psds: Vec::new(),
             lidar_mount: None,
             lidar_range: None,
@@ -144,6 +148,7 @@ impl<'f> Reader<'f> {
                 let degrees = args.degrees("the largest steering angle", f64::MIN_POSITIVE..=90.0)?;
                 self.steering = units::from_deg(degrees);
             }
+            "dynamics" => self.dynamics = Some(parts::dynamics(args)?),
             "outline" => self.outline = Some(parts::outline(line, args)?),
             "psd_range" => {
                 let range = args.positive_size("the sensor's range")?;
@@ -337,6 +342,7 @@ impl<'f> Reader<'f> {
                 max_steering: self.steering,
                 max_wheel_speed,
                 ticks_per_turn,
+                dynamics: self.dynamics,
             },
         })
     }

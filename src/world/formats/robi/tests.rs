@@ -138,7 +138,7 @@ fn other_drives_and_old_keywords_are_read_with_warnings() {
 
 #[test]
 fn built_in_robots_survive() {
-    for spec in [RobotSpec::s4(), RobotSpec::labbot()] {
+    for spec in [RobotSpec::s4(), RobotSpec::labbot(), RobotSpec::race_car()] {
         assert_eq!(robot(&print(&spec)), spec);
     }
 }
@@ -186,7 +186,7 @@ prop_compose! {
         match kind {
             0 => DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn },
             1 => DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn },
-            _ => DriveSpec::Ackermann { wheel_diameter, track, wheelbase, max_steering, max_wheel_speed, ticks_per_turn },
+            _ => DriveSpec::Ackermann { wheel_diameter, track, wheelbase, max_steering, max_wheel_speed, ticks_per_turn, dynamics: None },
         }
     }
 }

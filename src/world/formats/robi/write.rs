@@ -4,7 +4,7 @@ use super::super::esobj::model_place;
 use super::super::lexer::{self, quote};
 use super::super::number::{self, degrees, millimetres, undo_shift};
 use super::read::DEFAULT_STEERING;
-use crate::world::{CameraSpec, Collider, DriveSpec, Footprint, MotorSpec, PsdSpec, RobotSpec};
+use crate::world::{CameraSpec, CarDynamics, Collider, DriveSpec, Footprint, MotorSpec, PsdSpec, RobotSpec};
 
 /// Writes a robot, so that [`parse`](super::parse) gives it back.
 ///
@@ -64,17 +64,25 @@ fn write_drive(text: &mut String, spec: &RobotSpec) -> Result {
             max_steering,
             max_wheel_speed,
             ticks_per_turn,
+            dynamics,
         } => {
             axles(text, wheelbase)?;
             write_wheel(text, "drive ", [wheel_diameter, max_wheel_speed, ticks_per_turn, track])?;
             write_wheel(text, "turn ", [wheel_diameter, max_wheel_speed, ticks_per_turn, track])?;
-            if max_steering == DEFAULT_STEERING {
-                Ok(())
-            } else {
-                writeln!(text, "steering {}", degrees(max_steering))
+            if max_steering != DEFAULT_STEERING {
+                writeln!(text, "steering {}", degrees(max_steering))?;
             }
+            dynamics.iter().try_for_each(|dynamics| write_dynamics(text, dynamics))
         }
     }
+}
+
+fn write_dynamics(text: &mut String, dynamics: &CarDynamics) -> Result {
+    let [mass_centre, gyration, grip, brake] =
+        [dynamics.mass_centre, dynamics.gyration, dynamics.grip, dynamics.brake].map(millimetres);
+    let [stiffness, balance] = [dynamics.stiffness, dynamics.balance].map(|share| number::print(share, 0));
+    let rate = degrees(dynamics.steering_rate);
+    writeln!(text, "dynamics {mass_centre} {gyration} {grip} {stiffness} {balance} {brake} {rate}")
 }
 
 fn write_wheel(text: &mut String, which: &str, [diameter, speed, ticks, track]: [f64; 4]) -> Result {
