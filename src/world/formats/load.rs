@@ -3,7 +3,7 @@ use std::path::Path;
 use super::error::{FormatError, Location, Notes, Parsed};
 use super::lexer::shown;
 use super::limits::MAX_TEXT_BYTES;
-use super::source::{DiskFiles, FileSource, decode, read_limited, unreadable};
+use super::source::{DiskFiles, FileSource, Files, decode, missing, read_limited, stem, unreadable};
 use super::{esobj, maz, movingai, robi, ros_map, sim, wld};
 use crate::world::{ObjectKind, RobotSpec, Scene, World};
 
@@ -29,28 +29,22 @@ pub fn parse_scene(
     file: &str,
     files: &mut dyn FileSource,
 ) -> Result<Parsed<Scene>, FormatError> {
-    scene_of(bytes, file, files, sim::parse)
+    scene_of(bytes, file, &mut Files::new(files, false))
 }
 
-/// As [`parse_scene`], but that scripts are read as by [`sim::parse_tolerantly`].
+/// As [`parse_scene`], but that scripts are read as by [`sim::parse_tolerantly`], and that a world without the images that it
+/// names has a gray, level floor.
 pub fn parse_scene_tolerantly(
     bytes: Vec<u8>,
     file: &str,
     files: &mut dyn FileSource,
 ) -> Result<Parsed<Scene>, FormatError> {
-    scene_of(bytes, file, files, sim::parse_tolerantly)
+    scene_of(bytes, file, &mut Files::new(files, true))
 }
 
-type ReadScript = fn(&str, &str, &mut dyn FileSource) -> Result<Parsed<Scene>, FormatError>;
-
-fn scene_of(
-    bytes: Vec<u8>,
-    file: &str,
-    files: &mut dyn FileSource,
-    script: ReadScript,
-) -> Result<Parsed<Scene>, FormatError> {
+fn scene_of(bytes: Vec<u8>, file: &str, files: &mut Files<'_>) -> Result<Parsed<Scene>, FormatError> {
     decoded(bytes, file, |text, file| match kind(file) {
-        Kind::Script => script(text, file, files),
+        Kind::Script => sim::parse_with(text, file, files),
         Kind::Other => {
             let expected = "a file that ends in .sim, .wld, .maz, .yaml, .yml or .map";
             Err(FormatError::new(file, Location::START, shown(file), expected))
@@ -70,10 +64,13 @@ pub fn parse_robot(bytes: Vec<u8>, file: &str) -> Result<Parsed<RobotSpec>, Form
     decoded(bytes, file, robi::parse)
 }
 
-/// Reads an object's description, `.esObj`, from disk.
+/// Reads an object's description, `.esObj`, with its 3D model from disk.
 pub fn load_object(path: impl AsRef<Path>) -> Result<Parsed<ObjectKind>, FormatError> {
     let path = path.as_ref();
-    decoded(read_file(path)?, &path.display().to_string(), esobj::parse)
+    let read = |text: &str, file: &str| {
+        esobj::parse_with_model(text, file, &mut Files::new(&mut DiskFiles::new(), false))
+    };
+    decoded(read_file(path)?, &path.display().to_string(), read)
 }
 
 /// The bytes of a file on disk, for the functions that read formats from bytes. Fails as those do for a file that
@@ -98,20 +95,23 @@ fn decoded<T>(
     Ok(notes.finish(parsed.value))
 }
 
-/// Finds and reads the world that a file calls `reference` at some place.
+/// Finds and reads the world that a file calls `reference` at some place, or one of that name which is built in.
 pub(super) fn read_world(
     reference: &str,
-    referrer: &str,
-    at: Location,
-    files: &mut dyn FileSource,
+    (referrer, at): (&str, Location),
+    files: &mut Files<'_>,
 ) -> Result<Parsed<World>, FormatError> {
     // A script that names a script, itself for one, is no world: say so before reading it.
     if !matches!(kind(reference), Kind::World | Kind::Maze | Kind::Map | Kind::Grid) {
         return Err(not_a_world(reference, referrer, at));
     }
-    let source = files
-        .read(reference, referrer, MAX_TEXT_BYTES)
-        .map_err(|error| unreadable(&error, reference, referrer, at, MAX_TEXT_BYTES))?;
+    let Some(source) = files.read_if_there(reference, (referrer, at), MAX_TEXT_BYTES)? else {
+        let world = World::predefined(&stem(reference));
+        let world = world.ok_or_else(|| missing(reference, (referrer, at)))?;
+        let mut notes = Notes::new(referrer);
+        notes.warn(at, format!("{} does not exist; the built-in world is used", shown(reference)));
+        return Ok(notes.finish(world));
+    };
     let mut notes = Notes::new(&source.name);
     let text = decode(source.bytes, &mut notes)?;
     let parsed = parse_world(&text, &source.name, files, referrer, at)?;
@@ -122,15 +122,15 @@ pub(super) fn read_world(
 fn parse_world(
     text: &str,
     file: &str,
-    files: &mut dyn FileSource,
+    files: &mut Files<'_>,
     referrer: &str,
     at: Location,
 ) -> Result<Parsed<World>, FormatError> {
     match kind(file) {
-        Kind::World => wld::parse(text, file),
+        Kind::World => wld::parse_with_images(text, file, files),
         Kind::Maze => maz::parse(text, file),
         Kind::Map => {
-            let map = ros_map::parse(text, file, files)?;
+            let map = ros_map::parse(text, file, files.source())?;
             let world = ros_map::to_world(&map.value, file)?;
             Ok(map.map(|_| world))
         }

@@ -30,6 +30,7 @@ pub(super) struct Placed {
     solid: Solid,
     pub(super) shape: Shape,
     pub(super) span: Span,
+    pub(super) mast: Option<Block>,
     /// The cells that list it; `None`: every question tests it.
     pub(super) cells: Option<Cells>,
     /// It is not, or not wholly, on cells.
@@ -53,7 +54,7 @@ impl Space {
         let id = SolidId(u32::try_from(self.solids.len()).expect("fewer than 2^32 solids"));
         let shape = solid.outline.at(&solid.pose);
         let span = solid.span();
-        self.solids.push(Placed { solid, shape, span, cells: None, stray: false });
+        self.solids.push(Placed { solid, shape, span, mast: solid.placed_mast(), cells: None, stray: false });
         self.list(id.0, &shape.bounds());
         if self.solids.len() >= self.full_at || self.strays > self.strays_allowed {
             self.rebuild();
@@ -70,6 +71,7 @@ impl Space {
         let placed = &mut self.solids[id.index()];
         placed.solid.pose = pose;
         placed.shape = placed.solid.outline.at(&pose);
+        placed.mast = placed.solid.placed_mast();
         let bounds = placed.shape.bounds();
         let cells = self.grid.place_for(&bounds);
         if cells.is_some() && cells == placed.cells {
@@ -137,7 +139,7 @@ mod tests {
     const DISC: Footprint = Footprint::Disc { radius: 0.1 };
 
     fn disc(x: f64, y: f64) -> Solid {
-        Solid { outline: DISC, pose: Pose::new(x, y, 0.0), bottom: 0.0, top: 0.2 }
+        Solid::new(DISC, Pose::new(x, y, 0.0), 0.0, 0.2)
     }
 
     /// Asks every question once, about a place between two things 1 m to its left and right.

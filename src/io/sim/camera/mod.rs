@@ -12,6 +12,7 @@ mod face;
 mod film;
 mod ground;
 mod light;
+mod model;
 mod poster;
 mod scenery;
 mod solids;
