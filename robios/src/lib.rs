@@ -45,7 +45,6 @@
 
 pub mod ask;
 mod ffi;
-pub mod files;
 pub mod keyboard;
 pub mod keys;
 pub mod link;

@@ -83,9 +83,8 @@ impl Mesh {
 
     /// Adds a cuboid between two opposite corners.
     pub(super) fn cuboid(&mut self, low: Place3, high: Place3, material: usize) {
-        let corner = |x: usize, y: usize, z: usize| {
-            [[low[0], high[0]][x], [low[1], high[1]][y], [low[2], high[2]][z]]
-        };
+        let corner =
+            |x: usize, y: usize, z: usize| [[low[0], high[0]][x], [low[1], high[1]][y], [low[2], high[2]][z]];
         // Around it, each side's upper left corner first, then top and bottom.
         let round = [(0, 1), (0, 0), (1, 0), (1, 1)];
         for (i, &(x, y)) in round.iter().enumerate() {

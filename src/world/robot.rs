@@ -124,7 +124,10 @@ impl Footprint {
         match self {
             Footprint::Disc { radius } => Footprint::Rectangle(*part).bounding_radius() <= *radius,
             Footprint::Rectangle(b) => {
-                b.min.x <= part.min.x && b.min.y <= part.min.y && part.max.x <= b.max.x && part.max.y <= b.max.y
+                b.min.x <= part.min.x
+                    && b.min.y <= part.min.y
+                    && part.max.x <= b.max.x
+                    && part.max.y <= b.max.y
             }
         }
     }

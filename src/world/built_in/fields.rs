@@ -123,7 +123,8 @@ fn chess() -> World {
 /// The model town's loop (section 13.2), for driving on the left and clockwise round it.
 fn carolo() -> World {
     const SIDE: f64 = 3.1;
-    let corners = [(0.33, 0.45), (0.33, 2.60), (2.72, 2.60), (2.72, 1.95), (2.40, 1.55), (2.72, 1.15), (2.72, 0.45)];
+    let corners =
+        [(0.33, 0.45), (0.33, 2.60), (2.72, 2.60), (2.72, 1.95), (2.40, 1.55), (2.72, 1.15), (2.72, 0.45)];
     let pixels = 620;
     let road = Road::around(&corners.map(|(x, y)| Point::new(x, y)), pixels, SIDE / pixels as f64);
     let mut world = World::empty(SIDE, SIDE);
@@ -138,12 +139,15 @@ fn carolo() -> World {
 /// A room with obstacles between its corners (section 10.2).
 fn obstacles() -> World {
     let mut world = World::walled(5.0, 5.0);
-    let boxes: [[f64; 4]; 4] = [[1.0, 1.2, 2.0, 1.8], [2.6, 2.2, 3.2, 3.6], [0.8, 3.0, 1.6, 3.4], [3.4, 0.8, 4.2, 1.6]];
+    let boxes: [[f64; 4]; 4] =
+        [[1.0, 1.2, 2.0, 1.8], [2.6, 2.2, 3.2, 3.6], [0.8, 3.0, 1.6, 3.4], [3.4, 0.8, 4.2, 1.6]];
     for [left, near, right, far] in boxes {
         let corners = [(left, near), (right, near), (right, far), (left, far)];
         world.add_loop(&corners.map(|(x, y)| Point::new(x, y)));
     }
-    world.walls.push(Wall { line: Segment::new(Point::new(3.6, 4.0), Point::new(4.3, 3.3)), ..world.walls[0] });
+    world
+        .walls
+        .push(Wall { line: Segment::new(Point::new(3.6, 4.0), Point::new(4.3, 3.3)), ..world.walls[0] });
     world
 }
 

@@ -5,6 +5,6 @@
 mod fields;
 mod objects;
 mod paint;
-mod robots;
 mod road;
+mod robots;
 mod signs;

@@ -94,7 +94,11 @@ fn cone(name: &str, colour: Colour, scale: f64) -> ObjectKind {
     mesh.turned(&[ring(0.0), ring(0.42)], body);
     mesh.turned(&[ring(0.42), ring(0.7)], band);
     mesh.turned(&[ring(0.7), ring(1.0), [0.0, height]], body);
-    ObjectKind { mass: 0.45 * scale.powi(3), mesh: Some(Arc::new(mesh)), ..ObjectKind::new(name, shape, colour) }
+    ObjectKind {
+        mass: 0.45 * scale.powi(3),
+        mesh: Some(Arc::new(mesh)),
+        ..ObjectKind::new(name, shape, colour)
+    }
 }
 
 /// The colour of a cone's reflecting band: white, but black where white would not show.
@@ -106,10 +110,8 @@ fn band(colour: Colour) -> Colour {
 fn sign_on_a_post(name: &str, sign: Sign) -> ObjectKind {
     let (radius, height, half, thickness) = (0.0045, 0.430, 0.065, 0.003);
     let mut mesh = Mesh::default();
-    let (gray, picture) = (
-        mesh.paint(Colour::from_hex(0x90_90_90), None),
-        mesh.paint(Colour::WHITE, Some(sign.picture())),
-    );
+    let (gray, picture) =
+        (mesh.paint(Colour::from_hex(0x90_90_90), None), mesh.paint(Colour::WHITE, Some(sign.picture())));
     let back = mesh.paint(Colour::from_hex(0x90_90_90), Some(sign.picture_from_behind()));
     mesh.turned(&[[radius, 0.0], [radius, height], [0.0, height]], gray);
     let plate = |x: f64, left: f64| {
@@ -138,7 +140,8 @@ mod tests {
             assert_eq!(kind.name, name);
             let Some(mesh) = &kind.mesh else { continue };
             assert!(mesh.faces.iter().all(|face| face.material < mesh.materials.len()), "{name}");
-            let top = mesh.faces.iter().flat_map(|face| face.corners).map(|corner| corner[2]).fold(0.0, f64::max);
+            let top =
+                mesh.faces.iter().flat_map(|face| face.corners).map(|corner| corner[2]).fold(0.0, f64::max);
             assert!((top - kind.shape.height()).abs() < 1e-9, "{name}: {top}");
         }
         assert_eq!(ObjectKind::predefined("ConeOrange").unwrap().name, "Cone-O");

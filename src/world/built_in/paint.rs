@@ -43,7 +43,10 @@ impl DrawTarget for Word {
     type Color = BinaryColor;
     type Error = std::convert::Infallible;
 
-    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(&mut self, pixels: I) -> Result<(), Self::Error> {
+    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(
+        &mut self,
+        pixels: I,
+    ) -> Result<(), Self::Error> {
         for Pixel(place, colour) in pixels {
             let (column, row) = (place.x as usize, place.y as usize);
             if column < self.size.width as usize && row < self.size.height as usize {

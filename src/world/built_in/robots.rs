@@ -6,7 +6,18 @@ use crate::world::{
 impl RobotSpec {
     /// The robots that every scene knows by name.
     pub const PREDEFINED: [&'static str; 12] = [
-        "S4", "SoccerBot", "LabBot", "LidarBot", "Cubot", "Cubot-r", "Cubot-b", "Cubot-y", "Omni", "Car", "Ackermann", "SAE",
+        "S4",
+        "SoccerBot",
+        "LabBot",
+        "LidarBot",
+        "Cubot",
+        "Cubot-r",
+        "Cubot-b",
+        "Cubot-y",
+        "Omni",
+        "Car",
+        "Ackermann",
+        "SAE",
     ];
 
     /// EyeSim's S4: a small differential drive robot with four PSDs, a lidar and a camera.
@@ -159,7 +170,8 @@ impl RobotSpec {
     pub fn lidarbot() -> Self {
         let s4 = Self::s4();
         let ahead = s4.psds[0].clone();
-        let oblique = [(5, "PSD_FL", 45.0), (6, "PSD_FR", -45.0), (7, "PSD_FFL", 25.0), (8, "PSD_FFR", -25.0)];
+        let oblique =
+            [(5, "PSD_FL", 45.0), (6, "PSD_FR", -45.0), (7, "PSD_FFL", 25.0), (8, "PSD_FFR", -25.0)];
         let oblique = oblique.map(|(id, name, yaw)| PsdSpec {
             id,
             name: name.into(),
@@ -239,7 +251,10 @@ mod tests {
     fn a_mast_stands_within_the_outline_and_above_the_rest() {
         let mut spec = RobotSpec::labbot();
         let mast = spec.mast.unwrap();
-        for wrong in [Mast { top: 0.1, ..mast }, Mast { outline: Aabb::new(mast.outline.min, Point::new(0.2, 0.0)), ..mast }] {
+        for wrong in [
+            Mast { top: 0.1, ..mast },
+            Mast { outline: Aabb::new(mast.outline.min, Point::new(0.2, 0.0)), ..mast },
+        ] {
             spec.mast = Some(wrong);
             assert!(spec.validate().unwrap_err().to_string().contains("mast"), "{wrong:?}");
         }

@@ -93,7 +93,9 @@ impl Sign {
             Self::SpeedLimit if edge > 0.8 => RED,
             Self::SpeedLimit if speed.covers(x / 0.6, y / 0.42) => Colour::BLACK,
             Self::SpeedLimit => Colour::WHITE,
-            Self::CancelSpeedLimit if edge > 0.94 || (bar(0.28) && (x + y).abs() % 0.14 < 0.08) => Colour::BLACK,
+            Self::CancelSpeedLimit if edge > 0.94 || (bar(0.28) && (x + y).abs() % 0.14 < 0.08) => {
+                Colour::BLACK
+            }
             Self::CancelSpeedLimit if speed.covers(x / 0.6, y / 0.42) => GRAY,
             Self::CancelSpeedLimit => Colour::WHITE,
         })
@@ -154,7 +156,9 @@ mod tests {
         for sign in [Sign::Stop, Sign::GiveWay, Sign::SpeedLimit] {
             let (front, back) = (sign.picture(), sign.picture_from_behind());
             let mirrored = |x: u32| SIZE - 1 - x;
-            assert!(front.enumerate_pixels().all(|(x, y, pixel)| pixel[3] == back.get_pixel(mirrored(x), y)[3]));
+            assert!(
+                front.enumerate_pixels().all(|(x, y, pixel)| pixel[3] == back.get_pixel(mirrored(x), y)[3])
+            );
         }
     }
 }

@@ -13,6 +13,7 @@ use image::RgbaImage;
 use super::error::{FormatError, Location, Notes};
 use super::esobj::DEFAULT_COLOUR;
 use super::image_file::decode_image;
+use super::lexer::shown;
 use super::limits::{MAX_FACES, MAX_IMAGE_BYTES, MAX_METRES, MAX_TEXT_BYTES};
 use super::source::{Files, SourceFile, decode};
 use crate::world::{Colour, Face, Material, Mesh};
@@ -45,11 +46,16 @@ fn parse(
     let mut own = Notes::new(&name);
     let text = decode(source.bytes, &mut own)?;
     notes.extend(own.finish(()).warnings);
-    let options =
-        tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
+    let options = tobj::LoadOptions {
+        triangulate: true,
+        ignore_points: true,
+        ignore_lines: true,
+        ..Default::default()
+    };
     // Materials are read where the model names them; what goes wrong is told behind.
     let library = RefCell::new(Library { model: &name, files, failure: None, origins: BTreeMap::new() });
-    let read = tobj::load_obj_buf(&mut text.as_bytes(), &options, |file| library.borrow_mut().read(&text, file));
+    let read =
+        tobj::load_obj_buf(&mut text.as_bytes(), &options, |file| library.borrow_mut().read(&text, file));
     let Library { failure, origins, .. } = library.into_inner();
     if let Some(error) = failure {
         files.get_over::<()>(Err(error), GRAY_INSTEAD, notes)?;
@@ -86,6 +92,7 @@ impl Library<'_, '_> {
         let source = self.files.read(&reference, named, MAX_TEXT_BYTES);
         let read = source.and_then(|SourceFile { name, bytes }| {
             let text = decode(bytes, &mut Notes::new(&name))?;
+            check_colours(&text, &name)?;
             let materials = tobj::load_mtl_buf(&mut text.as_bytes());
             let materials = materials.map_err(|error| {
                 let found = format!("broken materials ({error})");
@@ -101,13 +108,31 @@ impl Library<'_, '_> {
     }
 }
 
+/// Refuses colours of fewer than three numbers, on which the reader of materials panics.
+fn check_colours(materials: &str, file: &str) -> Result<(), FormatError> {
+    let is_short = |line: &str| {
+        let mut words = line.split_whitespace();
+        words.next().is_some_and(|word| ["Ka", "Kd", "Ks", "Ke"].contains(&word)) && words.count() < 3
+    };
+    materials.lines().position(is_short).map_or(Ok(()), |index| {
+        let found = shown(materials.lines().nth(index).unwrap_or_default().trim());
+        Err(FormatError::new(
+            file,
+            Location { line: index + 1, column: 1 },
+            found,
+            "a colour of three numbers",
+        ))
+    })
+}
+
 /// Where a model names a file.
 fn place_of(model: &str, file: &str) -> Location {
     let lines = model.lines().enumerate();
-    let found = lines.filter(|(_, line)| line.trim_start().starts_with("mtllib")).find_map(|(index, line)| {
-        let column = line.find(file)?;
-        Some(Location { line: index + 1, column: line[..column].chars().count() + 1 })
-    });
+    let found =
+        lines.filter(|(_, line)| line.trim_start().starts_with("mtllib")).find_map(|(index, line)| {
+            let column = line.find(file)?;
+            Some(Location { line: index + 1, column: line[..column].chars().count() + 1 })
+        });
     found.unwrap_or(Location::START)
 }
 
@@ -158,7 +183,8 @@ fn add(mesh: &mut Mesh, part: &tobj::Mesh, scale: f64) -> Result<(), String> {
             return Err(format!("a corner at {corners:?} m"));
         }
         let image_corners = [0, 1, 2].map(|i| image_corner(3 * number + i).unwrap_or_default());
-        let image_corners = image_corners.map(|place| place.map(|part| if part.is_finite() { part } else { 0.0 }));
+        let image_corners =
+            image_corners.map(|place| place.map(|part| if part.is_finite() { part } else { 0.0 }));
         mesh.faces.push(Face { corners, image_corners, material });
     }
     Ok(())
@@ -219,6 +245,8 @@ mod tests {
             message(&[("sign.obj", OBJ), ("sign.mtl", MTL)]),
             "sign.mtl:1:1: found `plate.ppm`, which does not exist; expected a file that exists"
         );
+        let short = [("sign.obj", OBJ), ("sign.mtl", "newmtl plate\n Kd 1 2\n")];
+        assert_eq!(message(&short), "sign.mtl:2:1: found `Kd 1 2`; expected a colour of three numbers");
         let broken = message(&[("sign.obj", "v 0 0 0\nf 1 2 3\n")]);
         assert!(broken.starts_with("sign.obj:1:1: found a broken model"), "{broken}");
     }

@@ -90,9 +90,9 @@ fn installed(folder: &Path, plain: &str) -> Option<PathBuf> {
     let brought = || tails.iter().find_map(|tail| in_any_case(folder, tail));
     let by_kind = || {
         above.iter().find_map(|root| {
-            kind_folders(whole).iter().find_map(|kind| {
-                tails.iter().find_map(|tail| in_any_case(root, &Path::new(kind).join(tail)))
-            })
+            kind_folders(whole)
+                .iter()
+                .find_map(|kind| tails.iter().find_map(|tail| in_any_case(root, &Path::new(kind).join(tail))))
         })
     };
     by_root.or_else(brought).or_else(by_kind)

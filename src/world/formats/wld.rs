@@ -48,7 +48,13 @@ pub(super) fn parse_with_images(
         }
     }
     if let Some(terrain) = &mut world.terrain {
-        image_file::load(&mut terrain.image, (file, places.terrain), files, &mut notes, "there are no hills")?;
+        image_file::load(
+            &mut terrain.image,
+            (file, places.terrain),
+            files,
+            &mut notes,
+            "there are no hills",
+        )?;
         if terrain.image.image.is_none() {
             world.terrain = None;
         }
@@ -114,7 +120,8 @@ impl<'f> Reader<'f> {
             "terrain" => self.terrain(line, &mut args)?,
             "water_level" => {
                 self.world.water_level = Some(args.length("the water level")?);
-                self.notes.warn(line.location(0), "`water_level`: water is shown in pictures and not simulated");
+                self.notes
+                    .warn(line.location(0), "`water_level`: water is shown in pictures and not simulated");
             }
             _ => {
                 let message = format!("unknown keyword {}; the line is skipped", lexer::shown(keyword));
@@ -151,7 +158,8 @@ impl<'f> Reader<'f> {
         self.world.terrain = Some(Terrain { width, height, max_elevation, image: image.into() });
         self.places.terrain = line.location(4);
         self.floor(width, height);
-        self.notes.warn(line.location(0), "`terrain`: hills are shown in pictures; robots drive on a level floor");
+        self.notes
+            .warn(line.location(0), "`terrain`: hills are shown in pictures; robots drive on a level floor");
         Ok(())
     }
 

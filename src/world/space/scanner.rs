@@ -318,7 +318,8 @@ mod tests {
         for (z, expected) in [(0.1, 0.9), (0.3, 0.95), (0.5, 0.95), (0.61, f64::INFINITY)] {
             let eye = Point::new(1.0, 1.0);
             let ray = space.cast_ray(eye, Vector::x(), z, 10.0, None);
-            let scan = scan(&space, Scanner::new(0.0, FRAC_PI_2, 4, z, 0.0, 10.0), Pose::new(1.0, 1.0, 0.0))[0];
+            let scan =
+                scan(&space, Scanner::new(0.0, FRAC_PI_2, 4, z, 0.0, 10.0), Pose::new(1.0, 1.0, 0.0))[0];
             assert!(near(&[ray, scan], &[expected, expected]), "{z}: {ray} {scan}");
         }
         // Tilted by 10 degrees, from 0.1 m up and 0.95 m away.

@@ -219,8 +219,7 @@ fn space() -> Result<String> {
         Footprint::Disc { radius: 0.1 },
         Footprint::Rectangle(Aabb::new(Point::new(-0.1, -0.05), Point::new(0.15, 0.08))),
     ];
-    let solids = outlines
-        .map(|outline| space.add(Solid::new(outline, Pose::new(2.2, 1.4, 0.3), 0.0, 0.15)));
+    let solids = outlines.map(|outline| space.add(Solid::new(outline, Pose::new(2.2, 1.4, 0.3), 0.0, 0.15)));
     let mut scanner = Scanner::new(-3.0, 0.06, 101, 0.05, -0.02, 4.0);
     let mut ranges = vec![0.0; scanner.beams()];
     let mut contacts = Vec::new();

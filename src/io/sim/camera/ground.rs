@@ -77,7 +77,8 @@ impl Ground {
         let (whole, _) = self.texture.level(1.0);
         let size = self.floor.size();
         let texels = Vector::new(whole.width as f64 / size.x, whole.height as f64 / size.y);
-        let (wide, deep) = (line.step.component_mul(&texels).norm(), line.depth.component_mul(&texels).norm());
+        let (wide, deep) =
+            (line.step.component_mul(&texels).norm(), line.depth.component_mul(&texels).norm());
         // Near the camera a pixel is smaller than a texel; far away it is much deeper than wide.
         let is_deep = deep > 1.5 * wide.max(1.0);
         let (level, halvings) = self.texture.level(wide.max(if is_deep { 0.25 * deep } else { deep }));

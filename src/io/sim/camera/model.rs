@@ -38,7 +38,13 @@ impl Model {
     }
 
     /// Draws it at a pose, some metres above the floor, where it is nearer than what is there.
-    pub(super) fn draw(&self, cutter: &mut Cutter, canvas: &mut Canvas, view: &View, (pose, z): (&Pose, f64)) {
+    pub(super) fn draw(
+        &self,
+        cutter: &mut Cutter,
+        canvas: &mut Canvas,
+        view: &View,
+        (pose, z): (&Pose, f64),
+    ) {
         let stand = Stand { foot: [pose.x, pose.y, z], forward: direction(pose.heading) };
         if view.misses(view.see(stand.foot), self.reach) {
             return;
@@ -48,7 +54,9 @@ impl Model {
             let corners = face.corners.map(|corner| stand.place(corner));
             let light = brightness(corners, view.eye);
             match coat {
-                Coat::Plain(colour) => cutter.draw_either_side(canvas, view, &corners, scaled(*colour, light)),
+                Coat::Plain(colour) => {
+                    cutter.draw_either_side(canvas, view, &corners, scaled(*colour, light))
+                }
                 Coat::Image(texture) => {
                     draw_image(cutter, canvas, view, &corners, &face.image_corners, texture, light);
                 }
@@ -94,7 +102,8 @@ fn draw_image(
     let size = [whole.width as f64, whole.height as f64];
     let seen = corners.map(|corner| view.see(corner));
     // Texels times nearness: what is even over the picture.
-    let texels = [0, 1].map(|axis| over_picture(view, &seen, image_corners.map(|c| c[axis] * size[axis]), &near));
+    let texels =
+        [0, 1].map(|axis| over_picture(view, &seen, image_corners.map(|c| c[axis] * size[axis]), &near));
     let light = (256.0 * light) as u32;
     for (row, span) in (top..).zip(spans) {
         let (from, to) = (first_pixel(span.left, canvas.width), first_pixel(span.right, canvas.width));
@@ -137,7 +146,10 @@ fn over_picture(view: &View, [a, b, c]: &[Seen; 3], values: [f64; 3], near: &Slo
     };
     let offset = values[0] - gradient.dot(*a);
     Slope {
-        origin: gradient.x * view.ray_x(0.0) + gradient.y * view.ray_y(0.0) + gradient.z + offset * near.origin,
+        origin: gradient.x * view.ray_x(0.0)
+            + gradient.y * view.ray_y(0.0)
+            + gradient.z
+            + offset * near.origin,
         column: gradient.x / view.focal + offset * near.column,
         row: gradient.y / view.focal + offset * near.row,
     }

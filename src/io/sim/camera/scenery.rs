@@ -75,7 +75,8 @@ impl Scenery {
         let world = &scene.world;
         let robots = robots.iter().zip(&scene.robots).enumerate();
         let mut meshes = Vec::new();
-        let things = objects.iter().zip(&world.objects).map(|(&solid, object)| thing(solid, object, &mut meshes));
+        let things =
+            objects.iter().zip(&world.objects).map(|(&solid, object)| thing(solid, object, &mut meshes));
         let things = things.collect();
         Self {
             floor: world.floor,

@@ -123,7 +123,11 @@ mod tests {
         let sizes: Vec<_> = texture.levels.iter().map(|level| (level.width, level.height)).collect();
         assert_eq!(sizes, [(8, 4), (4, 2), (2, 1), (1, 1)]);
         let last = texture.levels[3].texels[0];
-        assert!(((last >> 16) & 255).abs_diff(105) <= 2 && ((last >> 8) & 255).abs_diff(75) <= 2 && last & 255 == 7);
+        assert!(
+            ((last >> 16) & 255).abs_diff(105) <= 2
+                && ((last >> 8) & 255).abs_diff(75) <= 2
+                && last & 255 == 7
+        );
         assert_eq!(texture.level(1.0).1, 0);
         assert_eq!(texture.level(2.0).1, 1);
         assert_eq!(texture.level(1e9).1, 3);

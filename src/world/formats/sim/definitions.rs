@@ -10,6 +10,9 @@ use crate::world::{ObjectKind, RobotSpec};
 /// The robots whose names no file can take.
 const RESERVED: [&str; 3] = ["S4", "LabBot", "Omni"];
 
+/// What becomes of a file that is missing or broken.
+const ELSE_INSTEAD: &str = "something else takes its place";
+
 /// What a script knows by name: what its files describe, and what is built in.
 #[derive(Default)]
 pub(super) struct Definitions {
@@ -18,7 +21,7 @@ pub(super) struct Definitions {
     /// What is built in, once it is used.
     built_in_robots: Vec<Arc<RobotSpec>>,
     built_in_objects: Vec<Arc<ObjectKind>>,
-    /// Files that do not exist, in whose place stands something under a name that the script has yet to say.
+    /// Files that are missing or broken, in whose place stands something under a name that the script has yet to say.
     missing: Vec<Missing>,
 }
 
@@ -46,7 +49,11 @@ impl Definitions {
     ) -> Result<(), FormatError> {
         let built_in = RobotSpec::predefined(&stem(file)).is_some();
         let Some((name, text)) = self.text((file, at), built_in, files, notes)? else { return Ok(()) };
-        let parsed = robi::parse(&text, &name)?;
+        let parsed = files.get_over(robi::parse(&text, &name), ELSE_INSTEAD, notes)?;
+        let Some(parsed) = parsed else {
+            self.missing.push(Missing { reference: file.into(), is_robot: true });
+            return Ok(());
+        };
         notes.extend(parsed.warnings);
         if is_reserved(&parsed.value.name) {
             let message =
@@ -67,7 +74,11 @@ impl Definitions {
     ) -> Result<(), FormatError> {
         let built_in = ObjectKind::predefined(&stem(file)).is_some();
         let Some((name, text)) = self.text((file, at), built_in, files, notes)? else { return Ok(()) };
-        let parsed = esobj::parse_with_model(&text, &name, files)?;
+        let parsed = esobj::parse_with_model(&text, &name, files);
+        let Some(parsed) = files.get_over(parsed, ELSE_INSTEAD, notes)? else {
+            self.missing.push(Missing { reference: file.into(), is_robot: false });
+            return Ok(());
+        };
         notes.extend(parsed.warnings);
         self.objects.push(Definition { file: stem(file), value: Arc::new(parsed.value) });
         Ok(())
@@ -92,7 +103,7 @@ impl Definitions {
                 let what = if is_robot { "robot" } else { "object" };
                 notes.warn(at, format!("{} does not exist; the built-in {what} is used", shown(file)));
             } else if files.tolerant {
-                notes.get_over(missing(file, named), "something else takes its place");
+                notes.get_over(missing(file, named), ELSE_INSTEAD);
             } else {
                 return Err(missing(file, named));
             }
@@ -110,7 +121,9 @@ impl Definitions {
     pub(super) fn stand_in_for(&mut self, name: &str, at: Location, notes: &mut Notes<'_>) {
         let likeness = |missing: &Missing| likeness(&stem(&missing.reference), name);
         let best = self.missing.iter().map(likeness).max();
-        let Some(index) = self.missing.iter().position(|missing| Some(likeness(missing)) == best) else { return };
+        let Some(index) = self.missing.iter().position(|missing| Some(likeness(missing)) == best) else {
+            return;
+        };
         let Missing { reference, is_robot } = self.missing.remove(index);
         let (file, what) = (stem(&reference), if is_robot { "robot" } else { "object" });
         notes.warn(at, format!("a {what} takes the place of {}, from {}", shown(name), shown(&reference)));
