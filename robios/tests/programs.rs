@@ -13,6 +13,8 @@ use serde_json::Value;
 mod endings;
 #[path = "programs/scripts.rs"]
 mod scripts;
+#[path = "programs/sight.rs"]
+mod sight;
 
 fn programs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs")

@@ -49,7 +49,7 @@ pub(super) fn parse_with_model(
     let mut notes = Notes::new(file);
     notes.extend(warnings);
     if let Some(model) = &kind.model {
-        kind.mesh = model::load(model, (file, model_at), kind.body.scale, files, &mut notes)?;
+        kind.mesh = model::load(model, (file, model_at), (kind.body.scale, kind.colour), files, &mut notes)?;
     }
     Ok(notes.finish(kind))
 }

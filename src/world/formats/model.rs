@@ -11,7 +11,6 @@ use std::sync::Arc;
 use image::RgbaImage;
 
 use super::error::{FormatError, Location, Notes};
-use super::esobj::DEFAULT_COLOUR;
 use super::image_file::decode_image;
 use super::lexer::shown;
 use super::limits::{MAX_FACES, MAX_IMAGE_BYTES, MAX_METRES, MAX_TEXT_BYTES};
@@ -23,22 +22,23 @@ const SHAPE_INSTEAD: &str = "cameras see the shape of its colliders";
 /// What becomes of a face whose image cannot be had.
 const GRAY_INSTEAD: &str = "it is gray";
 
-/// Reads the model that a file names at some place, `scale` metres in a unit. `None` if that fails and is got over.
+/// Reads the model that a file names at some place, `scale` metres in a unit; faces without a material have a colour. `None`
+/// if that fails and is got over.
 pub(super) fn load(
     model: &Path,
     named: (&str, Location),
-    scale: f64,
+    (scale, colour): (f64, Colour),
     files: &mut Files<'_>,
     notes: &mut Notes<'_>,
 ) -> Result<Option<Arc<Mesh>>, FormatError> {
     let read = files.read(&model.to_string_lossy(), named, MAX_TEXT_BYTES);
-    let read = read.and_then(|source| parse(source, scale, files, notes));
+    let read = read.and_then(|source| parse(source, (scale, colour), files, notes));
     Ok(files.get_over(read, SHAPE_INSTEAD, notes)?.map(Arc::new))
 }
 
 fn parse(
     source: SourceFile,
-    scale: f64,
+    (scale, colour): (f64, Colour),
     files: &mut Files<'_>,
     notes: &mut Notes<'_>,
 ) -> Result<Mesh, FormatError> {
@@ -68,7 +68,7 @@ fn parse(
         let origin = origins.get(&material.name).map_or(name.as_str(), String::as_str);
         mesh.materials.push(painted(&material, origin, files, notes)?);
     }
-    mesh.materials.push(Material { colour: DEFAULT_COLOUR, image: None });
+    mesh.materials.push(Material { colour, image: None });
     for part in &models {
         add(&mut mesh, &part.mesh, scale).map_err(broken)?;
     }
@@ -209,7 +209,7 @@ mod tests {
         let mesh = load(
             Path::new("sign.obj"),
             ("sign.esObj", at),
-            0.5,
+            (0.5, Colour::BLUE),
             &mut Files::new(&mut source, tolerant),
             &mut notes,
         )?;
