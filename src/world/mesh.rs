@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use image::RgbaImage;
 
-use super::{Colour, Place3};
+use super::Colour;
 use crate::geometry::math;
 
 /// The surface of a thing as cameras see it: triangles, seen from both sides.
@@ -30,7 +30,7 @@ pub struct Material {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Face {
     /// Where its corners are.
-    pub corners: [Place3; 3],
+    pub corners: [[f64; 3]; 3],
     /// Where they are in the material's image: columns from its left edge and rows from its upper edge, each in parts of
     /// the image's size. Beyond 0 to 1 the image repeats.
     pub image_corners: [[f64; 2]; 3],
@@ -53,7 +53,7 @@ impl Mesh {
 
     /// Adds a flat quadrangle with the whole of the material's image on it: its upper left, lower left, lower right and
     /// upper right corner.
-    pub(super) fn quadrangle(&mut self, corners: [Place3; 4], material: usize) {
+    pub(super) fn quadrangle(&mut self, corners: [[f64; 3]; 4], material: usize) {
         let on_image = [[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]];
         for order in [[0, 1, 2], [0, 2, 3]] {
             let face = Face {
@@ -82,7 +82,7 @@ impl Mesh {
     }
 
     /// Adds a cuboid between two opposite corners.
-    pub(super) fn cuboid(&mut self, low: Place3, high: Place3, material: usize) {
+    pub(super) fn cuboid(&mut self, low: [f64; 3], high: [f64; 3], material: usize) {
         let corner =
             |x: usize, y: usize, z: usize| [[low[0], high[0]][x], [low[1], high[1]][y], [low[2], high[2]][z]];
         // Around it, each side's upper left corner first, then top and bottom.

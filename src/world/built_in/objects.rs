@@ -108,7 +108,7 @@ fn band(colour: Colour) -> Colour {
 
 /// A sign on a post. It is placed by the way of those who read it: its picture looks back at them.
 fn sign_on_a_post(name: &str, sign: Sign) -> ObjectKind {
-    let (radius, height, half, thickness) = (0.0045, 0.430, 0.065, 0.003);
+    let (radius, height, half, thickness) = (0.0045, 0.430, 0.065, 0.0005);
     let mut mesh = Mesh::default();
     let (gray, picture) =
         (mesh.paint(Colour::from_hex(0x90_90_90), None), mesh.paint(Colour::WHITE, Some(sign.picture())));

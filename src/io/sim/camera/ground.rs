@@ -25,6 +25,9 @@ pub(super) struct Ground {
     stretched: bool,
 }
 
+/// The most places of the floor that a pixel averages.
+const MOST_PLACES: u32 = 8;
+
 /// Where the rays of one row meet the floor: the place of its first pixel, and the steps to the next pixel and to the next
 /// row.
 struct FloorRow {
@@ -80,15 +83,18 @@ impl Ground {
         let (wide, deep) =
             (line.step.component_mul(&texels).norm(), line.depth.component_mul(&texels).norm());
         // Near the camera a pixel is smaller than a texel; far away it is much deeper than wide.
-        let is_deep = deep > 1.5 * wide.max(1.0);
-        let (level, halvings) = self.texture.level(wide.max(if is_deep { 0.25 * deep } else { deep }));
+        let places = (deep / wide.max(1.0)).min(f64::from(MOST_PLACES)) as u32;
+        let places = places.max(1).next_power_of_two();
+        let (level, halvings) = self.texture.level(wide.max(deep / f64::from(places)));
         let texels = texels / f64::from(1_u32 << halvings);
-        if is_deep {
-            let runs = [-0.375, -0.125, 0.125, 0.375].map(|back| self.run(line, from, texels, back));
-            Run::averaged(&runs, level, pixels);
-        } else {
+        if places == 1 {
             self.run(line, from, texels, 0.0).smooth(level, pixels);
+            return;
         }
+        let back = |place: u32| (f64::from(place) + 0.5) / f64::from(places) - 0.5;
+        let runs: [Run; MOST_PLACES as usize] =
+            std::array::from_fn(|place| self.run(line, from, texels, back(place as u32)));
+        Run::averaged(&runs[..places as usize], level, pixels);
     }
 
     /// The texels along a row from a pixel on, `back` parts of a pixel's depth towards the camera.
@@ -157,21 +163,23 @@ impl Run {
         }
     }
 
-    /// Takes the means of the texels of four runs; what rounding carries over the image's edge takes the nearest.
-    fn averaged(runs: &[Run; 4], level: &Level, pixels: &mut [Packed]) {
-        let runs = runs.each_ref().map(|run| [run.u as f32, run.v as f32, run.du as f32, run.dv as f32]);
+    /// Takes the means of the texels of some runs, whose number is a power of two; what rounding carries over the image's
+    /// edge takes the nearest.
+    fn averaged(runs: &[Run], level: &Level, pixels: &mut [Packed]) {
         let (last_column, last_row) = (level.width as i32 - 1, level.height as i32 - 1);
+        let shift = runs.len().trailing_zeros();
+        let half = runs.len() as u32 / 2;
         for (i, pixel) in (0_u32..).zip(pixels) {
             // Two channels at a time, each with room for the sum above it.
-            let (mut ends, mut middle) = (0x0002_0002, 0x0002);
-            for [u, v, du, dv] in runs {
-                let x = ((u + du * i as f32) as i32).clamp(0, last_column);
-                let y = ((v + dv * i as f32) as i32).clamp(0, last_row);
+            let (mut ends, mut middle) = (half << 16 | half, half);
+            for &Run { u, v, du, dv } in runs {
+                let x = ((u + du * f64::from(i)) as i32).clamp(0, last_column);
+                let y = ((v + dv * f64::from(i)) as i32).clamp(0, last_row);
                 let texel = level.texels[y as usize * level.width + x as usize];
                 ends += texel & 0xff_00_ff;
                 middle += texel >> 8 & 0xff;
             }
-            *pixel = ends >> 2 & 0xff_00_ff | (middle >> 2) << 8;
+            *pixel = ends >> shift & 0xff_00_ff | (middle >> shift) << 8;
         }
     }
 

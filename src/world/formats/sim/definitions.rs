@@ -36,6 +36,8 @@ struct Missing {
     /// As the script names it.
     reference: String,
     is_robot: bool,
+    /// Whether something built in has its name, and so takes other names only if they are like it.
+    built_in: bool,
 }
 
 impl Definitions {
@@ -51,7 +53,7 @@ impl Definitions {
         let Some((name, text)) = self.text((file, at), built_in, files, notes)? else { return Ok(()) };
         let parsed = files.get_over(robi::parse(&text, &name), ELSE_INSTEAD, notes)?;
         let Some(parsed) = parsed else {
-            self.missing.push(Missing { reference: file.into(), is_robot: true });
+            self.missing.push(Missing { reference: file.into(), is_robot: true, built_in });
             return Ok(());
         };
         notes.extend(parsed.warnings);
@@ -76,7 +78,7 @@ impl Definitions {
         let Some((name, text)) = self.text((file, at), built_in, files, notes)? else { return Ok(()) };
         let parsed = esobj::parse_with_model(&text, &name, files);
         let Some(parsed) = files.get_over(parsed, ELSE_INSTEAD, notes)? else {
-            self.missing.push(Missing { reference: file.into(), is_robot: false });
+            self.missing.push(Missing { reference: file.into(), is_robot: false, built_in });
             return Ok(());
         };
         notes.extend(parsed.warnings);
@@ -107,7 +109,7 @@ impl Definitions {
             } else {
                 return Err(missing(file, named));
             }
-            self.missing.push(Missing { reference: file.into(), is_robot });
+            self.missing.push(Missing { reference: file.into(), is_robot, built_in });
             return Ok(None);
         };
         let mut own = Notes::new(&name);
@@ -119,12 +121,14 @@ impl Definitions {
     /// Gives a name that nothing has to something in the place of a missing file: of the one that is called most like it,
     /// or else of the first one.
     pub(super) fn stand_in_for(&mut self, name: &str, at: Location, notes: &mut Notes<'_>) {
-        let likeness = |missing: &Missing| likeness(&stem(&missing.reference), name);
-        let best = self.missing.iter().map(likeness).max();
-        let Some(index) = self.missing.iter().position(|missing| Some(likeness(missing)) == best) else {
-            return;
+        let fitness = |missing: &Missing| {
+            let likeness = likeness(&stem(&missing.reference), name);
+            (likeness > 0 || !missing.built_in).then_some(likeness)
         };
-        let Missing { reference, is_robot } = self.missing.remove(index);
+        let best = self.missing.iter().filter_map(fitness).max();
+        let first = self.missing.iter().position(|missing| best.is_some() && fitness(missing) == best);
+        let Some(index) = first else { return };
+        let Missing { reference, is_robot, .. } = self.missing.remove(index);
         let (file, what) = (stem(&reference), if is_robot { "robot" } else { "object" });
         notes.warn(at, format!("a {what} takes the place of {}, from {}", shown(name), shown(&reference)));
         if is_robot {

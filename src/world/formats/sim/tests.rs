@@ -199,7 +199,7 @@ fn what_eyesim_brings_along_is_known_without_its_files() {
         [
             "test.sim:2:7: `../../worlds/small/Soccer1998.wld` does not exist; the built-in world is used",
             "test.sim:3:7: `../../robots/Ackermann/SAE.robi` does not exist; the built-in robot is used",
-            "test.sim:4:8: `../../objects/ConeOrange/coneorange.esObj` does not exist; the built-in object is used",
+            "test.sim:4:8: `../../objects/ConeOrange/coneorange.esOb…` does not exist; the built-in object is used",
         ]
     );
 }
@@ -228,7 +228,7 @@ fn images_and_models_are_looked_up_from_the_files_that_name_them() {
     let missing = |memory: &mut MemoryFiles| parse(text, "test.sim", memory).unwrap_err().to_string();
     assert!(missing(&mut memory).starts_with("carpet.wld:2:15: found `carpet.jpg`, which does not exist"));
     memory.0.insert("carpet.jpg".into(), b"P6 1 1 255 abc".to_vec());
-    assert!(missing(&mut memory).starts_with("carpet.wld:3:24: found `hills.png`"));
+    assert!(missing(&mut memory).starts_with("carpet.wld:3:22: found `hills.png`"));
     memory.0.insert("hills.png".into(), b"broken".to_vec());
     assert!(missing(&mut memory).starts_with("hills.png:1:1: found a broken image"));
     memory.0.insert("hills.png".into(), b"P5 1 1 255 a".to_vec());
