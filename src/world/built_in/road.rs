@@ -7,6 +7,8 @@ pub(super) struct Road {
     /// Where on the road each pixel is, row by row from the far side; `None` beside it.
     places: Vec<Option<Place>>,
     side: usize,
+    /// Metres that a pixel is wide.
+    pixel: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -28,20 +30,21 @@ const PAINT: Colour = Colour::from_hex(0xf4_f4_f4);
 impl Road {
     /// The road around some corners on a square floor of so many pixels, each `pixel` metres wide.
     pub(super) fn around(corners: &[Point], side: usize, pixel: f64) -> Self {
-        let mut road = Self { places: vec![None; side * side], side };
+        let mut road = Self { places: vec![None; side * side], side, pixel };
         let line = smooth(corners);
         let mut along = 0.0;
         for (i, &a) in line.iter().enumerate() {
             let part = Segment::new(a, line[(i + 1) % line.len()]);
-            road.lay(part, along, pixel);
+            road.lay(part, along);
             along += part.length();
         }
         road
     }
 
     /// Lays a straight part of the middle line.
-    fn lay(&mut self, part: Segment, along: f64, pixel: f64) {
+    fn lay(&mut self, part: Segment, along: f64) {
         const REACH: f64 = LANE + LINE;
+        let pixel = self.pixel;
         let pixels = |low: f64, high: f64| {
             let (low, high) = ((low - REACH) / pixel, (high + REACH) / pixel);
             (low.max(0.0) as usize)..(high.max(0.0).ceil() as usize).min(self.side)
@@ -67,9 +70,16 @@ impl Road {
     /// What is painted at a pixel, counted from the far left corner.
     pub(super) fn colour(&self, column: usize, row: usize) -> Colour {
         let Some(Place { aside, along }) = self.places[row * self.side + column] else { return ASPHALT };
-        let dash = aside < 0.5 * LINE && along % (2.0 * DASH) < DASH;
-        let edge = (aside - LANE).abs() < 0.5 * LINE;
-        if dash || edge { PAINT } else { ASPHALT }
+        // The part of the pixel that a line of some distance covers.
+        let covered = |distance: f64| ((0.5 * LINE - distance) / self.pixel + 0.5).clamp(0.0, 1.0);
+        let dash = if along % (2.0 * DASH) < DASH { covered(aside) } else { 0.0 };
+        let share = dash.max(covered((aside - LANE).abs()));
+        let mixed = |a: u8, b: u8| (f64::from(a) + share * (f64::from(b) - f64::from(a))).round() as u8;
+        Colour::new(
+            mixed(ASPHALT.red, PAINT.red),
+            mixed(ASPHALT.green, PAINT.green),
+            mixed(ASPHALT.blue, PAINT.blue),
+        )
     }
 }
 
@@ -92,7 +102,7 @@ mod tests {
         let corners = [(1.0, 1.0), (1.0, 3.0), (3.0, 3.0), (3.0, 1.0)].map(|(x, y)| Point::new(x, y));
         let road = Road::around(&corners, 800, 0.005);
         // Across the straight part on the left, half way up.
-        let row: Vec<usize> = (0..400).filter(|&column| road.colour(column, 400) == PAINT).collect();
+        let row: Vec<usize> = (0..400).filter(|&column| road.colour(column, 400) != ASPHALT).collect();
         let near = |metres: f64| row.iter().any(|&column| (column as f64 * 0.005 - metres).abs() < 0.01);
         assert!(near(0.8) && near(1.2), "{row:?}");
         assert!(row.iter().all(|&column| (155..=245).contains(&column)), "{row:?}");

@@ -50,7 +50,9 @@ impl Definitions {
         notes: &mut Notes<'_>,
     ) -> Result<(), FormatError> {
         let built_in = RobotSpec::predefined(&stem(file)).is_some();
-        let Some((name, text)) = self.text((file, at), built_in, files, notes)? else { return Ok(()) };
+        let Some((name, text)) = self.text((file, at), (true, built_in), files, notes)? else {
+            return Ok(());
+        };
         let parsed = files.get_over(robi::parse(&text, &name), ELSE_INSTEAD, notes)?;
         let Some(parsed) = parsed else {
             self.missing.push(Missing { reference: file.into(), is_robot: true, built_in });
@@ -75,7 +77,9 @@ impl Definitions {
         notes: &mut Notes<'_>,
     ) -> Result<(), FormatError> {
         let built_in = ObjectKind::predefined(&stem(file)).is_some();
-        let Some((name, text)) = self.text((file, at), built_in, files, notes)? else { return Ok(()) };
+        let Some((name, text)) = self.text((file, at), (false, built_in), files, notes)? else {
+            return Ok(());
+        };
         let parsed = esobj::parse_with_model(&text, &name, files);
         let Some(parsed) = files.get_over(parsed, ELSE_INSTEAD, notes)? else {
             self.missing.push(Missing { reference: file.into(), is_robot: false, built_in });
@@ -90,7 +94,7 @@ impl Definitions {
     fn text(
         &mut self,
         (file, at): (&str, Location),
-        built_in: bool,
+        (is_robot, built_in): (bool, bool),
         files: &mut Files<'_>,
         notes: &mut Notes<'_>,
     ) -> Result<Option<(String, String)>, FormatError> {
@@ -100,7 +104,6 @@ impl Definitions {
         }
         let named = (notes.file, at);
         let Some(SourceFile { name, bytes }) = files.read_if_there(file, named, MAX_TEXT_BYTES)? else {
-            let is_robot = file.to_ascii_lowercase().ends_with(".robi");
             if built_in {
                 let what = if is_robot { "robot" } else { "object" };
                 notes.warn(at, format!("{} does not exist; the built-in {what} is used", shown(file)));
