@@ -48,11 +48,15 @@ fn methods(c: &mut Criterion) {
     let mut group = c.benchmark_group("step");
     for method in [Method::Turn, Method::Arc, Method::Dog, Method::Spline] {
         let mut drive = AToB::new(method, Goal::pose(GOAL), AToBParameters::default()).expect("a behaviour");
-        let start = AToBObservation { pose: Pose::default(), done: true };
+        let start = AToBObservation { pose: Pose::default(), done: true, stalled: false };
         drive.step(&start).expect("a command");
         group.bench_function(format!("{method:?}"), |b| {
             b.iter(|| {
-                drive.step(black_box(&AToBObservation { pose: Pose::new(0.1, 0.01, 0.1), done: true }))
+                drive.step(black_box(&AToBObservation {
+                    pose: Pose::new(0.1, 0.01, 0.1),
+                    done: true,
+                    stalled: false,
+                }))
             });
         });
         let mut chase = Chase::new(method, ChaseParameters::default()).expect("a chase");

@@ -7,6 +7,7 @@ use std::time::Instant;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use image::RgbImage;
 use roverlab::geometry::Point;
+use roverlab::io::control::run;
 use roverlab::io::log::{Header, Log, LogWriter, Player};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{Camera, Clock, Drive, Lidar, Resolution, Result};
@@ -31,7 +32,7 @@ fn simulation(scene: &Scene) -> Simulation {
 
 fn drive(robot: &mut (impl Clock + Drive + Lidar), goal: Point) -> DistBugOutcome {
     let mut bug = DistBug::new(goal, DistBugParameters::default()).expect("a goal");
-    bug.run(robot, 3600.0, |_, _| {}).expect("a robot that works")
+    run(robot, &mut bug, 3600.0, |_, _, _| {}).expect("a robot that works")
 }
 
 fn record(scene: &Scene, goal: Point, memory: Vec<u8>) -> Vec<u8> {

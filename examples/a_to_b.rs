@@ -5,6 +5,7 @@
 
 use roverlab::drive::{AToB, AToBOutcome, AToBParameters, Goal, Method};
 use roverlab::geometry::{Pose, angle_difference, units};
+use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::picture::{Mark, Picture, SERIES, Style};
 use roverlab::world::{RobotSpec, Scene, World};
@@ -30,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let target =
             if method == Method::Spline { Goal::pose(relative) } else { Goal::point(relative.position()) };
         let mut drive = AToB::new(method, target, AToBParameters::default())?;
-        let outcome = drive.run(&mut simulation.robot(0)?, 60.0, |_, _| {})?;
+        let outcome = run(&mut simulation.robot(0)?, &mut drive, 60.0, |_, _, _| {})?;
 
         let (truth, time) = (simulation.truth().robot(0)?, simulation.truth().time());
         let missed = units::to_mm(truth.pose.distance_to(goal.position()));
@@ -46,7 +47,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         picture.line(truth.trail.iter().map(|point| point.pose.position()), style);
         picture.robot_with(truth.pose, &RobotSpec::s4().footprint, Style::new(colour));
     }
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/a_to_b.svg")?;
     Ok(())
 }

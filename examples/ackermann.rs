@@ -5,6 +5,7 @@
 
 use roverlab::drive::{CarDriver, CarOutcome, CarParameters, CarToB, Goal, Method};
 use roverlab::geometry::{Pose, angle_difference, units};
+use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::kinematics::Ackermann;
 use roverlab::picture::{Mark, Picture, Style};
@@ -29,7 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let target = Goal::pose(start.inverse().compose(&goal));
     let mut drive = CarToB::new(Method::Spline, target, driver, CarParameters::default())?;
     let plan = drive.plan(Pose::default())?.ok_or("the car is at its goal")?;
-    let outcome = drive.run(&mut simulation.robot(0)?, 60.0, |_, _| {})?;
+    let outcome = run(&mut simulation.robot(0)?, &mut drive, 60.0, |_, _, _| {})?;
 
     let truth = simulation.truth().robot(0)?;
     let missed = units::to_mm(truth.pose.distance_to(goal.position()));
@@ -48,7 +49,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     picture.true_path(truth.trail.iter().map(|point| point.pose.position()));
     picture.robot_with(start, &spec.footprint, pale).robot(truth.pose, &spec.footprint);
     picture.mark(Mark::Start, start.position()).mark(Mark::Goal, goal.position());
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/ackermann.svg")?;
     Ok(())
 }

@@ -4,9 +4,10 @@
 //!
 //! `cargo run --release --example bug_compare`
 
+use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::nav::BugKind::{Alg2, Bug1, Bug2, DistBug, Rev2, TangentBug};
-use roverlab::nav::{BugOutcome, BugParameters, Reachability, run_bug};
+use roverlab::nav::{BugOutcome, BugParameters, Reachability};
 use roverlab::picture::{Mark, Picture, SERIES, Style};
 use roverlab::random::Stream;
 use roverlab::world::generate::CourseFamily;
@@ -37,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let parameters =
             BugParameters { match_scans: false, period: 0.1, ..BugParameters::for_radius(radius) };
         let mut bug = kind.with(course.start.to_local(course.goal), parameters)?;
-        let outcome = run_bug(bug.as_mut(), &mut simulation.robot(0)?, 1800.0, |_, _| {})?;
+        let outcome = run(&mut simulation.robot(0)?, bug.as_mut(), 1800.0, |_, _, _| {})?;
 
         let (truth, time) = (simulation.truth().robot(0)?, simulation.truth().time());
         let (length, ratio) = (truth.path_length, truth.path_length / shortest);
@@ -49,7 +50,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             picture.line(truth.trail.iter().map(|point| point.pose.position()), style);
         }
     }
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/bug_compare.svg")?;
     Ok(())
 }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use roverlab::drive::colour::{ColourOutcome, ColourPhase, ColourTracker, TrackerParameters};
 use roverlab::geometry::Pose;
+use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::picture::{Mark, Picture};
 use roverlab::vision::{ColourFinder, FindMethod, HueScale, hue};
@@ -37,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let finder = ColourFinder::new(red, 12, FindMethod::Blob, camera.into())?;
     let mut tracker = ColourTracker::new(finder, TrackerParameters::default());
     let (mut time, mut phase, mut first) = (0.0, ColourPhase::Searching, None);
-    let outcome = tracker.run(&mut simulation.robot(0)?, 120.0, |_, tracker, _| {
+    let outcome = run(&mut simulation.robot(0)?, &mut tracker, 120.0, |_, tracker, _| {
         time = simulation.truth().time();
         if first.is_none() {
             first = tracker.sighting().map(|seen| (time, seen.pixels));
@@ -46,7 +47,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             phase = tracker.phase();
             println!("{time:5.1} s: {phase:?}");
         }
-        Ok(())
     })?;
 
     let truth = simulation.truth().robot(0)?;
@@ -65,7 +65,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     picture.title("To the red can").mark(Mark::Start, start.position());
     picture.true_path(truth.trail.iter().map(|point| point.pose.position()));
     picture.robot(truth.pose, &spec.footprint);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/color_tracking.svg")?;
     Ok(())
 }

@@ -4,14 +4,15 @@
 //! `cargo run --release --example cone_drive`
 
 use roverlab::geometry::{Aabb, Point};
+use roverlab::io::control::{run, until};
 use roverlab::io::sim::NoiseModel;
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions, SharedRace};
-use roverlab::io::{Clock, Lidar, LidarSettings, Motors, Servos};
+use roverlab::io::{Lidar, LidarSettings, Result};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::race::{GapDriver, Referee, TrackOptions, generate};
 use roverlab::world::{Colour, World};
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     // A legal track of Formula Student, from a seed.
     let generated = generate(1, &TrackOptions::drawn(1))?;
     let start = generated.track.start_pose().ok_or("the track has no start")?;
@@ -28,19 +29,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut referee = Referee::new(generated.corridor.clone(), wheels);
     // As the book sets it: 180 beams over 180 degrees.
     car.configure_lidar(LidarSettings { field_of_view: std::f64::consts::PI, tilt: 0.0, points: 180 })?;
-    car.set_motor(1, 3.0 / spec.top_speed)?;
-    let (mut driver, mut path) = (GapDriver::default(), Vec::new());
-    while referee.verdict().lap_times.is_empty() && race.time() < 200.0 {
-        if let Some(position) = driver.step(&car.scan()?) {
-            car.set_servo(1, position)?;
-        }
-        for _ in 0..10 {
-            car.wait(0.01)?;
-            let truth = race.robot(0)?;
-            referee.see(race.time(), truth.pose, truth.contacts as usize);
-            path.push(truth.pose.position());
-        }
-    }
+    let mut driver = GapDriver::with_speed(3.0 / spec.top_speed);
+    let mut path = Vec::new();
+    // Ten times a second the driver decides and the referee looks.
+    run(&mut car, &mut driver, 200.0, |_, _, _| {
+        let truth = race.robot(0)?;
+        referee.see(race.time(), truth.pose, truth.contacts as usize);
+        path.push(truth.pose.position());
+        Result::Ok(until(!referee.verdict().lap_times.is_empty()))
+    })?;
 
     let verdict = referee.verdict();
     let lap = verdict.lap_times.first().ok_or("no lap was driven")?;
@@ -53,7 +50,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut picture = Picture::new(&ground);
     picture.title("For the nearest gap").true_path(path).mark(Mark::Start, start.position());
     picture.points(cones.iter().map(|cone| cone.position), Style::new(blue).width(5.0).labelled("cone"));
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/cone_drive.svg")?;
     Ok(())
 }

@@ -4,11 +4,13 @@
 //! `cargo run --release --example cone_race`
 
 use roverlab::geometry::{Aabb, Point};
-use roverlab::io::Drive;
+use roverlab::io::control::run;
 use roverlab::io::sim::NoiseModel;
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions, SharedRace};
 use roverlab::picture::{Mark, Picture, Style};
-use roverlab::race::{ConeColour, RacePhase, Racer, RacerParameters, Referee, TrackOptions, generate};
+use roverlab::race::{
+    ConeColour, RaceOutcome, RacePhase, Racer, RacerParameters, Referee, TrackOptions, generate,
+};
 use roverlab::world::{Colour, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -30,29 +32,25 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let wheels = [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y));
     let mut referee = Referee::new(generated.corridor.clone(), wheels);
     let mut racer = Racer::new(RacerParameters { laps: 2, period: 0.08, ..RacerParameters::default() });
-    let (mut path, mut first, mut failed) = (Vec::new(), 0, None);
-    let phase = racer.run(&mut race.car(0)?, 300.0, |car, racer| match (race.robot(0), car.speed()) {
-        (Ok(truth), Ok(speed)) => {
-            referee.see(race.time(), truth.pose, truth.contacts as usize);
-            path.push((truth.pose.position(), speed.linear));
-            if racer.phase() == RacePhase::Mapping {
-                first = path.len();
-            }
+    let (mut path, mut first) = (Vec::new(), 0);
+    let outcome = run(&mut race.car(0)?, &mut racer, 300.0, |_, racer, step| {
+        let truth = race.robot(0)?;
+        referee.see(race.time(), truth.pose, truth.contacts as usize);
+        path.push((truth.pose.position(), step.seen.speed.linear));
+        if racer.phase() == RacePhase::Mapping {
+            first = path.len();
         }
-        (Err(error), _) | (_, Err(error)) => failed = Some(error),
+        roverlab::io::Result::Ok(())
     })?;
-    if let Some(error) = failed {
-        return Err(error.into());
-    }
 
     let verdict = referee.verdict();
     let length = generated.corridor.length();
-    println!("{phase:?}: {} cones of {} are in the map", racer.map().cones().count(), cones.len());
+    println!("{outcome:?}: {} cones of {} are in the map", racer.map().cones().count(), cones.len());
     for (lap, time) in (1..).zip(&verdict.lap_times) {
         println!("lap {lap}: {time:.2} s, {:.1} m/s in the mean", length / time);
     }
     println!("{} cones knocked over, {} times off the course", verdict.cones_hit, verdict.off_course);
-    assert_eq!((phase, verdict.cones_hit, verdict.off_course), (RacePhase::Finished, 0, 0));
+    assert_eq!((outcome, verdict.cones_hit, verdict.off_course), (RaceOutcome::Finished, 0, 0));
     assert!(verdict.lap_times.len() == 2 && verdict.lap_times[1] < 0.8 * verdict.lap_times[0]);
 
     let mut ground = World::empty(1.0, 1.0);
@@ -64,7 +62,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     picture.line(path[..first].iter().map(|&(place, _)| place), Style::aid().labelled("first lap"));
     picture.speed_path(path[first..].iter().copied());
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/cone_race.svg")?;
     Ok(())
 }

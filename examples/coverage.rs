@@ -5,10 +5,11 @@
 
 use std::sync::Arc;
 
-use roverlab::drive::{CoverageMap, CoverageParameters, CoveragePlan, Tour, TourParameters};
-use roverlab::geometry::{Point, Pose, Twist};
-use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::io::{Clock, Drive, Lidar};
+use roverlab::drive::{CoverageMap, CoverageParameters, CoveragePlan, Tour, TourOutcome, TourParameters};
+use roverlab::geometry::{Point, Pose};
+use roverlab::io::control::{SensedBy, run};
+use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
+use roverlab::io::{Drive, Lidar};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::scan::{LocalisationMap, Localiser, LocaliserParameters};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Wall, World};
@@ -32,18 +33,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut localiser = Localiser::new(LocalisationMap::new(&world)?, LocaliserParameters::default())?;
     localiser.start_at(start);
     let mut tour = Tour::new(plan.points(), TourParameters::default())?;
-    for step in 0_u32.. {
+    let mut steps = 0_u32;
+    let locate = |robot: &mut SimRobot, _, place: &mut Option<Pose>| {
         // Odometry serves between scans; every third step a scan corrects it.
         let odometry = robot.pose()?;
-        if step % 3 == 0 {
+        if steps.is_multiple_of(3) {
             localiser.update(odometry, &robot.scan()?)?;
         }
-        let place = localiser.place(odometry).ok_or("the robot is lost")?;
-        let Some(twist) = tour.step(place) else { break };
-        robot.set_speed(twist)?;
-        robot.wait(0.04)?;
-    }
-    robot.set_speed(Twist::STOP)?;
+        steps += 1;
+        *place = localiser.place(odometry);
+        Ok(())
+    };
+    let outcome = run(&mut robot, &mut SensedBy::new(&mut tour, locate), 3600.0, |_, _, _| {})?;
+    assert_eq!(outcome, TourOutcome::Finished);
 
     let truth = simulation.truth().robot(0)?;
     truth
@@ -63,7 +65,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .mark(Mark::Start, start.position());
     picture.points(map.cells(false), Style::new(Colour::RED).labelled("left out"));
     picture.robot(truth.pose, &RobotSpec::s4().footprint);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/coverage.svg")?;
     Ok(())
 }

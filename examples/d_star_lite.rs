@@ -62,7 +62,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     picture.line(shortest.points.iter().map(|&point| point * CELL), Style::plan().labelled("shortest way"));
     picture.true_path(way.iter().map(|cell| cell.centre() * CELL));
     picture.mark(Mark::Start, start.centre() * CELL).mark(Mark::Goal, goal.centre() * CELL);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/d_star_lite.svg")?;
     Ok(())
 }

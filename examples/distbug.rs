@@ -8,6 +8,7 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 use std::sync::Arc;
 
 use roverlab::geometry::{Point, Pose, direction, units};
+use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::nav::{DistBug, DistBugEvent as Event, DistBugOutcome, DistBugParameters};
 use roverlab::picture::{Mark, Picture, Style};
@@ -24,7 +25,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // The robot counts from where it stands, so the goal is given in its own frame.
     let mut bug = DistBug::new(start.to_local(goal), DistBugParameters::default())?;
-    let outcome = bug.run(&mut robot, 600.0, |bug, time| {
+    let outcome = run(&mut robot, &mut bug, 600.0, |_, bug, step| {
+        let time = step.time;
         for event in bug.take_events() {
             let (mark, letter, point, words) = match event {
                 Event::Hit { point, side } => (Mark::HitPoint, 'H', point, format!("wall on the {side:?}")),
@@ -60,7 +62,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (mark, point, name) in marks {
         picture.mark_named(mark, point, name);
     }
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/distbug.svg")?;
     Ok(())
 }

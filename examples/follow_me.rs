@@ -76,7 +76,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
         assert!((gap - GAP).abs() < 0.2, "follower {index}");
     }
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/follow_me.svg")?;
     Ok(())
 }

@@ -3,14 +3,15 @@
 //!
 //! `cargo run --release --example genetic`
 
-use std::ops::{ControlFlow, Range};
+use std::ops::Range;
 
-use roverlab::drive::{PidParameters, PidWallFollower, PidWallParameters, run_along_wall};
+use roverlab::drive::{AlongWall, PidParameters, PidWallFollower, PidWallParameters};
 use roverlab::evolve::{
     Arithmetic, Evolution, Gaussian, Genetic, Recipe, Selection, Serial, StopRules, Trial, chart,
 };
 use roverlab::geometry::{Pose, units};
 use roverlab::io::Result;
+use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::random::Stream;
 use roverlab::world::{RobotSpec, Scene, World};
@@ -48,7 +49,6 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     let (first, last) = (evolution.history()[0], evolution.history()[11]);
     assert!(last.best > 0.5 * first.best && last.mean > first.mean && unseen < 0.01);
 
-    std::fs::create_dir_all("target/pictures")?;
     chart(evolution.history()).save("target/pictures/genetic.svg")?;
     Ok(())
 }
@@ -70,16 +70,15 @@ fn error(genes: &[f64], seed: u64) -> Result<f64> {
     let [proportional, integral, derivative] = gains(genes);
     let base = PidWallParameters::default();
     let gains = PidParameters { proportional, integral, derivative, ..base.gains };
-    let mut controller = PidWallFollower::new(PidWallParameters { gains, ..base })?;
+    let controller = PidWallFollower::new(PidWallParameters { gains, ..base })?;
     let truth = simulation.truth();
     let (mut squares, mut count) = (0.0, 0.0);
-    run_along_wall(&mut simulation.robot(0)?, &mut controller, 15.0, |time, _| {
-        if time > 4.0 {
+    run(&mut simulation.robot(0)?, &mut AlongWall::new(controller), 15.0, |_, _, step| {
+        if step.time > 4.0 {
             let off = 2.0 - truth.pose(0).map_or(0.0, |pose| pose.y) - base.distance;
             squares += off * off;
             count += 1.0;
         }
-        ControlFlow::Continue(())
     })?;
     Ok((squares / f64::max(count, 1.0)).sqrt() + 0.1 * f64::from(truth.robot(0)?.contacts))
 }

@@ -53,7 +53,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [dijkstra, astar, jumps, theta, any_angle] = costs[..] else { return Err("five costs".into()) };
     assert!((dijkstra - astar).abs() < 1e-9 && (dijkstra - jumps).abs() < 1e-9);
     assert!(any_angle <= theta && theta < dijkstra);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/grid_planning.svg")?;
     Ok(())
 }

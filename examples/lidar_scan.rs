@@ -52,7 +52,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The corner that stands into the room hides one wall; a can parts another one in two.
     assert_eq!((found.walls.len(), found.corners.len(), found.objects.len()), (6, 4, 2));
     picture.robot(pose, &RobotSpec::s4().footprint);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/lidar_scan.svg")?;
     Ok(())
 }

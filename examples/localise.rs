@@ -6,14 +6,15 @@
 
 use roverlab::drive::{RandomDrive, RandomDriveParameters};
 use roverlab::geometry::{Point, Pose, angle_difference, units};
+use roverlab::io::control::{run, until};
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::io::{Clock, Drive, LidarScan};
+use roverlab::io::{Drive, Lidar, Result};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
 use roverlab::scan::{Localisation, LocalisationMap, Localiser, LocaliserParameters};
 use roverlab::world::{LidarSpec, RobotSpec, Scene, Wall, World};
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     let mut world = World::walled(5.0, 4.0);
     for (a, b) in [
         ((0.0, 1.8), (1.2, 1.8)),
@@ -36,23 +37,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // Nothing below knows the start.
     let mut localiser = Localiser::new(LocalisationMap::new(&world)?, LocaliserParameters::default())?;
-    let mut wander = RandomDrive::new(RandomDriveParameters::default(), Stream::new(1))?;
-    let (mut scan, mut points, mut sure) = (LidarScan::default(), Vec::new(), 0);
-    let mut hypotheses = Vec::new();
-    while sure < 12 && robot.now()? < 120.0 {
-        RandomDrive::look(&mut robot, &mut scan, &mut points)?;
-        let odometry = robot.pose()?;
-        localiser.update(odometry, &scan)?;
+    let parameters = RandomDriveParameters { period: 0.2, ..RandomDriveParameters::default() };
+    let mut wander = RandomDrive::new(parameters, Stream::new(1))?;
+    let (mut sure, mut hypotheses) = (0, Vec::new());
+    run(&mut robot, &mut wander, 120.0, |_, _, step| {
+        localiser.update(step.seen.pose, &step.seen.scan)?;
         let found = localiser.localisation();
         if hypotheses.last() != Some(&found.count()) {
-            println!("{:5.1} s: places that explain what was seen: {}", robot.now()?, found.count());
+            println!("{:5.1} s: places that explain what was seen: {}", step.time, found.count());
             hypotheses.push(found.count());
         }
         sure = if matches!(found, Localisation::One(_)) { sure + 1 } else { 0 };
-        let twist = wander.step(odometry, &points)?;
-        robot.set_speed(twist)?;
-        robot.wait(0.2)?;
-    }
+        Result::Ok(until(sure == 12))
+    })?;
 
     let place = localiser.place(robot.pose()?).ok_or("the robot knows of no place")?;
     let truth = simulation.truth().robot(0)?;
@@ -68,10 +65,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut picture = Picture::new(&world);
     picture.title("Where am I?").mark(Mark::Start, start.position());
     // Seen from the found place, the scan lies on the walls.
-    picture.points(scan.points().map(|point| place.to_world(point)), Style::lidar());
+    picture.points(robot.scan()?.points().map(|point| place.to_world(point)), Style::lidar());
     picture.true_path(truth.trail.iter().map(|point| point.pose.position()));
     picture.robot(truth.pose, &RobotSpec::s4().footprint);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/localise.svg")?;
     Ok(())
 }

@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     known.set_goals(maze.goals());
     let NoiseModel { wheel_scale, wheel_mismatch, track, slip, .. } = noise;
     let rig = Rig::new(&spec, OdometryErrors { wheel_scale, wheel_mismatch, track, slip }, noise.range)?;
-    let mut runner = MazeRunner::new(&mut robot, rig, known, scale, RunnerParameters::EYEBOT)?;
+    let mut runner = MazeRunner::new(&mut robot, rig, known, scale, RunnerParameters::EYEBOT, 1200.0)?;
     let found = runner.explore(&mut RecursiveExplorer::new(), &mut |_| {})?;
     println!("explored {} of {} cells in {:.0} s", found.visited, maze.cell_count(), found.time);
     let explored = simulation.truth().robot(0)?.trail.len();
@@ -67,7 +67,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .line(path[..explored].to_vec(), Style::aid().width(1.6));
     picture.true_path(path[explored - 1..].to_vec()).robot(truth.pose, &spec.footprint);
     picture.mark(Mark::Start, start.position()).mark(Mark::Goal, scale.centre(route.end()));
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/maze_explore.svg")?;
     Ok(())
 }

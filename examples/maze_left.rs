@@ -4,6 +4,7 @@
 //! `cargo run --release --example maze_left`
 
 use roverlab::geometry::units;
+use roverlab::io::control::{run, until};
 use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
 use roverlab::kinematics::OdometryErrors;
 use roverlab::maze::{CellDriveParameters, LeftHand, LeftHandOutcome, LeftHandParameters, Rig, Scale, files};
@@ -37,29 +38,24 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let NoiseModel { wheel_scale, wheel_mismatch, track, slip, .. } = noise;
     let rig = Rig::new(&spec, OdometryErrors { wheel_scale, wheel_mismatch, track, slip }, noise.range)?;
     let drive = CellDriveParameters::pid(&rig, scale, 0.5 * scale.cell);
-    let rule = LeftHand::new(LeftHandParameters::controlled(drive))?;
+    let mut rule = LeftHand::new(LeftHandParameters::controlled(drive), maze.heading())?;
     let goal = maze.goals().next().ok_or("the maze has no goal")?;
     let (east, north) =
         (i32::from(goal.x) - i32::from(maze.start().x), i32::from(goal.y) - i32::from(maze.start().y));
-    let mut cells = 0;
-    let at_goal = |at, _| {
-        cells += 1;
-        at == (east, north)
-    };
-    let outcome = rule.run(&mut simulation.robot(0)?, maze.heading(), at_goal, || {})?;
+    let mut robot = simulation.robot(0)?;
+    let outcome = run(&mut robot, &mut rule, 600.0, |_, rule, _| until(rule.at() == (east, north)))?;
 
     let truth = simulation.truth().robot(0)?;
     let (off, time) = (units::to_mm(truth.pose.distance_to(scale.centre(goal))), simulation.truth().time());
-    println!("{outcome:?} after {cells} cells, {:.1} m and {time:.0} s", truth.path_length);
+    println!("{outcome:?} after {} cells, {:.1} m and {time:.0} s", rule.cells(), truth.path_length);
     println!("The robot stands {off:.0} mm from the middle of the goal.");
-    assert_eq!((outcome, truth.contacts), (LeftHandOutcome::Finished, 0));
+    assert_eq!((outcome, truth.contacts), (LeftHandOutcome::Stopped, 0));
     assert!(off < 0.25 * units::to_mm(scale.cell));
 
     let mut picture = Picture::new(&scene.world);
     picture.title("Left hand on the wall").true_path(truth.trail.iter().map(|point| point.pose.position()));
     picture.mark(Mark::Start, start.position()).mark(Mark::Goal, scale.centre(goal));
     picture.robot(truth.pose, &spec.footprint);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/maze_left.svg")?;
     Ok(())
 }

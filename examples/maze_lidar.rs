@@ -4,6 +4,7 @@
 //! `cargo run --release --example maze_lidar`
 
 use roverlab::geometry::units;
+use roverlab::io::control::{Halt, run, until};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::maze::{LidarLeft, LidarLeftParameters, Scale, files};
 use roverlab::picture::{Mark, Picture, Style};
@@ -35,15 +36,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let mut follower = LidarLeft::new(LidarLeftParameters::for_corridor(scale.cell - scale.wall))?;
     let (mut map, mut scans) = (Vec::new(), 0);
-    follower.run(&mut simulation.robot(0)?, |_, points| {
+    let outcome = run(&mut simulation.robot(0)?, &mut follower, 300.0, |_, _, step| {
         // One scan in twenty is enough for a map. Odometry begins at the robot's start.
         if scans % 20 == 0 {
-            map.extend(points.iter().map(|&point| start.to_world(point)));
+            map.extend(step.seen.points().map(|point| start.to_world(point)));
         }
         scans += 1;
-        // The referee stops the robot at the goal, or after a time.
-        truth.pose(0).is_ok_and(|pose| pose.distance_to(goal) < 0.1) || truth.time() > 300.0
+        // The referee stops the robot at the goal.
+        until(truth.pose(0).is_ok_and(|pose| pose.distance_to(goal) < 0.1))
     })?;
+    assert_eq!(outcome, Halt::Stopped);
 
     let end = truth.robot(0)?;
     let to_walls = |point| {
@@ -62,7 +64,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     picture.true_path(end.trail.iter().map(|point| point.pose.position()));
     picture.mark(Mark::Start, start.position()).mark(Mark::Goal, goal);
     picture.robot(end.pose, &RobotSpec::s4().footprint);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/maze_lidar.svg")?;
     Ok(())
 }

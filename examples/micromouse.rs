@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     known.set_goals(maze.goals());
     let NoiseModel { wheel_scale, wheel_mismatch, track, slip, .. } = noise;
     let rig = Rig::new(&spec, OdometryErrors { wheel_scale, wheel_mismatch, track, slip }, noise.range)?;
-    let mut runner = MazeRunner::new(&mut robot, rig, known, scale, RunnerParameters::MICROMOUSE)?;
+    let mut runner = MazeRunner::new(&mut robot, rig, known, scale, RunnerParameters::MICROMOUSE, 1200.0)?;
     let mut explorer = TwoPhaseExplorer::new(Goals::StepsAndTime(Box::new(runner.planner())));
     let found = runner.explore(&mut explorer, &mut |_| {})?;
     let (seconds, unknown) = (found.time, runner.maze().unknown_walls());
@@ -70,7 +70,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     picture.title("Exploration, and the fast run").line(path[..explored].to_vec(), Style::aid().width(1.6));
     picture.true_path(path[explored - 1..].to_vec()).mark(Mark::Start, start.position());
     picture.robot(truth.pose, &spec.footprint).mark(Mark::Goal, scale.centre(plan.route.end()));
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/micromouse.svg")?;
     Ok(())
 }

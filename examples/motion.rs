@@ -64,7 +64,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     picture.title("A robot watches another one").mark(Mark::Start, mover.position());
     picture.robot(watching.pose, &spec.footprint).robot(moving.pose, &spec.footprint);
     picture.true_path(moving.trail.iter().map(|point| point.pose.position()));
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/motion.svg")?;
     Ok(())
 }

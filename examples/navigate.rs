@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use roverlab::geometry::{Point, Pose, units};
+use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::nav::{NavigateEvent, NavigateOutcome, NavigateParameters, Navigator};
 use roverlab::picture::{Mark, Picture, SERIES, Style};
@@ -38,7 +39,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let parameters = NavigateParameters::for_footprint(spec.footprint);
     let mut navigator = Navigator::new(&known, start, goal, parameters)?;
     let (mut plan, mut repairs) = (Vec::new(), 0);
-    let outcome = navigator.run(&mut simulation.robot(0)?, 300.0, |navigator, time| {
+    let outcome = run(&mut simulation.robot(0)?, &mut navigator, 300.0, |_, navigator, step| {
+        let time = step.time;
         for event in navigator.take_events() {
             match event {
                 NavigateEvent::Planned { length, .. } if plan.is_empty() => {
@@ -71,7 +73,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .true_path(truth.trail.iter().map(|point| point.pose.position()))
         .robot(truth.pose, &spec.footprint);
     picture.mark(Mark::Start, start.position()).mark(Mark::Goal, goal);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/navigate.svg")?;
     Ok(())
 }

@@ -3,9 +3,10 @@
 //!
 //! `cargo run --release --example omni`
 
-use roverlab::drive::{OmniDriver, OmniParameters, OmniTracker};
+use roverlab::drive::{OmniDriver, OmniOutcome, OmniParameters, OmniTracker};
 use roverlab::geometry::{Point, Pose, angle_difference, units};
 use roverlab::io::Drive;
+use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::kinematics::Omni;
 use roverlab::picture::{Mark, Picture, Style};
@@ -29,7 +30,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let square = [(1.5, 0.5), (1.5, 1.5), (0.5, 1.5), (0.5, 0.5)].map(|(x, y)| Point::new(x, y));
     let tracker = OmniTracker::new(start, &square, OmniParameters::default())?;
     let mut turned = 0.0_f64;
-    tracker.run(&mut robot, &driver, |_, pose| turned = turned.max(pose.heading.abs()))?;
+    let outcome = run(&mut robot, &mut tracker.by(driver), 60.0, |_, _, step| {
+        turned = turned.max(step.seen.heading.abs());
+    })?;
+    assert_eq!(outcome, OmniOutcome::Reached);
     let end = simulation.truth().pose(0)?;
     let (missed, most) = (units::to_mm(end.distance_to(start.position())), units::to_deg(turned));
     println!("square: back within {missed:.0} mm, never turned by more than {most:.1} degrees");
@@ -38,9 +42,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (here, goal) = (robot.pose()?, Point::new(2.0, 1.2));
     let spin = OmniParameters { spin: units::from_deg(60.0), ..OmniParameters::default() };
     let (mut rotation, mut last) = (0.0, here.heading);
-    OmniTracker::new(here, &[goal], spin)?.run(&mut robot, &driver, |_, pose| {
-        rotation += angle_difference(pose.heading, last);
-        last = pose.heading;
+    let tracker = OmniTracker::new(here, &[goal], spin)?;
+    run(&mut robot, &mut tracker.by(driver), 60.0, |_, _, step| {
+        rotation += angle_difference(step.seen.heading, last);
+        last = step.seen.heading;
     })?;
     let truth = simulation.truth().robot(0)?;
     let (missed, rotation) = (units::to_mm(truth.pose.distance_to(goal)), units::to_deg(rotation));
@@ -55,7 +60,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         picture.robot_with(point.pose, &spec.footprint, pale);
     }
     picture.robot(truth.pose, &spec.footprint).mark(Mark::Start, start.position()).mark(Mark::Goal, goal);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/omni.svg")?;
     Ok(())
 }

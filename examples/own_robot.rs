@@ -6,6 +6,7 @@
 
 use roverlab::drive::{AToB, AToBOutcome, AToBParameters, Goal, Method};
 use roverlab::geometry::{Pose, Twist};
+use roverlab::io::control::run;
 use roverlab::io::{Clock, Drive, Result};
 use roverlab::kinematics::{Displacement, advance};
 
@@ -92,7 +93,7 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     let goal = Pose::new(1.45, 0.65, 0.0);
     let mut robot = Tiny::default();
     let mut drive = AToB::new(Method::Spline, Goal::pose(goal), AToBParameters::default())?;
-    let outcome = drive.run(&mut robot, 60.0, |_, _| {})?;
+    let outcome = run(&mut robot, &mut drive, 60.0, |_, _, _| {})?;
     let off = robot.pose.distance_to(goal.position());
     println!("{outcome:?} after {:.1} s, {:.1} mm from the goal", robot.time, 1000.0 * off);
     assert!(outcome == AToBOutcome::Reached && off < 0.01);

@@ -56,7 +56,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         picture.line(truth.trail.iter().map(|point| point.pose.position()), style);
     }
     assert!(worst[1] < 0.02 && worst[0] > worst[1]);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/path_following.svg")?;
     Ok(())
 }

@@ -49,7 +49,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     picture.line(path.points.iter().map(|&point| point * CELL), Style::true_path().labelled("path"));
     picture.mark(Mark::Start, start.centre() * CELL).mark(Mark::Goal, goal.centre() * CELL);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/quadtree.svg")?;
     Ok(())
 }

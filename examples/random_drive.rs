@@ -3,13 +3,12 @@
 //!
 //! `cargo run --release --example random_drive`
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use roverlab::drive::{RandomDrive, RandomDriveParameters};
 use roverlab::geometry::Pose;
+use roverlab::io::control::{Behaviour, Run};
 use roverlab::io::sim::{Fleet, SimOptions};
-use roverlab::io::{Drive, LidarScan};
 use roverlab::picture::{Mark, Picture};
 use roverlab::random::Stream;
 use roverlab::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
@@ -35,12 +34,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let parameters = RandomDriveParameters { radius, ..RandomDriveParameters::default() };
         // Each robot draws from a random stream of its own, so none changes what another one does.
         let mut behaviour = RandomDrive::new(parameters, Stream::new(1).child("robot", index as u64))?;
-        let (mut scan, mut points) = (LidarScan::default(), Vec::new());
-        fleet.control(index, parameters.period, move |robot| {
-            RandomDrive::look(robot, &mut scan, &mut points)?;
-            let twist = behaviour.step(robot.pose()?, &points)?;
-            robot.set_speed(twist)?;
-            Ok(ControlFlow::Continue(()))
+        let mut run = Run::new(&behaviour, f64::INFINITY)?;
+        fleet.control(index, behaviour.period(), move |robot| {
+            Ok(run.step(robot, &mut behaviour)?.map_break(|outcome| println!("{outcome:?}")))
         })?;
     }
     fleet.run_for(120.0)?;
@@ -55,7 +51,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         picture.true_path(truth.trail.iter().map(|point| point.pose.position()));
         picture.mark(Mark::Start, robot.pose.position()).robot(truth.pose, &robot.spec.footprint);
     }
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/random_drive.svg")?;
     Ok(())
 }

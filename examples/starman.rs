@@ -6,8 +6,9 @@
 
 use roverlab::evolve::{Evolution, Gait, Genetic, Recipe, Serial, StopRules, Trial};
 use roverlab::geometry::{Point, units};
+use roverlab::io::control::run;
 use roverlab::io::sim::starman::{LIMBS, Starman, StarmanPosture, StarmanSpec};
-use roverlab::io::{Clock, Drive, Result, Servos};
+use roverlab::io::{Drive, Result};
 use roverlab::picture::{Picture, Style, ramp};
 use roverlab::random::Stream;
 use roverlab::world::World;
@@ -49,7 +50,6 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
             picture.line(limb.map(at), style.clone());
         }
     }
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/starman.svg")?;
     Ok(())
 }
@@ -61,12 +61,7 @@ fn walk(bytes: &[u8], mut watch: impl FnMut(StarmanPosture)) -> Result<f64> {
     gait.settle(&mut starman)?;
     let start = starman.pose()?.x;
     // Each control point is held for a moment; after the last one the first one follows again.
-    for index in 1..=20 {
-        for (servo, &position) in (1..).zip(gait.point(index)) {
-            starman.set_servo(servo, position)?;
-        }
-        starman.wait(Gait::PERIOD)?;
-        watch(starman.truth().posture);
-    }
+    let seconds = 20.0 * Gait::PERIOD;
+    run(&mut starman, &mut gait.walking(), seconds, |starman, _, _| watch(starman.truth().posture))?;
     Ok(starman.pose()?.x - start)
 }

@@ -10,7 +10,7 @@ use std::thread;
 use roverlab::drive::{AToB, AToBParameters, Goal, Method};
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::{RobotTruth, SimOptions, SimRobot, Simulation};
-use roverlab::io::{Clock, Radio, Result};
+use roverlab::io::{Clock, Radio, Result, control};
 use roverlab::picture::{Mark, Picture};
 use roverlab::world::{RobotPlacement, RobotSpec, Scene, World};
 
@@ -39,7 +39,6 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     // The follower has reached the last place but one, where it was sent last.
     let (x, y) = PLACES[2];
     assert!(truths[1].pose.distance_to(Point::new(x, y)) < 0.1);
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/two_robots.svg")?;
     Ok(())
 }
@@ -91,5 +90,6 @@ fn follow(mut robot: SimRobot, start: Pose) -> Result<Heard> {
 /// Drives to a place in the world; odometry begins at the robot's own start.
 fn go_to(robot: &mut SimRobot, start: Pose, place: Point) -> Result<()> {
     let goal = Goal::point(start.to_local(place));
-    AToB::new(Method::Turn, goal, AToBParameters::default())?.run(robot, 60.0, |_, _| {}).map(|_| ())
+    let mut drive = AToB::new(Method::Turn, goal, AToBParameters::default())?;
+    control::run(robot, &mut drive, 60.0, |_, _, _| {}).map(|_| ())
 }

@@ -4,20 +4,20 @@
 //!
 //! `cargo run --release --example wall_following`
 
-use std::ops::ControlFlow;
-
 use roverlab::drive::{
-    FollowsWalls, LidarWallFollower, LidarWallParameters, WallFollower, WallFollowerParameters,
-    run_along_wall,
+    AlongWall, FollowsWalls, LidarWallFollower, LidarWallParameters, WallFollower, WallFollowerParameters,
+    WallReading,
 };
 use roverlab::geometry::{Point, units};
+use roverlab::io::Result;
+use roverlab::io::control::{run, until};
 use roverlab::io::sim::{RobotTruth, SimOptions, SimRobot, Simulation};
 use roverlab::picture::{Mark, Picture, SERIES, Style};
 use roverlab::random::Stream;
 use roverlab::world::generate::{RoomOptions, room};
 use roverlab::world::{RobotSpec, Scene, World};
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     let room = room(&mut Stream::new(4), &RoomOptions::default())?;
     let scene = Scene::with_robot(room.world.clone(), RobotSpec::s4(), room.start);
     let mut picture = Picture::new(&room.world);
@@ -42,25 +42,27 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         assert!(truth.contacts == 0 && length > 4.0 && (180.0..230.0).contains(&mean), "{name}");
         picture.line(path, Style::new(colour).labelled(name));
     }
-    std::fs::create_dir_all("target/pictures")?;
     picture.save("target/pictures/wall_following.svg")?;
     Ok(())
 }
 
 /// Follows the wall until the robot is back where it first drove along it.
-fn walk(scene: &Scene, controller: &mut impl FollowsWalls<SimRobot>) -> roverlab::io::Result<RobotTruth> {
+fn walk<C>(scene: &Scene, controller: C) -> Result<RobotTruth>
+where
+    C: FollowsWalls<Observation: WallReading<SimRobot>>,
+{
     let options = SimOptions { trail_interval: Some(0.1), ..SimOptions::with_noise(1.0, 1) };
     let simulation = Simulation::new(scene, options)?;
     let truth = simulation.truth();
     let (mut began, mut away) = (None, false);
-    run_along_wall(&mut simulation.robot(0)?, controller, 300.0, |_, controller| {
-        let Ok(pose) = truth.pose(0) else { return ControlFlow::Break(()) };
-        if began.is_none() && controller.is_beside_wall() {
+    run(&mut simulation.robot(0)?, &mut AlongWall::new(controller), 300.0, |_, along, _| {
+        let pose = truth.pose(0)?;
+        if began.is_none() && along.controller.is_beside_wall() {
             began = Some(pose.position());
         }
         let distance = began.map_or(0.0, |began| pose.distance_to(began));
         away |= distance > 0.5;
-        if away && distance < 0.1 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        Result::Ok(until(away && distance < 0.1))
     })?;
     truth.robot(0)
 }

@@ -61,7 +61,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{error}");
     assert_eq!((error.line, error.column), (2, 5));
 
-    std::fs::create_dir_all("target/pictures")?;
     let mut picture = Picture::new(&scene.world);
     picture.title("A world from a file").robot(scene.robots[0].pose, &scene.robots[0].spec.footprint);
     picture.save("target/pictures/world_files.svg")?;

@@ -71,9 +71,8 @@
 //! `default-features = false, features = ["vision"]` the kernels of [`vision`] are compiled alone; `image` adds views of
 //! that crate's images.
 //!
-//! Off by default: `log` adds recordings, `png` pictures as PNG; `proptest` adds random mazes and strategies
-//! for property tests (`maze::generate`), `testing` those and checks for planners of one's own; `petgraph`
-//! searches graphs of that crate; `rayon` runs vision kernels and evaluates populations on several threads;
+//! Off by default: `log` adds recordings, `png` pictures as PNG; `testing` strategies for property tests and checks for
+//! planners of one's own; `petgraph` searches graphs of that crate; `rayon` runs vision kernels and evaluates populations on several threads;
 //! `checkpoint` saves evolutions; `physics` adds a walking robot; `robios` drives a real EyeBot.
 
 // Where some wings are off, what they alone would use is left over, and links to them are plain text.

@@ -8,10 +8,9 @@ mod worlds;
 
 use proptest::prelude::*;
 use roverlab::geometry::{Point, Pose};
+use roverlab::io::control;
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::nav::{
-    BugEvent, BugKind, BugOutcome, BugParameters, PathBound, Reachability, WallSide, run_bug,
-};
+use roverlab::nav::{BugEvent, BugKind, BugOutcome, BugParameters, PathBound, Reachability, WallSide};
 use roverlab::random::Stream;
 use roverlab::world::generate::{CourseOptions, obstacle_course};
 use roverlab::world::{RobotSpec, Scene, World};
@@ -52,7 +51,7 @@ fn run_with(kind: BugKind, world: &World, ends: (Pose, Point), noise: f64, param
     let mut bug = kind.with(start.to_local(goal), parameters).unwrap();
     let mut events = Vec::new();
     let outcome =
-        run_bug(bug.as_mut(), &mut robot, 1500.0, |bug, _| events.extend(bug.take_events())).unwrap();
+        control::run(&mut robot, bug.as_mut(), 1500.0, |_, bug, _| events.extend(bug.take_events())).unwrap();
     let truth = truth.robot(0).unwrap();
     let goal_distance = truth.pose.distance_to(goal);
     Run { outcome, events, contacts: truth.contacts, length: truth.path_length, goal_distance }

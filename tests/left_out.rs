@@ -19,7 +19,6 @@ left_out!(
     graphs_of_petgraph without "petgraph": "cargo test --features petgraph",
     the_walking_robot without "physics": "cargo test --features physics",
     pictures_as_png without "png": "cargo test --features png",
-    random_mazes without "proptest": "cargo test --features proptest",
     several_threads without "rayon": "cargo test --features rayon",
     the_client_of_robios without "robios": "cargo test --features robios",
     checks_of_planners without "testing": "cargo test --features testing",

@@ -3,10 +3,11 @@
 use std::f64::consts::PI;
 
 use roverlab::geometry::{Point, Pose, Twist, Vector, angle_difference};
+use roverlab::io::control::{self, Behaviour, LidarObservation};
 use roverlab::io::sim::{NoiseModel, SimOptions, SimRobot, Simulation, Truth};
 use roverlab::io::wrappers::{Fault, Faulty};
 use roverlab::io::{Clock, Drive, ErrorKind, Lidar, LidarScan};
-use roverlab::nav::{DistBug, DistBugEvent, DistBugObservation, DistBugOutcome, DistBugParameters};
+use roverlab::nav::{DistBug, DistBugEvent, DistBugOutcome, DistBugParameters};
 use roverlab::scan::{ScanFilter, ScanMatcher};
 use roverlab::world::{RobotSpec, Scene, Wall, World};
 
@@ -143,7 +144,8 @@ fn run(
     let (mut robot, truth) = robot_in(world, start, options);
     let mut bug = DistBug::new(start.to_local(goal), DistBugParameters::default()).unwrap();
     let mut events = Vec::new();
-    let outcome = bug.run(&mut robot, 300.0, |bug, _| events.extend(bug.take_events())).unwrap();
+    let outcome =
+        control::run(&mut robot, &mut bug, 300.0, |_, bug, _| events.extend(bug.take_events())).unwrap();
     let truth = truth.robot(0).unwrap();
     (outcome, events, truth.pose, truth.contacts)
 }
@@ -198,7 +200,7 @@ fn a_robot_in_a_box_says_so() {
 fn time_runs_out() {
     let (mut robot, _) = robot_in(room(), START, SimOptions::ideal());
     let mut bug = DistBug::new(Point::new(5.0, 0.0), DistBugParameters::default()).unwrap();
-    assert_eq!(bug.run(&mut robot, 1.0, |_, _| {}).unwrap(), DistBugOutcome::TimedOut);
+    assert_eq!(control::run(&mut robot, &mut bug, 1.0, |_, _, _| {}).unwrap(), DistBugOutcome::TimedOut);
 }
 
 #[test]
@@ -208,12 +210,9 @@ fn bad_parameters_and_readings_are_named() {
     assert_eq!(error.to_string(), "STEP is -1; expected a positive, finite number");
     assert!(DistBug::new(Point::new(f64::NAN, 0.0), DistBugParameters::default()).is_err());
     let mut bug = DistBug::new(Point::new(1.0, 0.0), DistBugParameters::default()).unwrap();
-    let observation = DistBugObservation {
-        odometry: Pose::new(f64::NAN, 0.0, 0.0),
-        speed: Twist::STOP,
-        scan: &LidarScan::default(),
-    };
-    assert_eq!(bug.step(&observation).unwrap_err().kind(), ErrorKind::InvalidInput);
+    let odometry = Pose::new(f64::NAN, 0.0, 0.0);
+    let observation = LidarObservation { odometry, ..LidarObservation::default() };
+    assert_eq!(bug.step(0.0, &observation).unwrap_err().kind(), ErrorKind::InvalidInput);
 }
 
 #[test]
@@ -222,10 +221,10 @@ fn nan_ranges_do_not_stop_the_run() {
     let mut scan = robot.scan().unwrap();
     scan.ranges.iter_mut().step_by(3).for_each(|range| *range = f64::NAN);
     let mut bug = DistBug::new(Point::new(1.0, 0.0), DistBugParameters::default()).unwrap();
+    let observation = LidarObservation { scan, ..LidarObservation::default() };
     for _ in 0..50 {
-        let observation = DistBugObservation { odometry: Pose::default(), speed: Twist::STOP, scan: &scan };
-        let twist = bug.step(&observation).unwrap();
-        assert!(twist.is_finite());
+        let decision = bug.step(0.0, &observation).unwrap();
+        assert!(decision.continue_value().is_some_and(|twist| twist.is_finite()));
     }
 }
 
@@ -235,14 +234,14 @@ fn a_blind_lidar_and_a_stopped_clock_end_the_run_with_an_error() {
     let (mut robot, _) = robot_in(room(), START, SimOptions::ideal());
     let mut scan = robot.scan().unwrap();
     scan.ranges.fill(f64::NAN);
-    let observation = DistBugObservation { odometry: Pose::default(), speed: Twist::STOP, scan: &scan };
+    let observation = LidarObservation { scan, ..LidarObservation::default() };
     assert_eq!(
-        bug.step(&observation).unwrap_err().to_string(),
+        bug.step(0.0, &observation).unwrap_err().to_string(),
         "every range of the lidar scan is NaN; expected metres or +infinity"
     );
 
     let fault: Fault = "clock@2".parse().unwrap();
     let mut faulty = Faulty::new(robot, vec![fault]);
-    let error = bug.run(&mut faulty, 100.0, |_, _| {}).unwrap_err();
+    let error = control::run(&mut faulty, &mut bug, 100.0, |_, _, _| {}).unwrap_err();
     assert_eq!(error.to_string(), "the robot's clock stands still");
 }

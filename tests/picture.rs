@@ -122,7 +122,7 @@ fn a_png_shows_what_the_svg_describes() {
 
 #[test]
 fn an_svg_file_holds_the_document() {
-    let path = folder("svg").join("run.svg");
+    let path = folder("svg").join("a/new/folder/run.svg");
     let mut picture = Picture::new(&World::empty(1.0, 1.0));
     picture.robot(Pose::new(0.5, 0.5, 0.0), &RobotSpec::s4().footprint);
     picture.save(&path).unwrap();
@@ -148,13 +148,14 @@ fn names_of_other_files_are_refused() {
 fn a_failed_write_is_reported_and_leaves_nothing_behind() {
     let folder = folder("failed");
     let picture = Picture::new(&World::empty(1.0, 1.0));
-    let missing = folder.join("no/such/folder/run.svg");
-    let error = picture.save(&missing).unwrap_err();
+    fs::write(folder.join("file"), "").unwrap();
+    let error = picture.save(folder.join("file/run.svg")).unwrap_err();
     assert!(matches!(error, SaveError::Write { .. }) && error.to_string().contains("run.svg"), "{error}");
 
     let taken = folder.join("taken.svg");
     fs::create_dir(&taken).unwrap();
     assert!(matches!(picture.save(&taken).unwrap_err(), SaveError::Write { .. }));
-    let left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    assert_eq!(left, ["taken.svg"]);
+    let mut left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    left.sort();
+    assert_eq!(left, ["file", "taken.svg"]);
 }

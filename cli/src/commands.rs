@@ -8,6 +8,8 @@ use std::process::ExitCode;
 use clap::CommandFactory;
 
 use crate::common::{Failure, parser, refused, run, run_plain, run_printing, written};
+#[cfg(test)]
+use crate::common::{Heeds, Unheeded};
 use crate::maze_drive::{explore as maze_explore, left as maze_left, lidar as maze_lidar};
 use crate::{
     a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, edges,
@@ -27,11 +29,20 @@ pub(crate) struct Command {
     /// Runs it. The first word is its name.
     pub(crate) run: Run,
     parser: fn() -> clap::Command,
+    /// The options that it does not heed, and when.
+    #[cfg(test)]
+    pub(crate) unheeded: fn() -> &'static [Unheeded],
 }
 
 /// The parser of the command line that some work takes.
 fn parser_of<A: CommandFactory, R>(name: &str, _: impl Fn(&A) -> Result<R, Failure>) -> clap::Command {
     parser::<A>(name)
+}
+
+/// What the command line that some work takes does not heed.
+#[cfg(test)]
+fn unheeded_by<A: Heeds, R>(_: impl Fn(&A) -> Result<R, Failure>) -> &'static [Unheeded] {
+    A::UNHEEDED
 }
 
 /// A table of commands from the names of their modules and the functions that run them.
@@ -42,6 +53,8 @@ macro_rules! commands {
             name: stringify!($name),
             run: |words, out, err| $run(stringify!($name), words, out, err, $name::work),
             parser: || parser_of(stringify!($name), $name::work),
+            #[cfg(test)]
+            unheeded: || unheeded_by($name::work),
         }),*];
     };
 }
@@ -78,6 +91,12 @@ commands!(
 );
 
 impl Command {
+    /// The names of its options, with underscores.
+    #[cfg(test)]
+    pub(crate) fn options(&self) -> Vec<String> {
+        (self.parser)().get_arguments().map(|argument| argument.get_id().to_string()).collect()
+    }
+
     /// Whether it drives robots, so that its runs can be recorded.
     pub(crate) fn drives(&self) -> bool {
         (self.parser)().get_arguments().any(|argument| argument.get_id() == "record")
@@ -116,6 +135,7 @@ pub(crate) fn dispatch(mut words: Vec<OsString>, out: &mut dyn Write, err: &mut 
 fn program() -> clap::Command {
     clap::Command::new("roverlab")
         .about("Every system of the library roverlab as a command")
+        .version(env!("CARGO_PKG_VERSION"))
         .subcommand_required(true)
         .subcommand(clap::Command::new("systems").about("Lists every system, with a line each"))
         .subcommands(COMMANDS.iter().map(|command| (command.parser)()))

@@ -47,7 +47,7 @@ def _seed_random(seed):
 
 if os.environ.get("ROBIOS_LIBRARY"):
     _lead_to_library(os.environ["ROBIOS_LIBRARY"])
-if os.environ.get("ROBIOS_REPORT"):
+if os.environ.get("ROBIOS_MEMORY"):
     _answer_for_nobody()
     if os.environ.get("ROBIOS_SEED"):
         _seed_random(os.environ["ROBIOS_SEED"] + ":" + os.environ.get("ROBIOS_INDEX", "0"))

@@ -4,11 +4,13 @@ use std::fmt;
 
 use image::RgbImage;
 use roverlab::geometry::{Pose, Twist};
-use roverlab::io::sim::{Simulation, TICK, Truth};
+use roverlab::io::sim::{SimOptions, Simulation, TICK, Truth};
 use roverlab::io::{
     Error, ErrorKind, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result, RobotIo,
 };
 use roverlab::world::{DriveSpec, RobotSpec, Scene};
+
+use crate::walker::Walker;
 
 /// One thing that the world is asked for. Lengths are metres, angles radians.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,12 +121,38 @@ pub struct Identity {
     pub call_duration: f64,
     /// Seconds after which every call fails; infinity if there is no such time.
     pub time_limit: f64,
+    /// Whether a reading is the same when it is taken again at the same time, and nobody minds if it is not.
+    pub exact: bool,
+    /// Whether it has a camera.
+    pub camera: bool,
 }
 
 /// EyeSim drives motors with percentages of this speed, in metres per second, whatever they could do.
 const FULL_SPEED: f64 = 0.4;
 /// The same for cars.
 const FULL_SPEED_OF_CARS: f64 = 0.5;
+
+/// Seconds after which the body of a walker follows it.
+const STRIDE: f64 = 0.05;
+
+/// On what terms a program drives its robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Terms {
+    /// Seconds that a call takes.
+    pub call_duration: f64,
+    /// Seconds after which every call fails.
+    pub time_limit: Option<f64>,
+    /// Whether readings may be remembered as long as nothing can have changed them.
+    pub exact: bool,
+}
+
+impl Terms {
+    /// Those of a simulation. Readings with noise are drawn anew each time.
+    pub fn of(options: &SimOptions) -> Self {
+        let exact = options.noise.range == 0.0;
+        Self { call_duration: options.call_duration, time_limit: options.time_limit, exact }
+    }
+}
 
 /// Someone who drives one robot of a simulation.
 pub struct Seat {
@@ -136,6 +164,7 @@ pub struct Seat {
     numbers: (Vec<u32>, Vec<u32>),
     elevations: (Vec<f64>, Vec<f64>),
     scan: LidarScan,
+    walker: Option<Walker>,
 }
 
 impl fmt::Debug for Seat {
@@ -149,13 +178,8 @@ impl fmt::Debug for Seat {
 
 impl Seat {
     /// Takes a robot of a simulation of a scene.
-    pub fn take(
-        simulation: &Simulation,
-        scene: &Scene,
-        index: usize,
-        times: (f64, Option<f64>),
-    ) -> Result<Self> {
-        Ok(Self::of(Box::new(simulation.robot(index)?), simulation, scene, index, times))
+    pub fn take(simulation: &Simulation, scene: &Scene, index: usize, terms: Terms) -> Result<Self> {
+        Ok(Self::of(Box::new(simulation.robot(index)?), simulation, scene, index, terms))
     }
 
     /// Takes a robot that has been taken, and may have been wrapped.
@@ -168,9 +192,11 @@ impl Seat {
         simulation: &Simulation,
         scene: &Scene,
         index: usize,
-        (call_duration, time_limit): (f64, Option<f64>),
+        terms: Terms,
     ) -> Self {
         let spec = &scene.robots[index].spec;
+        let walker = Walker::of(spec, scene.robots[index].pose);
+        let on_wheels = walker.is_none();
         let (top_speed, full_speed, tick_length) = speeds(spec);
         let numbers = (scene.robot_numbers(), scene.object_numbers());
         let identity = Identity {
@@ -180,15 +206,17 @@ impl Seat {
             top_speed,
             full_speed,
             tick_length,
-            lidar_points: spec.lidar.map_or(0, |lidar| lidar.points as u32),
+            lidar_points: spec.lidar.filter(|_| on_wheels).map_or(0, |lidar| lidar.points as u32),
             full_turn: spec.lidar.is_none_or(|lidar| lidar.field_of_view > std::f64::consts::TAU - 1e-9),
-            call_duration,
-            time_limit: time_limit.unwrap_or(f64::INFINITY),
+            call_duration: terms.call_duration,
+            time_limit: terms.time_limit.unwrap_or(f64::INFINITY),
+            exact: terms.exact,
+            camera: spec.camera.is_some() && on_wheels,
         };
         let robots = scene.robots.iter().map(|robot| robot.elevation).collect();
         let objects = scene.world.objects.iter().map(|object| object.elevation).collect();
         let (truth, scan) = (simulation.truth(), LidarScan::default());
-        Self { robot, truth, identity, index, numbers, elevations: (robots, objects), scan }
+        Self { robot, truth, identity, index, numbers, elevations: (robots, objects), scan, walker }
     }
 
     /// Who the robot is.
@@ -214,7 +242,12 @@ impl Seat {
     /// Lets `debt` seconds pass that calls without the world have taken, and answers.
     pub fn ask(&mut self, debt: f64, request: &Request) -> Result<Reply> {
         if debt > 0.0 {
-            self.robot.wait((debt - self.identity.call_duration).max(0.0))?;
+            self.wait((debt - self.identity.call_duration).max(0.0))?;
+        }
+        if self.walker.is_some()
+            && let Some(reply) = self.walk(request)?
+        {
+            return Ok(reply);
         }
         let robot = &mut self.robot;
         Ok(match *request {
@@ -269,6 +302,78 @@ impl Seat {
                 self.moves(|truth, by| truth.move_object(by, index, pose))?
             }
         })
+    }
+
+    /// Lets seconds pass, and the time of a call.
+    fn wait(&mut self, seconds: f64) -> Result<()> {
+        if self.walker.is_none() {
+            return self.robot.wait(seconds);
+        }
+        let mut rest = seconds;
+        while rest > STRIDE {
+            self.robot.wait(STRIDE - self.identity.call_duration)?;
+            rest -= STRIDE;
+            self.follow()?;
+        }
+        self.robot.wait(rest)?;
+        self.follow()
+    }
+
+    /// Lets a walker live until now, and its body in the world follow.
+    fn follow(&mut self) -> Result<()> {
+        let now = self.now();
+        let Some(walker) = &mut self.walker else { return Ok(()) };
+        let before = walker.pose();
+        walker.live_until(now)?;
+        if walker.pose() != before {
+            self.truth.move_robot(self.index, self.index, walker.pose())?;
+        }
+        Ok(())
+    }
+
+    /// What a walker does itself; everything else is left to the world.
+    fn walk(&mut self, request: &Request) -> Result<Option<Reply>> {
+        let no = |device: &str| Err(Error::unsupported(device));
+        match *request {
+            Request::Pass(seconds) => return self.wait(seconds).map(done).map(Some),
+            Request::SetSpeed(_) | Request::Speed | Request::Curve(..) | Request::Motor(..) => {
+                return no("wheels");
+            }
+            Request::Encoder(_) | Request::ResetEncoder(_) => return no("encoder"),
+            Request::Distance(sensor) => return no(&Psd(sensor).to_string()),
+            _ => {}
+        }
+        let own = |id| id == 0 || self.robot_index(id).is_ok_and(|index| index == self.index);
+        let mine = match *request {
+            Request::RobotAt(id) | Request::PlaceRobot(id, _) => own(id),
+            Request::Pose
+            | Request::SetPose(_)
+            | Request::Remaining
+            | Request::IsDone
+            | Request::WaitDone
+            | Request::IsStalled
+            | Request::Servo(..) => true,
+            _ => false,
+        };
+        if !mine {
+            return Ok(None);
+        }
+        self.wait(0.0)?;
+        if let Request::PlaceRobot(_, pose) = *request {
+            self.truth.move_robot(self.index, self.index, pose)?;
+        }
+        let Some(walker) = &mut self.walker else { return Ok(None) };
+        Ok(Some(match *request {
+            Request::Pose => Reply::Pose(walker.odometry(), 0.0),
+            Request::RobotAt(_) => Reply::Pose(walker.pose(), walker.height()),
+            Request::SetPose(pose) => done(walker.set_odometry(pose)),
+            Request::PlaceRobot(_, pose) => done(walker.place(pose)?),
+            Request::Servo(servo, position) => done(walker.set_servo(servo, position)?),
+            Request::Remaining => Reply::Number(0.0),
+            Request::IsDone => Reply::Flag(true),
+            Request::IsStalled => Reply::Flag(false),
+            _ => Reply::Done,
+        }))
     }
 
     /// Has something put somewhere else, at the next tick as all others see it too, and waits for it.

@@ -1,15 +1,17 @@
 //! RoBIOS-7 over roverlab's simulator: the shared library `libeyesim` that C and Python programs for EyeBot robots and
 //! for EyeSim are linked against, and what the runner of such programs needs.
 //!
-//! A program's robot lives in virtual time. Every call takes a tenth of a millisecond of it, calls that wait take as
-//! long as they wait, and nothing takes real time: a program that drives for a minute is done in milliseconds. The
-//! functions of the system that sleep or tell the time are replaced too (see `ffi::clock`).
+//! A program's robot lives in virtual time. Calls take of it what they do on EyeSim, whose frames serve one request of
+//! each robot (see [`costs`]), calls that wait take as long as they wait, and nothing takes real time: a program that
+//! drives for a minute is done in milliseconds. The functions of the system that sleep or tell the time are replaced too
+//! (see `ffi::clock`).
 //!
 //! # How it is put together
 //!
 //! [`robios`] is the meaning of every function, in safe Rust, for one robot. It asks for what the world has to answer
 //! through a [`link`]: a world in the same process, or, for programs that share a world, one in the runner's process,
-//! with the requests and replies of [`ask`] as bytes on a local socket ([`wire`]). The private module `ffi` is the
+//! with the requests and replies of [`ask`] as bytes ([`wire`]) in a [`memory`] that both share, which also holds the
+//! [`report`]. What was read once is not asked for again before the world moves on. The private module `ffi` is the
 //! thin layer that C calls: it checks pointers, holds the one robot behind a lock, and lets no panic out.
 //!
 //! # What the functions do that a simulated robot has no counterpart for
@@ -22,7 +24,7 @@
 //! | `ANALOGRecord`, `ANALOGTransfer`, `AUMicrophone` | silence |
 //! | `AUBeep`, `AUPlay` | counted in the report; a sound takes half a second for `AUDone` |
 //! | `IRTVGet`, `IRTVRead` | what the script of the keys says; `AUTO` presses OK for a program that waits |
-//! | `SERVOSet` | steering and camera follow; positions of other servos are remembered (`SERVOGet`) |
+//! | `SERVOSet` | steering, camera and Starman's limbs follow; positions of other servos are remembered (`SERVOGet`) |
 //! | `MOTORPID`, `MOTORPIDOff`, `VWControl`, `VWControlOff` | accepted, without effect |
 //! | `SERVORange`, `OSMachineSpeed`, ... | accepted, fixed values |
 //! | `PSDGetRaw` | as `PSDGet`, in millimetres |
@@ -36,21 +38,24 @@
 //! counter-clockwise; what was read can be set. Robots and objects are numbered from 1 in one row, as they were
 //! placed; a robot has its number for the radio too. A number that is no robot's counts robots alone in
 //! `SIMGetRobot` and `RADIOSend`, and one that is no object's counts objects alone in `SIMGetObject`. What
-//! `SIMSetRobot` and `SIMSetObject` move is there 10 ms later, when they return, and for all programs at the same
-//! time; of several that move one thing at once, the robot that was placed last prevails.
+//! `SIMSetRobot` and `SIMSetObject` move is there 10 ms after their frame, or after the call where calls are free, and for
+//! all programs at the same time; of several that move one thing at once, the robot that was placed last prevails.
 //!
 //! A program's outcome, its time and its `collisions` are those at its end. Its robot drives on until it stands or
 //! its time is over: pose and path are those at that end, and what it touched meanwhile is counted in
 //! `collisions_after_end`.
 
 pub mod ask;
+pub mod costs;
 mod ffi;
 pub mod keyboard;
 pub mod keys;
 pub mod link;
+pub mod memory;
 pub mod plan;
 pub mod process;
 pub mod report;
 pub mod robios;
 pub mod screen;
+mod walker;
 pub mod wire;

@@ -1,15 +1,16 @@
-//! The way from a program's library to its world: within the process, or through a socket.
+//! The way from a program's library to its world: within the process, or through memory that both share.
 
 use std::fmt;
-use std::os::unix::net::UnixStream;
+use std::sync::Arc;
 
 use roverlab::geometry::Pose;
 use roverlab::io::sim::Simulation;
 use roverlab::io::{Error, ErrorKind, Result};
 
-use crate::ask::{Reply, Request, Seat};
+use crate::ask::{Reply, Request, Seat, Terms};
+use crate::memory::Memory;
 use crate::plan::Plan;
-use crate::wire::{Answer, LONGEST, Question, receive, send};
+use crate::wire::{Answer, Question};
 
 /// Somebody who answers requests.
 pub trait Link: fmt::Debug + Send {
@@ -63,45 +64,39 @@ impl Link for Seat {
 pub fn own_world(plan: &Plan) -> std::result::Result<Seat, String> {
     let (scene, _) = plan.scene()?;
     let options = plan.options();
-    let times = (options.call_duration, options.time_limit);
+    let terms = Terms::of(&options);
     let simulation = Simulation::new(&scene, options).map_err(|error| error.to_string())?;
-    Seat::take(&simulation, &scene, plan.index, times).map_err(|error| error.to_string())
+    Seat::take(&simulation, &scene, plan.index, terms).map_err(|error| error.to_string())
 }
 
 /// A world in another process.
 #[derive(Debug)]
 pub struct Remote {
-    stream: UnixStream,
-    frame: Vec<u8>,
+    memory: Arc<Memory>,
     now: f64,
 }
 
 impl Remote {
-    /// The world at the other end of a socket.
-    pub fn new(stream: UnixStream) -> Self {
-        Self { stream, frame: Vec::new(), now: 0.0 }
+    /// The world at the other end of a memory.
+    pub fn new(memory: Arc<Memory>) -> Self {
+        Self { memory, now: 0.0 }
     }
+}
 
-    fn answer(&mut self, question: &Question) -> std::io::Result<Option<Answer>> {
-        send(&mut self.stream, question.encode())?;
-        let found = receive(&mut self.stream, LONGEST, &mut self.frame)?;
-        Ok(if found { Answer::decode(&self.frame) } else { None })
+impl Drop for Remote {
+    fn drop(&mut self) {
+        self.memory.leave();
     }
 }
 
 impl Link for Remote {
     fn ask(&mut self, debt: f64, request: &Request) -> Result<Reply> {
         let question = Question { debt, request: request.clone() };
-        match self.answer(&question) {
-            Ok(Some(answer)) => {
-                self.now = answer.now;
-                answer.reply
-            }
-            Ok(None) => Err(Error::new(ErrorKind::Disconnected, "the world has ended")),
-            Err(error) => {
-                Err(Error::new(ErrorKind::Disconnected, "the world cannot be reached").with_source(error))
-            }
-        }
+        let answer = Answer::decode(&self.memory.ask(&question.encode()));
+        let answer =
+            answer.ok_or_else(|| Error::new(ErrorKind::Disconnected, "the world's answer makes no sense"))?;
+        self.now = answer.now;
+        answer.reply
     }
 
     fn now(&mut self) -> f64 {

@@ -9,6 +9,8 @@ use roverlab::io::sim::SimOptions;
 use roverlab::world::formats::{self, DiskFiles};
 use roverlab::world::{RobotPlacement, RobotSpec, Scene, World};
 
+use crate::costs::{Costs, Frames};
+
 /// The world of a run, and which robot of it a program drives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
@@ -28,10 +30,14 @@ pub struct Plan {
     pub noise: f64,
     /// Simulated seconds after which a program is ended.
     pub time_limit: f64,
+    /// What calls take.
+    pub costs: Costs,
+    /// Simulated seconds for a second that a program computes.
+    pub cpu_time: f64,
 }
 
 impl Default for Plan {
-    /// An hour in an ideal world.
+    /// An hour in an ideal world, in EyeSim's time.
     fn default() -> Self {
         Self {
             world: None,
@@ -42,6 +48,8 @@ impl Default for Plan {
             seed: 1,
             noise: 0.0,
             time_limit: 3600.0,
+            costs: Costs::Frames(Frames::new(FRAME_RATE)),
+            cpu_time: 0.0,
         }
     }
 }
@@ -64,17 +72,28 @@ pub mod names {
     pub const TIME_LIMIT: &str = "ROBIOS_TIME_LIMIT";
     /// The keys.
     pub const KEYS: &str = "ROBIOS_KEYS";
-    /// The file for the report.
-    pub const REPORT: &str = "ROBIOS_REPORT";
+    /// What calls take: `eyesim`, `free`, or a file.
+    pub const COSTS: &str = "ROBIOS_CALL_COSTS";
+    /// Frames in a second.
+    pub const FRAME_RATE: &str = "ROBIOS_FRAME_RATE";
+    /// Simulated seconds for a second that a program computes.
+    pub const CPU_TIME: &str = "ROBIOS_CPU_TIME";
+    /// The number of the open file of the memory that is shared with the runner.
+    pub const MEMORY: &str = "ROBIOS_MEMORY";
     /// The file for the picture of the display.
     pub const LCD: &str = "ROBIOS_LCD";
-    /// The number of the open socket to a world that several share.
-    pub const SOCKET: &str = "ROBIOS_SOCKET";
+    /// Set if the world lives in the runner.
+    pub const SHARED: &str = "ROBIOS_SHARED";
     /// The number of the open socket through which somebody types.
     pub const KEYBOARD: &str = "ROBIOS_KEYBOARD";
     /// The library's file, for `eye.py`.
     pub const LIBRARY: &str = "ROBIOS_LIBRARY";
 }
+
+/// Frames that EyeSim renders in a second, unless somebody says otherwise.
+pub const FRAME_RATE: f64 = 60.0;
+/// Seconds of a call in the simulator where calls are charged before they come there: the least that it takes.
+const NO_TIME: f64 = 1e-6;
 
 /// Metres from wall to wall of the world that there is when nobody says anything.
 const DEFAULT_SIZE: f64 = 4.0;
@@ -98,6 +117,14 @@ impl Plan {
         }
         if let Some(value) = text(names::TIME_LIMIT) {
             plan.time_limit = number(names::TIME_LIMIT, &value)?;
+        }
+        if let Some(value) = text(names::CPU_TIME) {
+            plan.cpu_time = number(names::CPU_TIME, &value)?;
+        }
+        let rate =
+            text(names::FRAME_RATE).map_or(Ok(FRAME_RATE), |value| number(names::FRAME_RATE, &value))?;
+        if let Some(value) = text(names::COSTS) {
+            plan.costs = Costs::parse(&value, rate)?;
         }
         Ok(plan)
     }
@@ -163,7 +190,8 @@ impl Plan {
     /// How the simulation runs. Robots push what is loose, as EyeSim's do.
     pub fn options(&self) -> SimOptions {
         let options = SimOptions::with_noise(self.noise, self.seed);
-        SimOptions { time_limit: Some(self.time_limit), pushing: true, ..options }
+        let call_duration = if self.costs == Costs::Free { options.call_duration } else { NO_TIME };
+        SimOptions { call_duration, time_limit: Some(self.time_limit), pushing: true, ..options }
     }
 }
 

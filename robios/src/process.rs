@@ -3,45 +3,80 @@
 #![allow(unsafe_code)]
 
 use std::io;
-use std::os::fd::{AsRawFd, RawFd};
-use std::os::unix::net::UnixStream;
+use std::os::fd::{AsRawFd, BorrowedFd, RawFd};
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command};
+use std::sync::Arc;
 
-/// Starts a program in a process group of its own, that ends with this process at the latest. The sockets stay open in
-/// it under the numbers that [`socket_number`] tells.
-pub fn start(command: &mut Command, sockets: &[&UnixStream]) -> io::Result<Child> {
-    let sockets: Vec<RawFd> = sockets.iter().map(|socket| socket_number(socket)).collect();
+use crate::memory::Memory;
+
+/// Starts a program in a process group of its own, that ends with this process at the latest. The files stay open in it
+/// under their numbers.
+///
+/// Its parent is a small process that ends as it does, after noting in the memory how that was: so a program that ends
+/// its parent ends nobody who is needed.
+pub fn start(command: &mut Command, files: &[BorrowedFd<'_>], memory: &Arc<Memory>) -> io::Result<Child> {
+    let files: Vec<RawFd> = files.iter().map(AsRawFd::as_raw_fd).collect();
+    let memory = Arc::clone(memory);
     command.process_group(0);
     let prepare = move || {
-        #[cfg(target_os = "linux")]
-        // SAFETY: sets a number of this process, which has one thread after `fork`.
-        unsafe {
-            libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
-        }
-        for &socket in &sockets {
+        end_with_parent();
+        for &file in &files {
             // SAFETY: the descriptor is open in the parent, so it is here; without flags it stays open in the program.
-            if unsafe { libc::fcntl(socket, libc::F_SETFD, 0) } != 0 {
+            if unsafe { libc::fcntl(file, libc::F_SETFD, 0) } != 0 {
                 return Err(io::Error::last_os_error());
             }
         }
-        Ok(())
+        // SAFETY: this process has one thread, and what follows may be called after `fork`.
+        match unsafe { libc::fork() } {
+            -1 => Err(io::Error::last_os_error()),
+            0 => {
+                end_with_parent();
+                Ok(())
+            }
+            program => stand_by(program, &memory),
+        }
     };
     // SAFETY: the closure calls functions alone that may be called after `fork`, and allocates nothing.
     unsafe { command.pre_exec(prepare) };
     command.spawn()
 }
 
-/// The number of a socket, for the environment of a program.
-pub fn socket_number(socket: &UnixStream) -> RawFd {
-    socket.as_raw_fd()
+fn end_with_parent() {
+    #[cfg(target_os = "linux")]
+    // SAFETY: sets a number of this process, which has one thread after `fork`.
+    unsafe {
+        libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
+    }
 }
 
-/// Whether there is something to read from a socket, or its other end is closed, after so many milliseconds at most.
-pub fn is_readable(socket: &UnixStream, milliseconds: i32) -> bool {
-    let mut state = libc::pollfd { fd: socket_number(socket), events: libc::POLLIN, revents: 0 };
-    // SAFETY: the kernel reads and writes one record, which lives until it returns.
-    unsafe { libc::poll(&raw mut state, 1, milliseconds) > 0 }
+/// Waits for the program, notes how it ended, and ends in the same way.
+fn stand_by(program: libc::pid_t, memory: &Memory) -> ! {
+    let mut status = 0;
+    // SAFETY: closes what this process needs no more, and nobody else uses; waits for its only child, whose status the
+    // kernel writes to a number that lives until it returns; and ends this process.
+    unsafe {
+        let mut most = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
+        let limit =
+            if libc::getrlimit(libc::RLIMIT_NOFILE, &raw mut most) == 0 { most.rlim_cur } else { 256 };
+        for file in 0..limit.min(65_536) as RawFd {
+            libc::close(file);
+        }
+        while libc::waitpid(program, &raw mut status, 0) < 0 {
+            if io::Error::last_os_error().kind() != io::ErrorKind::Interrupted {
+                break;
+            }
+        }
+        memory.note_status(status);
+        if libc::WIFSIGNALED(status) {
+            // The program has left its image already, if it was to.
+            let none = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
+            libc::setrlimit(libc::RLIMIT_CORE, &raw const none);
+            libc::signal(libc::WTERMSIG(status), libc::SIG_DFL);
+            libc::kill(libc::getpid(), libc::WTERMSIG(status));
+        }
+        libc::_exit(libc::WEXITSTATUS(status))
+    }
 }
 
 /// Ends a program that [`start`] has started, and what it has started itself.

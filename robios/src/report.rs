@@ -1,13 +1,12 @@
-//! What a program's run looks like from outside, in a file that the library keeps up to date.
+//! What a program's run looks like from outside, in memory that the library keeps up to date.
 //!
 //! It is written at every call, so that whoever started the program knows how far it came, however it ended.
 
-use std::fs::{File, OpenOptions};
-use std::io;
-use std::os::unix::fs::FileExt;
-use std::path::Path;
+use std::sync::Arc;
 
 use roverlab::geometry::Pose;
+
+use crate::memory::{Memory, REPORT};
 
 /// How far a program is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -53,29 +52,38 @@ pub struct Report {
     pub later_contacts: u64,
     /// Beeps and sounds.
     pub sounds: u64,
+    /// Since when it has waited for a radio message, if it has.
+    pub listening_since: Option<f64>,
     /// The text that the display has shown, and shows.
     pub text: String,
+    /// What it has asked for and its robot does not have, or does not do.
+    pub notes: Vec<String>,
 }
 
-const NUMBERS: usize = 14;
-const HEADER: usize = 8 * (NUMBERS + 2);
+const NUMBERS: usize = 15;
+/// Numbers, and the lengths of the texts.
+const HEADER: usize = 8 * (NUMBERS + 3);
+/// Bytes of the rows that stand on the display.
 const STANDING: usize = 24 * 1024;
+/// Bytes of the notes, a line each.
+pub const NOTES: usize = 16 * 1024;
+const HISTORY_START: usize = HEADER + STANDING + NOTES;
 
-/// The file of a report, open to be written.
+/// Where a report is written.
 #[derive(Debug)]
 pub struct ReportFile {
-    file: File,
+    memory: Arc<Memory>,
     history: usize,
 }
 
 impl ReportFile {
-    /// Opens a file that exists.
-    pub fn open(path: &Path) -> io::Result<Self> {
-        Ok(Self { file: OpenOptions::new().write(true).open(path)?, history: 0 })
+    /// Writes to a memory.
+    pub fn new(memory: Arc<Memory>) -> Self {
+        Self { memory, history: 0 }
     }
 
     /// Writes everything but the text.
-    pub fn write(&self, report: &Report) -> io::Result<()> {
+    pub fn write(&self, report: &Report) {
         let stage = STAGES.iter().position(|&stage| stage == report.stage).unwrap_or_default();
         let (pose, odometry) = (report.pose, report.odometry);
         let numbers: [f64; NUMBERS] = [
@@ -93,32 +101,43 @@ impl ReportFile {
             report.contacts as f64,
             report.later_contacts as f64,
             report.sounds as f64,
+            report.listening_since.unwrap_or(-1.0),
         ];
         let mut bytes = [0; 8 * NUMBERS];
         for (place, number) in bytes.as_chunks_mut::<8>().0.iter_mut().zip(numbers) {
             *place = number.to_le_bytes();
         }
-        self.file.write_all_at(&bytes, 0)
+        self.memory.write_report(0, &bytes);
     }
 
     /// Writes the text: the rows that stand on the display, and what was added to the history.
-    pub fn write_text(&mut self, history: &str, standing: &str) -> io::Result<()> {
+    pub fn write_text(&mut self, history: &str, standing: &str) {
         let standing = &standing.as_bytes()[..standing.len().min(STANDING)];
         let fresh = history.as_bytes().get(self.history..).unwrap_or_default();
-        self.file.write_all_at(fresh, (HEADER + STANDING + self.history) as u64)?;
+        self.memory.write_report(HISTORY_START + self.history, fresh);
         self.history = history.len();
-        self.file.write_all_at(standing, HEADER as u64)?;
-        let mut lengths = [0; 16];
-        lengths[..8].copy_from_slice(&(self.history as u64).to_le_bytes());
-        lengths[8..].copy_from_slice(&(standing.len() as u64).to_le_bytes());
-        self.file.write_all_at(&lengths, 8 * NUMBERS as u64)
+        self.memory.write_report(HEADER, standing);
+        self.write_length(0, self.history);
+        self.write_length(1, standing.len());
+    }
+
+    /// Writes the notes, as many as there is room for.
+    pub fn write_notes(&self, notes: &[String]) {
+        let text = notes.join("\n");
+        let text = &text.as_bytes()[..text.len().min(NOTES)];
+        self.memory.write_report(HEADER + STANDING, text);
+        self.write_length(2, text.len());
+    }
+
+    fn write_length(&self, index: usize, length: usize) {
+        self.memory.write_report(8 * (NUMBERS + index), &(length as u64).to_le_bytes());
     }
 }
 
 impl Report {
-    /// Reads the file of a report. A program may have written anything there, so nothing is believed.
-    pub fn read(path: &Path) -> io::Result<Self> {
-        Ok(Self::parse(&std::fs::read(path)?))
+    /// Reads a report. A program may have written anything there, so nothing is believed.
+    pub fn read(memory: &Memory) -> Self {
+        Self::parse(&memory.report())
     }
 
     fn parse(bytes: &[u8]) -> Self {
@@ -134,8 +153,9 @@ impl Report {
             let start = start.min(bytes.len());
             String::from_utf8_lossy(&bytes[start..(start + length).min(bytes.len())]).into_owned()
         };
-        let history = text(HEADER + STANDING, length(NUMBERS, 1 << 20));
+        let history = text(HISTORY_START, length(NUMBERS, REPORT));
         let standing = text(HEADER, length(NUMBERS + 1, STANDING));
+        let notes = text(HEADER + STANDING, length(NUMBERS + 2, NOTES));
         Self {
             stage: STAGES.get(number(0) as usize).copied().unwrap_or_default(),
             known: number(1) != 0.0,
@@ -147,7 +167,9 @@ impl Report {
             contacts: number(11) as u64,
             later_contacts: number(12) as u64,
             sounds: number(13) as u64,
+            listening_since: Some(number(14)).filter(|&time| time >= 0.0 && number(0) > 0.0),
             text: history + &standing,
+            notes: notes.lines().map(str::to_owned).collect(),
         }
     }
 }
@@ -158,24 +180,25 @@ mod tests {
 
     #[test]
     fn a_report_is_read_as_it_was_written() {
-        let path = std::env::temp_dir().join(format!("robios-report-{}", std::process::id()));
-        File::create(&path).unwrap();
-        assert_eq!(Report::read(&path).unwrap(), Report::default());
-        let mut file = ReportFile::open(&path).unwrap();
+        let memory = Arc::new(Memory::create().unwrap().0);
+        assert_eq!(Report::read(&memory), Report::default());
+        let mut file = ReportFile::new(Arc::clone(&memory));
         let mut report = Report {
             stage: Stage::TimedOut,
             known: true,
             time: 1.5,
             pose: Pose::new(1.0, 2.0, 3.0),
             contacts: 4,
+            listening_since: Some(1.0),
             ..Report::default()
         };
-        file.write(&report).unwrap();
-        file.write_text("one\n", "a long row").unwrap();
-        file.write_text("one\ntwo\n", "three").unwrap();
+        file.write(&report);
+        file.write_text("one\n", "a long row");
+        file.write_text("one\ntwo\n", "three");
         report.text = "one\ntwo\nthree".into();
-        assert_eq!(Report::read(&path).unwrap(), report);
-        std::fs::remove_file(&path).unwrap();
+        report.notes = vec!["first".into(), "second".into()];
+        file.write_notes(&report.notes);
+        assert_eq!(Report::read(&memory), report);
     }
 
     #[test]

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+void eyesim_begin(void);
 void eyesim_end(void);
 int eyesim_print(const char *text);
 int eyesim_print_at(int row, int column, const char *text);
@@ -12,6 +13,7 @@ int eyesim_shim_set_printf(int row, int column, const char *format, ...);
 
 __attribute__((constructor)) static void begin(void)
 {
+    eyesim_begin();
     atexit(eyesim_end);
 }
 

@@ -1,11 +1,8 @@
 //! Requests and replies as bytes, for programs that share a world with others and live in processes of their own.
 //!
-//! A frame is its length in four bytes and that many bytes: for a request the seconds that the program has spent, a
-//! number for what is asked, and its arguments; for a reply the robot's time, a number, and the answer or the error.
-//! Numbers are little-endian. Whatever comes in is checked: nonsense is an error, and no length is believed beyond
-//! [`LONGEST`].
-
-use std::io::{self, Read, Write};
+//! A request is the seconds that the program has spent, a number for what is asked, and its arguments; a reply is the
+//! robot's time, a number, and the answer or the error. Numbers are little-endian. Whatever comes in is checked: nonsense
+//! is an error.
 
 use image::RgbImage;
 use roverlab::geometry::{Pose, Twist};
@@ -13,7 +10,7 @@ use roverlab::io::{Error, ErrorKind, LidarSettings, RadioMessage, Result};
 
 use crate::ask::{Identity, Reply, Request};
 
-/// The longest frame in bytes: an image of five million pixels and its header.
+/// The longest reply in bytes: an image of five million pixels and its header.
 pub const LONGEST: usize = 16 << 20;
 /// The longest request in bytes: a radio message and its header.
 pub const LONGEST_REQUEST: usize = 70_000;
@@ -36,36 +33,11 @@ pub struct Answer {
     pub reply: Result<Reply>,
 }
 
-/// Writes a frame. The buffer's first four bytes are for the length.
-pub fn send(stream: &mut impl Write, mut frame: Vec<u8>) -> io::Result<()> {
-    let length = (frame.len() - 4) as u32;
-    frame[..4].copy_from_slice(&length.to_le_bytes());
-    stream.write_all(&frame)
-}
-
-/// Reads a frame into a buffer; `false` if the stream has ended between two frames.
-pub fn receive(stream: &mut impl Read, longest: usize, frame: &mut Vec<u8>) -> io::Result<bool> {
-    let mut length = [0; 4];
-    match stream.read_exact(&mut length) {
-        Ok(()) => {}
-        Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(false),
-        Err(error) => return Err(error),
-    }
-    let length = u32::from_le_bytes(length) as usize;
-    if length > longest {
-        let message = format!("a frame of {length} bytes; expected at most {longest}");
-        return Err(io::Error::new(io::ErrorKind::InvalidData, message));
-    }
-    frame.resize(length, 0);
-    stream.read_exact(frame)?;
-    Ok(true)
-}
-
 struct Writer(Vec<u8>);
 
 impl Writer {
     fn new() -> Self {
-        Self(vec![0; 4])
+        Self(Vec::new())
     }
 
     fn byte(mut self, value: u8) -> Self {
@@ -248,7 +220,9 @@ impl Answer {
                 .number(identity.tick_length)
                 .byte(u8::from(identity.full_turn))
                 .number(identity.call_duration)
-                .number(identity.time_limit),
+                .number(identity.time_limit)
+                .byte(u8::from(identity.exact))
+                .byte(u8::from(identity.camera)),
         }
         .0
     }
@@ -288,6 +262,8 @@ impl Answer {
                     full_turn: r.byte()? != 0,
                     call_duration: r.number()?,
                     time_limit: r.number()?,
+                    exact: r.byte()? != 0,
+                    camera: r.byte()? != 0,
                 }))
             }
             11 => {
@@ -326,7 +302,7 @@ mod tests {
             Request::Servo(2, -0.5),
         ] {
             let question = Question { debt: 0.25, request };
-            assert_eq!(Question::decode(&question.encode()[4..]), Some(question));
+            assert_eq!(Question::decode(&question.encode()), Some(question));
         }
     }
 
@@ -342,30 +318,24 @@ mod tests {
             Reply::Message(Some(RadioMessage { from: 2, data: b"hello".to_vec() })),
         ] {
             let bytes = Answer { now: 1.5, reply: Ok(reply.clone()) }.encode();
-            let answer = Answer::decode(&bytes[4..]).unwrap();
+            let answer = Answer::decode(&bytes).unwrap();
             assert_eq!((answer.now, answer.reply.unwrap()), (1.5, reply));
         }
         let error = Error::new(ErrorKind::TimedOut, "over");
         let bytes = Answer { now: 0.0, reply: Err(error) }.encode();
-        let error = Answer::decode(&bytes[4..]).unwrap().reply.unwrap_err();
+        let error = Answer::decode(&bytes).unwrap().reply.unwrap_err();
         assert_eq!((error.kind(), error.to_string()), (ErrorKind::TimedOut, "over".to_owned()));
     }
 
     #[test]
-    fn nonsense_is_refused_and_no_length_is_believed() {
+    fn nonsense_is_refused() {
         let mut stream = Stream::new(1);
         for _ in 0..20_000 {
             let bytes: Vec<u8> = (0..stream.below(60)).map(|_| stream.below(256) as u8).collect();
             let _ = Question::decode(&bytes);
             let _ = Answer::decode(&bytes);
         }
-        let mut frame = Vec::new();
-        let huge = u32::MAX.to_le_bytes();
-        assert!(receive(&mut &huge[..], LONGEST, &mut frame).is_err());
-        assert!(frame.capacity() < LONGEST);
-        assert!(!receive(&mut &[][..], LONGEST, &mut frame).unwrap());
-        assert!(receive(&mut &[5, 0, 0, 0, 1][..], LONGEST, &mut frame).is_err());
         let endless = Question { debt: f64::INFINITY, request: Request::Pose }.encode();
-        assert_eq!(Question::decode(&endless[4..]), None);
+        assert_eq!(Question::decode(&endless), None);
     }
 }

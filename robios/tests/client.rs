@@ -6,9 +6,12 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use eyesim::ask::{Seat, Terms};
+use eyesim::costs::Costs;
 use eyesim::plan::{Plan, names};
 use roverlab::drive::{RandomDrive, RandomDriveParameters};
 use roverlab::geometry::{Point, Pose, Twist};
+use roverlab::io::control::run;
 use roverlab::io::robios::RobiosRobot;
 use roverlab::io::sim::Simulation;
 use roverlab::io::wrappers::{Quantised, Stamp, Traced};
@@ -24,7 +27,15 @@ const OUTPUT: &str = "CLIENT_OUTPUT";
 fn plan() -> Plan {
     let start = Some(Pose::from_mm_deg(1000.0, 1200.0, 30.0));
     let world = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs/corner.wld");
-    Plan { world: Some(world), start, noise: NOISE, seed: 4, time_limit: 1000.0, ..Plan::default() }
+    Plan {
+        world: Some(world),
+        start,
+        noise: NOISE,
+        seed: 4,
+        time_limit: 1000.0,
+        costs: Costs::Free,
+        ..Plan::default()
+    }
 }
 
 /// What a robot does in a job. Errors are part of the log.
@@ -33,11 +44,11 @@ fn work(job: &str, robot: &mut impl RobotIo) {
         "tour" => tour(robot),
         "random" => {
             let drive = RandomDrive::new(RandomDriveParameters::default(), Stream::new(7));
-            let _ = drive.and_then(|mut drive| drive.run(robot, 40.0, |_| {}));
+            let _ = drive.and_then(|mut drive| run(robot, &mut drive, 40.0, |_, _, _| {}));
         }
         _ => {
             let bug = DistBug::new(Point::new(1.5, 0.9), DistBugParameters::default());
-            let _ = bug.and_then(|mut bug| bug.run(robot, 120.0, |_, _| {}));
+            let _ = bug.and_then(|mut bug| run(robot, &mut bug, 120.0, |_, _, _| {}));
         }
     }
 }
@@ -136,6 +147,7 @@ fn compare(job: &str) {
         .args(["--exact", "child", "--ignored"])
         .envs(plan().variables())
         .env(names::KEYS, "NONE")
+        .env(names::COSTS, "free")
         .env(JOB, job)
         .env(OUTPUT, &output)
         .output()
@@ -145,7 +157,7 @@ fn compare(job: &str) {
 
     let (scene, _) = plan().scene().unwrap();
     let simulation = Simulation::new(&scene, plan().options()).unwrap();
-    let seat = eyesim::ask::Seat::take(&simulation, &scene, 0, (1e-4, None)).unwrap();
+    let seat = Seat::take(&simulation, &scene, 0, Terms::of(&plan().options())).unwrap();
     let scale = seat.identity().full_speed / seat.identity().top_speed;
     drop(seat);
     let simulation = Simulation::new(&scene, plan().options()).unwrap();

@@ -2,6 +2,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::{FollowerParameters, Path, PathFollower, Waypoint};
 use crate::geometry::{Point, Pose, Twist, angle_difference};
+use crate::io::control::Manoeuvre;
 use crate::io::error::require_positive;
 use crate::io::{Error, Result};
 
@@ -103,28 +104,14 @@ impl AToBParameters {
 }
 
 /// What the behaviour sees at a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AToBObservation {
     /// Where the robot is, in the frame of the goal.
     pub pose: Pose,
     /// Whether its last manoeuvre has ended, or there was none.
     pub done: bool,
-}
-
-/// What the robot is to do next.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum AToBCommand {
-    /// Drive at this speed.
-    Speed(Twist),
-    /// Drive so many metres straight on.
-    Straight(f64),
-    /// Turn on the spot by so many radians.
-    Turn(f64),
-    /// Go on with the manoeuvre.
-    Continue,
-    /// The run has ended.
-    Stop,
+    /// Whether something holds it.
+    pub stalled: bool,
 }
 
 /// How a drive to a goal ended.
@@ -137,6 +124,8 @@ pub enum AToBOutcome {
     Blocked,
     /// The time was over first.
     TimedOut,
+    /// Who watched had seen enough.
+    Stopped,
 }
 
 /// Drives to a goal by one of the book's methods, with feedback all the way: a planned path is followed, and what is
@@ -145,6 +134,7 @@ pub enum AToBOutcome {
 /// ```
 /// use roverlab::drive::{AToB, AToBOutcome, AToBParameters, Goal, Method};
 /// use roverlab::geometry::Pose;
+/// use roverlab::io::control::run;
 /// use roverlab::io::sim::{SimOptions, Simulation};
 /// use roverlab::world::{RobotSpec, Scene, World};
 /// # fn main() -> roverlab::io::Result<()> {
@@ -152,7 +142,7 @@ pub enum AToBOutcome {
 /// let simulation = Simulation::new(&scene, SimOptions::ideal())?;
 /// let goal = Pose::new(1.45, 0.65, 0.0);
 /// let mut drive = AToB::new(Method::Spline, Goal::pose(goal), AToBParameters::default())?;
-/// let outcome = drive.run(&mut simulation.robot(0)?, 60.0, |_, _| {})?;
+/// let outcome = run(&mut simulation.robot(0)?, &mut drive, 60.0, |_, _, _| {})?;
 /// assert_eq!(outcome, AToBOutcome::Reached);
 /// let end = simulation.truth().pose(0)?;
 /// assert!(end.distance_to(goal.position()) < 0.006 && end.heading.abs() < 0.005);
@@ -225,8 +215,8 @@ impl AToB {
         Ok(Self { via: points, ..self })
     }
 
-    /// The next command.
-    pub fn step(&mut self, observation: &AToBObservation) -> Result<AToBCommand> {
+    /// The next command; `None` at the end.
+    pub fn step(&mut self, observation: &AToBObservation) -> Result<Option<Manoeuvre>> {
         let pose = observation.pose;
         if !pose.is_finite() {
             return Err(Error::invalid_input("observed pose", format!("{pose:?}"), "finite numbers"));
@@ -246,19 +236,19 @@ impl AToB {
                 self.idle = if gets_on { 0 } else { self.idle + 1 };
                 let idles = f64::from(self.idle) * self.parameters.period > LONGEST_IDLING;
                 if follower.rest() > HANDOVER && !idles {
-                    return Ok(AToBCommand::Speed(twist));
+                    return Ok(Some(Manoeuvre::Speed(twist)));
                 }
                 self.phase = Phase::Correcting;
                 Ok(self.correct(pose))
             }
             Phase::Homing => Ok(self.home(pose)),
             Phase::Correcting if observation.done => Ok(self.correct(pose)),
-            Phase::Turning | Phase::Correcting => Ok(AToBCommand::Continue),
-            Phase::Ended => Ok(AToBCommand::Stop),
+            Phase::Turning | Phase::Correcting => Ok(Some(Manoeuvre::Continue)),
+            Phase::Ended => Ok(None),
         }
     }
 
-    fn begin(&mut self, pose: Pose) -> Result<AToBCommand> {
+    fn begin(&mut self, pose: Pose) -> Result<Option<Manoeuvre>> {
         if self.is_at_goal(pose) {
             self.phase = Phase::Correcting;
             return Ok(self.correct(pose));
@@ -266,7 +256,7 @@ impl AToB {
         match self.method {
             Method::Turn => {
                 self.phase = Phase::Turning;
-                Ok(AToBCommand::Turn(pose.bearing_to(self.goal.position)))
+                Ok(Some(self.turn(pose.bearing_to(self.goal.position))))
             }
             Method::Dog => {
                 self.phase = Phase::Homing;
@@ -305,38 +295,35 @@ impl AToB {
         Path::through(&waypoints)
     }
 
-    fn follow(&mut self, path: Path, reverse: bool, pose: Pose) -> Result<AToBCommand> {
+    fn follow(&mut self, path: Path, reverse: bool, pose: Pose) -> Result<Option<Manoeuvre>> {
         let mut follower = PathFollower::new(path, self.parameters.follower)?;
         if reverse {
             follower = follower.reversed();
         }
         let twist = follower.step(pose);
         self.phase = Phase::Following(Box::new(follower));
-        Ok(AToBCommand::Speed(twist))
+        Ok(Some(Manoeuvre::Speed(twist)))
     }
 
     /// A step of the dog curve: always turning towards the goal, and never so fast that it would be circled.
-    fn home(&mut self, pose: Pose) -> AToBCommand {
+    fn home(&mut self, pose: Pose) -> Option<Manoeuvre> {
         let distance = pose.distance_to(self.goal.position);
         if distance <= HANDOVER {
             self.phase = Phase::Correcting;
             return self.correct(pose);
         }
-        AToBCommand::Speed(dog_twist(
-            &self.parameters.follower,
-            pose.bearing_to(self.goal.position),
-            distance,
-        ))
+        let bearing = pose.bearing_to(self.goal.position);
+        Some(Manoeuvre::Speed(dog_twist(&self.parameters.follower, bearing, distance)))
     }
 
     /// Short manoeuvres that bring the standing robot to the goal.
-    fn correct(&mut self, pose: Pose) -> AToBCommand {
+    fn correct(&mut self, pose: Pose) -> Option<Manoeuvre> {
         let goal = pose.to_local(self.goal.position);
         let distance = goal.coords.norm();
         let may = self.corrections < self.parameters.corrections;
         if may && distance > self.parameters.tolerance {
             self.corrections += 1;
-            return self.approach(pose, goal);
+            return Some(self.approach(pose, goal));
         }
         let missing = self.goal.heading.map_or(0.0, |heading| angle_difference(heading, pose.heading));
         if self.corrections < 2 * self.parameters.corrections
@@ -344,13 +331,13 @@ impl AToB {
         {
             // From here on only the heading is corrected: turning moves the robot by a tick at most.
             self.corrections = self.corrections.max(self.parameters.corrections) + 1;
-            return AToBCommand::Turn(missing);
+            return Some(self.turn(missing));
         }
         self.phase = Phase::Ended;
-        AToBCommand::Stop
+        None
     }
 
-    fn approach(&self, pose: Pose, goal: Point) -> AToBCommand {
+    fn approach(&self, pose: Pose, goal: Point) -> Manoeuvre {
         // The way back is as good as the way ahead.
         let behind = goal.x < 0.0;
         let bearing = if behind {
@@ -359,9 +346,13 @@ impl AToB {
             pose.bearing_to(self.goal.position)
         };
         if goal.y.abs() > self.parameters.tolerance && bearing.abs() > SMALL_BEARING {
-            return AToBCommand::Turn(bearing);
+            return self.turn(bearing);
         }
-        AToBCommand::Straight(goal.x)
+        Manoeuvre::Straight(goal.x, self.parameters.creep_speed)
+    }
+
+    fn turn(&self, angle: f64) -> Manoeuvre {
+        Manoeuvre::Turn(angle, self.parameters.turn_speed)
     }
 
     /// The path that is followed, if one is.
@@ -406,14 +397,15 @@ mod tests {
         let mut behaviour = AToB::new(method, goal, AToBParameters::default()).unwrap();
         let mut pose = start;
         for step in 0..20_000 {
-            let motion = match behaviour.step(&AToBObservation { pose, done: true }).unwrap() {
-                AToBCommand::Speed(twist) => {
+            let motion = match behaviour.step(&AToBObservation { pose, done: true, stalled: false }).unwrap()
+            {
+                Some(Manoeuvre::Speed(twist)) => {
                     Displacement { length: 0.02 * twist.linear, angle: 0.02 * twist.angular }
                 }
-                AToBCommand::Straight(length) => Displacement { length, angle: 0.0 },
-                AToBCommand::Turn(angle) => Displacement { length: 0.0, angle },
-                AToBCommand::Continue => unreachable!("the manoeuvre is done"),
-                AToBCommand::Stop => return (pose, step),
+                Some(Manoeuvre::Straight(length, _)) => Displacement { length, angle: 0.0 },
+                Some(Manoeuvre::Turn(angle, _)) => Displacement { length: 0.0, angle },
+                Some(Manoeuvre::Continue) => unreachable!("the manoeuvre is done"),
+                None => return (pose, step),
             };
             pose = advance(pose, motion);
         }
@@ -461,14 +453,15 @@ mod tests {
         let mut behaviour = drive(Method::Spline).via(via.to_vec()).unwrap();
         let (mut pose, mut least) = (Pose::default(), [f64::INFINITY; 2]);
         loop {
-            let motion = match behaviour.step(&AToBObservation { pose, done: true }).unwrap() {
-                AToBCommand::Speed(twist) => {
+            let motion = match behaviour.step(&AToBObservation { pose, done: true, stalled: false }).unwrap()
+            {
+                Some(Manoeuvre::Speed(twist)) => {
                     Displacement { length: 0.02 * twist.linear, angle: 0.02 * twist.angular }
                 }
-                AToBCommand::Straight(length) => Displacement { length, angle: 0.0 },
-                AToBCommand::Turn(angle) => Displacement { length: 0.0, angle },
-                AToBCommand::Continue => Displacement::default(),
-                AToBCommand::Stop => break,
+                Some(Manoeuvre::Straight(length, _)) => Displacement { length, angle: 0.0 },
+                Some(Manoeuvre::Turn(angle, _)) => Displacement { length: 0.0, angle },
+                Some(Manoeuvre::Continue) => Displacement::default(),
+                None => break,
             };
             pose = advance(pose, motion);
             for (least, point) in least.iter_mut().zip(via) {
@@ -507,7 +500,7 @@ mod tests {
         let parameters = AToBParameters { tolerance: 0.0, ..AToBParameters::default() };
         assert!(AToB::new(Method::Turn, goal, parameters).is_err());
         let mut drive = AToB::new(Method::Turn, goal, AToBParameters::default()).unwrap();
-        let lost = AToBObservation { pose: Pose::new(f64::NAN, 0.0, 0.0), done: true };
+        let lost = AToBObservation { pose: Pose::new(f64::NAN, 0.0, 0.0), done: true, stalled: false };
         assert!(drive.step(&lost).is_err());
     }
 }

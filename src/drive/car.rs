@@ -1,9 +1,11 @@
+use std::ops::ControlFlow;
+
 use super::a_to_b::dog_twist;
 use super::{FollowerParameters, Goal, Method, Path, PathFollower, Steering};
 use crate::geometry::{Point, Pose, Twist, angle_difference};
-use crate::io::beat::Beat;
+use crate::io::control::{Behaviour, Command, Decision, Senses, halts};
 use crate::io::error::require_positive;
-use crate::io::{Clock, Drive, Error, Motors, Result, Servos};
+use crate::io::{Drive, Error, Motors, Result, Servos};
 use crate::kinematics::{Ackermann, CarState};
 
 /// Speed and steering of a car as commands of its motor and its servo (book, program 7.1).
@@ -31,13 +33,6 @@ impl CarDriver {
             motor: (state.speed / self.full_speed).clamp(-1.0, 1.0),
             servo: (-state.steering / self.kinematics.max_steering()).clamp(-1.0, 1.0),
         }
-    }
-
-    /// Tells a robot to drive so.
-    pub fn drive<R: Motors + Servos + ?Sized>(&self, robot: &mut R, state: CarState) -> Result<()> {
-        let command = self.command(state);
-        robot.set_servo(1, command.servo)?;
-        robot.set_motor(1, command.motor)
     }
 }
 
@@ -96,6 +91,19 @@ pub enum CarOutcome {
     Blocked,
     /// The time was over first.
     TimedOut,
+    /// Who watched had seen enough.
+    Stopped,
+}
+
+halts!(CarOutcome);
+
+/// What a car sees at a step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CarObservation {
+    /// Where odometry takes it to be.
+    pub pose: Pose,
+    /// Whether something holds it.
+    pub stalled: bool,
 }
 
 /// Drives a car to a goal by the methods of chapter 3, within its turning circle (book, section 7.4).
@@ -337,40 +345,46 @@ impl CarToB {
         Some(self.driver.kinematics.inverse_limited(twist, self.driver.full_speed))
     }
 
-    /// Drives a car to the goal by its odometry, within `time_limit` seconds, by motor 1 and servo 1. `observe` is called
-    /// after every step.
-    pub fn run<R: Clock + Drive + Motors + Servos + ?Sized>(
-        &mut self,
-        robot: &mut R,
-        time_limit: f64,
-        mut observe: impl FnMut(&Self, Pose),
-    ) -> Result<CarOutcome> {
-        let mut beat = Beat::start(robot, self.parameters.period)?;
-        loop {
-            let time = beat.step(robot)?;
-            let pose = robot.pose()?;
-            let state = self.step(pose)?;
-            observe(self, pose);
-            let outcome = if time >= time_limit {
-                Some(CarOutcome::TimedOut)
-            } else if robot.is_stalled()? {
-                Some(CarOutcome::Blocked)
-            } else {
-                let ending = if self.is_off(pose, MISSED) { CarOutcome::Missed } else { CarOutcome::Reached };
-                state.is_none().then_some(ending)
-            };
-            if let Some(outcome) = outcome {
-                robot.set_motor(1, 0.0)?;
-                return Ok(outcome);
-            }
-            self.driver.drive(robot, state.unwrap_or_default())?;
-            beat.rest(robot)?;
-        }
-    }
-
     /// Radians by which a pose misses the goal's heading; `None` if any will do.
     pub fn heading_error(&self, pose: Pose) -> Option<f64> {
         self.goal.heading.map(|heading| angle_difference(pose.heading, heading))
+    }
+}
+
+impl Behaviour for CarToB {
+    type Observation = CarObservation;
+    type Command = CarCommand;
+    type Outcome = CarOutcome;
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn step(&mut self, _time: f64, seen: &CarObservation) -> Decision<Self> {
+        Ok(match CarToB::step(self, seen.pose)? {
+            _ if seen.stalled => ControlFlow::Break(CarOutcome::Blocked),
+            Some(state) => ControlFlow::Continue(self.driver.command(state)),
+            None if self.is_off(seen.pose, MISSED) => ControlFlow::Break(CarOutcome::Missed),
+            None => ControlFlow::Break(CarOutcome::Reached),
+        })
+    }
+}
+
+impl<R: Drive + ?Sized> Senses<R> for CarToB {
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut CarObservation) -> Result<()> {
+        *seen = CarObservation { pose: robot.pose()?, stalled: robot.is_stalled()? };
+        Ok(())
+    }
+}
+
+impl<R: Motors + Servos + ?Sized> Command<R> for CarCommand {
+    fn apply(&self, robot: &mut R) -> Result<()> {
+        robot.set_servo(1, self.servo)?;
+        robot.set_motor(1, self.motor)
+    }
+
+    fn stop(robot: &mut R) -> Result<()> {
+        robot.set_motor(1, 0.0)
     }
 }
 

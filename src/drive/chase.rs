@@ -1,11 +1,12 @@
 use std::f64::consts::FRAC_PI_2;
+use std::ops::ControlFlow;
 
 use super::a_to_b::dog_twist;
 use super::{FollowerParameters, Hermite, Method};
 use crate::geometry::{Pose, Twist};
-use crate::io::beat::Beat;
+use crate::io::control::{Behaviour, Decision, SensedBy, Senses, halts};
 use crate::io::error::require_positive;
-use crate::io::{Clock, Drive, Error, Result};
+use crate::io::{Drive, Error, Result};
 
 /// What [`Chase`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,6 +35,15 @@ impl Default for ChaseParameters {
     }
 }
 
+/// What a [`Chase`] sees at a step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ChaseObservation {
+    /// Where the goal is in the robot's frame.
+    pub goal: Pose,
+    /// Whether something holds the robot.
+    pub stalled: bool,
+}
+
 /// How a chase ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -44,7 +54,11 @@ pub enum ChaseOutcome {
     Blocked,
     /// The time was over first.
     TimedOut,
+    /// Who watched had seen enough.
+    Stopped,
 }
+
+halts!(ChaseOutcome);
 
 /// Drives towards a goal that moves: each method of chapter 3 begins anew from where robot and goal are at each step, and
 /// drives the first bit of it.
@@ -108,35 +122,19 @@ impl Chase {
         }))
     }
 
-    /// Drives a robot after a goal for at most so many seconds. `goal` says, for a time since the start, where it is in the
-    /// frame of the robot's odometry, by whatever way the robot learns of it. `observe` is called after every step.
-    pub fn run<R: Clock + Drive + ?Sized>(
+    /// The behaviour after a goal. `goal` says, for a time since the first step, where it is in the frame of the robot's
+    /// odometry, by whatever way the robot learns of it.
+    pub fn after<R: Drive + ?Sized>(
         &mut self,
-        robot: &mut R,
-        time_limit: f64,
         mut goal: impl FnMut(&mut R, f64) -> Result<Pose>,
-        mut observe: impl FnMut(&Self, Pose),
-    ) -> Result<ChaseOutcome> {
-        let mut beat = Beat::start(robot, self.parameters.period)?;
-        loop {
-            let time = beat.step(robot)?;
+    ) -> impl Senses<R, Observation = ChaseObservation, Command = Twist, Outcome = ChaseOutcome> {
+        let mut begin = None;
+        SensedBy::new(self, move |robot: &mut R, time: f64, seen: &mut ChaseObservation| {
             let pose = robot.pose()?;
-            let place = goal(robot, time)?;
-            let twist = self.step(pose.inverse().compose(&place))?;
-            observe(self, pose);
-            let outcome = if time >= time_limit {
-                Some(ChaseOutcome::TimedOut)
-            } else if robot.is_stalled()? {
-                Some(ChaseOutcome::Blocked)
-            } else {
-                twist.is_none().then_some(ChaseOutcome::Caught)
-            };
-            robot.set_speed(twist.filter(|_| outcome.is_none()).unwrap_or(Twist::STOP))?;
-            match outcome {
-                Some(outcome) => return Ok(outcome),
-                None => beat.rest(robot)?,
-            }
-        }
+            let place = goal(robot, time - *begin.get_or_insert(time))?;
+            *seen = ChaseObservation { goal: pose.inverse().compose(&place), stalled: robot.is_stalled()? };
+            Ok(())
+        })
     }
 
     fn turn_or_drive(&mut self, bearing: f64, distance: f64) -> Twist {
@@ -159,6 +157,24 @@ impl Chase {
         let follower = &self.parameters.follower;
         let speed = follower.speed.min(follower.turn_rate / curvature.abs().max(1e-9));
         Twist::new(speed, speed * curvature)
+    }
+}
+
+impl Behaviour for Chase {
+    type Observation = ChaseObservation;
+    type Command = Twist;
+    type Outcome = ChaseOutcome;
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn step(&mut self, _time: f64, seen: &ChaseObservation) -> Decision<Self> {
+        Ok(match Chase::step(self, seen.goal)? {
+            _ if seen.stalled => ControlFlow::Break(ChaseOutcome::Blocked),
+            Some(twist) => ControlFlow::Continue(twist),
+            None => ControlFlow::Break(ChaseOutcome::Caught),
+        })
     }
 }
 
@@ -197,7 +213,8 @@ mod tests {
 
     #[test]
     fn a_robot_with_noise_catches_a_goal_on_a_circle() {
-        use crate::io::sim::{SimOptions, Simulation};
+        use crate::io::control::run;
+        use crate::io::sim::{SimOptions, SimRobot, Simulation};
         use crate::world::{RobotSpec, Scene, World};
         let scene = Scene::with_robot(World::empty(6.0, 6.0), RobotSpec::s4(), Pose::default());
         for method in [Method::Turn, Method::Arc, Method::Dog, Method::Spline] {
@@ -208,17 +225,18 @@ mod tests {
             };
             let mut chase = Chase::new(method, ChaseParameters::default()).unwrap();
             let (mut robot, mut seconds) = (simulation.robot(0).unwrap(), 0.0);
-            let told = |_: &mut _, time| {
+            let told = |_: &mut SimRobot, time| {
                 seconds = time;
                 Ok(goal(time))
             };
-            let outcome = chase.run(&mut robot, 60.0, told, |_, _| {}).unwrap();
+            let outcome = run(&mut robot, &mut chase.after(told), 60.0, |_, _, _| {}).unwrap();
             assert_eq!(outcome, ChaseOutcome::Caught, "{method:?}");
             let truth = simulation.truth().robot(0).unwrap();
             assert!(truth.pose.distance_to(goal(seconds).position()) < 0.15, "{method:?}: {:?}", truth.pose);
             // One that is faster gets away.
-            let away = |_: &mut _, time| Ok(Pose::new(1.0 + time, 0.0, 0.0));
-            assert_eq!(chase.run(&mut robot, 5.0, away, |_, _| {}).unwrap(), ChaseOutcome::TimedOut);
+            let away = |_: &mut SimRobot, time| Ok(Pose::new(1.0 + time, 0.0, 0.0));
+            let outcome = run(&mut robot, &mut chase.after(away), 5.0, |_, _, _| {}).unwrap();
+            assert_eq!(outcome, ChaseOutcome::TimedOut);
         }
     }
 

@@ -40,22 +40,24 @@ mod spline;
 mod wall_following;
 mod way;
 
-pub use a_to_b::{AToB, AToBCommand, AToBObservation, AToBOutcome, AToBParameters, Goal, Method};
-pub use car::{CarCommand, CarDriver, CarOutcome, CarParameters, CarToB};
-pub use chase::{Chase, ChaseOutcome, ChaseParameters};
-pub use coverage::{CoverageMap, CoverageParameters, CoveragePlan, Tour, TourParameters};
+pub use a_to_b::{AToB, AToBObservation, AToBOutcome, AToBParameters, Goal, Method};
+pub use car::{CarCommand, CarDriver, CarObservation, CarOutcome, CarParameters, CarToB};
+pub use chase::{Chase, ChaseObservation, ChaseOutcome, ChaseParameters};
+pub use coverage::{CoverageMap, CoverageParameters, CoveragePlan, Tour, TourOutcome, TourParameters};
 pub use cruise::{Cruise, CruiseParameters};
 pub use follow_me::{FollowMeObservation, FollowMeParameters, Follower, robots_in};
 pub use follower::{FollowerParameters, PathFollower, Steering};
 pub use formation::Formation;
-pub use omni::{OmniDriver, OmniParameters, OmniReference, OmniTracker};
+pub use omni::{
+    OmniDriver, OmniOutcome, OmniParameters, OmniPilot, OmniReference, OmniTracker, WheelCommand,
+};
 pub use path::{Path, PathPoint, Waypoint};
 pub use pid::{Pid, PidParameters};
-pub use random_drive::{RandomDrive, RandomDriveParameters};
+pub use random_drive::{RandomDrive, RandomDriveObservation, RandomDriveParameters};
 pub use relay::{RelayTuner, UltimateGain};
 pub use spline::Hermite;
 pub use wall_following::{
-    FollowsWalls, LidarWallFollower, LidarWallParameters, PidWallFollower, PidWallParameters,
-    TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallObservation, WallOutcome, WallPhase,
-    WallSensors, WallSide, run_along_wall,
+    AlongWall, AlongWallObservation, FollowsWalls, LidarWallFollower, LidarWallParameters, PidWallFollower,
+    PidWallParameters, TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallObservation,
+    WallOutcome, WallPhase, WallReading, WallSensors, WallSide,
 };

@@ -1,7 +1,9 @@
+use std::ops::ControlFlow;
+
 use crate::geometry::{Point, Pose, Vector, angle_difference, direction, normalize_angle};
-use crate::io::beat::Beat;
+use crate::io::control::{Behaviour, Command, Decision, Senses, halts};
 use crate::io::error::require_positive;
-use crate::io::{Clock, Drive, Error, Motors, Result};
+use crate::io::{Drive, Error, Motors, Result};
 use crate::kinematics::{Omni, PlanarTwist};
 
 /// Velocities of a robot on four wheels with rollers as commands of its motors (book, section 7.4: an interface from a
@@ -19,11 +21,6 @@ impl OmniDriver {
     pub fn command(&self, twist: PlanarTwist) -> [f64; 4] {
         let wheels = self.kinematics.inverse_limited(twist, self.full_speed);
         wheels.map(|speed| (speed / self.full_speed).clamp(-1.0, 1.0))
-    }
-
-    /// Tells a robot to drive so.
-    pub fn drive<R: Motors + ?Sized>(&self, robot: &mut R, twist: PlanarTwist) -> Result<()> {
-        (1..).zip(self.command(twist)).try_for_each(|(motor, fraction)| robot.set_motor(motor, fraction))
     }
 }
 
@@ -168,9 +165,7 @@ impl OmniTracker {
         let now = self.reference(time);
         let away = now.pose.position() - pose.position();
         let turned = angle_difference(now.pose.heading, pose.heading);
-        let there =
-            away.norm() <= self.parameters.tolerance && turned.abs() <= self.parameters.heading_tolerance;
-        if time >= self.duration() && (there || time >= self.duration() + PATIENCE) {
+        if time >= self.duration() && (self.is_there(time, pose) || time >= self.duration() + PATIENCE) {
             return Ok(None);
         }
         // The motors will do what they are told by the time that the lag has passed; by then the robot has turned on.
@@ -182,26 +177,81 @@ impl OmniTracker {
         Ok(Some(PlanarTwist::new(velocity.dot(&forward), velocity.dot(&left), angular)))
     }
 
-    /// Drives a robot along the route by its motors and its odometry. `observe` is called after every step with the time
-    /// since the start and the pose.
-    pub fn run<R: Clock + Drive + Motors + ?Sized>(
-        &self,
-        robot: &mut R,
-        driver: &OmniDriver,
-        mut observe: impl FnMut(f64, Pose),
-    ) -> Result<()> {
-        let mut beat = Beat::start(robot, self.parameters.period)?;
-        loop {
-            let time = beat.step(robot)?;
-            let pose = robot.pose()?;
-            let twist = self.step(time, pose)?;
-            observe(time, pose);
-            driver.drive(robot, twist.unwrap_or(PlanarTwist::STOP))?;
-            if twist.is_none() {
-                return Ok(());
-            }
-            beat.rest(robot)?;
-        }
+    /// Whether the robot is where it shall be.
+    fn is_there(&self, time: f64, pose: Pose) -> bool {
+        let now = self.reference(time).pose;
+        now.distance_to(pose.position()) <= self.parameters.tolerance
+            && angle_difference(now.heading, pose.heading).abs() <= self.parameters.heading_tolerance
+    }
+
+    /// The behaviour on the wheels of a robot.
+    pub fn by(&self, driver: OmniDriver) -> OmniPilot<'_> {
+        OmniPilot { tracker: self, driver, begin: None }
+    }
+}
+
+/// An [`OmniTracker`] on the wheels of a robot, made by [`OmniTracker::by`].
+#[derive(Debug, Clone)]
+pub struct OmniPilot<'t> {
+    tracker: &'t OmniTracker,
+    driver: OmniDriver,
+    /// When the first step was.
+    begin: Option<f64>,
+}
+
+/// How a drive along a route ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum OmniOutcome {
+    /// The robot takes itself to be at the end of the route.
+    Reached,
+    /// It is not, seconds after it should have been.
+    Missed,
+    /// The time was over first.
+    TimedOut,
+    /// Who watched had seen enough.
+    Stopped,
+}
+
+halts!(OmniOutcome);
+
+impl Behaviour for OmniPilot<'_> {
+    type Observation = Pose;
+    type Command = WheelCommand;
+    type Outcome = OmniOutcome;
+
+    fn period(&self) -> f64 {
+        self.tracker.parameters.period
+    }
+
+    fn step(&mut self, time: f64, pose: &Pose) -> Decision<Self> {
+        let time = time - *self.begin.get_or_insert(time);
+        Ok(match self.tracker.step(time, *pose)? {
+            Some(twist) => ControlFlow::Continue(WheelCommand(self.driver.command(twist))),
+            None if self.tracker.is_there(time, *pose) => ControlFlow::Break(OmniOutcome::Reached),
+            None => ControlFlow::Break(OmniOutcome::Missed),
+        })
+    }
+}
+
+impl<R: Drive + ?Sized> Senses<R> for OmniPilot<'_> {
+    fn sense(&mut self, robot: &mut R, _time: f64, pose: &mut Pose) -> Result<()> {
+        *pose = robot.pose()?;
+        Ok(())
+    }
+}
+
+/// What motors 1 to 4 are told: fractions of their full speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WheelCommand(pub [f64; 4]);
+
+impl<R: Motors + ?Sized> Command<R> for WheelCommand {
+    fn apply(&self, robot: &mut R) -> Result<()> {
+        (1..).zip(self.0).try_for_each(|(motor, fraction)| robot.set_motor(motor, fraction))
+    }
+
+    fn stop(robot: &mut R) -> Result<()> {
+        Self([0.0; 4]).apply(robot)
     }
 }
 

@@ -1,9 +1,11 @@
 use std::f64::consts::{FRAC_PI_4, PI};
+use std::ops::ControlFlow;
 
 use super::way::Way;
 use crate::geometry::{Point, Pose, Twist, angle_difference, normalize_angle};
+use crate::io::control::{Behaviour, Decision, Halt, Senses};
 use crate::io::error::require_positive;
-use crate::io::{Clock, DistanceSensors, Drive, Error, ErrorKind, Lidar, LidarScan, Psd, Result};
+use crate::io::{DistanceSensors, Drive, Error, ErrorKind, Lidar, LidarScan, Psd, Result};
 use crate::random::Stream;
 
 /// What [`RandomDrive`] goes by.
@@ -53,6 +55,7 @@ impl RandomDriveParameters {
 /// ```
 /// use roverlab::drive::{RandomDrive, RandomDriveParameters};
 /// use roverlab::geometry::Pose;
+/// use roverlab::io::control::run;
 /// use roverlab::io::sim::{SimOptions, Simulation};
 /// use roverlab::random::Stream;
 /// use roverlab::world::{RobotSpec, Scene, World};
@@ -60,7 +63,7 @@ impl RandomDriveParameters {
 /// let scene = Scene::with_robot(World::walled(1.5, 1.5), RobotSpec::s4(), Pose::new(0.7, 0.7, 0.3));
 /// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
 /// let mut drive = RandomDrive::new(RandomDriveParameters::default(), Stream::new(1))?;
-/// drive.run(&mut simulation.robot(0)?, 60.0, |_| {})?;
+/// run(&mut simulation.robot(0)?, &mut drive, 60.0, |_, _, _| {})?;
 /// let truth = simulation.truth().robot(0)?;
 /// assert!(truth.contacts == 0 && truth.path_length > 3.0);
 /// # Ok(())
@@ -140,40 +143,25 @@ impl RandomDrive {
     fn free_way(&self, points: &[Point], direction: f64) -> f64 {
         Way { radius: self.parameters.radius, margin: self.parameters.margin }.free(points, direction)
     }
+}
 
-    /// Drives for so many seconds by the lidar, or by the distance sensors of a robot without one. `watch` is called after
-    /// each step with the time.
-    pub fn run<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
-        &mut self,
-        robot: &mut R,
-        seconds: f64,
-        mut watch: impl FnMut(f64),
-    ) -> Result<()> {
-        let start = robot.now()?;
-        let mut scan = LidarScan::default();
-        let mut points = Vec::new();
-        loop {
-            let now = robot.now()?;
-            if now - start >= seconds {
-                return robot.set_speed(Twist::STOP);
-            }
-            Self::look(robot, &mut scan, &mut points)?;
-            let twist = self.step(robot.pose()?, &points)?;
-            robot.set_speed(twist)?;
-            robot.wait(self.parameters.period)?;
-            watch(robot.now()?);
-        }
-    }
+/// What a [`RandomDrive`] sees at a step.
+#[derive(Debug, Clone, Default)]
+pub struct RandomDriveObservation {
+    /// Where odometry takes the robot to be.
+    pub pose: Pose,
+    /// What is around, as points in the robot's frame.
+    pub points: Vec<Point>,
+    /// The scan that they are from, if the robot has a lidar.
+    pub scan: LidarScan,
+}
 
-    /// What a robot sees, as points in its frame.
-    pub fn look<R: DistanceSensors + Lidar + ?Sized>(
-        robot: &mut R,
-        scan: &mut LidarScan,
-        points: &mut Vec<Point>,
-    ) -> Result<()> {
-        points.clear();
-        match robot.scan_into(scan) {
-            Ok(()) => points.extend(scan.points()),
+impl RandomDriveObservation {
+    /// Looks by the lidar, or by the distance sensors of a robot without one.
+    fn look<R: DistanceSensors + Lidar + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
+        self.points.clear();
+        match robot.scan_into(&mut self.scan) {
+            Ok(()) => self.points.extend(self.scan.points()),
             Err(error) if error.kind() == ErrorKind::Unsupported => {
                 let sensors = super::WallSensors::default();
                 for (psd, mount) in
@@ -181,12 +169,35 @@ impl RandomDrive {
                 {
                     let range = robot.distance(psd)?;
                     if range.is_finite() {
-                        points.push(mount.position() + crate::geometry::direction(mount.heading) * range);
+                        self.points
+                            .push(mount.position() + crate::geometry::direction(mount.heading) * range);
                     }
                 }
             }
             Err(error) => return Err(error),
         }
+        Ok(())
+    }
+}
+
+impl Behaviour for RandomDrive {
+    type Observation = RandomDriveObservation;
+    type Command = Twist;
+    type Outcome = Halt;
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn step(&mut self, _time: f64, seen: &RandomDriveObservation) -> Decision<Self> {
+        RandomDrive::step(self, seen.pose, &seen.points).map(ControlFlow::Continue)
+    }
+}
+
+impl<R: DistanceSensors + Drive + Lidar + ?Sized> Senses<R> for RandomDrive {
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut RandomDriveObservation) -> Result<()> {
+        seen.look(robot)?;
+        seen.pose = robot.pose()?;
         Ok(())
     }
 }

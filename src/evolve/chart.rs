@@ -13,7 +13,7 @@ const MARGIN: f64 = 0.12;
 pub fn chart(history: &[GenerationStatistics]) -> Picture {
     let sheet = World::empty(WIDTH + 2.0 * MARGIN, FITNESS + DIVERSITY + 3.0 * MARGIN);
     let mut picture = Picture::new(&sheet);
-    picture.title("Evolution, generation by generation");
+    picture.title("Evolution, generation by generation").without_scale();
     let fitness: [Curve<'_>; 3] = [
         ("best", Colour::from_hex(0x001f_6fb4), |row| row.best),
         ("mean", Colour::from_hex(0x00c0_7a1b), |row| row.mean),
@@ -82,6 +82,7 @@ mod tests {
             let svg = chart(&history).to_svg();
             assert!(["best", "mean", "worst", "diversity"].iter().all(|name| svg.contains(name)), "{length}");
             assert!(!svg.contains("NaN") && !svg.contains("inf"), "{length}");
+            assert!(!svg.contains(" m<"), "a chart has no scale in metres: {svg}");
         }
     }
 }

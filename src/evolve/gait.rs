@@ -1,3 +1,6 @@
+use std::ops::ControlFlow;
+
+use crate::io::control::{Behaviour, Command, Decision, Halt, Senses, run};
 use crate::io::error::require_positive;
 use crate::io::{Clock, Error, Result, Servos};
 use crate::random::Stream;
@@ -67,34 +70,64 @@ impl Gait {
 
     /// Moves a robot to the first control point and lets it come to rest there, for [`SETTLING`](Self::SETTLING).
     pub fn settle<R: Clock + Servos + ?Sized>(&self, robot: &mut R) -> Result<()> {
-        let end = robot.now()? + Self::SETTLING;
-        self.send(robot, 0)?;
-        wait_until(robot, end)
+        let mut stand = GaitWalk { gait: self, next: 0, period: Self::SETTLING };
+        run(robot, &mut stand, Self::SETTLING, |_, _, _| {}).map(|_| ())
     }
 
     /// Moves a robot that has settled for so many seconds, from the second control point on.
     pub fn walk<R: Clock + Servos + ?Sized>(&self, robot: &mut R, seconds: f64) -> Result<()> {
         require_positive("time to walk", seconds)?;
-        let end = robot.now()? + seconds;
-        for index in 1.. {
-            let now = robot.now()?;
-            if end - now <= 1e-9 {
-                break;
-            }
-            self.send(robot, index)?;
-            wait_until(robot, end.min(now + Self::PERIOD))?;
-        }
-        Ok(())
+        run(robot, &mut self.walking(), seconds, |_, _, _| {}).map(|_| ())
     }
 
-    fn send<R: Servos + ?Sized>(&self, robot: &mut R, index: usize) -> Result<()> {
-        (1..).zip(self.point(index)).try_for_each(|(servo, position)| robot.set_servo(servo, *position))
+    /// The gait as a behaviour of a robot that has settled, from the second control point on.
+    pub fn walking(&self) -> GaitWalk<'_> {
+        GaitWalk { gait: self, next: 1, period: Self::PERIOD }
     }
 }
 
-fn wait_until<R: Clock + ?Sized>(robot: &mut R, time: f64) -> Result<()> {
-    let now = robot.now()?;
-    robot.wait((time - now).max(0.0))
+/// A [`Gait`] that is walked, made by [`Gait::walking`].
+#[derive(Debug, Clone)]
+pub struct GaitWalk<'g> {
+    gait: &'g Gait,
+    next: usize,
+    period: f64,
+}
+
+impl<'g> Behaviour for GaitWalk<'g> {
+    type Observation = ();
+    type Command = ServoPositions<'g>;
+    type Outcome = Halt;
+
+    fn period(&self) -> f64 {
+        self.period
+    }
+
+    fn step(&mut self, _time: f64, (): &()) -> Decision<Self> {
+        self.next += 1;
+        Ok(ControlFlow::Continue(ServoPositions(self.gait.point(self.next - 1))))
+    }
+}
+
+impl<R: ?Sized> Senses<R> for GaitWalk<'_> {
+    fn sense(&mut self, _robot: &mut R, _time: f64, (): &mut ()) -> Result<()> {
+        Ok(())
+    }
+}
+
+/// Where servos shall be, from the first one on: -1 to 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ServoPositions<'p>(pub &'p [f64]);
+
+impl<R: Servos + ?Sized> Command<R> for ServoPositions<'_> {
+    fn apply(&self, robot: &mut R) -> Result<()> {
+        (1..).zip(self.0).try_for_each(|(servo, position)| robot.set_servo(servo, *position))
+    }
+
+    /// Servos hold where they are.
+    fn stop(_robot: &mut R) -> Result<()> {
+        Ok(())
+    }
 }
 
 #[cfg(test)]

@@ -65,7 +65,7 @@ pub use cma_es::{CmaEs, Distribution};
 pub use crossover::{Arithmetic, Crossover, OnePoint, Uniform};
 pub use evaluator::{Evaluator, Round, Serial, Trial};
 pub use evolution::Evolution;
-pub use gait::Gait;
+pub use gait::{Gait, GaitWalk, ServoPositions};
 pub use genetic::Genetic;
 pub use genome::{Gene, Genome};
 pub use mutation::{BitFlip, Gaussian, Mutation};

@@ -61,6 +61,11 @@ impl Error {
         Self { source: Some(source.into()), ..self }
     }
 
+    /// Another error as one of a robot's program.
+    pub(crate) fn caused_by(error: impl std::error::Error + Send + Sync + 'static) -> Self {
+        Self::new(ErrorKind::Other, error.to_string()).with_source(error)
+    }
+
     /// What kind of error this is.
     pub fn kind(&self) -> ErrorKind {
         self.kind

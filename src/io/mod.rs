@@ -5,9 +5,9 @@
 //! Every trait works behind `&mut R`, `Box<R>` and `dyn`.
 
 mod actuators;
-pub(crate) mod beat;
 mod camera;
 mod clock;
+pub mod control;
 pub mod delegate;
 mod display;
 mod drive;
@@ -40,7 +40,7 @@ pub use lidar::{Lidar, LidarScan, LidarSettings};
 pub use mock::{Call, MockRobot, Script};
 pub use psd::{DistanceSensors, Psd};
 pub use radio::{Radio, RadioMessage};
-pub use troop::{Behaviour, Troop};
+pub use troop::{Troop, TroopStep};
 pub use truth::{RobotTruth, TrailPoint, Witness};
 
 /// A full robot: every capability at once.

@@ -3,8 +3,9 @@ use std::ops::ControlFlow;
 use super::{Error, ErrorKind, Result, RobotIo, RobotTruth};
 use crate::geometry::Pose;
 
-/// What a robot of a [`Troop`] does at each of its steps, until it breaks.
-pub type Behaviour<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<()>> + 'a>;
+/// What a robot of a [`Troop`] does at each of its steps, until it breaks. A [`Run`](crate::io::control::Run) makes one of a
+/// behaviour.
+pub type TroopStep<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<()>> + 'a>;
 
 /// Robots whose behaviours are stepped in one thread: a simulator's [`Fleet`](crate::io::sim::Fleet), one
 /// that is recorded, or the recording of one.
@@ -38,7 +39,7 @@ pub trait Troop<'a> {
     fn robots(&self) -> usize;
 
     /// Gives a robot a behaviour, which is called every `period` seconds until it breaks.
-    fn control(&mut self, robot: usize, period: f64, behaviour: Behaviour<'a>) -> Result<()>;
+    fn control(&mut self, robot: usize, period: f64, behaviour: TroopStep<'a>) -> Result<()>;
 
     /// Steps each behaviour when it is due, for `seconds` or until all behaviours have ended. The first error
     /// of a behaviour ends the run.
@@ -59,7 +60,7 @@ impl<'a, T: Troop<'a> + ?Sized> Troop<'a> for Box<T> {
         (**self).robots()
     }
 
-    fn control(&mut self, robot: usize, period: f64, behaviour: Behaviour<'a>) -> Result<()> {
+    fn control(&mut self, robot: usize, period: f64, behaviour: TroopStep<'a>) -> Result<()> {
         (**self).control(robot, period, behaviour)
     }
 

@@ -30,7 +30,6 @@ mod fast;
 pub mod files;
 mod flood;
 mod follow;
-#[cfg(any(test, feature = "proptest"))]
 pub mod generate;
 pub mod mms;
 mod model;
@@ -44,8 +43,8 @@ pub use explore::{Explorer, Goals, RecursiveExplorer, Step, TwoPhaseExplorer, Ve
 pub use fast::{FastPlan, FastPlanner, LimitsError, Piece, RunLimits, Trajectory, TrajectoryPoint, TurnKind};
 pub use flood::{Distances, FloodFill, IncrementalFlood, Passages, distances_from_start, distances_to_goal};
 pub use follow::{
-    CellDrive, CellDriveParameters, LeftHand, LeftHandOutcome, LeftHandParameters, LidarLeft,
-    LidarLeftParameters, Straight,
+    CellDrive, CellDriveParameters, LeftHand, LeftHandObservation, LeftHandOutcome, LeftHandParameters,
+    LidarLeft, LidarLeftObservation, LidarLeftParameters, Straight,
 };
 pub use model::{Maze, SizeError, Unknown, Wall};
 pub use route::{Preference, Route, shortest_route, shortest_route_between};

@@ -11,11 +11,9 @@ mod surroundings;
 
 pub use boundary::WallSide;
 pub use bug::{
-    Alg1, Alg2, Bug, Bug1, Bug2, BugEvent, BugKind, BugObservation, BugOutcome, BugParameters, BugPhase,
-    Class1, DistBug, DistBugEvent, DistBugObservation, DistBugOutcome, DistBugParameters, DistBugPhase,
-    Guarantee, LeaveBug, OneBug, PathBound, Rev1, Rev2, TangentBug, UnknownBug, run_bug,
+    Alg1, Alg2, Bug, Bug1, Bug2, BugEvent, BugKind, BugOutcome, BugParameters, BugPhase, Class1, DistBug,
+    DistBugEvent, DistBugOutcome, DistBugParameters, DistBugPhase, Guarantee, LeaveBug, OneBug, PathBound,
+    Rev1, Rev2, TangentBug, UnknownBug,
 };
-pub use navigate::{
-    NavigateEvent, NavigateObservation, NavigateOutcome, NavigateParameters, NavigatePhase, Navigator,
-};
+pub use navigate::{NavigateEvent, NavigateOutcome, NavigateParameters, NavigatePhase, Navigator};
 pub use reachability::Reachability;

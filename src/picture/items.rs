@@ -18,6 +18,8 @@ pub struct Picture {
     pub(super) lines: Vec<Line>,
     pub(super) robots: Vec<Robot>,
     pub(super) marks: Vec<Marked>,
+    /// Whether its lengths are metres of a world.
+    pub(super) to_scale: bool,
     coloured_robots: usize,
     true_paths: usize,
     odometry_paths: usize,
@@ -77,6 +79,7 @@ impl Picture {
             lines: Vec::new(),
             robots: Vec::new(),
             marks: Vec::new(),
+            to_scale: true,
             coloured_robots: 0,
             true_paths: 0,
             odometry_paths: 0,
@@ -92,6 +95,12 @@ impl Picture {
     /// A smaller line below the title: the outcome of a run, say.
     pub fn caption(&mut self, text: impl Into<String>) -> &mut Self {
         self.caption = Some(text.into());
+        self
+    }
+
+    /// Leaves out scale bar and grid: for charts, whose lengths are no metres.
+    pub fn without_scale(&mut self) -> &mut Self {
+        self.to_scale = false;
         self
     }
 

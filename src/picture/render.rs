@@ -29,15 +29,16 @@ impl Picture {
         let frame = Frame::around(self.region(), Pixel::new(MARGIN, top));
         let legend = Legend::of(self);
         let plot = frame.pixels();
-        let (arrangement, corner) = arrange(&plot);
+        let below = if self.to_scale { SCALE_HEIGHT } else { 0.0 };
+        let (arrangement, corner) = arrange(&plot, below);
         let extent = if legend.is_empty() { Vector::zeros() } else { legend.size(arrangement) };
-        let bottom = (plot.max.y + SCALE_HEIGHT).max(corner.y + extent.y);
+        let bottom = (plot.max.y + below).max(corner.y + extent.y);
         let wanted = (corner.x + extent.x).max(plot.max.x).max(MARGIN + heading_width(self)) + MARGIN;
         let page = Vector::new(wanted.clamp(NARROWEST_PAGE, WIDEST_PAGE), bottom + 0.75 * MARGIN);
 
         let text = Group::new()
             .add(heading(self, Pixel::new(MARGIN, MARGIN), page.x - 2.0 * MARGIN))
-            .add(scale_bar(&frame))
+            .add(if self.to_scale { scale_bar(&frame) } else { Group::new() })
             .add(legend.draw(corner, arrangement))
             .add(names::beside_marks(self, &frame));
         let page_bounds = Aabb { min: Pixel::origin(), max: Pixel::origin() + page };
@@ -54,12 +55,12 @@ impl Picture {
     }
 }
 
-/// Where the legend goes: beside the plot, or below it if the plot is wide.
-fn arrange(plot: &Aabb) -> (Arrangement, Pixel) {
+/// Where the legend goes: beside the plot, or below it and so many pixels if the plot is wide.
+fn arrange(plot: &Aabb, below: f64) -> (Arrangement, Pixel) {
     let size = plot.size();
     if size.x > 1.7 * size.y {
         let room = size.x.max(NARROWEST_PAGE);
-        (Arrangement::Rows(room), Pixel::new(plot.min.x, plot.max.y + SCALE_HEIGHT + 8.0))
+        (Arrangement::Rows(room), Pixel::new(plot.min.x, plot.max.y + below + 8.0))
     } else {
         (Arrangement::Column, Pixel::new(plot.max.x + GUTTER, plot.min.y - 2.0))
     }
@@ -83,7 +84,7 @@ fn plotted(picture: &Picture, frame: &Frame) -> Group {
         .fold(Group::new(), Group::add);
     Group::new()
         .set("clip-path", format!("url(#{CLIP})"))
-        .add(scenery::floor(&picture.world, frame))
+        .add(scenery::floor(&picture.world, frame, picture.to_scale))
         .add(areas)
         .add(scenery::solids(&picture.world, frame))
         .add(clouds)

@@ -72,7 +72,7 @@ impl FileType {
 impl Picture {
     /// Saves the picture under a name that ends in `.svg` or, with the feature `png`, in `.png`.
     ///
-    /// The file appears whole or not at all.
+    /// The file appears whole or not at all. The folder is made if it is missing.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
         let path = path.as_ref();
         let bytes = match FileType::of(path)? {
@@ -97,7 +97,9 @@ fn png(_: &Picture, path: &Path) -> Result<Vec<u8>, SaveError> {
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let unfinished = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
+    let folder = path.parent().unwrap_or(Path::new(""));
     let write = || {
+        fs::create_dir_all(folder)?;
         let mut file = File::create(&unfinished)?;
         file.write_all(bytes)?;
         file.sync_all()?;

@@ -16,14 +16,15 @@ const SMALLEST_OBJECT: f64 = 2.5;
 /// The name of the pattern that fills hills.
 const HATCH: &str = "hills";
 
-/// Floor, water, grid, hills, places and marks.
-pub(super) fn floor(world: &World, frame: &Frame) -> Group {
+/// Floor, water, a grid if it is to scale, hills, places and marks.
+pub(super) fn floor(world: &World, frame: &Frame, to_scale: bool) -> Group {
     let colour = if world.water_level.is_some_and(|level| level > 0.0) { WATER } else { FLOOR };
     let bounds = on_page(world.floor, frame);
-    let mut group = Group::new()
-        .add(rectangle(bounds, colour))
-        .add(grid(&world.floor, frame))
-        .add(rectangle(bounds, colour).set("fill", "none").set("stroke", EDGE.to_string()));
+    let mut group = Group::new().add(rectangle(bounds, colour));
+    if to_scale {
+        group = group.add(grid(&world.floor, frame));
+    }
+    group = group.add(rectangle(bounds, colour).set("fill", "none").set("stroke", EDGE.to_string()));
     if let Some(terrain) = &world.terrain {
         group = group.add(hatch()).add(hills(terrain, world.floor.min, frame));
     }

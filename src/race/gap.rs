@@ -1,10 +1,15 @@
+use std::ops::ControlFlow;
+
 use crate::geometry::units;
-use crate::io::{Clock, Lidar, LidarScan, Motors, Result, Servos};
+use crate::io::control::{Behaviour, Command, Decision, Halt, Senses};
+use crate::io::{Lidar, LidarScan, Motors, Result, Servos};
 
 /// The book's cone track driver (section 14.5): it steers for the middle between the two cones nearest to the middle of the
 /// scan, left and right of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GapDriver {
+    /// The share of the motor's full speed that it drives at.
+    pub speed: f64,
     /// Beyond this range nothing is a cone, in metres.
     pub farthest: f64,
     /// Beams at each end of the scan that are not looked at, as a share of all.
@@ -14,13 +19,18 @@ pub struct GapDriver {
 }
 
 impl Default for GapDriver {
-    /// The book's: 9 m, and 20 of 180 beams.
+    /// The book's 9 m and 20 of 180 beams, at a tenth of the full speed.
     fn default() -> Self {
-        Self { farthest: 9.0, edge: 20.0 / 180.0, middle: None }
+        Self { speed: 0.1, farthest: 9.0, edge: 20.0 / 180.0, middle: None }
     }
 }
 
 impl GapDriver {
+    /// The book's driver at a share of the full speed.
+    pub fn with_speed(speed: f64) -> Self {
+        Self { speed, ..Self::default() }
+    }
+
     /// The position of the steering servo, -1 for full left to 1 for full right, from a scan of 180 degrees. `None` without a
     /// cone on each side: the steering stays.
     ///
@@ -49,25 +59,48 @@ impl GapDriver {
         let turned = units::to_deg(scan.angle_increment) * (middle as f64 - 0.5 * n as f64);
         Some((turned / 128.0).clamp(-1.0, 1.0))
     }
+}
 
-    /// Drives for some seconds at a share of the full speed, ten decisions a second.
-    pub fn run(
-        &mut self,
-        robot: &mut (impl Clock + Lidar + Motors + Servos),
-        speed: f64,
-        seconds: f64,
-    ) -> Result<()> {
-        let mut scan = LidarScan::default();
-        robot.set_motor(1, speed)?;
-        let end = robot.now()? + seconds;
-        while robot.now()? < end {
-            robot.wait(0.1)?;
-            robot.scan_into(&mut scan)?;
-            if let Some(position) = self.step(&scan) {
-                robot.set_servo(1, position)?;
-            }
+/// What a [`GapDriver`] tells motor 1 and servo 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GapCommand {
+    /// A share of the motor's full speed.
+    pub motor: f64,
+    /// The position of the steering servo, if it is to change.
+    pub servo: Option<f64>,
+}
+
+impl<R: Motors + Servos + ?Sized> Command<R> for GapCommand {
+    fn apply(&self, robot: &mut R) -> Result<()> {
+        if let Some(position) = self.servo {
+            robot.set_servo(1, position)?;
         }
+        robot.set_motor(1, self.motor)
+    }
+
+    fn stop(robot: &mut R) -> Result<()> {
         robot.set_motor(1, 0.0)
+    }
+}
+
+impl Behaviour for GapDriver {
+    type Observation = LidarScan;
+    type Command = GapCommand;
+    type Outcome = Halt;
+
+    /// Ten decisions a second.
+    fn period(&self) -> f64 {
+        0.1
+    }
+
+    fn step(&mut self, _time: f64, scan: &LidarScan) -> Decision<Self> {
+        Ok(ControlFlow::Continue(GapCommand { motor: self.speed, servo: GapDriver::step(self, scan) }))
+    }
+}
+
+impl<R: Lidar + ?Sized> Senses<R> for GapDriver {
+    fn sense(&mut self, robot: &mut R, _time: f64, scan: &mut LidarScan) -> Result<()> {
+        robot.scan_into(scan)
     }
 }
 

@@ -45,6 +45,7 @@ mod reckoning;
 mod referee;
 mod registration;
 mod rows;
+mod run;
 mod sides;
 mod sight;
 mod spline;
@@ -68,7 +69,7 @@ pub use files::{
     write_eufs, write_fssim, write_tum,
 };
 pub use finder::LaneFinder;
-pub use gap::GapDriver;
+pub use gap::{GapCommand, GapDriver};
 pub use generate::{GeneratedTrack, TrackOptions, generate, lined};
 pub use hold::Hold;
 pub use lane::lane;
@@ -79,6 +80,7 @@ pub use profile::{CarLimits, SpeedProfile};
 pub use racer::{RacePhase, Racer, RacerParameters};
 pub use racing_line::{CarOutline, LineSolver, RacingLine, RacingLineParameters, minimum_curvature};
 pub use referee::{Referee, Verdict};
+pub use run::RaceOutcome;
 pub use sight::{Sighting, sightings};
 pub use spline::{ClosedSpline, SplinePoint};
 pub use tracker::{LineTracker, TrackerParameters};

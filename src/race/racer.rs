@@ -16,7 +16,7 @@ use super::sight::{Sighting, sightings};
 use super::tracker::{LineTracker, TrackerParameters};
 use super::tyres::Tyres;
 use crate::geometry::{Point, Pose, Twist};
-use crate::io::{self, Clock, Drive, Lidar, LidarScan};
+use crate::io::LidarScan;
 
 #[cfg(test)]
 mod tests;
@@ -95,7 +95,7 @@ pub enum RacePhase {
 /// Races on a track that it does not know: between the cones that it sees in the first lap, on the racing line in all others.
 #[derive(Debug, Clone)]
 pub struct Racer {
-    parameters: RacerParameters,
+    pub(super) parameters: RacerParameters,
     map: ConeMap,
     phase: RacePhase,
     laps: usize,
@@ -305,31 +305,6 @@ impl Racer {
     /// Whether it stands and drives no more.
     pub fn is_done(&self, speed: Twist) -> bool {
         matches!(self.phase, RacePhase::Finished | RacePhase::Lost) && speed.linear.abs() < STILL
-    }
-
-    /// Races until all laps are driven and it stands, or it is lost and stands, or a time is over. `watch` is told of
-    /// every decision.
-    pub fn run<R: Clock + Drive + Lidar>(
-        &mut self,
-        robot: &mut R,
-        seconds: f64,
-        mut watch: impl FnMut(&mut R, &Self),
-    ) -> io::Result<RacePhase> {
-        let mut scan = LidarScan::default();
-        let end = robot.now()? + seconds;
-        while robot.now()? < end {
-            robot.scan_into(&mut scan)?;
-            let (pose, speed) = (robot.pose()?, robot.speed()?);
-            let command = self.step(pose, speed, &scan);
-            robot.set_speed(command)?;
-            watch(robot, self);
-            if self.is_done(speed) {
-                break;
-            }
-            robot.wait(self.parameters.period)?;
-        }
-        robot.set_speed(Twist::default())?;
-        Ok(self.phase)
     }
 
     /// Counts laps at the line, and ends the race.

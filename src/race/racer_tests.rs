@@ -1,5 +1,6 @@
 use super::*;
 use crate::geometry::{Point, Pose, Twist};
+use crate::io::control::run;
 use crate::io::sim::NoiseModel;
 use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions};
 use crate::io::{Drive, Lidar, LidarScan};
@@ -157,21 +158,21 @@ fn missing_and_false_cones_are_borne() {
 }
 
 /// A car before a straight lane of so many pairs of cones, four metres from pair to pair.
-fn on_a_strip(pairs: u32) -> (RacePhase, f64, f64) {
+fn on_a_strip(pairs: u32) -> (RaceOutcome, f64, f64) {
     let strip = |x: f64| [1.6, -1.6].map(|y| RaceCone::new(Point::new(x, y), Colour::BLUE));
     let cones: Vec<RaceCone> = (0..pairs).map(|k| 4.0 * f64::from(k)).flat_map(strip).collect();
     let start = Pose::new(-2.0, 0.0, 0.0);
     let mut world = Race::new(&cones, &[(RaceCarSpec::default(), start)], RaceOptions::default()).unwrap();
     let mut racer = Racer::new(RacerParameters::default());
-    let phase = racer.run(&mut world.car(0).unwrap(), 120.0, |_, _| ()).unwrap();
-    (phase, world.truth(0).unwrap().pose.x, world.time())
+    let outcome = run(&mut world.car(0).unwrap(), &mut racer, 120.0, |_, _, _| {}).unwrap();
+    (outcome, world.truth(0).unwrap().pose.x, world.time())
 }
 
 #[test]
 fn a_car_without_a_lane_stops() {
     for pairs in [0, 10] {
-        let (phase, x, time) = on_a_strip(pairs);
-        assert_eq!(phase, RacePhase::Lost);
+        let (outcome, x, time) = on_a_strip(pairs);
+        assert_eq!(outcome, RaceOutcome::Lost);
         assert!(x < 4.0 * f64::from(pairs) + 25.0 && time < 60.0, "{x} m after {time} s");
     }
 }

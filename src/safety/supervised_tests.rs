@@ -1,5 +1,6 @@
 use super::*;
 use crate::geometry::{Point, Pose, Twist};
+use crate::io::control;
 use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions, SharedRace};
 use crate::io::sim::{NoiseModel, SimOptions, Simulation};
 use crate::io::wrappers::{Fault, Faulty};
@@ -259,7 +260,7 @@ fn programs_run_supervised_as_they_are() {
     )
     .unwrap();
     car.wait(0.2).unwrap();
-    GapDriver::default().run(&mut car, 0.1, 15.0).unwrap();
+    control::run(&mut car, &mut GapDriver::default(), 15.0, |_, _, _| {}).unwrap();
     assert_eq!(car.state(), SafetyState::EmergencyStop);
     let truth = race.truth(0).unwrap();
     assert!(truth.twist.linear.abs() < 0.01 && truth.pose.x > 15.0 && truth.pose.x < 40.0, "{truth:?}");

@@ -75,13 +75,7 @@ fn logs_have_their_golden_digests() {
 /// Says so where a build leaves scenarios out.
 #[test]
 #[cfg_attr(
-    not(all(
-        feature = "log",
-        feature = "petgraph",
-        feature = "physics",
-        feature = "picture",
-        feature = "proptest"
-    )),
+    not(all(feature = "log", feature = "petgraph", feature = "physics", feature = "picture")),
     ignore = "some scenarios need features: cargo test --all-features --test golden"
 )]
 fn no_scenario_is_left_out() {

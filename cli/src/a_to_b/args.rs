@@ -2,7 +2,7 @@ use roverlab::drive::Steering;
 use roverlab::geometry::{Point, Twist};
 
 use super::chase::parse_moving;
-use crate::common::{CommonArgs, parse_point};
+use crate::common::{CommonArgs, OF_ONE_RUN, parse_point};
 use crate::driving::Way;
 
 /// The command line of `a-to-b`.
@@ -75,7 +75,15 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("campaign", OF_ONE_RUN),
+    ("campaign", &["noise", "time_limit", "method", "moving", "ideal_encoders", "landmark"]),
+    ("!campaign", &["runs"]),
+    ("method=turn,arc,dog", &["scale"]),
+    ("method=dog", &["follower"]),
+    ("via", &["scale"]),
+    ("moving", &["follower"]),
+]);
 
 /// A way to follow a path by its name on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -1,6 +1,6 @@
 use roverlab::drive::{Chase, ChaseOutcome, ChaseParameters};
 use roverlab::geometry::{Pose, Twist, units};
-use roverlab::io::{self, Clock, Drive};
+use roverlab::io::{self, Clock, Drive, control};
 use roverlab::kinematics::{Displacement, advance};
 use roverlab::picture::{Mark, Picture, Style};
 
@@ -65,7 +65,7 @@ fn chase<R: Clock + Drive + ?Sized>(
         Ok(quarry.at(time))
     };
     let mut chase = Chase::new(options.method, parameters)?;
-    let outcome = chase.run(robot, options.time_limit, told, |_, _| watch())?;
+    let outcome = control::run(robot, &mut chase.after(told), options.time_limit, |_, _, _| watch())?;
     Ok(Hunt { outcome, seconds })
 }
 

@@ -1,6 +1,6 @@
 use roverlab::drive::{AToB, AToBOutcome, AToBParameters, Goal, Method, Path};
 use roverlab::geometry::Point;
-use roverlab::io::{self, Clock, Drive, Lidar, LidarScan};
+use roverlab::io::{self, Clock, Drive, Lidar, LidarScan, control};
 use roverlab::kinematics::{Differential, OdometryErrors, OdometryUncertainty};
 use roverlab::scan::{Landmark, LandmarkFilter};
 
@@ -70,6 +70,6 @@ pub(crate) fn drive<R: Clock + Drive + Lidar + ?Sized>(
         sightings += u32::from(filter.correct(&scan) > 0);
         Ok(filter.pose())
     };
-    let outcome = behaviour.run_with(robot, options.time_limit, estimate, |_, _| watch())?;
+    let outcome = control::run(robot, &mut behaviour.by(estimate), options.time_limit, |_, _, _| watch())?;
     Ok(Arrival { outcome, plan, odometry, sightings })
 }

@@ -2,6 +2,7 @@
 
 use roverlab::drive::{CarDriver, CarOutcome, CarParameters, CarToB, Goal, Method, Path};
 use roverlab::geometry::{Pose, angle_difference, normalize_angle, units};
+use roverlab::io::control::run;
 use roverlab::io::{self, Clock, Drive, Motors, Servos};
 use roverlab::kinematics::Ackermann;
 use roverlab::picture::{Mark, Picture, Style};
@@ -65,7 +66,7 @@ pub(crate) fn drive<R: Clock + Drive + Motors + Servos + ?Sized>(
 ) -> io::Result<Arrival> {
     let mut behaviour = CarToB::new(options.method, options.goal, options.driver, CarParameters::default())?;
     let plan = behaviour.plan(robot.pose()?)?;
-    let outcome = behaviour.run(robot, options.time_limit, |_, _| watch())?;
+    let outcome = run(robot, &mut behaviour, options.time_limit, |_, _, _| watch())?;
     Ok(Arrival { outcome, plan })
 }
 

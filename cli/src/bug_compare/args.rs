@@ -57,7 +57,9 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("always", &["quantised"]),
+]);
 
 impl Args {
     /// The algorithms to compare.

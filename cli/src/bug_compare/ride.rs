@@ -1,8 +1,9 @@
 use roverlab::geometry::{Point, Pose};
+use roverlab::io::control::run;
 use roverlab::io::log::Witness;
 use roverlab::io::sim::SimOptions;
 use roverlab::io::{self, ErrorKind};
-use roverlab::nav::{BugEvent, BugKind, BugOutcome, BugParameters, Guarantee, run_bug};
+use roverlab::nav::{BugEvent, BugKind, BugOutcome, BugParameters, Guarantee};
 
 use crate::common::{Driven, Failure, Stage, StageTruth, Trip};
 
@@ -30,7 +31,7 @@ impl Ending {
         match self {
             Self::Verdict(BugOutcome::Reached) => "reached",
             Self::Verdict(BugOutcome::Unreachable) => "unreachable",
-            Self::Verdict(BugOutcome::TimedOut) => "timed_out",
+            Self::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped) => "timed_out",
             Self::Failed(_) => "failed",
         }
     }
@@ -104,7 +105,7 @@ pub(crate) fn ride_with(
     let parameters = parameters(trip, conditions.noise);
     let mut bug = kind.with(start.to_local(trip.goal), parameters).map_err(Failure::input)?;
     let (mut hits, mut follows, mut path) = (Vec::new(), Vec::new(), vec![start.position()]);
-    let result = run_bug(bug.as_mut(), &mut robot, conditions.time_limit, |bug, _| {
+    let result = run(&mut robot, bug.as_mut(), conditions.time_limit, |_, bug, _| {
         path.extend(truth.pose(0).ok().as_ref().map(Pose::position));
         for event in bug.take_events() {
             match event {

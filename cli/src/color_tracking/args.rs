@@ -1,6 +1,6 @@
 use roverlab::vision::FindMethod;
 
-use crate::common::CommonArgs;
+use crate::common::{CommonArgs, OF_ONE_RUN};
 
 /// The command line of `color-tracking`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -58,7 +58,11 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("always", &["goal"]),
+    ("campaign", OF_ONE_RUN),
+    ("!campaign", &["scenes"]),
+]);
 
 /// What the robot does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -16,7 +16,6 @@ pub(crate) struct Tally {
 
 /// Drives in many scenes.
 pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
-    args.common.check_placeless("the scenes of a campaign are drawn")?;
     if let Some(light) = args.light {
         return Err(Failure::input(format!(
             "--light: found {light}; expected none, as each scene of a campaign has its own"

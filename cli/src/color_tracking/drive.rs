@@ -3,6 +3,7 @@ use roverlab::drive::colour::{
     ColourOutcome, ColourTracker, HomeParameters, PushHome, PushOutcome, TrackerParameters,
 };
 use roverlab::geometry::Point;
+use roverlab::io::control::run;
 use roverlab::io::{self, Camera, Clock, Display, Drive, ErrorKind, Lidar, Picture, Pixel, Viewport};
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod, Sighting, teach_hue};
 use roverlab::world::Colour;
@@ -56,13 +57,13 @@ pub(crate) fn drive<R: Camera + Clock + Display + Drive + Lidar + ?Sized>(
         Job::Reach => {
             let parameters = TrackerParameters { radius: options.radius, ..TrackerParameters::default() };
             let mut tracker = ColourTracker::new(finder, parameters);
-            let outcome = tracker.run(robot, options.time_limit, |robot, tracker, image| {
+            let outcome = run(robot, &mut tracker, options.time_limit, |robot, tracker, step| {
                 watch();
-                show(robot, image, tracker.sighting())
+                show(robot, &step.seen.image, tracker.sighting())
             })?;
             Ok(match outcome {
                 ColourOutcome::Reached => Ended::Reached,
-                ColourOutcome::TimedOut => Ended::TimedOut,
+                ColourOutcome::TimedOut | ColourOutcome::Stopped => Ended::TimedOut,
                 ColourOutcome::Blocked => Ended::Blocked,
             })
         }
@@ -71,13 +72,10 @@ pub(crate) fn drive<R: Camera + Clock + Display + Drive + Lidar + ?Sized>(
             let tracker = TrackerParameters { radius: options.radius, ..defaults.tracker };
             let home = robot.pose()?.position();
             let mut push = PushHome::new(finder, home, HomeParameters { tracker, ..defaults });
-            let outcome = push.run(robot, options.time_limit, |_, _, _| {
-                watch();
-                Ok(())
-            })?;
+            let outcome = run(robot, &mut push, options.time_limit, |_, _, _| watch())?;
             Ok(match outcome {
                 PushOutcome::Home => Ended::Home,
-                PushOutcome::TimedOut => Ended::TimedOut,
+                PushOutcome::TimedOut | PushOutcome::Stopped => Ended::TimedOut,
                 PushOutcome::Blocked => Ended::Blocked,
             })
         }

@@ -111,6 +111,7 @@ pub(crate) struct PlainArgs {
 impl CommonArgs {
     /// Fails if this build cannot do what the options ask for.
     pub(crate) fn check(&self) -> Result<(), Failure> {
+        self.faults()?;
         if let Some(file) = &self.record {
             check_writable("--record", file)?;
         }

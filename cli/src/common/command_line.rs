@@ -9,7 +9,7 @@ use roverlab::io::log::Log;
 use super::files::recorded_name;
 use super::origin::Facts;
 use super::outputs::check_outputs;
-use super::{CommonArgs, Failure, parser};
+use super::{CommonArgs, Failure, Heeds, heed, parser};
 
 /// Options that do not affect a run.
 const NOT_RECORDED: [&str; 13] = [
@@ -49,21 +49,24 @@ pub(crate) enum Refusal {
 /// Reads a command line. With `--replay`, the options of the recording come with it.
 pub(crate) fn parse<A>(name: &str, command_line: impl IntoIterator<Item = OsString>) -> Result<A, Refusal>
 where
-    A: clap::Parser + AsRef<CommonArgs>,
+    A: clap::Parser + AsRef<CommonArgs> + Heeds,
 {
     let mut words: Vec<OsString> = command_line.into_iter().collect();
     let mut command = parser::<A>(name);
     let log = replayed(&words).map(|file| recording(name, &command, &file));
     let log = log.transpose().map_err(Refusal::Files)?;
+    let given = words.split_off(1.min(words.len()));
     if let Some(log) = &log {
-        let given = words.split_off(1.min(words.len()));
         let recorded = log.header().options.iter().filter(|option| !repeats(option, &given));
-        words.extend(recorded.map(OsString::from).collect::<Vec<_>>());
-        words.extend(given);
+        words.extend(recorded.map(OsString::from));
     }
+    words.extend(given.iter().cloned());
     let mut matches = command.try_get_matches_from_mut(words).map_err(Refusal::Parser)?;
     check_recorded(&matches).map_err(Refusal::Files)?;
     check_outputs(&matches).map_err(Refusal::Files)?;
+    // What an older program recorded was not refused then.
+    let is_recorded = |id: &str| log.is_some() && !repeats(&format!("--{}", id.replace('_', "-")), &given);
+    heed::check(&matches, A::UNHEEDED, |id| !is_recorded(id)).map_err(Refusal::Files)?;
     let options = options(&command, &matches);
     if let Some(log) = &log {
         check_met(&command, &options, &log.header().options).map_err(Refusal::Files)?;

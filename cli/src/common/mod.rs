@@ -13,6 +13,8 @@
 //!
 //! crate::common::shares_options!(Args, common: CommonArgs);
 //!
+//! // ... or with the options that it does not heed: `unheeded: [("always", &["fault"]), ("campaign", OF_ONE_RUN)]`.
+//!
 //! pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 //!     // ... simulate, draw the picture ...
 //!     Ok(Report::new(Outcome::verdict("reached")).field("hit_points", 3))
@@ -27,7 +29,7 @@
 //! let stage = args.common.stage(&scene, SimOptions::with_noise(args.common.noise, args.common.seed))?;
 //! let mut robot = stage.robot(0)?; // instead of `simulation.robot(0)`; --fault is in it
 //! let mut truth = stage.truth(0)?; // instead of `simulation.truth()`: for verdicts and pictures
-//! behaviour.run(&mut robot, limit, |_| path.push(truth.pose(0)))?;
+//! control::run(&mut robot, &mut behaviour, limit, |_, _, _| path.push(truth.pose(0)))?;
 //! drop(robot); // lets go of the world, as a simulated robot does
 //! let end = truth.robot(0)?;
 //! ```
@@ -46,9 +48,13 @@
 //! `FILES` of
 //! `command_line`; `common.trip` does so for `--world` and `--robot`.
 
-/// Gives out the shared options of a command line.
+/// Gives out the shared options of a command line, and says which options it does not heed, and when.
 macro_rules! shares_options {
-    ($args:ty, $field:ident: $options:ty) => {
+    ($args:ty, $field:ident: $options:ty $(, unheeded: [$($unheeded:expr),* $(,)?])?) => {
+        impl $crate::common::Heeds for $args {
+            const UNHEEDED: &'static [$crate::common::Unheeded] = &[$($($unheeded),*)?];
+        }
+
         impl AsRef<$options> for $args {
             fn as_ref(&self) -> &$options {
                 &self.$field
@@ -64,6 +70,7 @@ mod command_line;
 mod failure;
 mod files;
 mod free_floor;
+mod heed;
 mod images;
 mod origin;
 mod outputs;
@@ -79,6 +86,7 @@ mod workers;
 pub(crate) use args::{CommonArgs, PlainArgs, check_writable};
 pub(crate) use failure::Failure;
 pub(crate) use free_floor::FreeFloor;
+pub(crate) use heed::{Heeds, OF_ONE_RUN, Unheeded};
 pub(crate) use images::write_image;
 pub(crate) use origin::Origin;
 pub(crate) use outputs::is_same_file;

@@ -7,7 +7,7 @@ use super::command_line::{self, Refusal};
 use super::outputs::check_outputs;
 use super::report::{Header, rounded};
 use super::wall_clock::Stopwatch;
-use super::{CommonArgs, Failure, PlainArgs, Report};
+use super::{CommonArgs, Failure, Heeds, PlainArgs, Report, heed};
 
 /// Runs a command: reads the command line, does the work, prints the report or one message. Returns the exit
 /// status, which says how it went. 0: the behaviour came to a verdict; 1: it failed; 2: the command line or
@@ -20,7 +20,7 @@ pub(crate) fn run<A>(
     work: impl FnOnce(&A) -> Result<Report, Failure>,
 ) -> u8
 where
-    A: clap::Parser + AsRef<CommonArgs>,
+    A: clap::Parser + AsRef<CommonArgs> + Heeds,
 {
     let args = match command_line::parse(command, command_line) {
         Ok(args) => Ok(args),
@@ -48,7 +48,7 @@ where
 }
 
 /// As [`run`], for a command that drives no robot.
-pub(crate) fn run_plain<A: clap::Parser + AsRef<PlainArgs>>(
+pub(crate) fn run_plain<A: clap::Parser + AsRef<PlainArgs> + Heeds>(
     command: &'static str,
     command_line: impl IntoIterator<Item = OsString>,
     out: &mut dyn Write,
@@ -67,7 +67,8 @@ pub(crate) fn run_plain<A: clap::Parser + AsRef<PlainArgs>>(
 /// The parser of a command's command line, with the name that it has there.
 pub(crate) fn parser<A: clap::CommandFactory>(name: &str) -> clap::Command {
     let shown = name.replace('_', "-");
-    A::command().bin_name(format!("roverlab {shown}")).name(shown)
+    // What is missing on a command line is told, as all that is wrong with one.
+    A::command().bin_name(format!("roverlab {shown}")).name(shown).arg_required_else_help(false)
 }
 
 /// What is left to be printed when a program's work is done.
@@ -82,7 +83,7 @@ pub(crate) struct Printed {
 }
 
 /// As [`run`], for a program with options and a report of its own.
-pub(crate) fn run_printing<A: clap::Parser>(
+pub(crate) fn run_printing<A: clap::Parser + Heeds>(
     name: &str,
     command_line: impl IntoIterator<Item = OsString>,
     out: &mut dyn Write,
@@ -93,7 +94,7 @@ pub(crate) fn run_printing<A: clap::Parser>(
         Ok(matches) => matches,
         Err(error) => return run_parsed(Err::<A, _>(error), out, err, work),
     };
-    match check_outputs(&matches) {
+    match check_outputs(&matches).and_then(|()| heed::check(&matches, A::UNHEEDED, |_| true)) {
         Ok(()) => run_parsed(A::from_arg_matches(&matches), out, err, work),
         Err(failure) => complain(err, &failure),
     }

@@ -234,6 +234,11 @@ impl CommonArgs {
     pub(crate) fn troop<'a>(&self, scene: &Scene, options: SimOptions) -> Result<StagedTroop<'a>, Failure> {
         self.check_no_library()?;
         let player = self.player();
+        if self.quantised && player.is_none() {
+            return Err(Failure::input(
+                "--quantised: found several robots that are stepped together; expected a run of one robot",
+            ));
+        }
         let troop: Box<dyn Troop<'a> + 'a> = match &player {
             Some(player) => Box::new(player.troop()),
             None => Box::new(Fleet::new(scene, options).map_err(Failure::input)?),

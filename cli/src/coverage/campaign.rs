@@ -1,5 +1,6 @@
 use std::fmt::Write as _;
 
+use roverlab::drive::TourOutcome;
 use serde_json::{Value, json};
 
 use super::rooms::room;
@@ -73,7 +74,8 @@ pub(crate) fn row(args: &Args) -> Result<Row, Failure> {
         let seed = args.common.seed.wrapping_add(index);
         let done = cover(&room(seed), |limit| conditions(args, seed, limit), |_| {})?;
         let (share, contacts) = (done.map.share(), u64::from(done.run.truth.contacts));
-        row.finished += u64::from(done.run.ending.is_ok());
+        let finished = done.run.ending == Ok(TourOutcome::Finished);
+        row.finished += u64::from(finished);
         row.contacts += contacts;
         row.least = row.least.min(share);
         row.mean += part * share;
@@ -82,7 +84,7 @@ pub(crate) fn row(args: &Args) -> Result<Row, Failure> {
         row.random_mean += part * done.random;
         row.random_most = row.random_most.max(done.random);
         row.sim_time += done.run.sim_time;
-        let good = done.run.ending.is_ok() && contacts == 0 && share >= ENOUGH && done.ratio <= RATIO;
+        let good = finished && contacts == 0 && share >= ENOUGH && done.ratio <= RATIO;
         if !good && row.amiss.len() < LISTED {
             row.amiss.push(seed);
         }

@@ -10,9 +10,11 @@ pub(crate) use campaign::{row, text};
 use std::sync::Arc;
 
 use roverlab::drive::{
-    CoverageMap, CoverageParameters, CoveragePlan, RandomDrive, RandomDriveParameters, Tour, TourParameters,
+    CoverageMap, CoverageParameters, CoveragePlan, RandomDrive, RandomDriveParameters, Tour, TourOutcome,
+    TourParameters,
 };
 use roverlab::geometry::{Point, Pose, units};
+use roverlab::io::control::{self, SensedBy};
 use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
 use roverlab::io::{self, Clock, Drive, Lidar, LidarScan};
 use roverlab::picture::{Mark, Picture, Style};
@@ -20,7 +22,7 @@ use roverlab::random::Stream;
 use roverlab::scan::{LocalisationMap, Localiser, LocaliserParameters};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
+use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, rounded};
 use crate::driving::{Conditions, Run, check_lidar, drawn, paced, world_with_others};
 
 /// The command line of `coverage`.
@@ -56,12 +58,14 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("campaign", OF_ONE_RUN),
+    ("!campaign", &["rooms"]),
+]);
 
 /// The share of the floor that is enough.
 const ENOUGH: f64 = 0.98;
-/// Seconds between steps, and steps between scans.
-const PERIOD: f64 = 0.04;
+/// Steps between scans.
 const EVERY: u32 = 3;
 
 /// The work of the command.
@@ -76,8 +80,10 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let done = cover(scene, |limit| Conditions::new(common, limit), paced(common))?;
     let Covered { plan, run, map, ratio, .. } = &done;
     let (file, trouble) = drawn(common, "coverage.svg", || picture(args, scene, &done));
-    let report = run.report(|()| {
-        if map.share() >= ENOUGH { Outcome::verdict("covered") } else { Outcome::failure("incomplete") }
+    let report = run.report(|outcome| match outcome {
+        TourOutcome::TimedOut => Outcome::failure("timed_out"),
+        _ if map.share() >= ENOUGH => Outcome::verdict("covered"),
+        _ => Outcome::failure("incomplete"),
     });
     Ok(Report { trouble, ..report }
         .field("coverage_percent", rounded(100.0 * map.share()))
@@ -92,7 +98,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 /// What came of a room.
 pub(crate) struct Covered {
     pub(crate) plan: CoveragePlan,
-    pub(crate) run: Run<()>,
+    pub(crate) run: Run<TourOutcome>,
     /// What the robot has covered, and what share of it a random drive covers in the same time.
     pub(crate) map: CoverageMap,
     pub(crate) random: f64,
@@ -125,7 +131,9 @@ pub(crate) fn cover(
         .map_err(Failure::input)?;
     localiser.start_at(start);
     let mut tour = Tour::new(plan.points(), tour).map_err(Failure::input)?;
-    let run = conditions.run(scene, pace, |robot, step| drive(robot, &mut localiser, &mut tour, step))?;
+    let limit = conditions.time_limit;
+    let run =
+        conditions.run(scene, pace, |robot, step| drive(robot, &mut localiser, &mut tour, limit, step))?;
     run.positions().for_each(|place| map.cover(place));
     let random = random_share(&conditions, scene, &map, run.sim_time)?;
     let ratio = run.truth.path_length * 2.0 * radius / map.area();
@@ -148,22 +156,21 @@ fn drive<R: Clock + Drive + Lidar + ?Sized>(
     robot: &mut R,
     localiser: &mut Localiser,
     tour: &mut Tour,
+    time_limit: f64,
     mut watch: impl FnMut(),
-) -> io::Result<()> {
-    let mut scan = LidarScan::default();
-    for step in 0_u32.. {
+) -> io::Result<TourOutcome> {
+    let (mut scan, mut steps) = (LidarScan::default(), 0_u32);
+    let locate = |robot: &mut R, _, place: &mut Option<Pose>| {
         let odometry = robot.pose()?;
-        if step % EVERY == 0 {
+        if steps.is_multiple_of(EVERY) {
             robot.scan_into(&mut scan)?;
             localiser.update(odometry, &scan)?;
         }
-        let Some(place) = localiser.place(odometry) else { continue };
-        let Some(twist) = tour.step(place) else { break };
-        robot.set_speed(twist)?;
-        robot.wait(PERIOD)?;
-        watch();
-    }
-    robot.set_speed(roverlab::geometry::Twist::STOP)
+        steps += 1;
+        *place = localiser.place(odometry);
+        Ok(())
+    };
+    control::run(robot, &mut SensedBy::new(tour, locate), time_limit, |_, _, _| watch())
 }
 
 /// What a random drive covers in the same time.
@@ -183,7 +190,7 @@ fn random_share(
     let stream = Stream::new(conditions.seed).child("random drive", 0);
     let mut drive = RandomDrive::new(random, stream).map_err(Failure::input)?;
     let mut robot = simulation.robot(0).map_err(Failure::input)?;
-    drive.run(&mut robot, seconds, |_| {
+    control::run(&mut robot, &mut drive, seconds, |_, _, _| {
         if let Ok(pose) = truth.pose(0) {
             map.cover(pose.position());
         }

@@ -1,4 +1,5 @@
 use roverlab::geometry::{Point, Pose};
+use roverlab::io::control::run;
 use roverlab::io::log::Witness;
 use roverlab::io::sim::{RobotTruth, SimOptions};
 use roverlab::io::{self, ErrorKind};
@@ -96,7 +97,7 @@ pub(crate) fn drive(
     let mut bug = DistBug::new(start.to_local(trip.goal), parameters).map_err(Failure::input)?;
     let mut robot = stage.robot(0)?;
     let mut log = Log::new(stage.truth(0)?, start);
-    let result = bug.run(&mut robot, options.time_limit, |bug, _| {
+    let result = run(&mut robot, &mut bug, options.time_limit, |_, bug, _| {
         let time = log.truth.time().unwrap_or_default();
         watch(time, log.note(time, bug));
     });

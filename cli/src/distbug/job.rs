@@ -103,7 +103,9 @@ fn verdict(drive: &Drive) -> String {
         Ending::Verdict(DistBugOutcome::Unreachable) => {
             "all round the obstacle without a place to leave it: the goal cannot be reached".into()
         }
-        Ending::Verdict(DistBugOutcome::TimedOut) => format!("the time is over, {off} mm from the goal"),
+        Ending::Verdict(DistBugOutcome::TimedOut | DistBugOutcome::Stopped) => {
+            format!("the time is over, {off} mm from the goal")
+        }
         Ending::Failed(error) => format!("the robot failed: {error}"),
     }
 }
@@ -127,7 +129,9 @@ fn report(trip: &Trip, drive: &Drive, options: &Options, picture: Option<&Path>)
     let (outcome, error) = match &drive.ending {
         Ending::Verdict(DistBugOutcome::Reached) => (Outcome::verdict("reached"), None),
         Ending::Verdict(DistBugOutcome::Unreachable) => (Outcome::verdict("unreachable"), None),
-        Ending::Verdict(DistBugOutcome::TimedOut) => (Outcome::failure("timed_out"), None),
+        Ending::Verdict(DistBugOutcome::TimedOut | DistBugOutcome::Stopped) => {
+            (Outcome::failure("timed_out"), None)
+        }
         Ending::Failed(error) => (Outcome::failure("failed"), Some(error.clone())),
     };
     let points = |points: &[Point]| points.iter().copied().map(point_in_mm).collect::<Vec<_>>();

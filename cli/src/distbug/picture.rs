@@ -36,7 +36,7 @@ fn title(drive: &Drive) -> String {
     let ending = match &drive.ending {
         Ending::Verdict(DistBugOutcome::Reached) => "goal reached",
         Ending::Verdict(DistBugOutcome::Unreachable) => "the goal cannot be reached",
-        Ending::Verdict(DistBugOutcome::TimedOut) => "the time is over",
+        Ending::Verdict(DistBugOutcome::TimedOut | DistBugOutcome::Stopped) => "the time is over",
         Ending::Failed(_) => "the robot failed",
     };
     let contacts = match drive.truth.contacts {

@@ -59,7 +59,7 @@ impl Judgement {
         use DistBugOutcome as Outcome;
         match (ending, reachable) {
             (Ending::Failed(_), _) => Self::Failed,
-            (Ending::Verdict(Outcome::TimedOut), _) => Self::TimedOut,
+            (Ending::Verdict(Outcome::TimedOut | Outcome::Stopped), _) => Self::TimedOut,
             (Ending::Verdict(Outcome::Unreachable), true) => Self::NotUnreachable,
             (Ending::Verdict(Outcome::Reached), false) => Self::NotReached,
             (Ending::Verdict(Outcome::Reached), true) if goal_distance > tolerance(noise) => {

@@ -143,7 +143,29 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("always", &["goal"]),
+    ("input", &["noise", "time_limit", "quantised", "realtime"]),
+    ("input&kernel!=hough_probabilistic", &["seed"]),
+    ("!input", &["descriptor"]),
+    ("kernel!=difference,overlay", &["second"]),
+    ("kernel!=canny,hough,hough_probabilistic", &["low", "high"]),
+    ("binary", &["low", "high", "hue", "hue_low", "hue_high", "tolerance", "min_saturation", "min_intensity"]),
+    ("kernel!=threshold,overlay,hough,hough_probabilistic", &["threshold"]),
+    ("second&kernel=overlay", &["threshold", "sigma"]),
+    ("kernel!=gaussian3,gaussian5,gaussian7,canny,hough,hough_probabilistic&!smooth", &["sigma"]),
+    ("definition=opencv&kernel=canny,hough,hough_probabilistic&!smooth", &["sigma"]),
+    ("kernel!=hue_match,projections,blobs", &["hue", "hue_low", "hue_high", "tolerance"]),
+    ("hue_low", &["hue", "tolerance"]),
+    ("kernel!=hue,hue_match,projections,blobs", &["min_saturation", "min_intensity"]),
+    ("kernel!=hue", &["exact"]),
+    ("kernel!=hough,hough_probabilistic,blobs", &["binary"]),
+    ("kernel!=hough,hough_probabilistic", &["angles"]),
+    ("kernel!=hough", &["rho"]),
+    ("kernel!=hough_probabilistic", &["min_length", "max_gap"]),
+    ("kernel!=hog", &["descriptor"]),
+    ("kernel!=blobs", &["min_area"]),
+]);
 
 /// Whose definition of a kernel counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

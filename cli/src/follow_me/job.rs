@@ -9,7 +9,9 @@ use roverlab::world::{RobotPlacement, RobotSpec, Scene};
 use super::campaign;
 use super::scene::{Mode, behind, hall};
 use super::swarm::{SwarmRun, run};
-use crate::common::{CommonArgs, Failure, FreeFloor, Outcome, Report, StandIn, millimetres, rounded};
+use crate::common::{
+    CommonArgs, Failure, FreeFloor, OF_ONE_RUN, Outcome, Report, StandIn, millimetres, rounded,
+};
 use crate::driving::{counted, drawn, paced};
 
 /// The command line of `follow-me`.
@@ -62,7 +64,11 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("campaign", OF_ONE_RUN),
+    ("campaign", &["followers", "mode", "obstacles"]),
+    ("!campaign", &["runs"]),
+]);
 
 /// Simulated seconds of a run.
 pub(super) const SECONDS: f64 = 90.0;

@@ -47,7 +47,11 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("always", &["time_limit", "quantised", "realtime"]),
+    ("task=spline", &["noise"]),
+    ("task=wall", &["start", "goal"]),
+]);
 
 /// What is evolved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

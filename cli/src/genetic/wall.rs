@@ -1,8 +1,7 @@
-use std::ops::ControlFlow;
-
-use roverlab::drive::{PidParameters, PidWallFollower, PidWallParameters, run_along_wall};
+use roverlab::drive::{AlongWall, PidParameters, PidWallFollower, PidWallParameters};
 use roverlab::evolve::Trial;
 use roverlab::geometry::{Point, Pose, math};
+use roverlab::io::control::run;
 use roverlab::io::log::Witness;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{Clock, DistanceSensors, Drive, Result};
@@ -86,24 +85,18 @@ fn drive<R: Clock + DistanceSensors + Drive>(
     truth: &mut impl Witness,
 ) -> Result<(f64, Vec<Point>)> {
     let parameters = Wall::parameters(genes);
-    let mut controller = PidWallFollower::new(parameters)?;
-    let (mut squares, mut count, mut way, mut lost) = (0.0, 0.0, Vec::new(), Ok(()));
-    run_along_wall(robot, &mut controller, SECONDS, |time, _| match truth.pose(0) {
-        Ok(pose) => {
-            let error = FLOOR.1 - pose.y - parameters.distance;
-            if time > SETTLING {
-                squares += error * error;
-                count += 1.0;
-            }
-            way.push(pose.position());
-            ControlFlow::Continue(())
+    let mut along = AlongWall::new(PidWallFollower::new(parameters)?);
+    let (mut squares, mut count, mut way) = (0.0, 0.0, Vec::new());
+    run(robot, &mut along, SECONDS, |_, _, step| {
+        let pose = truth.pose(0)?;
+        let error = FLOOR.1 - pose.y - parameters.distance;
+        if step.time > SETTLING {
+            squares += error * error;
+            count += 1.0;
         }
-        Err(error) => {
-            lost = Err(error);
-            ControlFlow::Break(())
-        }
+        way.push(pose.position());
+        Result::Ok(())
     })?;
-    lost?;
     let contacts = truth.robot(0)?.contacts;
     Ok((math::hypot((squares / f64::max(count, 1.0)).sqrt(), CONTACT * f64::from(contacts)), way))
 }

@@ -50,7 +50,7 @@ pub(crate) struct Args {
     pub(crate) plain: PlainArgs,
 }
 
-crate::common::shares_options!(Args, plain: PlainArgs);
+crate::common::shares_options!(Args, plain: PlainArgs, unheeded: [("map", &["seed"])]);
 
 /// The planners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

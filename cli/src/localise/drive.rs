@@ -1,5 +1,5 @@
 use roverlab::drive::{RandomDrive, RandomDriveParameters};
-use roverlab::geometry::Twist;
+use roverlab::io::control::{self, until};
 use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar, LidarScan};
 use roverlab::random::Stream;
 use roverlab::scan::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
@@ -41,30 +41,21 @@ pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
 ) -> io::Result<Finding> {
     let mut localiser = Localiser::new(options.map.clone(), options.localiser)?;
     let mut wander = RandomDrive::new(options.random, Stream::new(options.seed).child("random drive", 0))?;
-    let (mut scan, mut points) = (LidarScan::default(), Vec::new());
-    let (mut content, mut scans) = (0, 0);
-    let start = robot.now()?;
-    for step in 0_u32.. {
-        RandomDrive::look(robot, &mut scan, &mut points)?;
-        let odometry = robot.pose()?;
-        if step % EVERY == 0 {
-            localiser.update(odometry, &scan)?;
+    let (mut content, mut scans, mut steps) = (0, 0, 0_u32);
+    control::run(robot, &mut wander, options.patience, |_, _, at| {
+        if steps.is_multiple_of(EVERY) {
+            localiser.update(at.seen.pose, &at.seen.scan)?;
             scans += 1;
             let one = matches!(localiser.localisation(), Localisation::One(_));
             content = if one { content + 1 } else { 0 };
         }
-        if content >= CONTENT || robot.now()? - start > options.patience {
-            break;
-        }
-        let twist = wander.step(odometry, &points)?;
-        robot.set_speed(twist)?;
-        robot.wait(options.random.period)?;
+        steps += 1;
         watch();
-    }
+        io::Result::Ok(until(content >= CONTENT))
+    })?;
     // The last scan is taken at rest, so that its place is the robot's.
-    robot.set_speed(Twist::STOP)?;
     robot.wait(REST)?;
-    robot.scan_into(&mut scan)?;
+    let scan = robot.scan()?;
     localiser.update(robot.pose()?, &scan)?;
     watch();
     Ok(Finding {

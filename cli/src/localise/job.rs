@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::drive::{Finding, Options, drive};
 use super::{campaign, picture, worlds};
-use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
+use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, millimetres, rounded};
 use crate::driving::{Conditions, Run, check_lidar, drawn, paced, world_with_others};
 
 /// The command line of `localise`.
@@ -48,7 +48,10 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("campaign", OF_ONE_RUN),
+    ("!campaign", &["starts"]),
+]);
 
 fn parse_patience(text: &str) -> Result<f64, String> {
     let patience = text.parse().ok().filter(|patience: &f64| (1.0..=1e5).contains(patience));

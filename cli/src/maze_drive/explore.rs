@@ -67,7 +67,8 @@ pub(crate) fn work(args: &ExploreArgs) -> Result<Report, Failure> {
         let rig = Rig::new(&place.spec, conditions.odometry_errors(), range)?;
         let mut truth = None;
         let mut watch = |_: Pose| truth = Some(step());
-        let mut runner = MazeRunner::new(robot, rig, unexplored(maze)?, place.scale, parameters)?;
+        let mut runner =
+            MazeRunner::new(robot, rig, unexplored(maze)?, place.scale, parameters, conditions.time_limit)?;
         let mut explorer =
             if args.thorough { RecursiveExplorer::without_early_marking() } else { RecursiveExplorer::new() };
         let exploration = runner.explore(&mut explorer, &mut watch)?;

@@ -1,3 +1,4 @@
+use roverlab::io::control::{self, until};
 use roverlab::io::sim::NoiseModel;
 use roverlab::maze::{CellDriveParameters, LeftHand, LeftHandOutcome, LeftHandParameters, Rig, Straight};
 
@@ -77,19 +78,16 @@ pub(crate) fn work(args: &LeftArgs) -> Result<Report, Failure> {
     let place = Place::new(&args.common, args.micromouse)?;
     let maze = place.maze();
     let conditions = Conditions::new(&args.common, 60.0 + 12.0 * maze.cell_count() as f64)?;
-    let rule = LeftHand::new(parameters(args, &place, &conditions)?).map_err(Failure::input)?;
+    let parameters = parameters(args, &place, &conditions)?;
+    let mut rule = LeftHand::new(parameters, maze.heading()).map_err(Failure::input)?;
     let (mut cells, mut at) = (0_usize, Some(maze.start()));
     let run = conditions.run(&place.scene(), paced(&args.common), |robot, step| {
-        rule.run(
-            robot,
-            maze.heading(),
-            |offset, _| {
-                cells += 1;
-                at = place.cell(offset);
-                at.is_none_or(|cell| maze.is_goal(cell) || cell == maze.start())
-            },
-            step,
-        )
+        control::run(robot, &mut rule, conditions.time_limit, |_, rule, _| {
+            step();
+            let arrived = rule.cells() > cells;
+            (cells, at) = (rule.cells(), place.cell(rule.at()));
+            until(arrived && at.is_none_or(|cell| maze.is_goal(cell) || cell == maze.start()))
+        })
     })?;
     let end = run.truth.pose.position();
     let really = at.is_some() && place.scale.cell_of(maze, end) == at;
@@ -100,8 +98,9 @@ pub(crate) fn work(args: &LeftArgs) -> Result<Report, Failure> {
     });
     let report = run.report(|&outcome| match outcome {
         LeftHandOutcome::Stalled => Outcome::failure("stuck"),
-        LeftHandOutcome::Finished if !really => Outcome::failure("lost"),
-        LeftHandOutcome::Finished => Outcome::verdict(if at_goal { "goal" } else { "returned" }),
+        LeftHandOutcome::Stopped if !really => Outcome::failure("lost"),
+        LeftHandOutcome::Stopped => Outcome::verdict(if at_goal { "goal" } else { "returned" }),
+        _ => Outcome::failure("timed_out"),
     });
     let drive = match args.drive {
         Drive::Open => "open",

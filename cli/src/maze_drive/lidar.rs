@@ -1,6 +1,7 @@
 use std::collections::BTreeMap;
 
 use roverlab::geometry::{Point, Pose};
+use roverlab::io::control::{self, Halt, until};
 use roverlab::maze::{LidarLeft, LidarLeftParameters};
 use roverlab::picture::Style;
 use roverlab::world::Wall;
@@ -48,18 +49,18 @@ pub(crate) fn work(args: &LidarArgs) -> Result<Report, Failure> {
     let mut steps = 0_u32;
     let run = conditions.run_watched(&scene, paced(&args.common), |robot, step| {
         let mut left_start = false;
-        follower.run(robot, |_, points| {
+        control::run(robot, &mut follower, conditions.time_limit, |_, _, at| {
             let truth: Pose = step();
             // One scan in ten is enough for a map.
             if steps.is_multiple_of(10) {
-                map.extend(points.iter().map(|&point| start.to_world(point)));
+                map.extend(at.seen.points().map(|point| start.to_world(point)));
             }
             steps += 1;
-            let Some(cell) = scale.cell_of(maze, truth.position()) else { return true };
+            let Some(cell) = scale.cell_of(maze, truth.position()) else { return until(true) };
             visited[maze.index(cell)] = true;
             let middle = (scale.centre(cell) - truth.position()).norm() < 0.3 * scale.cell;
             left_start |= cell != maze.start();
-            middle && (maze.is_goal(cell) || (left_start && cell == maze.start()))
+            until(middle && (maze.is_goal(cell) || (left_start && cell == maze.start())))
         })
     })?;
     let at_goal = place.is_at_goal(run.truth.pose.position());
@@ -70,7 +71,10 @@ pub(crate) fn work(args: &LidarArgs) -> Result<Report, Failure> {
     });
     let walls = NearWalls::new(&scene.world.walls, scale.cell);
     let error = map.iter().map(|&point| walls.distance(point)).sum::<f64>() / map.len().max(1) as f64;
-    let report = run.report(|()| Outcome::verdict(if at_goal { "goal" } else { "returned" }));
+    let report = run.report(|outcome| match outcome {
+        Halt::TimedOut => Outcome::failure("timed_out"),
+        Halt::Stopped => Outcome::verdict(if at_goal { "goal" } else { "returned" }),
+    });
     let lost = run.truth.pose.distance_to(run.odometry.position());
     let report = report
         .field("width", maze.width())

@@ -1,7 +1,7 @@
 use std::num::NonZero;
 use std::path::PathBuf;
 
-use crate::common::{CommonArgs, parse_seconds};
+use crate::common::{CommonArgs, OF_ONE_RUN, parse_seconds};
 
 /// The command line of `micromouse`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -115,4 +115,9 @@ impl Args {
     }
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("campaign", OF_ONE_RUN),
+    ("plan", &["seed", "noise", "time_limit", "quantised", "realtime", "fault", "supervised", "doubled"]),
+    ("mms_run", &["seed", "noise", "time_limit", "quantised", "realtime", "fault", "supervised", "picture", "doubled"]),
+    ("!mms_run", &["patience", "mms_limit"]),
+]);

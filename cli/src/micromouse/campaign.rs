@@ -158,7 +158,8 @@ fn judged(args: &Args, name: &str, file: &MazeFile, seed: u64, run: &Run<()>, to
         side: truth.width().max(truth.height()),
         seed,
         ideal: args.common.noise == 0.0,
-        proved: told.is_some_and(|told| told.exploration.verdict != Verdict::Explored),
+        proved: told
+            .is_some_and(|told| matches!(told.exploration.verdict, Verdict::Optimal | Verdict::Unreachable)),
         contacts: run.truth.contacts,
         wrong_walls: told.map_or(0, |told| {
             let sides = truth.cells().flat_map(|cell| Direction::ALL.map(|side| (cell, side)));

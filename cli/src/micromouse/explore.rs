@@ -106,7 +106,7 @@ pub(crate) fn drive(
         steps.set(steps.get() + 1);
         step();
     };
-    let mut runner = MazeRunner::new(robot, rig, known, scale, parameters)?;
+    let mut runner = MazeRunner::new(robot, rig, known, scale, parameters, conditions.time_limit)?;
     let mut explorer = TwoPhaseExplorer::new(Goals::StepsAndTime(Box::new(runner.planner())));
     let exploration = runner.explore(&mut explorer, &mut watch)?;
     let plan = runner.plan_fast_run();
@@ -121,7 +121,8 @@ pub(crate) fn drive(
 }
 
 fn with_run(report: Report, told: Option<&Told>, truth: Pose, scale: Scale) -> Report {
-    let proved = told.is_some_and(|told| told.exploration.verdict != Verdict::Explored);
+    let proved =
+        told.is_some_and(|told| matches!(told.exploration.verdict, Verdict::Optimal | Verdict::Unreachable));
     let seconds = |time: Option<f64>| time.map(rounded);
     let error = told.map(|told| truth.distance_to(told.pose.position()));
     report

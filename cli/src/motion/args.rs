@@ -1,4 +1,4 @@
-use crate::common::CommonArgs;
+use crate::common::{CommonArgs, OF_ONE_RUN};
 
 /// The command line of `motion`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -44,7 +44,12 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("always", &["goal"]),
+    ("campaign", OF_ONE_RUN),
+    ("campaign", &["time_limit", "still"]),
+    ("!campaign", &["pairs"]),
+]);
 
 fn parse_light(text: &str) -> Result<f64, String> {
     let light = text.parse().ok().filter(|light: &f64| (0.0..=10.0).contains(light));

@@ -1,6 +1,6 @@
 use roverlab::drive::motion_watch::{MotionWatch, WatchParameters};
 use roverlab::geometry::{Twist, angle_difference, math, units};
-use roverlab::io::{self, Display, Picture, Viewport};
+use roverlab::io::{self, Display, Picture, Viewport, control};
 use roverlab::picture::Picture as Drawing;
 
 use super::{Args, campaign, scene};
@@ -52,15 +52,15 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let mut watch = MotionWatch::new(parameters).map_err(Failure::input)?;
     let run = conditions.run(&scene, paced(common), |robot, step| {
         let mut seen = Seen::default();
-        watch.run(robot, seconds, |robot, watch, image| {
+        control::run(robot, &mut watch, seconds, |robot, watch, at| {
             step();
-            show(robot, watch, image)?;
+            show(robot, watch, &at.seen.image)?;
             if let Some(motion) = watch.motion() {
                 seen.images += 1;
                 seen.strongest = seen.strongest.max(motion.largest());
                 motion.strongest.iter().for_each(|&sector| seen.sectors[sector] += 1);
             }
-            Ok(())
+            io::Result::Ok(())
         })?;
         Ok(seen)
     })?;

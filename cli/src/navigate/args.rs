@@ -1,6 +1,6 @@
 use std::num::NonZero;
 
-use crate::common::{CommonArgs, Failure};
+use crate::common::{CommonArgs, Failure, OF_ONE_RUN};
 use roverlab::geometry::units;
 
 /// The command line of `navigate`.
@@ -60,7 +60,11 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("campaign", OF_ONE_RUN),
+    ("campaign", &["unmapped"]),
+    ("!campaign", &["runs", "threads"]),
+]);
 
 impl Args {
     /// Fails if there is no room for the wished clearance.

@@ -1,5 +1,5 @@
 use roverlab::geometry::{Point, Pose};
-use roverlab::io::{self, Clock, Drive, Lidar};
+use roverlab::io::{self, Clock, Drive, Lidar, control};
 use roverlab::nav::{NavigateEvent, NavigateOutcome, NavigateParameters, Navigator};
 use roverlab::world::World;
 
@@ -50,7 +50,7 @@ pub(crate) fn drive<R: Clock + Drive + Lidar + ?Sized>(
     let mut navigator = Navigator::new(known, start, goal, parameters)?;
     let plan = navigator.path().to_vec();
     let mut events = Vec::new();
-    let outcome = navigator.run(robot, time_limit, |navigator, _| {
+    let outcome = control::run(robot, &mut navigator, time_limit, |_, navigator, _| {
         let news = navigator.take_events();
         watch(&news);
         events.extend(news);

@@ -70,7 +70,7 @@ pub(super) fn verdict(outcome: NavigateOutcome) -> &'static str {
         NavigateOutcome::Reached => "goal reached",
         NavigateOutcome::Unreachable => "the goal cannot be reached",
         NavigateOutcome::Stuck => "the robot does not get on",
-        NavigateOutcome::TimedOut => "the time is over",
+        NavigateOutcome::TimedOut | NavigateOutcome::Stopped => "the time is over",
     }
 }
 
@@ -83,7 +83,7 @@ fn report(course: &Course, run: &Run<Arrival>, limit: f64, file: Option<PathBuf>
         NavigateOutcome::Reached => Outcome::verdict("reached"),
         NavigateOutcome::Unreachable => Outcome::verdict("unreachable"),
         NavigateOutcome::Stuck => Outcome::failure("stuck"),
-        NavigateOutcome::TimedOut => Outcome::failure("timed_out"),
+        NavigateOutcome::TimedOut | NavigateOutcome::Stopped => Outcome::failure("timed_out"),
     })
     .field("goal", point_in_mm(course.trip.goal))
     .field("goal_distance_mm", millimetres(run.truth.pose.distance_to(course.trip.goal)))

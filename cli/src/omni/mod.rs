@@ -1,8 +1,8 @@
 //! The command `omni`.
 
-use roverlab::drive::{OmniDriver, OmniParameters, OmniTracker};
+use roverlab::drive::{OmniDriver, OmniOutcome, OmniParameters, OmniTracker};
 use roverlab::geometry::{Point, Pose, Segment, angle_difference, math, units};
-use roverlab::io::{self, Clock, Drive, Motors};
+use roverlab::io::{self, Clock, Drive, Motors, control};
 use roverlab::kinematics::Omni;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, RobotSpec, Scene, World};
@@ -26,7 +26,7 @@ JSON fields:
   max_heading_error_deg       square: largest true change of the heading
   turned_deg                  spin: by how much the robot has truly turned in all
   time_limit_s, picture
-Outcomes: reached, timed_out, collided, failed."
+Outcomes: reached, missed, timed_out, collided, failed."
 )]
 pub(crate) struct Args {
     /// What to drive.
@@ -45,7 +45,9 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("task=square", &["spin"]),
+]);
 
 /// A task of section 7.4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -72,6 +74,8 @@ pub(crate) struct Options {
     pub(crate) route: Vec<Point>,
     pub(crate) parameters: OmniParameters,
     pub(crate) driver: OmniDriver,
+    /// Simulated seconds.
+    pub(crate) time_limit: f64,
 }
 
 /// Drives a robot along a route. `watch` is called after each step.
@@ -79,9 +83,9 @@ pub(crate) fn drive<R: Clock + Drive + Motors + ?Sized>(
     robot: &mut R,
     options: &Options,
     mut watch: impl FnMut(),
-) -> io::Result<()> {
+) -> io::Result<OmniOutcome> {
     let tracker = OmniTracker::new(robot.pose()?, &options.route, options.parameters)?;
-    tracker.run(robot, &options.driver, |_, _| watch())
+    control::run(robot, &mut tracker.by(options.driver), options.time_limit, |_, _, _| watch())
 }
 
 /// The work of the command.
@@ -93,10 +97,10 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let start = trip.start();
     let route = route(args, start.to_local(trip.goal));
     let spin = if args.task == Task::Spin { units::from_deg(args.spin) } else { 0.0 };
-    let options = Options { parameters: OmniParameters { spin, ..OmniParameters::default() }, driver, route };
-    let tracker =
-        OmniTracker::new(Pose::default(), &options.route, options.parameters).map_err(Failure::input)?;
+    let parameters = OmniParameters { spin, ..OmniParameters::default() };
+    let tracker = OmniTracker::new(Pose::default(), &route, parameters).map_err(Failure::input)?;
     let conditions = Conditions::new(common, 10.0 + 1.5 * tracker.duration())?;
+    let options = Options { parameters, driver, route, time_limit: conditions.time_limit };
     let run = conditions.run(&trip.scene, paced(common), |robot, step| drive(robot, &options, step))?;
     let way: Vec<Point> = std::iter::once(start.position())
         .chain(options.route.iter().map(|&point| start.to_world(point)))
@@ -155,8 +159,12 @@ fn driver(common: &CommonArgs, spec: &RobotSpec) -> Result<OmniDriver, Failure> 
     Ok(OmniDriver { kinematics, full_speed: 0.5 * wheel_diameter * max_wheel_speed })
 }
 
-fn report(args: &Args, run: &Run<()>, way: &[Point]) -> Report {
-    let report = run.report(|()| Outcome::verdict("reached"));
+fn report(args: &Args, run: &Run<OmniOutcome>, way: &[Point]) -> Report {
+    let report = run.report(|outcome| match outcome {
+        OmniOutcome::Reached => Outcome::verdict("reached"),
+        OmniOutcome::Missed => Outcome::failure("missed"),
+        _ => Outcome::failure("timed_out"),
+    });
     let goal = way[way.len() - 1];
     let deviation = run.positions().map(|place| distance_to_way(place, way)).fold(0.0, f64::max);
     let report = report
@@ -185,7 +193,13 @@ fn distance_to_way(place: Point, way: &[Point]) -> f64 {
 }
 
 /// The way, where the robot was, and how it stood there.
-fn picture(args: &Args, trip: &Trip, run: &Run<()>, way: &[Point], conditions: &Conditions) -> Picture {
+fn picture(
+    args: &Args,
+    trip: &Trip,
+    run: &Run<OmniOutcome>,
+    way: &[Point],
+    conditions: &Conditions,
+) -> Picture {
     let outline = trip.spec().footprint;
     let mut picture = Picture::new(&trip.scene.world);
     picture.title(match args.task {
@@ -211,7 +225,7 @@ fn picture(args: &Args, trip: &Trip, run: &Run<()>, way: &[Point], conditions: &
 }
 
 /// Poses of the run that are some way apart.
-fn stations(run: &Run<()>) -> Vec<Pose> {
+fn stations(run: &Run<OmniOutcome>) -> Vec<Pose> {
     const APART: f64 = 0.33;
     let mut stations = vec![run.true_path[0]];
     for &pose in &run.true_path {

@@ -54,7 +54,7 @@ pub(crate) struct Args {
     pub(crate) plain: PlainArgs,
 }
 
-crate::common::shares_options!(Args, plain: PlainArgs);
+crate::common::shares_options!(Args, plain: PlainArgs, unheeded: [("map", &["seed"])]);
 
 fn cell(text: &str) -> Result<GridCell, String> {
     let numbers: Option<Vec<usize>> = text.split(',').map(|number| number.trim().parse().ok()).collect();

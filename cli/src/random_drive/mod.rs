@@ -2,14 +2,14 @@
 
 use std::cell::Cell;
 use std::f64::consts::PI;
-use std::ops::ControlFlow;
 use std::rc::Rc;
 use std::sync::Arc;
 
 use roverlab::drive::{CoverageMap, CoverageParameters, RandomDrive, RandomDriveParameters};
 use roverlab::geometry::{Point, Pose, units};
+use roverlab::io::RobotIo;
+use roverlab::io::control::{self, Behaviour};
 use roverlab::io::sim::SimOptions;
-use roverlab::io::{LidarScan, RobotIo};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
 use roverlab::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
@@ -152,7 +152,7 @@ fn alone(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
     let conditions = Conditions::new(&args.common, seconds)?;
     let mut drive = behaviour(scene, 0, args.common.seed)?;
     let run = conditions.run(scene, paced(&args.common), |robot, step| {
-        drive.run(robot, seconds, |_| step())?;
+        control::run(robot, &mut drive, seconds, |_, _, _| step())?;
         Ok(drive.turns())
     })?;
     Ok(Outing {
@@ -175,14 +175,12 @@ fn together(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure>
     let mut fleet = common.troop(scene, options)?;
     for (robot, turns) in turns.iter().cloned().enumerate() {
         let mut drive = behaviour(scene, robot, common.seed)?;
-        let (mut scan, mut points) = (LidarScan::default(), Vec::new());
-        let period = RandomDriveParameters::default().period;
+        let (period, mut run) =
+            (drive.period(), control::Run::new(&drive, f64::INFINITY).map_err(Failure::input)?);
         let step = move |robot: &mut dyn RobotIo| {
-            RandomDrive::look(robot, &mut scan, &mut points)?;
-            let twist = drive.step(robot.pose()?, &points)?;
-            robot.set_speed(twist)?;
+            let flow = run.step(robot, &mut drive)?;
             turns.set(drive.turns());
-            Ok(ControlFlow::Continue(()))
+            Ok(flow.map_break(|_| ()))
         };
         fleet.control(robot, period, Box::new(step))?;
     }

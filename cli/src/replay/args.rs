@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use crate::common::parse_picture;
+use crate::common::{Heeds, Unheeded, parse_picture};
 
 /// The command line of `replay`.
 #[derive(Debug, clap::Parser)]
@@ -22,6 +22,10 @@ pub(crate) struct Args {
     /// Print exactly one JSON object on standard output, and nothing else there.
     #[arg(long, global = true)]
     pub(crate) json: bool,
+}
+
+impl Heeds for Args {
+    const UNHEEDED: &'static [Unheeded] = &[];
 }
 
 /// What to do.

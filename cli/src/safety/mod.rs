@@ -10,7 +10,7 @@ use roverlab::picture::{Picture, Style};
 use roverlab::world::Colour;
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
-use crate::cones::{Course, colour};
+use crate::cones::{Course, check_race, colour};
 use crew::Event;
 use drive::{Driven, Stopped};
 
@@ -54,6 +54,7 @@ crate::common::shares_options!(Args, common: CommonArgs);
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
     common.check_picture()?;
+    check_race(common)?;
     if common.supervised {
         return Err(Failure::input(
             "--supervised: here the car always is; expected a command line without it",

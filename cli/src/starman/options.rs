@@ -147,7 +147,10 @@ pub(crate) enum Cross {
     OnePoint,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("always", &["noise", "time_limit", "quantised", "realtime"]),
+    ("steps", &["generations", "init", "selection", "crossover", "mutations"]),
+]);
 
 impl Args {
     pub(crate) fn trials(&self) -> Trials {

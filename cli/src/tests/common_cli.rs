@@ -131,6 +131,7 @@ fn wrong_values_are_named_with_what_was_expected() {
         (&["--picture", "run.gif"], &["--picture", "run.gif", ".svg or .png"]),
         (&["--record", "no/such/run.mcap"], &["--record no/such/run.mcap", "expected one that exists"]),
         (&["--replay", "no-such.mcap"], &["--replay no-such.mcap"]),
+        (&["--fault", "stuck@-1"], &["--fault", "time is -1"]),
         (&["--robios", "libeyebot.so"], &["libeyebot.so", "no library that can be loaded"]),
         (&["--robios", "libeyebot.so", "--replay", "no-such.mcap"], &["--replay"]),
     ];
@@ -207,6 +208,13 @@ fn a_mistyped_command_is_told_what_was_meant() {
     let (status, out, err) = said("systems", &[]);
     assert_eq!((status, err.as_str(), out.lines().count()), (0, "", COMMANDS.len()));
     assert_eq!(said("a-to-b", &["--json"]), said("a_to_b", &["--json"]));
+    let (status, out, err) = said("replay", &[]);
+    assert!(status == 2 && out.is_empty() && err.contains("subcommands: check, recover"), "{err}");
+    let (status, out, err) = said("--version", &[]);
+    assert_eq!(
+        (status, err.as_str(), out.as_str()),
+        (0, "", concat!("roverlab ", env!("CARGO_PKG_VERSION"), "\n"))
+    );
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod distbug_campaign;
 mod driving;
 mod evolution;
 mod grids;
+mod heed;
 mod lidar;
 mod maze_drives;
 mod mazes;

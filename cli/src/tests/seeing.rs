@@ -96,7 +96,10 @@ fn wrong_images_are_refused_by_name() {
         (vec!["--kernel", "saturation", "--smooth", "5"], "--smooth"),
         (vec!["--kernel", "threshold", "--threshold", "300"], "--threshold"),
         (vec!["--kernel", "hue", "--exact", "--definition", "opencv"], "--exact"),
-        (vec!["--hue-low", "200", "--hue-high", "10", "--definition", "opencv"], "--hue-low"),
+        (
+            vec!["--kernel", "hue_match", "--hue-low", "200", "--hue-high", "10", "--definition", "opencv"],
+            "--hue-low",
+        ),
         (vec!["--kernel", "canny", "--low", "200"], "--low"),
         (vec!["--kernel", "hough", "--rho", "-1"], "--rho"),
         (vec!["--low", "-5"], "--low"),

@@ -1,6 +1,6 @@
 use roverlab::drive::WallSide;
 
-use crate::common::CommonArgs;
+use crate::common::{CommonArgs, OF_ONE_RUN};
 
 /// The command line of `wall-following`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -60,7 +60,10 @@ pub(crate) struct Args {
     pub(crate) common: CommonArgs,
 }
 
-crate::common::shares_options!(Args, common: CommonArgs);
+crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
+    ("campaign", OF_ONE_RUN),
+    ("!campaign", &["rooms"]),
+]);
 
 /// A controller by its name on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -1,10 +1,11 @@
 use std::ops::ControlFlow;
 
 use roverlab::drive::{
-    FollowsWalls, LidarWallFollower, LidarWallParameters, PidWallFollower, PidWallParameters,
-    TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallOutcome, WallSensors, WallSide,
-    run_along_wall,
+    AlongWall, FollowsWalls, LidarWallFollower, LidarWallParameters, PidWallFollower, PidWallParameters,
+    TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallOutcome, WallReading, WallSensors,
+    WallSide,
 };
+use roverlab::io::control::run;
 use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar};
 
 use super::Controller;
@@ -90,13 +91,13 @@ pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
     }
 }
 
-fn walk<R: Clock + Drive + ?Sized, C: FollowsWalls<R>>(
+fn walk<R: Clock + Drive + ?Sized, C: FollowsWalls<Observation: WallReading<R>>>(
     robot: &mut R,
     controller: &mut C,
     time_limit: f64,
     watch: &mut dyn FnMut(Beside) -> ControlFlow<()>,
 ) -> io::Result<WallOutcome> {
-    run_along_wall(robot, controller, time_limit, |_, controller| {
-        watch(Beside { wall: controller.is_beside_wall(), side: controller.wall_side() })
+    run(robot, &mut AlongWall::new(controller), time_limit, |_, along, _| {
+        watch(Beside { wall: along.controller.is_beside_wall(), side: along.controller.wall_side() })
     })
 }

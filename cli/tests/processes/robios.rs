@@ -58,7 +58,12 @@ fn compare(words: &[&str]) {
     let mut through = run(&["--robios", &library, "--record", &file("library.mcap")]);
     through
         .env("ROBIOS_WORLD", folder.join("scene.sim"))
-        .envs([("ROBIOS_SEED", "3"), ("ROBIOS_NOISE", "1"), ("ROBIOS_KEYS", "NONE")])
+        .envs([
+            ("ROBIOS_SEED", "3"),
+            ("ROBIOS_NOISE", "1"),
+            ("ROBIOS_KEYS", "NONE"),
+            ("ROBIOS_CALL_COSTS", "free"),
+        ])
         .env("ROBIOS_TIME_LIMIT", "100000");
     drives(through);
     let library = Log::read(std::fs::read(folder.join("library.mcap")).unwrap()).unwrap();

@@ -16,7 +16,7 @@ extern "C" fn ring() {
 
 /// Sets the alarm clock, where there is one that is virtual: to seconds, and a period. Tells what it was set to.
 fn set(times: (f64, f64)) -> Option<(f64, f64)> {
-    let earlier = if is_virtual() { enter(|robios| Ok(robios.set_alarm(times, ring))) } else { None };
+    let earlier = if is_virtual() { enter("time", |robios| Ok(robios.set_alarm(times, ring))) } else { None };
     if earlier.is_some() {
         super::runtime::watch_program();
     }
@@ -82,7 +82,7 @@ type Get = unsafe extern "C" fn(c_int, *mut itimerval) -> c_int;
 extern "C" fn getitimer(which: c_int, now: *mut itimerval) -> c_int {
     if which == libc::ITIMER_REAL
         && is_virtual()
-        && let Some(times) = enter(|robios| Ok(robios.alarm()))
+        && let Some(times) = enter("time", |robios| Ok(robios.alarm()))
         && output(now, &[setting(times)])
     {
         return 0;

@@ -21,7 +21,7 @@ fn publish([width, height, pixels, size]: [&AtomicI32; 4], (w, h): (usize, usize
 
 #[unsafe(no_mangle)]
 extern "C" fn CAMInit(resolution: c_int) -> c_int {
-    let size = enter(|robios| robios.cam_init(resolution));
+    let size = enter("CAMInit", |robios| robios.cam_init(resolution));
     if let Some(size) = size {
         publish([&CAMWIDTH, &CAMHEIGHT, &CAMPIXELS, &CAMSIZE], size);
         publish([&IP_WIDTH, &IP_HEIGHT, &IP_PIXELS, &IP_SIZE], size);
@@ -32,22 +32,22 @@ extern "C" fn CAMInit(resolution: c_int) -> c_int {
 
 #[unsafe(no_mangle)]
 extern "C" fn CAMRelease() -> c_int {
-    code(enter(|robios| robios.cam_release()))
+    code(enter("CAMRelease", |robios| robios.cam_release()))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn CAMGet(image: *mut u8) -> c_int {
-    code(enter(|robios| robios.cam_get()).filter(|data| output(image, data)).map(|_| ()))
+    code(enter("CAMGet", |robios| robios.cam_get()).filter(|data| output(image, data)).map(|_| ()))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn CAMGetGray(image: *mut u8) -> c_int {
-    code(enter(|robios| robios.cam_get_gray()).filter(|data| output(image, data)).map(|_| ()))
+    code(enter("CAMGetGray", |robios| robios.cam_get_gray()).filter(|data| output(image, data)).map(|_| ()))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn IPSetSize(resolution: c_int) -> c_int {
-    let size = enter(|robios| robios.ip_set_size(resolution));
+    let size = enter("IPSetSize", |robios| robios.ip_set_size(resolution));
     if let Some(size) = size {
         publish([&IP_WIDTH, &IP_HEIGHT, &IP_PIXELS, &IP_SIZE], size);
     }

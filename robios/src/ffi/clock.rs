@@ -25,7 +25,7 @@ static STARTED_BY_RUNNER: AtomicU8 = AtomicU8::new(0);
 fn started_by_runner() -> bool {
     match STARTED_BY_RUNNER.load(Ordering::Relaxed) {
         0 => {
-            let yes = std::env::var_os(names::REPORT).is_some();
+            let yes = std::env::var_os(names::MEMORY).is_some();
             STARTED_BY_RUNNER.store(if yes { 2 } else { 1 }, Ordering::Relaxed);
             yes
         }
@@ -42,7 +42,7 @@ fn now() -> Option<f64> {
     if !is_virtual() {
         return None;
     }
-    enter(|robios| {
+    enter("time", |robios| {
         robios.charge()?;
         Ok(robios.now())
     })
@@ -50,7 +50,7 @@ fn now() -> Option<f64> {
 
 /// Sleeps by the program's clock. `None` if there is none.
 fn sleep_virtually(seconds: f64) -> Option<()> {
-    if is_virtual() { sleep_for(seconds) } else { None }
+    if is_virtual() { sleep_for("time", seconds) } else { None }
 }
 
 fn seconds(time: timespec) -> Option<f64> {

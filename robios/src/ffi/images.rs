@@ -10,8 +10,8 @@ use crate::robios::images::{self, Pnm, Size};
 use crate::screen::colour;
 
 /// Columns and rows of the images.
-fn size() -> Option<Size> {
-    enter(|robios| robios.charge().map(|()| robios.image_size()))
+fn size(call: &'static str) -> Option<Size> {
+    enter(call, |robios| robios.charge().map(|()| robios.image_size()))
 }
 
 /// Copies an image of so many bytes a pixel.
@@ -20,8 +20,13 @@ fn copied(image: *const u8, channels: usize, (width, height): Size) -> Option<Ve
 }
 
 /// A function from one image to another. Missing memory means that nothing happens.
-fn map(source: *const u8, from: usize, target: *mut u8, to: usize, filter: fn(&[u8], &mut [u8], Size)) {
-    let Some(size) = size() else { return };
+fn map(
+    call: &'static str,
+    (source, from): (*const u8, usize),
+    (target, to): (*mut u8, usize),
+    filter: fn(&[u8], &mut [u8], Size),
+) {
+    let Some(size) = size(call) else { return };
     let Some(image) = copied(source, from, size) else { return };
     let mut result = vec![0; size.0 * size.1 * to];
     filter(&image, &mut result, size);
@@ -30,27 +35,27 @@ fn map(source: *const u8, from: usize, target: *mut u8, to: usize, filter: fn(&[
 
 #[unsafe(no_mangle)]
 extern "C" fn IPLaplace(gray: *const u8, edges: *mut u8) {
-    map(gray, 1, edges, 1, images::laplace);
+    map("IPLaplace", (gray, 1), (edges, 1), images::laplace);
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn IPSobel(gray: *const u8, edges: *mut u8) {
-    map(gray, 1, edges, 1, images::sobel);
+    map("IPSobel", (gray, 1), (edges, 1), images::sobel);
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn IPCol2Gray(image: *const u8, gray: *mut u8) {
-    map(image, 3, gray, 1, images::gray);
+    map("IPCol2Gray", (image, 3), (gray, 1), images::gray);
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn IPGray2Col(gray: *const u8, image: *mut u8) {
-    map(gray, 1, image, 3, images::colour);
+    map("IPGray2Col", (gray, 1), (image, 3), images::colour);
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn IPRGB2Col(red: *const u8, green: *const u8, blue: *const u8, image: *mut u8) {
-    let Some(size) = size() else { return };
+    let Some(size) = size("IPRGB2Col") else { return };
     let [Some(r), Some(g), Some(b)] = [red, green, blue].map(|plane| copied(plane, 1, size)) else { return };
     let mut result = vec![0; 3 * size.0 * size.1];
     images::merge([&r, &g, &b], &mut result);
@@ -59,7 +64,7 @@ extern "C" fn IPRGB2Col(red: *const u8, green: *const u8, blue: *const u8, image
 
 #[unsafe(no_mangle)]
 extern "C" fn IPCol2HSI(image: *const u8, hues: *mut u8, saturations: *mut u8, intensities: *mut u8) {
-    let Some(size) = size() else { return };
+    let Some(size) = size("IPCol2HSI") else { return };
     let Some(image) = copied(image, 3, size) else { return };
     let mut planes = [(); 3].map(|()| vec![0; size.0 * size.1]);
     let [h, s, i] = &mut planes;
@@ -71,7 +76,7 @@ extern "C" fn IPCol2HSI(image: *const u8, hues: *mut u8, saturations: *mut u8, i
 
 #[unsafe(no_mangle)]
 extern "C" fn IPOverlay(base: *const u8, top: *const u8, image: *mut u8) {
-    let Some(size) = size() else { return };
+    let Some(size) = size("IPOverlay") else { return };
     let [Some(base), Some(top)] = [base, top].map(|image| copied(image, 3, size)) else { return };
     let mut result = vec![0; 3 * size.0 * size.1];
     images::overlay(&base, &top, &mut result, size);
@@ -80,7 +85,7 @@ extern "C" fn IPOverlay(base: *const u8, top: *const u8, image: *mut u8) {
 
 #[unsafe(no_mangle)]
 extern "C" fn IPOverlayGray(base: *const u8, marks: *const u8, mark: c_int, image: *mut u8) {
-    let Some(size) = size() else { return };
+    let Some(size) = size("IPOverlayGray") else { return };
     let [Some(base), Some(marks)] = [base, marks].map(|image| copied(image, 1, size)) else { return };
     let mut result = vec![0; 3 * size.0 * size.1];
     images::overlay_gray(&base, &marks, colour(mark), &mut result, size);
@@ -90,32 +95,35 @@ extern "C" fn IPOverlayGray(base: *const u8, marks: *const u8, mark: c_int, imag
 /// Returns 1 for an image of black (1) and white (0), 2 for shades of gray, 3 for colours, -1 if it cannot be read.
 #[unsafe(no_mangle)]
 extern "C" fn IPReadFile(name: *const c_char, image: *mut u8) -> c_int {
-    let Some((name, size)) = text(name).zip(size()) else { return -1 };
+    let Some((name, size)) = text(name).zip(size("IPReadFile")) else { return -1 };
     let (kind, data) = match images::read_file(&PathBuf::from(name), size) {
         Ok(Pnm::Binary(data)) => (1, data),
         Ok(Pnm::Gray(data)) => (2, data),
         Ok(Pnm::Colour(data)) => (3, data),
-        Err(_) => return -1,
+        Err(error) => {
+            enter("IPReadFile", |_| Err::<(), _>(error));
+            return -1;
+        }
     };
     if output(image, &data) { kind } else { -1 }
 }
 
-fn write(name: *const c_char, image: *const u8, channels: usize) -> c_int {
-    let written = text(name).zip(size()).and_then(|(name, size)| {
+fn write(call: &'static str, name: *const c_char, image: *const u8, channels: usize) -> c_int {
+    let written = text(name).zip(size(call)).and_then(|(name, size)| {
         let data = copied(image, channels, size)?;
-        images::write_file(&PathBuf::from(name), &data, size).ok()
+        enter(call, |_| images::write_file(&PathBuf::from(name), &data, size))
     });
     code(written)
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn IPWriteFile(name: *const c_char, image: *const u8) -> c_int {
-    write(name, image, 3)
+    write("IPWriteFile", name, image, 3)
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn IPWriteFileGray(name: *const c_char, gray: *const u8) -> c_int {
-    write(name, gray, 1)
+    write("IPWriteFileGray", name, gray, 1)
 }
 
 #[unsafe(no_mangle)]

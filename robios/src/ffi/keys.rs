@@ -6,12 +6,12 @@ use super::sleep::wait_for;
 
 #[unsafe(no_mangle)]
 extern "C" fn KEYGet() -> c_int {
-    wait_for(|robios| robios.key_wait(u32::MAX)).unwrap_or(0) as c_int
+    wait_for("KEYGet", |robios| robios.key_wait(u32::MAX)).unwrap_or(0) as c_int
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn KEYRead() -> c_int {
-    enter(|robios| robios.key_read()).unwrap_or(0)
+    enter("KEYRead", |robios| robios.key_read()).unwrap_or(0)
 }
 
 /// Returns the key.
@@ -19,7 +19,7 @@ extern "C" fn KEYRead() -> c_int {
 extern "C" fn KEYWait(key: c_int) -> c_int {
     let mask = key as u32;
     loop {
-        match wait_for(|robios| robios.key_wait(mask)) {
+        match wait_for("KEYWait", |robios| robios.key_wait(mask)) {
             Some(pressed) if pressed & mask == 0 => {}
             pressed => return pressed.unwrap_or(0) as c_int,
         }
@@ -28,31 +28,31 @@ extern "C" fn KEYWait(key: c_int) -> c_int {
 
 #[unsafe(no_mangle)]
 extern "C" fn KEYGetXY(x: *mut c_int, y: *mut c_int) -> c_int {
-    let place = wait_for(|robios| robios.key_wait_xy());
+    let place = wait_for("KEYGetXY", |robios| robios.key_wait_xy());
     code(place.filter(|&(px, py)| scatter([x, y], [px, py])).map(|_| ()))
 }
 
 /// Without a touch the coordinates are 0, and the code is 1.
 #[unsafe(no_mangle)]
 extern "C" fn KEYReadXY(x: *mut c_int, y: *mut c_int) -> c_int {
-    let place = enter(|robios| robios.key_read_xy()).flatten();
+    let place = enter("KEYReadXY", |robios| robios.key_read_xy()).flatten();
     let (px, py) = place.unwrap_or((0, 0));
     code(place.filter(|_| !x.is_null() && !y.is_null()).map(|_| ())) | c_int::from(!scatter([x, y], [px, py]))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn IRTVGet() -> c_int {
-    wait_for(|robios| robios.irtv_wait()).unwrap_or(0)
+    wait_for("IRTVGet", |robios| robios.irtv_wait()).unwrap_or(0)
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn IRTVRead() -> c_int {
-    enter(|robios| robios.irtv_read()).unwrap_or(0)
+    enter("IRTVRead", |robios| robios.irtv_read()).unwrap_or(0)
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn IRTVFlush() -> c_int {
-    code(enter(|robios| {
+    code(enter("IRTVFlush", |robios| {
         while robios.irtv_read()? != 0 {}
         Ok(())
     }))
@@ -60,5 +60,5 @@ extern "C" fn IRTVFlush() -> c_int {
 
 #[unsafe(no_mangle)]
 extern "C" fn IRTVGetStatus() -> c_int {
-    enter(|robios| robios.charge().map(|()| 1)).unwrap_or(0)
+    enter("IRTVGetStatus", |robios| robios.charge().map(|()| 1)).unwrap_or(0)
 }

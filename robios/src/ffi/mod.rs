@@ -13,6 +13,7 @@ mod alarm;
 mod camera;
 #[cfg(target_os = "linux")]
 mod clock;
+mod computing;
 mod display;
 mod drive;
 mod globals;

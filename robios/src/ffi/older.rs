@@ -28,7 +28,7 @@ extern "C" fn VWDriveWait() -> c_int {
 /// The display needs no beginning.
 #[unsafe(no_mangle)]
 extern "C" fn LCDInit() -> c_int {
-    code(enter(|robios| robios.charge()))
+    code(enter("LCDInit", |robios| robios.charge()))
 }
 
 /// No display reaches further than this, in pixels.
@@ -40,7 +40,7 @@ fn near(coordinate: c_int) -> c_int {
 
 #[unsafe(no_mangle)]
 extern "C" fn LCDPixelInvert(x: c_int, y: c_int) -> c_int {
-    code(enter(|robios| robios.lcd_invert([(x, y)])))
+    code(enter("LCDPixelInvert", |robios| robios.lcd_invert([(x, y)])))
 }
 
 #[unsafe(no_mangle)]
@@ -48,7 +48,9 @@ extern "C" fn LCDLineInvert(x1: c_int, y1: c_int, x2: c_int, y2: c_int) -> c_int
     let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(near);
     let steps = (x2 - x1).abs().max((y2 - y1).abs()).max(1);
     let at = |from: c_int, to: c_int, step: c_int| from + (2 * (to - from) * step + steps) / (2 * steps);
-    code(enter(|robios| robios.lcd_invert((0..=steps).map(|step| (at(x1, x2, step), at(y1, y2, step))))))
+    code(enter("LCDLineInvert", |robios| {
+        robios.lcd_invert((0..=steps).map(|step| (at(x1, x2, step), at(y1, y2, step))))
+    }))
 }
 
 #[unsafe(no_mangle)]
@@ -56,7 +58,7 @@ extern "C" fn LCDAreaInvert(x1: c_int, y1: c_int, x2: c_int, y2: c_int) -> c_int
     let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(near);
     let rows = y1.min(y2)..=y1.max(y2);
     let pixels = rows.flat_map(|y| (x1.min(x2)..=x1.max(x2)).map(move |x| (x, y)));
-    code(enter(|robios| robios.lcd_invert(pixels)))
+    code(enter("LCDAreaInvert", |robios| robios.lcd_invert(pixels)))
 }
 
 #[unsafe(no_mangle)]
@@ -64,7 +66,7 @@ extern "C" fn LCDCircleInvert(x: c_int, y: c_int, size: c_int) -> c_int {
     let (x, y, radius) = (near(x), near(y), near(size).abs());
     let square = (-radius..=radius).flat_map(|dy| (-radius..=radius).map(move |dx| (dx, dy)));
     let disc = square.filter(|(dx, dy)| dx * dx + dy * dy <= radius * radius);
-    code(enter(|robios| robios.lcd_invert(disc.map(|(dx, dy)| (x + dx, y + dy)))))
+    code(enter("LCDCircleInvert", |robios| robios.lcd_invert(disc.map(|(dx, dy)| (x + dx, y + dy)))))
 }
 
 #[unsafe(no_mangle)]
@@ -85,12 +87,12 @@ extern "C" fn AUCheckPlay() -> c_int {
 /// There is nothing to hear, so nothing is written.
 #[unsafe(no_mangle)]
 extern "C" fn AURecord(_buffer: *mut u8, _time: c_int, _frequency: c_long) -> c_int {
-    code(enter(|robios| robios.charge()))
+    code(enter("AURecord", |robios| robios.charge()))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn AUCheckRecord() -> c_int {
-    c_int::from(enter(|robios| robios.charge()).is_some())
+    c_int::from(enter("AUCheckRecord", |robios| robios.charge()).is_some())
 }
 
 /// A thread.
@@ -105,13 +107,13 @@ type Body = extern "C" fn(*mut c_void) -> *mut c_void;
 
 #[unsafe(no_mangle)]
 extern "C" fn MTInit() -> c_int {
-    code(enter(|robios| robios.charge()))
+    code(enter("MTInit", |robios| robios.charge()))
 }
 
 /// Sleeps for hundredths of a second.
 #[unsafe(no_mangle)]
 extern "C" fn MTSleep(time: c_int) -> c_int {
-    code(sleep_for(f64::from(time.max(0)) / 100.0))
+    code(sleep_for("MTSleep", f64::from(time.max(0)) / 100.0))
 }
 
 /// Starts a thread, which gets its identifier as its argument.
@@ -155,7 +157,7 @@ extern "C" fn SEMAInit(semaphore: *mut sem_t, value: c_int) -> c_int {
 extern "C" fn SEMALock(semaphore: *mut sem_t) -> c_int {
     // SAFETY: the pointer is not null, and points to a semaphore that SEMAInit has made.
     while !semaphore.is_null() && unsafe { libc::sem_trywait(semaphore) } != 0 {
-        if sleep_for(roverlab::io::sim::TICK).is_none() {
+        if sleep_for("", roverlab::io::sim::TICK).is_none() {
             return 1;
         }
     }

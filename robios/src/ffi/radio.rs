@@ -8,22 +8,22 @@ use super::sleep::{may_block, sleep_for};
 
 #[unsafe(no_mangle)]
 extern "C" fn RADIOInit() -> c_int {
-    code(enter(|robios| robios.charge()))
+    code(enter("RADIOInit", |robios| robios.charge()))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn RADIORelease() -> c_int {
-    code(enter(|robios| robios.charge()))
+    code(enter("RADIORelease", |robios| robios.charge()))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn RADIOGetID() -> c_int {
-    enter(|robios| robios.charge().map(|()| robios.identity().id as i32)).unwrap_or(0)
+    enter("RADIOGetID", |robios| robios.charge().map(|()| robios.identity().id as i32)).unwrap_or(0)
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn RADIOSend(to: c_int, message: *const c_char) -> c_int {
-    code(bytes(message).and_then(|message| enter(|robios| robios.radio_send(to, message))))
+    code(bytes(message).and_then(|message| enter("RADIOSend", |robios| robios.radio_send(to, message))))
 }
 
 /// Seconds that one request waits; it is asked again until there is a message.
@@ -35,9 +35,9 @@ extern "C" fn RADIOReceive(from: *mut c_int, buffer: *mut c_char, size: c_int) -
     let Some(room) = usize::try_from(size).ok().filter(|_| !buffer.is_null()) else { return 0 };
     let message = loop {
         let blocks = may_block();
-        match enter(|robios| robios.radio_receive(if blocks { PATIENCE } else { 0.0 })) {
+        match enter("RADIOReceive", |robios| robios.radio_receive(if blocks { PATIENCE } else { 0.0 })) {
             Some(Some(message)) => break message,
-            Some(None) if blocks || sleep_for(TICK).is_some() => {}
+            Some(None) if blocks || sleep_for("", TICK).is_some() => {}
             _ => return 0,
         }
     };
@@ -54,13 +54,13 @@ extern "C" fn RADIOReceive(from: *mut c_int, buffer: *mut c_char, size: c_int) -
 
 #[unsafe(no_mangle)]
 extern "C" fn RADIOCheck() -> c_int {
-    c_int::from(enter(|robios| robios.radio_check()).flatten().is_some())
+    c_int::from(enter("RADIOCheck", |robios| robios.radio_check()).flatten().is_some())
 }
 
 /// The form with an argument, to which the header sends calls that have one.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_RADIOCheckFrom(from: *mut c_int) -> c_int {
-    let found = enter(|robios| robios.radio_check()).flatten();
+    let found = enter("RADIOCheck", |robios| robios.radio_check()).flatten();
     if let Some(id) = found {
         output(from, &[id as c_int]);
     }
@@ -69,7 +69,8 @@ extern "C" fn eyesim_RADIOCheckFrom(from: *mut c_int) -> c_int {
 
 #[unsafe(no_mangle)]
 extern "C" fn RADIOStatus(ids: *mut c_int) -> c_int {
-    let numbers = enter(|robios| robios.charge().and_then(|()| robios.robot_numbers())).unwrap_or_default();
+    let numbers = enter("RADIOStatus", |robios| robios.charge().and_then(|()| robios.robot_numbers()))
+        .unwrap_or_default();
     let numbers: Vec<c_int> = numbers.into_iter().map(|number| number as c_int).collect();
     if output(ids, &numbers) { numbers.len() as c_int } else { 0 }
 }

@@ -7,7 +7,7 @@ use std::os::unix::net::UnixStream;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError, TryLockError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, TryLockError};
 use std::time::Duration;
 
 use roverlab::io::{ErrorKind, Result};
@@ -15,10 +15,12 @@ use roverlab::io::{ErrorKind, Result};
 use crate::keyboard::Keyboard;
 use crate::keys::{KeyDesk, KeyPlan, Typed};
 use crate::link::{Link, Remote, own_world};
+use crate::memory::Memory;
 use crate::plan::{Plan, names};
 use crate::report::{Report, ReportFile, Stage};
 use crate::robios::{Outlets, Robios};
 
+use super::computing;
 use super::globals::publish_points;
 use super::real_time::{nap, real_seconds};
 use super::threads::{Inside, be_present, count_call, is_ours, own};
@@ -41,14 +43,22 @@ static IN_TIMER: AtomicBool = AtomicBool::new(false);
 const ENDED: c_int = 124;
 
 /// Calls the robot. `None` if there is none, or if it cannot do what is asked. Ends the program when its time is over.
-pub(super) fn enter<T>(call: impl FnOnce(&mut Robios) -> Result<T>) -> Option<T> {
+/// The call's name says what it takes, and stands in the report.
+pub(super) fn enter<T>(name: &'static str, call: impl FnOnce(&mut Robios) -> Result<T>) -> Option<T> {
     count_call();
-    enter_quietly(call)
+    enter_as(name, call)
 }
 
 /// As [`enter`], for threads that sleep.
 pub(super) fn enter_quietly<T>(call: impl FnOnce(&mut Robios) -> Result<T>) -> Option<T> {
+    enter_as("", call)
+}
+
+fn enter_as<T>(name: &'static str, call: impl FnOnce(&mut Robios) -> Result<T>) -> Option<T> {
     if !is_ours() {
+        if let Some(memory) = memory() {
+            memory.note_fork();
+        }
         return None;
     }
     let inside = Inside::new()?;
@@ -57,18 +67,31 @@ pub(super) fn enter_quietly<T>(call: impl FnOnce(&mut Robios) -> Result<T>) -> O
     if let State::Unborn = *state {
         *state = born();
     }
-    serve(state, inside, call)
+    serve(state, inside, name, call)
 }
 
 /// Calls the robot behind the lock, and what is due of the timers' functions without it.
 fn serve<T>(
     mut state: MutexGuard<'static, State>,
     inside: Inside,
+    name: &'static str,
     call: impl FnOnce(&mut Robios) -> Result<T>,
 ) -> Option<T> {
     let State::Alive(robios) = &mut *state else { return None };
     // A panic would be a mistake of this library. The robot is as consistent after it as before each step.
-    let answer = catch_unwind(AssertUnwindSafe(|| call(robios))).ok();
+    let answer = catch_unwind(AssertUnwindSafe(|| {
+        robios.begin(name);
+        if let Some(computed) = computing::so_far() {
+            robios.charge_computing(computed);
+        }
+        call(robios)
+    }));
+    let answer = answer.ok();
+    if let Some(Err(error)) = &answer
+        && !matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Disconnected)
+    {
+        robios.note(&error.to_string());
+    }
     robios.publish();
     let now = robios.now();
     let ahead = if robios.keys.is_live() { lead(now) } else { Duration::ZERO };
@@ -90,6 +113,7 @@ fn serve<T>(
         drop(state);
         drop(inside);
     }
+    computing::begin();
     if !ahead.is_zero() {
         nap(ahead);
     }
@@ -98,7 +122,7 @@ fn serve<T>(
 
 /// Lets time pass, from now on, while the program calls nothing.
 pub(super) fn watch_program() {
-    watch::start(pass_unasked);
+    watch::start(pass_unasked, env::var_os(names::SHARED).is_some());
 }
 
 /// Lets time pass that nobody has asked for: so many seconds to where the next timer is due, or without timers.
@@ -112,7 +136,7 @@ fn pass_unasked(with_timers: f64, without: f64) -> Unasked {
     if !matches!(*state, State::Alive(_)) {
         return Unasked::Over;
     }
-    serve(state, inside, |robios| match robios.timers.next() {
+    serve(state, inside, "", |robios| match robios.timers.next() {
         Some(due) => {
             let rest = due - robios.now();
             robios.pass(rest.min(with_timers))
@@ -133,10 +157,7 @@ fn born() -> State {
     match catch_unwind(robot) {
         Ok(Ok(robios)) => {
             publish_points(robios.lidar_points());
-            if env::var_os(names::SOCKET).is_none() {
-                // A world that is shared goes on by itself.
-                watch_program();
-            }
+            watch_program();
             State::Alive(Box::new(robios))
         }
         Ok(Err(message)) => {
@@ -149,8 +170,11 @@ fn born() -> State {
 }
 
 fn robot() -> std::result::Result<Robios, String> {
-    let outlets = Outlets { report: report_file(), lcd: env::var_os(names::LCD).map(PathBuf::from) };
-    Robios::new(link()?, keys()?, outlets).map_err(|error| error.to_string())
+    let report = memory().map(|memory| ReportFile::new(Arc::clone(memory)));
+    let outlets = Outlets { report, lcd: env::var_os(names::LCD).map(PathBuf::from) };
+    let plan = Plan::from_environment()?;
+    computing::set_factor(plan.cpu_time);
+    Robios::new(link(&plan)?, keys()?, plan.costs.clone(), outlets).map_err(|error| error.to_string())
 }
 
 fn keys() -> std::result::Result<KeyDesk, String> {
@@ -162,21 +186,35 @@ fn keys() -> std::result::Result<KeyDesk, String> {
     Ok(KeyDesk::with_typed(plan.transpose()?.unwrap_or_default(), typed))
 }
 
-fn report_file() -> Option<ReportFile> {
-    ReportFile::open(&PathBuf::from(env::var_os(names::REPORT)?)).ok()
+/// What is shared with the runner that has started this process, if one has.
+fn memory() -> Option<&'static Arc<Memory>> {
+    static MEMORY: OnceLock<Option<Arc<Memory>>> = OnceLock::new();
+    let found = MEMORY.get_or_init(|| {
+        let number = env::var(names::MEMORY).ok()?.parse().ok()?;
+        Memory::inherit(number).ok().map(Arc::new)
+    });
+    found.as_ref()
+}
+
+/// Runs when the library is loaded: from then on, nothing that the program closes is needed.
+#[unsafe(no_mangle)]
+extern "C" fn eyesim_begin() {
+    memory();
 }
 
 fn refuse() {
-    if let Some(file) = report_file() {
-        let _ = file.write(&Report { stage: Stage::Refused, ..Report::default() });
+    if let Some(memory) = memory() {
+        ReportFile::new(Arc::clone(memory)).write(&Report { stage: Stage::Refused, ..Report::default() });
     }
 }
 
-fn link() -> std::result::Result<Box<dyn Link>, String> {
-    match inherited(names::SOCKET)? {
-        Some(stream) => Ok(Box::new(Remote::new(stream))),
-        None => Ok(Box::new(own_world(&Plan::from_environment()?)?)),
+fn link(plan: &Plan) -> std::result::Result<Box<dyn Link>, String> {
+    if env::var_os(names::SHARED).is_none() {
+        return Ok(Box::new(own_world(plan)?));
     }
+    let memory =
+        memory().ok_or("the memory of the runner is not there; expected a program that it has started")?;
+    Ok(Box::new(Remote::new(Arc::clone(memory))))
 }
 
 /// The socket that whoever started this process has left open, under the number in a variable.

@@ -6,7 +6,7 @@ use super::runtime::{code, enter};
 
 #[unsafe(no_mangle)]
 extern "C" fn PSDGet(psd: c_int) -> c_int {
-    enter(|robios| robios.psd_get(psd)).unwrap_or(0)
+    enter("PSDGet", |robios| robios.psd_get(psd)).unwrap_or(0)
 }
 
 #[unsafe(no_mangle)]
@@ -16,13 +16,13 @@ extern "C" fn PSDGetRaw(psd: c_int) -> c_int {
 
 #[unsafe(no_mangle)]
 extern "C" fn LIDARGet(distances: *mut c_int) -> c_int {
-    let scan = enter(|robios| robios.lidar_get());
+    let scan = enter("LIDARGet", |robios| robios.lidar_get());
     code(scan.filter(|scan| output(distances, scan)).map(|_| ()))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn LIDARSet(range: c_int, tilt: c_int, points: c_int) -> c_int {
-    let set = enter(|robios| robios.lidar_set(range, tilt, points));
+    let set = enter("LIDARSet", |robios| robios.lidar_set(range, tilt, points));
     if set.is_some() {
         publish_points(points as usize);
     }
@@ -42,22 +42,22 @@ fn place<const N: usize>(places: [*mut c_int; N], found: Option<[i32; N]>) {
 
 #[unsafe(no_mangle)]
 extern "C" fn SIMGetRobot(id: c_int, x: *mut c_int, y: *mut c_int, z: *mut c_int, phi: *mut c_int) {
-    place([x, y, z, phi], enter(|robios| robios.sim_get_robot(id)));
+    place([x, y, z, phi], enter("SIMGetRobot", |robios| robios.sim_get_robot(id)));
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn SIMSetRobot(id: c_int, x: c_int, y: c_int, _z: c_int, phi: c_int) {
-    enter(|robios| robios.sim_set_robot(id, [x, y, phi]));
+    enter("SIMSetRobot", |robios| robios.sim_set_robot(id, [x, y, phi]));
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn SIMGetObject(id: c_int, x: *mut c_int, y: *mut c_int, z: *mut c_int, phi: *mut c_int) {
-    place([x, y, z, phi], enter(|robios| robios.sim_get_object(id)));
+    place([x, y, z, phi], enter("SIMGetObject", |robios| robios.sim_get_object(id)));
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn SIMSetObject(id: c_int, x: c_int, y: c_int, _z: c_int, phi: c_int) {
-    enter(|robios| robios.sim_set_object(id, [x, y, phi]));
+    enter("SIMSetObject", |robios| robios.sim_set_object(id, [x, y, phi]));
 }
 
 fn without_z([x, y, _, phi]: [i32; 4]) -> [i32; 3] {
@@ -67,31 +67,32 @@ fn without_z([x, y, _, phi]: [i32; 4]) -> [i32; 3] {
 /// The form of 2017, to which the header sends calls with four arguments.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_SIMGetObject4(id: c_int, x: *mut c_int, y: *mut c_int, phi: *mut c_int) {
-    place([x, y, phi], enter(|robios| robios.sim_get_object(id)).map(without_z));
+    place([x, y, phi], enter("SIMGetObject", |robios| robios.sim_get_object(id)).map(without_z));
 }
 
 /// The form of 2017, to which the header sends calls with four arguments.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_SIMSetObject4(id: c_int, x: c_int, y: c_int, phi: c_int) {
-    enter(|robios| robios.sim_set_object(id, [x, y, phi]));
+    enter("SIMSetObject", |robios| robios.sim_set_object(id, [x, y, phi]));
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn SIMGetPose(x: *mut c_int, y: *mut c_int, phi: *mut c_int) {
-    place([x, y, phi], enter(|robios| robios.sim_get_robot(0)).map(without_z));
+    place([x, y, phi], enter("SIMGetPose", |robios| robios.sim_get_robot(0)).map(without_z));
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn SIMSetPose(x: c_int, y: c_int, phi: c_int) {
-    enter(|robios| robios.sim_set_robot(0, [x, y, phi]));
+    enter("SIMSetPose", |robios| robios.sim_set_robot(0, [x, y, phi]));
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn SIMGetRobotCount() -> c_int {
-    enter(|robios| robios.charge().map(|()| robios.identity().robots as i32)).unwrap_or(0)
+    enter("SIMGetRobotCount", |robios| robios.charge().map(|()| robios.identity().robots as i32)).unwrap_or(0)
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn SIMGetObjectCount() -> c_int {
-    enter(|robios| robios.charge().map(|()| robios.identity().objects as i32)).unwrap_or(0)
+    enter("SIMGetObjectCount", |robios| robios.charge().map(|()| robios.identity().objects as i32))
+        .unwrap_or(0)
 }

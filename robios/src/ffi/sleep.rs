@@ -17,8 +17,8 @@ use crate::keys::Waiting;
 use crate::robios::Robios;
 
 /// Lets the program wait for so many seconds.
-pub(super) fn sleep_for(seconds: f64) -> Option<()> {
-    let start = enter(|robios| Ok(robios.now()))?;
+pub(super) fn sleep_for(call: &'static str, seconds: f64) -> Option<()> {
+    let start = enter(call, |robios| Ok(robios.now()))?;
     sleep_until(start + seconds)
 }
 
@@ -125,12 +125,15 @@ pub(super) fn may_block() -> bool {
 }
 
 /// Waits until a question has an answer.
-pub(super) fn wait_for<T>(mut ask: impl FnMut(&mut Robios) -> Result<Waiting<T>>) -> Option<T> {
+pub(super) fn wait_for<T>(
+    call: &'static str,
+    mut ask: impl FnMut(&mut Robios) -> Result<Waiting<T>>,
+) -> Option<T> {
     loop {
-        match enter(&mut ask)? {
+        match enter(call, &mut ask)? {
             Waiting::Pressed(value) => return Some(value),
             Waiting::Until(time) => sleep_until(time)?,
-            Waiting::Forever => sleep_for(60.0)?,
+            Waiting::Forever => sleep_for(call, 60.0)?,
         }
     }
 }

@@ -13,66 +13,67 @@ const ROOM: usize = 128;
 #[unsafe(no_mangle)]
 extern "C" fn OSExecute(command: *const c_char, result: *mut c_char) -> c_int {
     code(text(command).and_then(|command| {
-        enter(|robios| robios.charge())?;
+        enter("OSExecute", |robios| robios.charge())?;
         let run = Command::new("sh").arg("-c").arg(command).stdin(Stdio::null()).output().ok()?;
         output_text(result, &run.stdout, ROOM);
         run.status.success().then_some(())
     }))
 }
 
-fn tell(buffer: *mut c_char, answer: &str) -> c_int {
-    code(enter(|robios| robios.charge()).filter(|()| output_text(buffer, answer.as_bytes(), ROOM)))
+fn tell(call: &'static str, buffer: *mut c_char, answer: &str) -> c_int {
+    code(enter(call, |robios| robios.charge()).filter(|()| output_text(buffer, answer.as_bytes(), ROOM)))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn OSVersion(buffer: *mut c_char) -> c_int {
-    tell(buffer, "7.2")
+    tell("OSVersion", buffer, "7.2")
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn OSVersionIO(buffer: *mut c_char) -> c_int {
-    tell(buffer, "1.0")
+    tell("OSVersionIO", buffer, "1.0")
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn OSMachineName(buffer: *mut c_char) -> c_int {
-    tell(buffer, "EyeBot")
+    tell("OSMachineName", buffer, "EyeBot")
 }
 
 /// In MHz.
 #[unsafe(no_mangle)]
 extern "C" fn OSMachineSpeed() -> c_int {
-    enter(|robios| robios.charge()).map_or(0, |()| 1200)
+    enter("OSMachineSpeed", |robios| robios.charge()).map_or(0, |()| 1200)
 }
 
 /// A vehicle.
 #[unsafe(no_mangle)]
 extern "C" fn OSMachineType() -> c_int {
-    enter(|robios| robios.charge()).map_or(0, |()| 1)
+    enter("OSMachineType", |robios| robios.charge()).map_or(0, |()| 1)
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn OSMachineID() -> c_int {
-    enter(|robios| robios.charge().map(|()| robios.identity().id as i32)).unwrap_or(0)
+    enter("OSMachineID", |robios| robios.charge().map(|()| robios.identity().id as i32)).unwrap_or(0)
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn OSError(message: *const c_char, _number: c_int, _dead: c_int) -> c_int {
-    code(text(message).and_then(|message| enter(|robios| robios.lcd_print(&message))))
+    code(text(message).and_then(|message| enter("OSError", |robios| robios.lcd_print(&message))))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn OSWait(milliseconds: c_int) -> c_int {
     if milliseconds <= 0 {
-        return code(enter(|robios| robios.pass(0.0)));
+        return code(enter("OSWait", |robios| robios.pass(0.0)));
     }
-    code(sleep_for(f64::from(milliseconds) / 1000.0))
+    code(sleep_for("OSWait", f64::from(milliseconds) / 1000.0))
 }
 
 /// Returns the timer's handle, or 0.
 #[unsafe(no_mangle)]
 extern "C" fn OSAttachTimer(scale: c_int, function: Option<Callback>) -> c_int {
-    let timer = function.and_then(|function| enter(|robios| robios.os_attach_timer(scale, function)));
+    let timer = function
+        .and_then(|function| enter("OSAttachTimer", |robios| robios.os_attach_timer(scale, function)));
     if timer.is_some() {
         watch_program();
     }
@@ -81,12 +82,12 @@ extern "C" fn OSAttachTimer(scale: c_int, function: Option<Callback>) -> c_int {
 
 #[unsafe(no_mangle)]
 extern "C" fn OSDetachTimer(timer: c_int) -> c_int {
-    code(enter(|robios| robios.os_detach_timer(timer)))
+    code(enter("OSDetachTimer", |robios| robios.os_detach_timer(timer)))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn OSSetTime(hours: c_int, minutes: c_int, seconds: c_int) -> c_int {
-    code(enter(|robios| robios.os_set_time(hours, minutes, seconds)))
+    code(enter("OSSetTime", |robios| robios.os_set_time(hours, minutes, seconds)))
 }
 
 #[unsafe(no_mangle)]
@@ -96,19 +97,19 @@ extern "C" fn OSGetTime(
     seconds: *mut c_int,
     ticks: *mut c_int,
 ) -> c_int {
-    let time = enter(|robios| robios.os_get_time());
+    let time = enter("OSGetTime", |robios| robios.os_get_time());
     code(time.filter(|&time| scatter([hours, minutes, seconds, ticks], time)).map(|_| ()))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn OSGetCount() -> c_int {
-    enter(|robios| robios.os_get_count()).unwrap_or(0)
+    enter("OSGetCount", |robios| robios.os_get_count()).unwrap_or(0)
 }
 
 /// Seconds since 1970 by the program's clock, for `eye.py`; negative if there is none.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_time() -> f64 {
-    let time = enter(|robios| {
+    let time = enter("time", |robios| {
         robios.charge()?;
         Ok(robios.now())
     });
@@ -119,7 +120,7 @@ extern "C" fn eyesim_time() -> f64 {
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_sleep(seconds: f64) -> c_int {
     let sane = seconds.is_finite() && seconds >= 0.0;
-    code(sane.then_some(()).and_then(|()| sleep_for(seconds.min(1e6))))
+    code(sane.then_some(()).and_then(|()| sleep_for("time", seconds.min(1e6))))
 }
 
 /// Notes that the program has started a thread, for `eye.py`.

@@ -32,6 +32,38 @@ impl Turn {
     }
 }
 
+/// Whether the program's threads have all been waiting since an earlier look while it has a child process: for that, most
+/// likely, whose time is the real one.
+#[derive(Debug, Default)]
+pub(super) struct Stillness(BTreeMap<u32, u64>);
+
+impl Stillness {
+    /// Looks. To be called by a thread that is not the program's.
+    pub(super) fn holds(&mut self) -> bool {
+        let waiting =
+            |thread: u32| spent(thread).filter(|_| state(thread) == Some('S')).map(|time| (thread, time));
+        let threads = others().into_iter().filter(|&thread| state(thread) != Some('Z'));
+        let now: Option<BTreeMap<u32, u64>> = threads.map(waiting).collect();
+        let before = std::mem::replace(&mut self.0, now.clone().unwrap_or_default());
+        now.is_some_and(|now| !now.is_empty() && now == before) && has_child()
+    }
+}
+
+fn has_child() -> bool {
+    // SAFETY: an all-zero record of this type is valid.
+    let mut child: libc::siginfo_t = unsafe { std::mem::zeroed() };
+    let look = libc::WEXITED | libc::WNOHANG | libc::WNOWAIT;
+    // SAFETY: the kernel writes to a record that lives until it returns, and leaves the children as they are.
+    unsafe { libc::waitid(libc::P_ALL, 0, &raw mut child, look) == 0 }
+}
+
+/// Whether the thread in which the program began has ended, and all others that it has started. To be called by a
+/// thread that is not the program's.
+pub(super) fn have_all_ended() -> bool {
+    let first = std::process::id();
+    state(first) == Some('Z') && others().into_iter().all(|thread| thread == first)
+}
+
 /// The threads of this process but for the one that asks.
 fn others() -> Vec<u32> {
     // SAFETY: asks for a number.
@@ -47,8 +79,12 @@ fn file(thread: u32, name: &str) -> Option<String> {
 
 /// Whether a thread is on a processor, or waits for one.
 fn can_run(thread: u32) -> bool {
-    let state = file(thread, "stat").and_then(|text| text.rsplit(')').next()?.trim_start().chars().next());
-    state == Some('R')
+    state(thread) == Some('R')
+}
+
+/// A thread's state: `R` runs or could run, `S` waits, `Z` has ended.
+fn state(thread: u32) -> Option<char> {
+    file(thread, "stat").and_then(|text| text.rsplit(')').next()?.trim_start().chars().next())
 }
 
 /// Nanoseconds that a thread has been on a processor.

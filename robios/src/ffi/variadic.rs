@@ -32,10 +32,10 @@ jump!(LCDSetPrintf, eyesim_shim_set_printf);
 
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_print(line: *const c_char) -> c_int {
-    code(text(line).and_then(|line| enter(|robios| robios.lcd_print(&line))))
+    code(text(line).and_then(|line| enter("LCDPrintf", |robios| robios.lcd_print(&line))))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_print_at(row: c_int, column: c_int, line: *const c_char) -> c_int {
-    code(text(line).and_then(|line| enter(|robios| robios.lcd_print_at(row, column, &line))))
+    code(text(line).and_then(|line| enter("LCDSetPrintf", |robios| robios.lcd_print_at(row, column, &line))))
 }

@@ -243,7 +243,7 @@ impl Robios {
                 self.screen.lcd.draw_image(Picture::Binary(&image), window)?;
             }
         }
-        self.charge()
+        self.charge_image(width * height)
     }
 
     /// `LCDRefresh`.

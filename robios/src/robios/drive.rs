@@ -26,7 +26,7 @@ impl Robios {
 
     /// Since when the robot stands; now, if it drives.
     pub(super) fn standing_since(&mut self) -> Result<f64> {
-        if self.moving == Moving::Manoeuvre && self.flag(&Request::IsDone)? {
+        if self.moving == Moving::Manoeuvre && self.queue.is_empty() && self.flag(&Request::IsDone)? {
             self.drives(Moving::No);
         }
         Ok(if self.moving == Moving::No { self.standing_since } else { self.now() })
@@ -82,6 +82,9 @@ impl Robios {
     }
 
     fn manoeuvre(&mut self, length: f64, angle: f64, speed: f64) -> Result<()> {
+        if speed == 0.0 {
+            return Err(invalid("speed", speed, "more than 0 in size"));
+        }
         self.turns = length == 0.0;
         self.order(&Request::Curve(length, angle, speed.abs()))?;
         self.turning = 0;
@@ -107,7 +110,8 @@ impl Robios {
 
     /// `VWWait`, for a program that has nothing else to do.
     pub fn vw_wait(&mut self) -> Result<()> {
-        self.order(&Request::WaitDone)
+        self.order(&Request::WaitDone)?;
+        self.finish_frame()
     }
 
     /// `VWStalled`: 3 for both wheels, 0 for none.
@@ -167,7 +171,10 @@ impl Robios {
         self.servos[index] = angle;
         let position = f64::from(angle - 128) / 128.0;
         match self.order(&Request::Servo(index as u8, position)) {
-            Err(error) if error.kind() == roverlab::io::ErrorKind::Unsupported => Ok(()),
+            Err(error) if error.kind() == roverlab::io::ErrorKind::Unsupported => {
+                self.note(&format!("{error}; its position is remembered alone"));
+                Ok(())
+            }
             result => result,
         }
     }

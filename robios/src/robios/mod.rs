@@ -10,6 +10,7 @@ mod lines;
 mod radio;
 mod sensing;
 mod system;
+mod time;
 
 pub use display::Frame;
 pub use lines::Lines;
@@ -18,13 +19,13 @@ pub use system::Timers;
 
 use image::RgbImage;
 use roverlab::geometry::{Pose, normalize_angle, units};
-use roverlab::io::sim::TICK;
 use roverlab::io::{Error, ErrorKind, Resolution, Result, Viewport};
 
 use crate::ask::{Identity, Reply, Request};
+use crate::costs::Costs;
 use crate::keys::KeyDesk;
 use crate::link::Link;
-use crate::report::{Report, ReportFile, Stage};
+use crate::report::{NOTES, Report, ReportFile, Stage};
 use crate::screen::Screen;
 
 pub(crate) use system::Callback;
@@ -36,6 +37,10 @@ pub struct Robios {
     identity: Identity,
     /// Nanoseconds that calls without the world have taken since the last one with it.
     debt: u64,
+    queue: time::Queue,
+    recent: time::Recent,
+    /// The call that is being served.
+    call: &'static str,
     pub(crate) screen: Screen,
     pub(crate) keys: KeyDesk,
     pub(crate) lines: Lines,
@@ -46,6 +51,8 @@ pub struct Robios {
     image_size: (usize, usize),
     image_size_set: bool,
     inbox: radio::Inbox,
+    /// The numbers of all robots, once they are known.
+    numbers: Vec<u32>,
     /// The size of the images that the display takes, and where it puts them.
     lcd_image: ImageSize,
     window: Option<Viewport>,
@@ -88,6 +95,9 @@ const NANOSECONDS: f64 = 1e9;
 /// Seconds from 1970 to the beginning of every run: noon of the first day of 2020, in Greenwich.
 pub(crate) const EPOCH: f64 = 1_577_880_000.0;
 
+/// Notes of one call that are kept: a program that tries all numbers needs no more.
+const MOST_OF_CALL: usize = 3;
+
 /// Seconds between two looks at a robot that drives on.
 const LOOK: f64 = 0.1;
 
@@ -102,12 +112,15 @@ pub struct Outlets {
 
 impl Robios {
     /// A robot at the other end of a link.
-    pub fn new(mut link: Box<dyn Link>, keys: KeyDesk, outlets: Outlets) -> Result<Self> {
+    pub fn new(mut link: Box<dyn Link>, keys: KeyDesk, costs: Costs, outlets: Outlets) -> Result<Self> {
         let Reply::Identity(identity) = link.ask(0.0, &Request::Identity)? else { return Err(foreign()) };
         Ok(Self {
             link,
             identity,
             debt: 0,
+            queue: time::Queue::new(costs),
+            recent: time::Recent::default(),
+            call: "",
             screen: Screen::default(),
             keys,
             lines: Lines::default(),
@@ -116,6 +129,7 @@ impl Robios {
             image_size: images::size(Resolution::Qqvga),
             image_size_set: false,
             inbox: radio::Inbox::new(),
+            numbers: Vec::new(),
             lcd_image: ImageSize::Unsaid,
             window: None,
             turns: false,
@@ -141,20 +155,6 @@ impl Robios {
     /// The program's time in seconds since the start.
     pub fn now(&mut self) -> f64 {
         self.link.now() + self.debt as f64 / NANOSECONDS
-    }
-
-    /// Asks the world.
-    fn ask(&mut self, request: &Request) -> Result<Reply> {
-        let debt = std::mem::take(&mut self.debt) as f64 / NANOSECONDS;
-        self.link.ask(debt, request)
-    }
-
-    /// Asks the world to do something.
-    fn order(&mut self, request: &Request) -> Result<()> {
-        match self.ask(request)? {
-            Reply::Done => Ok(()),
-            _ => Err(foreign()),
-        }
     }
 
     fn number(&mut self, request: &Request) -> Result<f64> {
@@ -185,22 +185,20 @@ impl Robios {
         }
     }
 
-    /// Counts a call that the world has no part in.
-    pub fn charge(&mut self) -> Result<()> {
-        let call = self.identity.call_duration;
-        self.debt += (call * NANOSECONDS).round() as u64;
-        let debt = self.debt as f64 / NANOSECONDS;
-        if debt < TICK && self.now() < self.identity.time_limit {
-            return Ok(());
+    /// Notes, once, what a call has asked for in vain, for whoever reads the report.
+    pub(crate) fn note(&mut self, what: &str) {
+        let what = what.replace('\n', " ");
+        let note = if self.call.is_empty() { what } else { format!("{}: {what}", self.call) };
+        let notes = &mut self.report.notes;
+        let of_call = notes.iter().filter(|known| known.split(':').next() == note.split(':').next()).count();
+        let length: usize = notes.iter().map(|note| note.len() + 1).sum();
+        if of_call >= MOST_OF_CALL || length + note.len() > NOTES || notes.contains(&note) {
+            return;
         }
-        self.debt = 0;
-        // The request is a call itself.
-        self.link.ask(0.0, &Request::Pass((debt - call).max(0.0))).map(|_| ())
-    }
-
-    /// Lets seconds pass, and the time that the call takes.
-    pub fn pass(&mut self, seconds: f64) -> Result<()> {
-        self.order(&Request::Pass(seconds.max(0.0)))
+        notes.push(note);
+        if let Some(file) = &self.file {
+            file.write_notes(&self.report.notes);
+        }
     }
 
     /// Writes the report, if there is a file for it.
@@ -216,21 +214,21 @@ impl Robios {
             self.report.path_length = truth.path_length;
             self.report.contacts = u64::from(truth.contacts);
         }
-        // A report that cannot be written is missed by whoever reads it; the program goes on.
-        let _ = file.write(&self.report);
+        file.write(&self.report);
         if std::mem::take(&mut self.text_changed) {
-            let _ = file.write_text(self.screen.history(), &self.screen.standing());
+            file.write_text(self.screen.history(), &self.screen.standing());
         }
     }
 
     /// Ends the run: the robot drives on until it stands, is held or the time is over, as it would without a program;
     /// then everything is written down.
     pub fn finish(&mut self, stage: Stage) {
+        self.begin("");
         self.report.stage = stage;
         // What is known now counts, whatever becomes of the rest.
         self.publish();
         let (time, contacts) = (self.report.time, self.report.contacts);
-        if stage == Stage::Ended {
+        if stage == Stage::Ended && self.deliver_all().is_ok() {
             self.drive_on();
         }
         self.publish();
@@ -239,7 +237,7 @@ impl Robios {
             self.report.time = time;
             self.report.later_contacts = self.report.contacts.saturating_sub(contacts);
             self.report.contacts = contacts;
-            let _ = file.write(&self.report);
+            file.write(&self.report);
         }
         if let Some(path) = &self.lcd_file {
             let _ = self.screen.lcd.frame().save(path);

@@ -19,6 +19,10 @@ impl Robios {
         }
         let to = u32::try_from(to).map_err(|_| invalid("radio receiver", to, "0 or more"))?;
         if to > 0 {
+            let numbers = self.robot_numbers()?;
+            if !numbers.contains(&to) && to as usize > numbers.len() {
+                return Err(invalid("radio receiver", to, &format!("0, or one of {numbers:?}")));
+            }
             return self.order(&Request::Send(to, data.to_vec()));
         }
         let own = self.identity.id;
@@ -30,14 +34,29 @@ impl Robios {
 
     /// The numbers of all robots, in the order in which they were placed.
     pub fn robot_numbers(&mut self) -> Result<Vec<u32>> {
-        match self.ask(&Request::Numbers)? {
-            Reply::Numbers(numbers) => Ok(numbers),
-            _ => Err(super::foreign()),
+        if self.numbers.is_empty() {
+            let Reply::Numbers(numbers) = self.ask_now(&Request::Numbers)? else {
+                return Err(super::foreign());
+            };
+            self.numbers = numbers;
         }
+        Ok(self.numbers.clone())
     }
 
-    /// The oldest message that has not been received; waits for so many seconds at most.
+    /// `RADIOReceive`: the oldest message that has not been received; waits for so many seconds at most, and is called
+    /// again until there is one.
     pub fn radio_receive(&mut self, seconds: f64) -> Result<Option<RadioMessage>> {
+        let now = self.now();
+        self.report.listening_since.get_or_insert(now);
+        let received = self.next_message(seconds);
+        if !matches!(&received, Ok(None) | Err(_)) {
+            self.report.listening_since = None;
+            self.finish_frame()?;
+        }
+        received
+    }
+
+    fn next_message(&mut self, seconds: f64) -> Result<Option<RadioMessage>> {
         if let Some(message) = self.inbox.pop_front() {
             self.charge()?;
             return Ok(Some(message));
@@ -51,7 +70,7 @@ impl Robios {
     /// `RADIOCheck`: whom the oldest message is from, if there is one.
     pub fn radio_check(&mut self) -> Result<Option<u32>> {
         if self.inbox.is_empty()
-            && let Some(message) = self.radio_receive(0.0)?
+            && let Some(message) = self.next_message(0.0)?
         {
             self.inbox.push_back(message);
         }

@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
 use roverlab::geometry::{Pose, units};
-use roverlab::io::{LidarSettings, Resolution, Result};
+use roverlab::io::{Error, LidarSettings, Resolution, Result};
 
 use super::{Robios, images, in_whole, invalid, millimetres, pose_from};
 use crate::ask::{Reply, Request};
@@ -9,7 +9,7 @@ use crate::ask::{Reply, Request};
 /// What RoBIOS says where there is nothing within range.
 pub const NOTHING: i32 = 9999;
 
-/// Seconds that an image takes: the camera gives 30 of them in a second.
+/// Seconds that an image takes where nothing else says so: the camera gives 30 of them in a second.
 const FRAME: f64 = 0.033;
 
 impl Robios {
@@ -46,6 +46,9 @@ impl Robios {
         if !(-90..=90).contains(&tilt) {
             return Err(invalid("lidar tilt", tilt, "-90 to 90 degrees"));
         }
+        if self.identity.lidar_points == 0 {
+            return Err(Error::unsupported("lidar"));
+        }
         let field_of_view = if angle == 360 { TAU } else { units::from_deg(angle.into()) };
         let tilt = -units::from_deg(tilt.into());
         self.order(&Request::ConfigureLidar(LidarSettings { field_of_view, tilt, points }))?;
@@ -58,6 +61,9 @@ impl Robios {
     pub fn cam_init(&mut self, resolution: i32) -> Result<(usize, usize)> {
         let found = usize::try_from(resolution).ok().and_then(|n| Resolution::ALL.get(n).copied());
         let found = found.ok_or_else(|| invalid("camera resolution", resolution, "0 to 5"))?;
+        if !self.identity.camera {
+            return Err(Error::unsupported("camera"));
+        }
         self.order(&Request::SetResolution(resolution as u8))?;
         self.camera = Some(found);
         self.image_size = images::size(found);
@@ -77,7 +83,9 @@ impl Robios {
             return Err(invalid("camera", "off", "CAMInit before"));
         }
         let image = self.image()?;
-        self.pass(FRAME)?;
+        if !self.has_frames() {
+            self.pass(FRAME)?;
+        }
         Ok(image.into_raw())
     }
 

@@ -2,6 +2,7 @@ use std::collections::BTreeMap;
 use std::env;
 use std::ffi::OsString;
 use std::io::{Read, Write};
+use std::os::fd::{AsFd, AsRawFd, BorrowedFd};
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
@@ -10,6 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
+use eyesim::memory::Memory;
 use eyesim::plan::{Plan, names};
 use eyesim::process;
 use eyesim::report::{Report, Stage};
@@ -24,7 +26,7 @@ use super::work_folder::WorkFolder;
 #[derive(Debug)]
 pub(crate) struct Running {
     child: Child,
-    report: PathBuf,
+    memory: Arc<Memory>,
     relays: Vec<Relay>,
     stopwatch: Stopwatch,
 }
@@ -53,11 +55,10 @@ pub(crate) fn run_alone(
         (plan.robot, plan.start) = (None, None);
     }
     let variables = plan.variables().into_iter().map(|(name, value)| (name, OsString::from(value))).collect();
-    let ending = match start(program, variables, None, options, folder)? {
+    let (ending, report) = match start(program, variables, options, folder)? {
         Ok(running) => running.wait(options.real_limit),
         Err(message) => (Ending::NotStarted(message), Report::default()),
     };
-    let (ending, report) = ending;
     let placed = &scene.robots[program.robot];
     let mut truth = Truth { pose: placed.pose, ..Truth::default() };
     if report.known {
@@ -78,7 +79,6 @@ pub(crate) fn run_alone(
 pub(crate) fn start(
     program: &Program,
     variables: BTreeMap<&'static str, OsString>,
-    socket: Option<&UnixStream>,
     options: &Options,
     folder: &WorkFolder,
 ) -> Result<Result<Running, String>, String> {
@@ -86,14 +86,21 @@ pub(crate) fn start(
         Ok(file) => file,
         Err(message) => return Ok(Err(message.clone())),
     };
-    let report = folder.empty(&format!("report{}", program.robot))?;
+    let (memory, file_of_memory) =
+        Memory::create().map_err(|error| format!("no memory to share with the program: {error}"))?;
+    let memory = Arc::new(memory);
     let (library, home) = (library()?, home()?);
     let mut command = if is_python(file) { python(file) } else { Command::new(file) };
     command.args(&program.arguments).current_dir(&program.folder).stdin(Stdio::null());
-    for name in [names::SOCKET, names::WORLD, names::ROBOT, names::START] {
+    for name in [names::SHARED, names::WORLD, names::ROBOT, names::START] {
         command.env_remove(name);
     }
-    command.envs(variables).env(names::REPORT, &report).env(names::KEYS, &options.keys);
+    command.envs(variables).env(names::KEYS, &options.keys);
+    command.env(names::MEMORY, file_of_memory.as_raw_fd().to_string());
+    command
+        .env(names::COSTS, options.costs_by_whole_name())
+        .env(names::FRAME_RATE, options.frame_rate.to_string());
+    command.env(names::CPU_TIME, options.cpu_time.to_string());
     command.env_remove(names::KEYBOARD);
     let keyboard = if options.is_live() { keyboard(program, &mut command)? } else { None };
     command.env(names::LIBRARY, &library).env("PYTHONDONTWRITEBYTECODE", "1");
@@ -109,14 +116,15 @@ pub(crate) fn start(
     if options.json {
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
     }
-    let sockets: Vec<&UnixStream> = socket.into_iter().chain(&keyboard).collect();
-    match process::start(&mut command, &sockets) {
+    let files: Vec<BorrowedFd<'_>> =
+        [file_of_memory.as_fd()].into_iter().chain(keyboard.iter().map(AsFd::as_fd)).collect();
+    match process::start(&mut command, &files, &memory) {
         Err(error) => Ok(Err(format!("{}: cannot be started: {error}", file.display()))),
         Ok(mut child) => {
             let stdout = child.stdout.take().map(Relay::start);
             let stderr = child.stderr.take().map(Relay::start);
             let relays = stdout.into_iter().chain(stderr).collect();
-            Ok(Ok(Running { child, report, relays, stopwatch: Stopwatch::start() }))
+            Ok(Ok(Running { child, memory, relays, stopwatch: Stopwatch::start() }))
         }
     }
 }
@@ -128,7 +136,7 @@ fn keyboard(program: &Program, command: &mut Command) -> Result<Option<UnixStrea
         return Ok(None);
     }
     let (mut ours, theirs) = UnixStream::pair().map_err(|error| format!("no socket: {error}"))?;
-    command.env(names::KEYBOARD, process::socket_number(&theirs).to_string());
+    command.env(names::KEYBOARD, theirs.as_raw_fd().to_string());
     thread::spawn(move || {
         // Ends with the input, with the program, or with this process.
         let _ = std::io::copy(&mut std::io::stdin().lock(), &mut ours);
@@ -205,13 +213,29 @@ impl Running {
         self.child.id()
     }
 
+    /// What it shares with the runner.
+    pub(crate) fn memory(&self) -> &Arc<Memory> {
+        &self.memory
+    }
+
+    /// Whether the program has ended.
+    pub(crate) fn has_ended(&mut self) -> bool {
+        !matches!(self.child.try_wait(), Ok(None))
+    }
+
     /// Waits until the program has ended, and ends it when its real time is over.
     pub(crate) fn wait(mut self, real_limit: f64) -> (Ending, Report) {
+        let over = || Ending::OutOfTime(format!("ended after {real_limit} real seconds"));
         let ending = loop {
-            match self.child.try_wait() {
+            let status = self.child.try_wait();
+            match status {
+                Ok(Some(status)) if self.was_killed(status) => {
+                    let late = self.stopwatch.seconds() >= real_limit;
+                    break if late { over() } else { Ending::Offence(ORPHAN.into()) };
+                }
                 Ok(Some(status)) => break of_status(status),
                 Ok(None) if self.stopwatch.seconds() < real_limit => thread::sleep(LOOK),
-                Ok(None) => break Ending::OutOfTime(format!("ended after {real_limit} real seconds")),
+                Ok(None) => break over(),
                 Err(error) => break Ending::NotStarted(error.to_string()),
             }
         };
@@ -224,19 +248,30 @@ impl Running {
             // Standard error comes last.
             last_words = relay.last_line(&patience);
         }
-        let report = Report::read(&self.report).unwrap_or_default();
-        let ending = match report.stage {
-            Stage::TimedOut => Ending::OutOfTime("its simulated time was over".into()),
-            _ => match ending {
-                Ending::Exit(code, _) if code != 0 && !last_words.is_empty() => {
-                    Ending::Exit(code, Some(last_words))
-                }
-                ending => ending,
-            },
+        let mut report = Report::read(&self.memory);
+        if self.memory.has_forked() {
+            report.notes.push(FORKED.into());
+        }
+        let ending = match (report.stage, ending) {
+            (Stage::TimedOut, _) => Ending::OutOfTime("its simulated time was over".into()),
+            (_, Ending::Exit(code, _)) if code != 0 && !last_words.is_empty() => {
+                Ending::Exit(code, Some(last_words))
+            }
+            (_, ending) => ending,
         };
         (ending, report)
     }
+
+    /// Whether the process that stands by the program has ended before it could tell how the program did.
+    fn was_killed(&self, status: ExitStatus) -> bool {
+        status.signal().is_some() && !self.memory.has_status()
+    }
 }
+
+/// What is said of a program that has ended its parent.
+const ORPHAN: &str = "it has ended its parent process, or all of its group, and so itself";
+/// What is said of one whose children have called.
+const FORKED: &str = "a process that the program has forked calls RoBIOS: it has no robot, so its calls fail";
 
 fn of_status(status: ExitStatus) -> Ending {
     match (status.code(), status.signal()) {

@@ -1,17 +1,17 @@
 use std::collections::BTreeMap;
-use std::ffi::OsString;
 use std::fs::File;
-use std::io::{BufWriter, ErrorKind as StreamError};
-use std::os::unix::net::UnixStream;
+use std::io::BufWriter;
 use std::path::Path;
+use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-use eyesim::ask::{Request, Seat};
+use eyesim::ask::{Request, Seat, Terms};
+use eyesim::memory::{Asked, Memory};
 use eyesim::plan::{Plan, names};
 use eyesim::process;
 use eyesim::report::Report;
-use eyesim::wire::{Answer, LONGEST_REQUEST, Question, receive, send};
+use eyesim::wire::{Answer, LONGEST_REQUEST, Question};
 use roverlab::geometry::Pose;
 use roverlab::io::log::{Header, LogWriter};
 use roverlab::io::sim::{SimOptions, Simulation, TICK, Truth as World};
@@ -22,7 +22,7 @@ use super::children::{Running, start};
 use super::options::Options;
 use super::picture;
 use super::programs::Program;
-use super::verdict::{Ending, Truth, Verdict};
+use super::verdict::{Ending, Stopwatch, Truth, Verdict};
 use super::work_folder::WorkFolder;
 
 /// A program's end as its host saw it.
@@ -32,12 +32,15 @@ struct Served {
     time: f64,
     /// Its robot's contacts until then.
     contacts: u64,
-    /// What the host has ended it for.
-    ended: Option<Ending>,
+    /// How the program ended, and what it has reported.
+    ending: Ending,
+    report: Report,
 }
 
 /// Seconds between two points of a path in a picture.
 const TRAIL: f64 = 0.1;
+/// How long those who answer programs have, once these have been ended.
+const GRACE: Duration = Duration::from_secs(1);
 
 /// Runs programs in one world, which lives here: each of them is answered by a thread of its own, and the world moves
 /// on when all that run have asked for it.
@@ -50,7 +53,9 @@ pub(crate) fn run_together(
 ) -> Result<Vec<Verdict>, String> {
     let trail = options.picture.is_some().then_some(TRAIL);
     let sim_options = SimOptions { trail_interval: trail, ..plan.options() };
-    let times = (sim_options.call_duration, sim_options.time_limit);
+    let terms = Terms::of(&sim_options);
+    // A recording has all calls.
+    let terms = Terms { exact: terms.exact && options.record.is_none(), ..terms };
     let simulation = Simulation::new(scene, sim_options).map_err(|error| error.to_string())?;
     // All are seated before the first one drives, so that the world waits for all of them.
     let log = options.record.as_deref().map(|file| recording(file, plan, scene)).transpose()?;
@@ -60,48 +65,77 @@ pub(crate) fn run_together(
             Some(log) => Box::new(log.recorder(robot, index)),
             None => Box::new(robot),
         };
-        Ok(Seat::of(robot, &simulation, scene, index, times))
+        Ok(Seat::of(robot, &simulation, scene, index, terms))
     });
     let seats = seats.collect::<io::Result<Vec<_>>>().map_err(|error| error.to_string())?;
 
-    let mut tables = Vec::new();
-    for (program, seat) in programs.iter().zip(seats) {
-        let (ours, theirs) = UnixStream::pair().map_err(|error| format!("no socket: {error}"))?;
-        let number = OsString::from(process::socket_number(&theirs).to_string());
+    let stopwatch = Stopwatch::start();
+    let (sender, results) = mpsc::channel();
+    let mut processes = Vec::new();
+    let tables = programs.iter().zip(seats).map(|(program, seat)| {
         let (seed, index) = (options.seed.to_string().into(), program.robot.to_string().into());
-        let variables = BTreeMap::from([(names::SOCKET, number), (names::SEED, seed), (names::INDEX, index)]);
-        let running = start(program, variables, Some(&theirs), options, folder)?;
-        drop(theirs);
-        tables.push((program, seat, ours, running));
-    }
-    let endings: Vec<_> = thread::scope(|scope| {
-        let threads: Vec<_> = tables
-            .into_iter()
-            .map(|(program, seat, stream, running)| {
-                scope.spawn(move || (program, attend(seat, stream, running, options)))
-            })
-            .collect();
-        threads.into_iter().filter_map(|thread| thread.join().ok()).collect()
+        let variables =
+            BTreeMap::from([(names::SHARED, "1".into()), (names::SEED, seed), (names::INDEX, index)]);
+        Ok((seat, start(program, variables, options, folder)?))
     });
+    for (number, (seat, running)) in tables.collect::<Result<Vec<_>, String>>()?.into_iter().enumerate() {
+        processes.extend(running.as_ref().ok().map(Running::id));
+        let (sender, limits) = (sender.clone(), (options.real_limit, options.hang_limit));
+        thread::spawn(move || {
+            // Nobody listens any more once the run's real time is over.
+            let _ = sender.send((number, attend(seat, running, limits)));
+        });
+    }
+    let served = collect(&results, programs.len(), &processes, &stopwatch, options.real_limit);
 
-    drive_on(&simulation, scene);
-    if let Some(Err(error)) = log.map(LogWriter::finish) {
+    drive_on(&simulation, scene, &stopwatch, options.real_limit);
+    // Whoever answers still has a part in it, so it is no longer written to.
+    let finished = served.iter().all(Option::is_some);
+    if let Some(Err(error)) = log.filter(|_| finished).map(LogWriter::finish) {
         return Err(format!("--record: the recording is incomplete: {error}"));
     }
     let world = simulation.truth();
     if let Some(file) = &options.picture {
         picture::draw(scene, &world, file)?;
     }
-    let verdicts = endings.into_iter().map(|(program, (served, (ending, report)))| {
-        let ending = match served.ended {
-            Some(ended) if !matches!(ending, Ending::Exit(..)) => ended,
-            _ => ending,
-        };
-        let time = program_time(served.time, report.time).min(options.time_limit);
-        let contacts = served.contacts;
-        Verdict::new(program, ending, &report, truth(&world, program.robot, time, contacts))
+    let verdicts = programs.iter().zip(served).map(|(program, served)| {
+        let served = served.unwrap_or_else(|| Served {
+            time: world.time(),
+            contacts: world.robot(program.robot).map_or(0, |robot| robot.contacts.into()),
+            ending: Ending::OutOfTime(format!("ended after {} real seconds", options.real_limit)),
+            report: Report::default(),
+        });
+        let time = program_time(served.time, served.report.time).min(options.time_limit);
+        let truth = truth(&world, program.robot, time, served.contacts);
+        Verdict::new(program, served.ending, &served.report, truth)
     });
     Ok(verdicts.collect())
+}
+
+/// Waits for the ends of programs, and ends them all when the run's real time is over.
+fn collect(
+    results: &mpsc::Receiver<(usize, Served)>,
+    count: usize,
+    processes: &[u32],
+    stopwatch: &Stopwatch,
+    real_limit: f64,
+) -> Vec<Option<Served>> {
+    let mut served: Vec<Option<Served>> = (0..count).map(|_| None).collect();
+    let mut patience = Duration::try_from_secs_f64(real_limit).unwrap_or(Duration::MAX);
+    let mut killed = false;
+    while served.iter().any(Option::is_none) {
+        match results.recv_timeout(patience) {
+            Ok((number, end)) => served[number] = Some(end),
+            Err(mpsc::RecvTimeoutError::Timeout) if !killed => {
+                processes.iter().for_each(|&process| process::kill_all(process));
+                killed = true;
+            }
+            Err(_) => break,
+        }
+        let left = Duration::try_from_secs_f64(real_limit - stopwatch.seconds()).unwrap_or(Duration::ZERO);
+        patience = if killed { GRACE } else { left };
+    }
+    served
 }
 
 /// The program's time at its end: that of its last question, and what calls without a question have taken since, as its
@@ -139,91 +173,91 @@ fn truth(world: &World, robot: usize, time: f64, contacts: u64) -> Truth {
 }
 
 /// Answers a program until it ends, and waits for its end.
-fn attend(
-    mut seat: Seat,
-    stream: UnixStream,
-    running: Result<Running, String>,
-    options: &Options,
-) -> (Served, (Ending, Report)) {
-    match running {
+fn attend(mut seat: Seat, running: Result<Running, String>, (real_limit, hang_limit): (f64, f64)) -> Served {
+    let mut running = match running {
+        Ok(running) => running,
         Err(message) => {
-            let served = Served { time: seat.now(), contacts: 0, ended: None };
-            (served, (Ending::NotStarted(message), Report::default()))
+            let ending = Ending::NotStarted(message);
+            return Served { time: seat.now(), contacts: 0, ending, report: Report::default() };
         }
-        Ok(running) => {
-            let served = serve(seat, stream, running.id(), options.hang_limit);
-            (served, running.wait(options.real_limit))
-        }
+    };
+    let offence = serve(&mut seat, &mut running, hang_limit);
+    let contacts = seat.truth().robot(seat.index()).map_or(0, |robot| robot.contacts.into());
+    let time = seat.now();
+    // The world goes on without the robot's program.
+    drop(seat);
+    if offence.is_some() {
+        process::kill_all(running.id());
     }
+    let (ending, report) = running.wait(real_limit);
+    let ending = match offence {
+        Some(offence) if !matches!(ending, Ending::Exit(..)) => offence,
+        _ => ending,
+    };
+    Served { time, contacts, ending, report }
 }
 
-/// Answers a program's questions. When it returns, the world goes on without the robot's program.
-fn serve(mut seat: Seat, mut stream: UnixStream, process: u32, hang_limit: f64) -> Served {
-    let mut frame = Vec::new();
-    let patience = Duration::try_from_secs_f64(hang_limit).ok();
-    // Others wait for a program that neither asks nor takes its answers.
-    let _ = stream.set_read_timeout(patience).and_then(|()| stream.set_write_timeout(patience));
-    let ended = loop {
-        match receive(&mut stream, LONGEST_REQUEST, &mut frame) {
-            Ok(true) => {}
-            Err(error) if is_timeout(&error) => {
-                if drift(&mut seat, &stream) {
-                    continue;
-                }
+/// How long a program is waited for before it is looked whether it has ended without a word.
+const GLANCE: Duration = Duration::from_millis(5);
+
+/// Answers a program's questions until it has no more. Returns what it has to be ended for, if it has.
+fn serve(seat: &mut Seat, running: &mut Running, hang_limit: f64) -> Option<Ending> {
+    let memory = running.memory().clone();
+    let mut silence = Stopwatch::start();
+    loop {
+        let frame = match memory.asked(LONGEST_REQUEST, GLANCE) {
+            Asked::Question(frame) => frame,
+            Asked::Left => return None,
+            Asked::TooLong(length) => {
+                let message = format!("a question of {length} bytes; expected at most {LONGEST_REQUEST}");
+                return Some(Ending::Offence(message));
+            }
+            Asked::Nothing if running.has_ended() => return None,
+            // Others wait for a program that does not ask.
+            Asked::Nothing if silence.seconds() < hang_limit || drift(seat, &memory, running) => continue,
+            Asked::Nothing if running.has_ended() => return None,
+            Asked::Nothing => {
                 let message =
                     format!("its simulated time was over, after {hang_limit} real seconds without a call");
-                break Some(Ending::OutOfTime(message));
+                return Some(Ending::OutOfTime(message));
             }
-            Err(error) if error.kind() == StreamError::InvalidData => {
-                break Some(Ending::Offence(error.to_string()));
-            }
-            // It has ended, after a question or in the middle of one.
-            Ok(false) | Err(_) => break None,
-        }
+        };
         let Some(Question { debt, request }) = Question::decode(&frame) else {
             let message = format!("a question of {} bytes that makes no sense", frame.len());
-            break Some(Ending::Offence(message));
+            return Some(Ending::Offence(message));
         };
         let reply = seat.ask(debt, &request);
         let over = reply.as_ref().is_err_and(|error| error.kind() == ErrorKind::TimedOut);
-        let answer = Answer { now: seat.now(), reply };
-        if send(&mut stream, answer.encode()).is_err() || over {
-            break None;
+        memory.answer(&Answer { now: seat.now(), reply }.encode());
+        if over {
+            return None;
         }
-    };
-    if ended.is_some() {
-        process::kill_all(process);
+        silence = Stopwatch::start();
     }
-    let contacts = seat.truth().robot(seat.index()).map_or(0, |robot| robot.contacts.into());
-    Served { time: seat.now(), contacts, ended }
 }
 
 /// Lets time pass for a program that has not called for long, so that the world goes on without it: it may have nothing
 /// more to ask, as after `VWSetSpeed(0, 100); while (1);`. Returns whether it calls again, before its time is over.
-fn drift(seat: &mut Seat, stream: &UnixStream) -> bool {
-    while !process::is_readable(stream, 1) {
-        if seat.ask(0.0, &Request::Pass(LOOK)).is_err() {
+fn drift(seat: &mut Seat, memory: &Memory, running: &mut Running) -> bool {
+    while !memory.is_asked(Duration::from_millis(1)) {
+        if running.has_ended() || seat.ask(0.0, &Request::Pass(LOOK)).is_err() {
             return false;
         }
     }
     true
 }
 
-fn is_timeout(error: &std::io::Error) -> bool {
-    matches!(error.kind(), StreamError::WouldBlock | StreamError::TimedOut)
-}
-
 /// Seconds between two looks at robots that drive on.
 const LOOK: f64 = 0.1;
 
 /// Lets robots whose programs have ended drive on until all stand, or the time is over.
-fn drive_on(simulation: &Simulation, scene: &Scene) {
+fn drive_on(simulation: &Simulation, scene: &Scene, stopwatch: &Stopwatch, real_limit: f64) {
     let world = simulation.truth();
     let poses =
         || -> Vec<Pose> { (0..scene.robots.len()).filter_map(|robot| world.pose(robot).ok()).collect() };
     let Ok(mut robot) = simulation.robot(0) else { return };
     let mut before = poses();
-    while robot.wait(LOOK).is_ok() {
+    while stopwatch.seconds() < real_limit && robot.wait(LOOK).is_ok() {
         let now = poses();
         if now == before {
             return;

@@ -67,24 +67,39 @@ fn in_one_line(error: &clap::Error) -> String {
     lines.collect::<Vec<_>>().join(" ").trim_start_matches("error: ").to_owned()
 }
 
+/// Adds what a run has to say to its report and to standard error, each of it once.
+fn warn(warnings: &mut Vec<String>, more: impl IntoIterator<Item = String>) {
+    for warning in more {
+        if !warnings.contains(&warning) {
+            let _ = writeln!(std::io::stderr(), "{warning}");
+            warnings.push(warning);
+        }
+    }
+}
+
 /// Runs the programs, and collects what is odd about the files.
 fn run(options: &Options, warnings: &mut Vec<String>) -> Result<Summary, String> {
     let stopwatch = verdict::Stopwatch::start();
     let plan = options.plan()?;
     let (scene, odd) = plan.scene()?;
-    *warnings = odd;
-    for warning in warnings.iter() {
-        let _ = writeln!(std::io::stderr(), "{warning}");
+    warn(warnings, odd);
+    if options.cpu_time > 0.0 {
+        warn(
+            warnings,
+            ["--cpu-time: what a program computes is charged, so runs are not reproducible".into()],
+        );
     }
     let folder = work_folder::WorkFolder::new()?;
     let programs = programs::of(options, &scene, &folder)?;
     let watched = options.picture.is_some() || options.record.is_some();
     let own_world = programs.len() == 1 && !watched;
-    let verdicts = if own_world {
+    let mut verdicts = if own_world {
         children::run_alone(&programs[0], &plan, &scene, options, &folder)
     } else {
         host::run_together(&programs, &plan, &scene, options, &folder)
     }?;
+    verdict::name_deadlocks(&mut verdicts);
+    warn(warnings, verdicts.iter().flat_map(verdict::Verdict::warnings));
     let (warnings, wall_time) = (std::mem::take(warnings), options.timing.then(|| stopwatch.seconds()));
     Ok(Summary { verdicts, warnings, seed: plan.seed, noise: plan.noise, wall_time })
 }

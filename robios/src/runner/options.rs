@@ -1,7 +1,8 @@
 use std::path::{Path, PathBuf};
 
+use eyesim::costs::Costs;
 use eyesim::keys::KeyPlan;
-use eyesim::plan::{Plan, parse_pose};
+use eyesim::plan::{FRAME_RATE, Plan, parse_pose};
 use roverlab::geometry::Pose;
 use roverlab::picture::FileType;
 
@@ -42,7 +43,20 @@ pub(crate) struct Options {
     #[arg(long, value_name = "S", default_value = "120", value_parser = parse_seconds)]
     pub(crate) time_limit: f64,
 
-    /// Real seconds after which a program is ended.
+    /// What calls take of a program's time: as on EyeSim, where a frame serves one request of each robot (eyesim); a tenth
+    /// of a millisecond each (free); or as a file says, a line for each call that differs from EyeSim: `PSDGet query 2`.
+    #[arg(long, value_name = "eyesim|free|FILE", default_value = "eyesim")]
+    pub(crate) call_costs: String,
+
+    /// Frames that EyeSim renders in a second.
+    #[arg(long, value_name = "HZ", default_value_t = FRAME_RATE, value_parser = parse_rate)]
+    pub(crate) frame_rate: f64,
+
+    /// Simulated seconds for each second that a program computes. Above 0, runs are not reproducible.
+    #[arg(long, value_name = "FACTOR", default_value_t = 0.0, value_parser = parse_factor)]
+    pub(crate) cpu_time: f64,
+
+    /// Real seconds after which a program is ended, and the run with it.
     #[arg(long, value_name = "S", default_value = "60", value_parser = parse_seconds)]
     pub(crate) real_limit: f64,
 
@@ -133,7 +147,18 @@ impl Options {
             seed: self.seed,
             noise: self.noise,
             time_limit: self.time_limit,
+            costs: Costs::parse(&self.costs_by_whole_name(), self.frame_rate)
+                .map_err(|message| format!("--call-costs {message}"))?,
+            cpu_time: self.cpu_time,
         })
+    }
+
+    /// What calls take, a file by its whole name: programs run elsewhere.
+    pub(crate) fn costs_by_whole_name(&self) -> String {
+        match self.call_costs.as_str() {
+            known @ ("eyesim" | "free") => known.to_owned(),
+            file => whole(Path::new(file)).display().to_string(),
+        }
     }
 }
 
@@ -150,6 +175,16 @@ pub(crate) fn whole(file: &Path) -> PathBuf {
 fn parse_noise(text: &str) -> Result<f64, String> {
     let level = text.parse().ok().filter(|level| (0.0..=5.0).contains(level));
     level.ok_or_else(|| "expected a number from 0 to 5".into())
+}
+
+fn parse_rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate| (1.0..=1000.0).contains(rate));
+    rate.ok_or_else(|| "expected 1 to 1000 frames in a second".into())
+}
+
+fn parse_factor(text: &str) -> Result<f64, String> {
+    let factor = text.parse().ok().filter(|factor| (0.0..=1000.0).contains(factor));
+    factor.ok_or_else(|| "expected a factor from 0 to 1000".into())
 }
 
 fn parse_seconds(text: &str) -> Result<f64, String> {

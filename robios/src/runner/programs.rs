@@ -154,18 +154,22 @@ fn starts_here(path: &Path) -> bool {
 /// Compiles a program with the script that is meant for it, with the other source texts that it needs.
 fn compile(source: &Path, folder: &WorkFolder, robot: usize) -> Result<PathBuf, String> {
     let program = folder.file(&format!("program{robot}.x"));
-    let Some(message) = compile_files(&[source.to_owned()], &program)? else { return Ok(program) };
+    let Some(mut message) = compile_files(&[source.to_owned()], &program)? else { return Ok(program) };
     let mut files = vec![source.to_owned()];
     companions(source, &mut files, MOST_HEADERS);
-    if files.len() > 1
-        && message.contains("undefined reference")
-        && compile_files(&files, &program)?.is_none()
-    {
-        return Ok(program);
+    if files.len() > 1 && message.contains("undefined reference") {
+        // With the rest of the program, what is wrong is something else.
+        match compile_files(&files, &program)? {
+            Some(with_companions) => message = with_companions,
+            None => return Ok(program),
+        }
     }
     let telling =
         |words: &str| message.lines().find(|line| line.contains(words) && !line.starts_with("collect2"));
-    let first = telling("error").or_else(|| telling("undefined reference")).or(message.lines().next());
+    let first = telling("error:")
+        .or_else(|| telling("error"))
+        .or_else(|| telling("undefined reference"))
+        .or(message.lines().next());
     Err(format!("{}: does not compile: {}", source.display(), first.unwrap_or("the compiler says nothing")))
 }
 

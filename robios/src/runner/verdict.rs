@@ -57,6 +57,9 @@ pub(crate) struct Verdict {
     truth: Truth,
     lcd_text: String,
     sounds: u64,
+    notes: Vec<String>,
+    /// Since when it had waited for a radio message, at its end.
+    listening_since: Option<f64>,
 }
 
 impl Verdict {
@@ -68,7 +71,24 @@ impl Verdict {
             truth,
             lcd_text: report.text.clone(),
             sounds: report.sounds,
+            notes: report.notes.clone(),
+            listening_since: report.listening_since,
         }
+    }
+
+    /// The robot as messages name it.
+    fn name(&self) -> String {
+        format!("robot {}, {}", self.robot + 1, self.program)
+    }
+
+    /// What the run has to say about the program, beyond how it ended.
+    pub(crate) fn warnings(&self) -> impl Iterator<Item = String> {
+        self.notes.iter().map(|note| format!("{}: {note}", self.name()))
+    }
+
+    /// Whether a limit has ended it while it waited for a radio message.
+    fn listens(&self) -> bool {
+        self.listening_since.is_some() && matches!(self.ending, Ending::OutOfTime(_))
     }
 
     /// How it went, in a word.
@@ -120,11 +140,35 @@ impl Verdict {
     }
 }
 
+/// Says of programs that a limit has ended while they waited for radio messages for whom they did.
+pub(crate) fn name_deadlocks(verdicts: &mut [Verdict]) {
+    let waits: Vec<_> = verdicts
+        .iter()
+        .map(|verdict| {
+            verdict.listening_since.filter(|_| verdict.listens()).map(|since| (verdict.name(), since))
+        })
+        .collect();
+    for (index, verdict) in verdicts.iter_mut().enumerate() {
+        let (Some((_, since)), Ending::OutOfTime(message)) = (&waits[index], &mut verdict.ending) else {
+            continue;
+        };
+        let others = waits.iter().enumerate().filter(|&(other, _)| other != index);
+        let others: Vec<String> = others
+            .filter_map(|(_, wait)| wait.as_ref())
+            .map(|(name, since)| format!("{name} (since {since:.2} s)"))
+            .collect();
+        *message += &format!("; it has waited for a radio message since {since:.2} s");
+        if !others.is_empty() {
+            *message += &format!(", and so has {}: none of them sends", others.join(", "));
+        }
+    }
+}
+
 /// What became of all programs of a run.
 #[derive(Debug)]
 pub(crate) struct Summary {
     pub(crate) verdicts: Vec<Verdict>,
-    /// What was odd about the files.
+    /// What was odd about the files and the programs.
     pub(crate) warnings: Vec<String>,
     pub(crate) seed: u64,
     pub(crate) noise: f64,

@@ -26,13 +26,6 @@ impl WorkFolder {
         self.0.join(name)
     }
 
-    /// An empty file in it.
-    pub(crate) fn empty(&self, name: &str) -> Result<PathBuf, String> {
-        let path = self.file(name);
-        fs::File::create(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-        Ok(path)
-    }
-
     /// Where it is.
     pub(crate) fn path(&self) -> &Path {
         &self.0

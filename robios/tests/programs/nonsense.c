@@ -1,16 +1,20 @@
-/* Writes garbage where the library would ask the world. */
+/* Writes garbage where the library asks the world. */
 #include "eyebot.h"
 
 int main(void)
 {
-    static char garbage[1 << 20];
-    const char *number = getenv("ROBIOS_SOCKET");
-    int i;
+    char line[256], *start = NULL;
+    FILE *maps = fopen("/proc/self/maps", "r");
 
-    memset(garbage, 0x7b, sizeof garbage);
-    for (i = 0; i < 100 && number != NULL; i++)
-        if (send(atoi(number), garbage, sizeof garbage, MSG_NOSIGNAL) < 0)
-            break;
+    XInitThreads();
+    while (maps != NULL && start == NULL && fgets(line, sizeof line, maps) != NULL)
+        if (strstr(line, "memfd:robios") != NULL)
+            start = (char *)strtoul(line, NULL, 16);
+    if (start == NULL)
+        return 0;
+    /* A length that cannot be, and the other side's turn. */
+    *(volatile unsigned *)(start + 128) = 0x7b7b7b7b;
+    *(volatile unsigned *)(start + 64) = 1;
     for (;;)
         pause();
 }

@@ -45,7 +45,7 @@ fn what_programs_move_does_not_hang_on_who_is_faster() {
     }
     let folder = Folder::new("moves");
     // Both move the can in the same tick, and both see the wish of the robot that was placed last.
-    let text = "from eye import *\nimport os\nif DELAY == OSMachineID():\n    os.system('sleep 0.2')\n\
+    let text = "from eye import *\nif DELAY == OSMachineID():\n    sum(range(10000000))\n\
                 SIMSetObject(3, 500 + OSMachineID(), 1500, 0, 0)\nLCDPrintf('%d', SIMGetObject(3)[0].value)\n";
     for delayed in ["1", "2"] {
         folder.write("move.py", &text.replace("DELAY", delayed));

@@ -1,13 +1,14 @@
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::ControlFlow;
 
-use image::RgbImage;
-
+use super::observation::{ColourObservation, Sight};
 use super::scan_memory::ScanMemory;
 use super::steering::{Exempt, Steering, directions, nearest, obstacles};
 use super::tracker::OBJECT;
-use super::{ColourObservation, ColourTracker, TrackerParameters};
+use super::{ColourTracker, TrackerParameters};
 use crate::geometry::{Point, Pose, Twist, Vector, angle_difference, direction, math, normalize_angle};
-use crate::io::{self, Camera, Clock, Drive, ErrorKind, Lidar, LidarScan, Resolution};
+use crate::io::control::{Behaviour, Decision, Senses, halts};
+use crate::io::{self, Camera, Drive, Lidar, Resolution};
 use crate::scan::ScanMatcher;
 use crate::vision::ColourFinder;
 
@@ -66,6 +67,8 @@ pub enum PushOutcome {
     Home,
     /// Time was over.
     TimedOut,
+    /// Who watched had seen enough.
+    Stopped,
     /// The drive stalled.
     Blocked,
 }
@@ -124,10 +127,10 @@ impl PushHome {
     }
 
     /// The speed for an observation; `None` when the object is home.
-    pub fn step(&mut self, seen: &ColourObservation<'_>) -> Result<Option<Twist>, crate::vision::Error> {
-        let seen = &ColourObservation { pose: self.localise(seen), ..*seen };
+    pub(super) fn steer(&mut self, seen: &Sight<'_>) -> Result<Option<Twist>, crate::vision::Error> {
+        let seen = &Sight { pose: self.localise(seen), ..*seen };
         if self.phase == HomePhase::Finding {
-            let twist = self.tracker.step(seen)?;
+            let twist = self.tracker.steer(seen)?;
             let Some(target) = self.tracker.target().filter(|_| twist.is_none()) else { return Ok(twist) };
             (self.object, self.lost) = (target, 0.0);
             self.phase = HomePhase::Rounding;
@@ -150,7 +153,7 @@ impl PushHome {
     }
 
     /// Where the robot is by odometry and by what stands still around it.
-    fn localise(&mut self, seen: &ColourObservation<'_>) -> Pose {
+    fn localise(&mut self, seen: &Sight<'_>) -> Pose {
         let place = self.matcher.corrected(seen.pose).to_local(self.object);
         let moves = (self.phase != HomePhase::Finding).then_some(Exempt { place, reach: OBJECT });
         obstacles(seen.scan, moves, &mut self.points);
@@ -160,7 +163,7 @@ impl PushHome {
     }
 
     /// Looks by lidar where the object is now. `false` when it has not been there for a second.
-    fn look(&mut self, seen: &ColourObservation<'_>) -> bool {
+    fn look(&mut self, seen: &Sight<'_>) -> bool {
         let place = seen.pose.to_local(self.object);
         let bearing = math::atan2(place.y, place.x);
         let half = math::asin((0.06 / place.coords.norm()).min(1.0));
@@ -203,7 +206,7 @@ impl PushHome {
     }
 
     /// Goes round the object to the side that is away from where it is to go.
-    fn round(&mut self, seen: &ColourObservation<'_>) -> Twist {
+    fn round(&mut self, seen: &Sight<'_>) -> Twist {
         let wanted = normalize_angle(self.direction_home() + PI);
         let mine = seen.pose.position() - self.object;
         let present = math::atan2(mine.y, mine.x);
@@ -223,7 +226,7 @@ impl PushHome {
     }
 
     /// Turns to the object.
-    fn turn(&mut self, seen: &ColourObservation<'_>) -> Twist {
+    fn turn(&mut self, seen: &Sight<'_>) -> Twist {
         let place = seen.pose.to_local(self.object);
         let bearing = math::atan2(place.y, place.x);
         if bearing.abs() < 0.05 {
@@ -234,7 +237,7 @@ impl PushHome {
     }
 
     /// Drives to the object and pushes it.
-    fn push(&mut self, seen: &ColourObservation<'_>) -> Twist {
+    fn push(&mut self, seen: &Sight<'_>) -> Twist {
         let HomeParameters { push_speed, correction, .. } = self.parameters;
         let place = seen.pose.to_local(self.object);
         let (distance, bearing) = (place.coords.norm(), math::atan2(place.y, place.x));
@@ -253,47 +256,34 @@ impl PushHome {
         let angular = (4.0 * (bearing - wanted)).clamp(-1.5, 1.5);
         Twist::new(push_speed * (1.0 - bearing.abs() / PI), angular)
     }
+}
 
-    /// Drives until the object is home or time is over. `observe` is called at each step.
-    pub fn run<R: Camera + Clock + Drive + Lidar + ?Sized>(
-        &mut self,
-        robot: &mut R,
-        time_limit: f64,
-        mut observe: impl FnMut(&mut R, &Self, &RgbImage) -> io::Result<()>,
-    ) -> io::Result<PushOutcome> {
-        robot.set_resolution(Resolution::Qqvga)?;
-        let (mut image, mut scan) = (RgbImage::default(), LidarScan::default());
-        let begin = robot.now()?;
-        let (mut next, mut last) = (begin, f64::NEG_INFINITY);
-        loop {
-            let time = robot.now()?;
-            if time <= last {
-                return Err(io::Error::new(ErrorKind::Other, "the robot's clock stands still"));
-            }
-            last = time;
-            if self.phase == HomePhase::Finding {
-                robot.image_into(&mut image)?;
-            }
-            robot.scan_into(&mut scan)?;
-            let pose = robot.pose()?;
-            let twist = self
-                .step(&ColourObservation { time, image: &image, scan: &scan, pose })
-                .map_err(|error| io::Error::new(ErrorKind::Other, error.to_string()).with_source(error))?;
-            observe(robot, self, &image)?;
-            let outcome = if time - begin >= time_limit {
-                Some(PushOutcome::TimedOut)
-            } else if robot.is_stalled()? {
-                Some(PushOutcome::Blocked)
-            } else {
-                twist.is_none().then_some(PushOutcome::Home)
-            };
-            robot.set_speed(twist.filter(|_| outcome.is_none()).unwrap_or(Twist::STOP))?;
-            if let Some(outcome) = outcome {
-                return Ok(outcome);
-            }
-            next += self.parameters.tracker.period;
-            let pause = next - robot.now()?;
-            robot.wait(pause)?;
-        }
+halts!(PushOutcome);
+
+impl Behaviour for PushHome {
+    type Observation = ColourObservation;
+    type Command = Twist;
+    type Outcome = PushOutcome;
+
+    fn period(&self) -> f64 {
+        self.parameters.tracker.period
+    }
+
+    fn step(&mut self, time: f64, seen: &ColourObservation) -> Decision<Self> {
+        Ok(match self.steer(&seen.at(time)).map_err(io::Error::caused_by)? {
+            _ if seen.stalled => ControlFlow::Break(PushOutcome::Blocked),
+            Some(twist) => ControlFlow::Continue(twist),
+            None => ControlFlow::Break(PushOutcome::Home),
+        })
+    }
+}
+
+impl<R: Camera + Drive + Lidar + ?Sized> Senses<R> for PushHome {
+    fn prepare(&mut self, robot: &mut R) -> io::Result<()> {
+        robot.set_resolution(Resolution::Qqvga)
+    }
+
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut ColourObservation) -> io::Result<()> {
+        seen.read(robot, self.phase == HomePhase::Finding)
     }
 }

@@ -4,8 +4,9 @@ use image::{Rgb, RgbImage};
 
 use super::*;
 use crate::geometry::{Point, Pose, Twist};
+use crate::io::Drive;
+use crate::io::control::{Behaviour, run};
 use crate::io::sim::{SimOptions, Simulation};
-use crate::io::{Drive, LidarScan};
 use crate::vision::{CameraGeometry, ColourFinder, FindMethod};
 use crate::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Shape, World};
 
@@ -47,7 +48,7 @@ fn the_can_is_reached_in_any_light() {
         let simulation = Simulation::new(&room(x, y), options).unwrap();
         let mut robot = simulation.robot(0).unwrap();
         let mut tracker = ColourTracker::new(finder(method), TrackerParameters::default());
-        let outcome = tracker.run(&mut robot, 120.0, |_, _, _| Ok(())).unwrap();
+        let outcome = run(&mut robot, &mut tracker, 120.0, |_, _, _| {}).unwrap();
         let truth = simulation.truth().robot(0).unwrap();
         assert_eq!((outcome, truth.contacts), (ColourOutcome::Reached, 0), "{method:?} {x} {y} {light}");
         let gap = truth.pose.distance_to(Point::new(x, y)) - 0.093;
@@ -67,7 +68,7 @@ fn the_can_is_pushed_home() {
         let mut robot = simulation.robot(0).unwrap();
         let mut behaviour =
             PushHome::new(finder(FindMethod::Blob), Point::origin(), HomeParameters::default());
-        let outcome = behaviour.run(&mut robot, 240.0, |_, _, _| Ok(())).unwrap();
+        let outcome = run(&mut robot, &mut behaviour, 240.0, |_, _, _| {}).unwrap();
         let truth = simulation.truth();
         let home = truth.object(0).unwrap().distance_to(start.position());
         assert_eq!(outcome, PushOutcome::Home, "{x} {y}: {:?}", behaviour.phase());
@@ -86,16 +87,16 @@ fn what_is_gone_is_searched_for() {
     let mut behaviour = PushHome::new(finder(FindMethod::Blob), Point::origin(), HomeParameters::default());
     for _ in 0..20 {
         if behaviour.phase() == HomePhase::Finding {
-            behaviour.run(&mut robot, 2.0, |_, _, _| Ok(())).unwrap();
+            run(&mut robot, &mut behaviour, 2.0, |_, _, _| {}).unwrap();
         }
     }
     assert_ne!(behaviour.phase(), HomePhase::Finding);
     // Nothing is there any more, for the lidar and for the camera.
-    let (image, scan) = (RgbImage::from_pixel(160, 120, Rgb([90; 3])), LidarScan::default());
-    let pose = robot.pose().unwrap();
+    let image = RgbImage::from_pixel(160, 120, Rgb([90; 3]));
+    let nothing = ColourObservation { image, pose: robot.pose().unwrap(), ..ColourObservation::default() };
     let mut step = |i: u32| {
-        let time = 100.0 + 0.1 * f64::from(i);
-        behaviour.step(&ColourObservation { time, image: &image, scan: &scan, pose }).unwrap().unwrap()
+        let decision = behaviour.step(100.0 + 0.1 * f64::from(i), &nothing).unwrap();
+        decision.continue_value().expect("it goes on")
     };
     let twists: Vec<Twist> = (0..15).map(&mut step).collect();
     assert!(twists[14].linear == 0.0 && twists[14].angular > 0.1, "{twists:?}");

@@ -1,11 +1,11 @@
 use std::f64::consts::{PI, TAU};
+use std::ops::ControlFlow;
 
-use image::RgbImage;
-
-use super::ColourObservation;
+use super::observation::{ColourObservation, Sight};
 use super::steering::{Exempt, Steering, nearest, obstacles};
 use crate::geometry::{Point, Twist, angle_difference, math};
-use crate::io::{self, Camera, Clock, Drive, ErrorKind, Lidar, LidarScan, Resolution};
+use crate::io::control::{Behaviour, Decision, Senses, halts};
+use crate::io::{self, Camera, Drive, Lidar, LidarScan, Resolution};
 use crate::vision::{ColourFinder, Sighting};
 
 /// How a [`ColourTracker`] drives.
@@ -62,6 +62,8 @@ pub enum ColourOutcome {
     Reached,
     /// Time was over.
     TimedOut,
+    /// Who watched had seen enough.
+    Stopped,
     /// The drive stalled.
     Blocked,
 }
@@ -132,7 +134,7 @@ impl ColourTracker {
     }
 
     /// The speed for an observation; `None` when the object is reached.
-    pub fn step(&mut self, seen: &ColourObservation<'_>) -> Result<Option<Twist>, crate::vision::Error> {
+    pub(super) fn steer(&mut self, seen: &Sight<'_>) -> Result<Option<Twist>, crate::vision::Error> {
         self.sighting = self.finder.find(seen.image)?;
         if let Some(sighting) = self.sighting {
             let place = self.place_of(&sighting, seen.scan);
@@ -163,7 +165,7 @@ impl ColourTracker {
         Point::new(camera.ahead + depth * cos, depth * sin)
     }
 
-    fn approach(&mut self, seen: &ColourObservation<'_>, target: Point, last: f64) -> Option<Twist> {
+    fn approach(&mut self, seen: &Sight<'_>, target: Point, last: f64) -> Option<Twist> {
         let p = self.parameters;
         let place = seen.pose.to_local(target);
         let (distance, bearing) = (place.coords.norm(), math::atan2(place.y, place.x));
@@ -202,7 +204,7 @@ impl ColourTracker {
     }
 
     /// Turns on the spot, and chooses another place after a full turn.
-    fn search(&mut self, seen: &ColourObservation<'_>) -> Twist {
+    fn search(&mut self, seen: &Sight<'_>) -> Twist {
         let heading = seen.pose.heading;
         self.turned += self.heading.map_or(0.0, |before| angle_difference(heading, before).abs());
         self.heading = Some(heading);
@@ -218,7 +220,7 @@ impl ColourTracker {
     }
 
     /// The end of the longest free way, with places preferred that are far from those looked from before.
-    fn freest(&mut self, seen: &ColourObservation<'_>) -> Point {
+    fn freest(&mut self, seen: &Sight<'_>) -> Point {
         obstacles(seen.scan, None, &mut self.points);
         let steering = self.steering();
         let ends = (0..24).map(|i| {
@@ -233,7 +235,7 @@ impl ColourTracker {
         best.map_or(seen.pose.position(), |(end, _)| end)
     }
 
-    fn roam(&mut self, seen: &ColourObservation<'_>) -> Twist {
+    fn roam(&mut self, seen: &Sight<'_>) -> Twist {
         let place = self.goal.map_or(Point::origin(), |goal| seen.pose.to_local(goal));
         let (distance, bearing) = (place.coords.norm(), math::atan2(place.y, place.x));
         obstacles(seen.scan, None, &mut self.points);
@@ -250,45 +252,34 @@ impl ColourTracker {
             }
         }
     }
+}
 
-    /// Drives until the object is reached or time is over. `observe` is called at each step.
-    pub fn run<R: Camera + Clock + Drive + Lidar + ?Sized>(
-        &mut self,
-        robot: &mut R,
-        time_limit: f64,
-        mut observe: impl FnMut(&mut R, &Self, &RgbImage) -> io::Result<()>,
-    ) -> io::Result<ColourOutcome> {
-        robot.set_resolution(Resolution::Qqvga)?;
-        let (mut image, mut scan) = (RgbImage::default(), LidarScan::default());
-        let begin = robot.now()?;
-        let (mut next, mut last) = (begin, f64::NEG_INFINITY);
-        loop {
-            let time = robot.now()?;
-            if time <= last {
-                return Err(io::Error::new(ErrorKind::Other, "the robot's clock stands still"));
-            }
-            last = time;
-            robot.image_into(&mut image)?;
-            robot.scan_into(&mut scan)?;
-            let pose = robot.pose()?;
-            let twist = self.step(&ColourObservation { time, image: &image, scan: &scan, pose });
-            let twist = twist
-                .map_err(|error| io::Error::new(ErrorKind::Other, error.to_string()).with_source(error))?;
-            observe(robot, self, &image)?;
-            let outcome = if time - begin >= time_limit {
-                Some(ColourOutcome::TimedOut)
-            } else if robot.is_stalled()? {
-                Some(ColourOutcome::Blocked)
-            } else {
-                twist.is_none().then_some(ColourOutcome::Reached)
-            };
-            robot.set_speed(twist.filter(|_| outcome.is_none()).unwrap_or(Twist::STOP))?;
-            if let Some(outcome) = outcome {
-                return Ok(outcome);
-            }
-            next += self.parameters.period;
-            let pause = next - robot.now()?;
-            robot.wait(pause)?;
-        }
+halts!(ColourOutcome);
+
+impl Behaviour for ColourTracker {
+    type Observation = ColourObservation;
+    type Command = Twist;
+    type Outcome = ColourOutcome;
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn step(&mut self, time: f64, seen: &ColourObservation) -> Decision<Self> {
+        Ok(match self.steer(&seen.at(time)).map_err(io::Error::caused_by)? {
+            _ if seen.stalled => ControlFlow::Break(ColourOutcome::Blocked),
+            Some(twist) => ControlFlow::Continue(twist),
+            None => ControlFlow::Break(ColourOutcome::Reached),
+        })
+    }
+}
+
+impl<R: Camera + Drive + Lidar + ?Sized> Senses<R> for ColourTracker {
+    fn prepare(&mut self, robot: &mut R) -> io::Result<()> {
+        robot.set_resolution(Resolution::Qqvga)
+    }
+
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut ColourObservation) -> io::Result<()> {
+        seen.read(robot, true)
     }
 }

@@ -8,4 +8,4 @@ mod tour;
 
 pub use map::{CoverageMap, CoverageParameters};
 pub use plan::CoveragePlan;
-pub use tour::{Tour, TourParameters};
+pub use tour::{Tour, TourOutcome, TourParameters};

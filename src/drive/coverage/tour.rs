@@ -1,6 +1,9 @@
+use std::ops::ControlFlow;
+
 use crate::geometry::{Point, Pose, Twist, angle_difference, math};
+use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::error::require_positive;
-use crate::io::{Error, Result};
+use crate::io::{Drive, Error, Result};
 
 /// What [`Tour`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,12 +18,14 @@ pub struct TourParameters {
     pub reach: f64,
     /// The seconds by which the robot does later what it is told.
     pub lag: f64,
+    /// Seconds from one step to the next.
+    pub period: f64,
 }
 
 impl Default for TourParameters {
     /// An S4.
     fn default() -> Self {
-        Self { speed: 0.25, turn_rate: 2.0, arrival: 0.006, reach: 0.08, lag: 0.2 }
+        Self { speed: 0.25, turn_rate: 2.0, arrival: 0.006, reach: 0.08, lag: 0.2, period: 0.04 }
     }
 }
 
@@ -48,6 +53,7 @@ impl Tour {
         require_positive("arrival", parameters.arrival)?;
         require_positive("reach", parameters.reach)?;
         require_positive("lag", parameters.lag)?;
+        require_positive("control period", parameters.period)?;
         let mut corners: Vec<Point> = Vec::with_capacity(points.len());
         for &point in points {
             if !(point.x.is_finite() && point.y.is_finite()) {
@@ -68,7 +74,7 @@ impl Tour {
 
     /// The next speed; `None` at the end.
     pub fn step(&mut self, pose: Pose) -> Option<Twist> {
-        let TourParameters { speed, turn_rate, arrival, reach, lag } = self.parameters;
+        let TourParameters { speed, turn_rate, arrival, reach, lag, .. } = self.parameters;
         loop {
             let (&from, &to) = (self.corners.get(self.next - 1)?, self.corners.get(self.next)?);
             let along = to - from;
@@ -91,6 +97,44 @@ impl Tour {
             let bend = (2.0 * math::sin(error) - (aside / reach).clamp(-1.0, 1.0)) / reach;
             return Some(Twist::new(linear, (linear * bend).clamp(-turn_rate, turn_rate)));
         }
+    }
+}
+
+/// How a tour ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum TourOutcome {
+    /// The robot takes itself to be at the last corner.
+    Finished,
+    /// The time was over first.
+    TimedOut,
+    /// Who watched had seen enough.
+    Stopped,
+}
+
+halts!(TourOutcome);
+
+impl Behaviour for Tour {
+    /// Where the robot takes itself to be; it stands as long as it does not know.
+    type Observation = Option<Pose>;
+    type Command = Twist;
+    type Outcome = TourOutcome;
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn step(&mut self, _time: f64, place: &Option<Pose>) -> Decision<Self> {
+        let Some(place) = *place else { return Ok(ControlFlow::Continue(Twist::STOP)) };
+        Ok(Tour::step(self, place).map_or(ControlFlow::Break(TourOutcome::Finished), ControlFlow::Continue))
+    }
+}
+
+/// By odometry.
+impl<R: Drive + ?Sized> Senses<R> for Tour {
+    fn sense(&mut self, robot: &mut R, _time: f64, place: &mut Option<Pose>) -> Result<()> {
+        *place = Some(robot.pose()?);
+        Ok(())
     }
 }
 

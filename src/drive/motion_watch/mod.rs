@@ -4,4 +4,4 @@
 mod tests;
 mod watch;
 
-pub use watch::{MotionWatch, WatchParameters};
+pub use watch::{MotionWatch, WatchObservation, WatchParameters};

@@ -4,6 +4,7 @@ use image::GrayImage;
 
 use super::*;
 use crate::geometry::{Pose, Twist, units};
+use crate::io::control::run;
 use crate::io::sim::{SimOptions, SimRobot, Simulation};
 use crate::io::{Camera, Clock, Drive, Resolution};
 use crate::vision::GrayView;
@@ -147,7 +148,7 @@ fn the_robot_turns_to_what_moves_and_stands_when_nothing_does() {
             });
             let parameters = WatchParameters::new(RobotSpec::s4().camera.unwrap().field_of_view);
             let mut watch = MotionWatch::new(parameters).unwrap();
-            watch.run(&mut robot, 3.0, |_, _, _| Ok(())).unwrap();
+            run(&mut robot, &mut watch, 3.0, |_, _, _| {}).unwrap();
         });
         simulation.truth().pose(0).unwrap().heading
     };

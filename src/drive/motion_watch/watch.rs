@@ -1,7 +1,10 @@
+use std::ops::ControlFlow;
+
 use image::GrayImage;
 
 use crate::geometry::{Pose, Twist, angle_difference};
-use crate::io::{self, Camera, Clock, Drive, ErrorKind, Resolution};
+use crate::io::control::{Behaviour, Decision, Halt, Senses};
+use crate::io::{self, Camera, Drive, Resolution};
 use crate::vision::motion::{Motion, MotionDetector, MotionParameters, TurnCompensator};
 use crate::vision::{Error, GrayView};
 
@@ -123,36 +126,39 @@ impl MotionWatch {
         let moved = seen.image.region((from, 0), width, height)?;
         self.turning.compare_loosely(moved, second.region((from, 0), width, height)?, slack)
     }
+}
 
-    /// Watches for some seconds. `observe` is called at each step.
-    pub fn run<R: Camera + Clock + Drive + ?Sized>(
-        &mut self,
-        robot: &mut R,
-        seconds: f64,
-        mut observe: impl FnMut(&mut R, &Self, &GrayImage) -> io::Result<()>,
-    ) -> io::Result<()> {
-        robot.set_resolution(Resolution::Qqvga)?;
-        let begin = robot.now()?;
-        let (mut next, mut last) = (begin, f64::NEG_INFINITY);
-        loop {
-            let time = robot.now()?;
-            if time <= last {
-                return Err(io::Error::new(ErrorKind::Other, "the robot's clock stands still"));
-            }
-            last = time;
-            if time - begin >= seconds {
-                return robot.set_speed(Twist::STOP);
-            }
-            let image = robot.gray_image()?;
-            let pose = robot.pose()?;
-            let twist = self
-                .step(time, &image, pose)
-                .map_err(|error| io::Error::new(ErrorKind::Other, error.to_string()).with_source(error))?;
-            observe(robot, self, &image)?;
-            robot.set_speed(twist)?;
-            next += self.parameters.period;
-            let pause = next - robot.now()?;
-            robot.wait(pause)?;
-        }
+/// What a [`MotionWatch`] sees at a step.
+#[derive(Debug, Clone, Default)]
+pub struct WatchObservation {
+    /// The camera's image.
+    pub image: GrayImage,
+    /// Where odometry takes the robot to be.
+    pub pose: Pose,
+}
+
+impl Behaviour for MotionWatch {
+    type Observation = WatchObservation;
+    type Command = Twist;
+    type Outcome = Halt;
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn step(&mut self, time: f64, seen: &WatchObservation) -> Decision<Self> {
+        let twist = MotionWatch::step(self, time, &seen.image, seen.pose).map_err(io::Error::caused_by)?;
+        Ok(ControlFlow::Continue(twist))
+    }
+}
+
+impl<R: Camera + Drive + ?Sized> Senses<R> for MotionWatch {
+    fn prepare(&mut self, robot: &mut R) -> io::Result<()> {
+        robot.set_resolution(Resolution::Qqvga)
+    }
+
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut WatchObservation) -> io::Result<()> {
+        *seen = WatchObservation { image: robot.gray_image()?, pose: robot.pose()? };
+        Ok(())
     }
 }

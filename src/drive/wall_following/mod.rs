@@ -15,6 +15,6 @@ mod two_level;
 pub use parameters::{WallFollowerParameters, WallObservation, WallSensors, WallSide};
 pub use pid::{PidWallFollower, PidWallParameters};
 pub use psd::{WallFollower, WallPhase};
-pub use run::{FollowsWalls, WallOutcome, run_along_wall};
+pub use run::{AlongWall, AlongWallObservation, FollowsWalls, WallOutcome, WallReading};
 pub use scan::{LidarWallFollower, LidarWallParameters};
 pub use two_level::TwoLevelWallFollower;

@@ -141,7 +141,7 @@ impl WallFollowerParameters {
 }
 
 /// What a wall follower sees at a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct WallObservation {
     /// Where odometry takes the robot to be.
     pub pose: Pose,

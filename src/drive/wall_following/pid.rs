@@ -1,10 +1,9 @@
 use super::memory::Median;
-use super::run::observe;
 use super::{FollowsWalls, WallObservation, WallSensors, WallSide};
 use crate::drive::{Pid, PidParameters};
 use crate::geometry::Twist;
 use crate::io::error::require_positive;
-use crate::io::{DistanceSensors, Drive, Error, Result};
+use crate::io::{Error, Result};
 
 /// What [`PidWallFollower`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,10 +112,11 @@ impl PidWallFollower {
     }
 }
 
-impl<R: Drive + DistanceSensors + ?Sized> FollowsWalls<R> for PidWallFollower {
-    fn look(&mut self, robot: &mut R, seconds: f64) -> Result<Twist> {
-        let observation = observe(robot)?;
-        self.step(&observation, seconds)
+impl FollowsWalls for PidWallFollower {
+    type Observation = WallObservation;
+
+    fn steer(&mut self, seen: &WallObservation, seconds: f64) -> Result<Twist> {
+        self.step(seen, seconds)
     }
 
     fn period(&self) -> f64 {

@@ -32,16 +32,16 @@ pub enum WallPhase {
 /// distance until it sees the next wall.
 ///
 /// ```
-/// use std::ops::ControlFlow;
-/// use roverlab::drive::{run_along_wall, WallFollower, WallFollowerParameters};
+/// use roverlab::drive::{AlongWall, WallFollower, WallFollowerParameters};
 /// use roverlab::geometry::Pose;
+/// use roverlab::io::control::run;
 /// use roverlab::io::sim::{SimOptions, Simulation};
 /// use roverlab::world::{RobotSpec, Scene, World};
 /// # fn main() -> roverlab::io::Result<()> {
 /// let scene = Scene::with_robot(World::walled(2.0, 2.0), RobotSpec::s4(), Pose::new(1.0, 1.0, 0.4));
 /// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
 /// let mut follower = WallFollower::new(WallFollowerParameters::default())?;
-/// run_along_wall(&mut simulation.robot(0)?, &mut follower, 60.0, |_, _| ControlFlow::Continue(()))?;
+/// run(&mut simulation.robot(0)?, &mut AlongWall::new(&mut follower), 60.0, |_, _, _| {})?;
 /// let truth = simulation.truth().robot(0)?;
 /// assert_eq!(truth.contacts, 0);
 /// assert!(truth.path_length > 6.0);

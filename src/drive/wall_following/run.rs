@@ -2,12 +2,17 @@ use std::ops::ControlFlow;
 
 use super::{WallFollower, WallObservation, WallPhase, WallSide};
 use crate::geometry::Twist;
-use crate::io::{Clock, DistanceSensors, Drive, Psd, Result};
+use crate::io::control::{Behaviour, Decision, Senses, halts};
+use crate::io::{DistanceSensors, Drive, Lidar, LidarScan, Psd, Result};
 
-/// A controller that drives a robot along walls.
-pub trait FollowsWalls<R: ?Sized> {
-    /// Looks, and says how to drive. `seconds` have passed since the last step.
-    fn look(&mut self, robot: &mut R, seconds: f64) -> Result<Twist>;
+/// A controller that steers along walls.
+#[auto_impl::auto_impl(&mut)]
+pub trait FollowsWalls {
+    /// What it goes by.
+    type Observation: Default;
+
+    /// How to drive. `seconds` have passed since the last step.
+    fn steer(&mut self, seen: &Self::Observation, seconds: f64) -> Result<Twist>;
 
     /// Seconds from one step to the next.
     fn period(&self) -> f64;
@@ -17,6 +22,30 @@ pub trait FollowsWalls<R: ?Sized> {
 
     /// On which side of the robot the wall is, once that is decided.
     fn wall_side(&self) -> Option<WallSide>;
+}
+
+/// What a controller that steers along walls can read from a robot.
+pub trait WallReading<R: ?Sized> {
+    /// Reads it.
+    fn read(&mut self, robot: &mut R) -> Result<()>;
+}
+
+impl<R: Drive + DistanceSensors + ?Sized> WallReading<R> for WallObservation {
+    fn read(&mut self, robot: &mut R) -> Result<()> {
+        *self = Self {
+            pose: robot.pose()?,
+            front: robot.distance(Psd::FRONT)?,
+            left: robot.distance(Psd::LEFT)?,
+            right: robot.distance(Psd::RIGHT)?,
+        };
+        Ok(())
+    }
+}
+
+impl<R: Lidar + ?Sized> WallReading<R> for LidarScan {
+    fn read(&mut self, robot: &mut R) -> Result<()> {
+        robot.scan_into(self)
+    }
 }
 
 /// How a drive along walls ended.
@@ -31,61 +60,73 @@ pub enum WallOutcome {
     Blocked,
 }
 
-/// Drives a robot along walls for so many seconds, or until `watch`, which is called after each step with the time and the
-/// controller, breaks. The robot stops in the end.
-pub fn run_along_wall<R: Clock + Drive + ?Sized, C: FollowsWalls<R>>(
-    robot: &mut R,
-    controller: &mut C,
-    seconds: f64,
-    mut watch: impl FnMut(f64, &C) -> ControlFlow<()>,
-) -> Result<WallOutcome> {
-    /// Seconds for which wheels may be held before that counts.
-    const PATIENCE: f64 = 2.0;
-    let start = robot.now()?;
-    let (mut last, mut free) = (start, start);
-    let mut due = start;
-    let outcome = loop {
-        let now = robot.now()?;
-        if now - start >= seconds {
-            break WallOutcome::TimedOut;
-        }
-        if !robot.is_stalled()? {
-            free = now;
-        } else if now - free > PATIENCE {
-            break WallOutcome::Blocked;
-        }
-        let twist = controller.look(robot, now - last)?;
-        last = now;
-        robot.set_speed(twist)?;
-        due += controller.period();
-        let rest = due - robot.now()?;
-        if rest > 0.0 {
-            robot.wait(rest)?;
-        } else {
-            due -= rest;
-        }
-        if watch(robot.now()?, controller).is_break() {
-            break WallOutcome::Stopped;
-        }
-    };
-    robot.set_speed(Twist::STOP)?;
-    Ok(outcome)
+halts!(WallOutcome);
+
+/// A drive along walls by a controller.
+#[derive(Debug, Clone)]
+pub struct AlongWall<C> {
+    /// The controller.
+    pub controller: C,
+    /// When the last step was, and when the wheels were free last.
+    last: Option<f64>,
+    free: f64,
 }
 
-/// What the three distance sensors and odometry say.
-pub(super) fn observe<R: Drive + DistanceSensors + ?Sized>(robot: &mut R) -> Result<WallObservation> {
-    Ok(WallObservation {
-        pose: robot.pose()?,
-        front: robot.distance(Psd::FRONT)?,
-        left: robot.distance(Psd::LEFT)?,
-        right: robot.distance(Psd::RIGHT)?,
-    })
+impl<C: FollowsWalls> AlongWall<C> {
+    /// A drive that begins.
+    pub fn new(controller: C) -> Self {
+        Self { controller, last: None, free: 0.0 }
+    }
 }
 
-impl<R: Drive + DistanceSensors + ?Sized> FollowsWalls<R> for WallFollower {
-    fn look(&mut self, robot: &mut R, _seconds: f64) -> Result<Twist> {
-        let observation = observe(robot)?;
-        self.step(&observation)
+/// What is seen at a step of a drive along walls.
+#[derive(Debug, Clone, Default)]
+pub struct AlongWallObservation<O> {
+    /// Whether something holds the robot.
+    pub stalled: bool,
+    /// What the controller goes by.
+    pub seen: O,
+}
+
+impl<C: FollowsWalls> Behaviour for AlongWall<C> {
+    type Observation = AlongWallObservation<C::Observation>;
+    type Command = Twist;
+    type Outcome = WallOutcome;
+
+    fn period(&self) -> f64 {
+        self.controller.period()
+    }
+
+    fn step(&mut self, time: f64, now: &Self::Observation) -> Decision<Self> {
+        /// Seconds for which wheels may be held before that counts.
+        const PATIENCE: f64 = 2.0;
+        let last = self.last.replace(time);
+        if !now.stalled || last.is_none() {
+            self.free = time;
+        } else if time - self.free > PATIENCE {
+            return Ok(ControlFlow::Break(WallOutcome::Blocked));
+        }
+        let seconds = last.map_or(0.0, |last| time - last);
+        self.controller.steer(&now.seen, seconds).map(ControlFlow::Continue)
+    }
+}
+
+impl<R, C> Senses<R> for AlongWall<C>
+where
+    R: Drive + ?Sized,
+    C: FollowsWalls<Observation: WallReading<R>>,
+{
+    fn sense(&mut self, robot: &mut R, _time: f64, now: &mut Self::Observation) -> Result<()> {
+        now.stalled = robot.is_stalled()?;
+        now.seen.read(robot)
+    }
+}
+
+impl FollowsWalls for WallFollower {
+    type Observation = WallObservation;
+
+    fn steer(&mut self, seen: &WallObservation, _seconds: f64) -> Result<Twist> {
+        self.step(seen)
     }
 
     fn period(&self) -> f64 {

@@ -3,7 +3,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use super::{FollowsWalls, WallSide};
 use crate::geometry::{FittedLine, Point, Twist, math};
 use crate::io::error::require_positive;
-use crate::io::{Error, Lidar, LidarScan, Result};
+use crate::io::{Error, LidarScan, Result};
 
 /// What [`LidarWallFollower`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,7 +46,6 @@ impl Default for LidarWallParameters {
 #[derive(Debug, Clone, PartialEq)]
 pub struct LidarWallFollower {
     parameters: LidarWallParameters,
-    scan: LidarScan,
     met: bool,
     aligned: bool,
 }
@@ -68,7 +67,7 @@ impl LidarWallFollower {
         require_positive("reach", parameters.reach)?;
         require_positive("lag", parameters.lag)?;
         require_positive("control period", parameters.period)?;
-        Ok(Self { parameters, scan: LidarScan::default(), met: false, aligned: false })
+        Ok(Self { parameters, met: false, aligned: false })
     }
 
     /// The next speed. Fails for a scan that does not reach from ahead to the wall's side.
@@ -153,13 +152,11 @@ fn hits(scan: &LidarScan, towards: f64) -> Vec<Option<Point>> {
     if towards > 0.0 { indices.map(point).collect() } else { indices.rev().map(point).collect() }
 }
 
-impl<R: Lidar + ?Sized> FollowsWalls<R> for LidarWallFollower {
-    fn look(&mut self, robot: &mut R, _seconds: f64) -> Result<Twist> {
-        let mut scan = std::mem::take(&mut self.scan);
-        let seen = robot.scan_into(&mut scan);
-        let twist = seen.and_then(|()| self.step(&scan));
-        self.scan = scan;
-        twist
+impl FollowsWalls for LidarWallFollower {
+    type Observation = LidarScan;
+
+    fn steer(&mut self, scan: &LidarScan, _seconds: f64) -> Result<Twist> {
+        self.step(scan)
     }
 
     fn period(&self) -> f64 {

@@ -1,9 +1,9 @@
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::ops::ControlFlow;
 
 use super::*;
 use crate::geometry::{Point, Pose, Twist};
-use crate::io::sim::{SimOptions, Simulation};
+use crate::io::control::run;
+use crate::io::sim::{SimOptions, SimRobot, Simulation};
 use crate::random::Stream;
 use crate::world::generate::{RoomOptions, room};
 use crate::world::{RobotSpec, Scene, Wall, World};
@@ -28,7 +28,7 @@ impl Drive {
 
 fn drive<C>(world: &World, start: Pose, controller: &mut C, seconds: f64, noise: f64, seed: u64) -> Drive
 where
-    C: FollowsWalls<crate::io::sim::SimRobot>,
+    C: FollowsWalls<Observation: WallReading<SimRobot>>,
 {
     const DISTANCE: f64 = 0.2;
     let scene = Scene::with_robot(world.clone(), RobotSpec::s4(), start);
@@ -36,16 +36,15 @@ where
     let truth = simulation.truth();
     let (mut begin, mut errors) = (None, Vec::new());
     let mut robot = simulation.robot(0).unwrap();
-    run_along_wall(&mut robot, controller, seconds, |_, controller| {
+    run(&mut robot, &mut AlongWall::new(controller), seconds, |_, along, _| {
         let robot = truth.robot(0).unwrap();
-        if begin.is_none() && controller.is_beside_wall() {
+        if begin.is_none() && along.controller.is_beside_wall() {
             begin = Some(robot.path_length);
         }
         if begin.is_some_and(|begin| robot.path_length > begin + 1.0) {
             let gaps = world.walls.iter().map(|wall| wall.line.distance_to(robot.pose.position()));
             errors.push(gaps.fold(f64::INFINITY, f64::min) - 0.5 * Wall::DEFAULT_THICKNESS - DISTANCE);
         }
-        ControlFlow::Continue(())
     })
     .unwrap();
     let end = truth.robot(0).unwrap();

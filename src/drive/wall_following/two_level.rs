@@ -1,7 +1,6 @@
-use super::run::observe;
 use super::{FollowsWalls, WallObservation, WallSide};
 use crate::geometry::{Twist, units};
-use crate::io::{DistanceSensors, Drive, Result};
+use crate::io::Result;
 
 /// The book's own wall follower (program 6.1): along a wall to the left it steers a little to the one side or the other,
 /// by whether the left range is below a limit, and turns right on the spot where the range ahead gets below it.
@@ -57,11 +56,12 @@ impl TwoLevelWallFollower {
     }
 }
 
-impl<R: Drive + DistanceSensors + ?Sized> FollowsWalls<R> for TwoLevelWallFollower {
-    fn look(&mut self, robot: &mut R, _seconds: f64) -> Result<Twist> {
-        let observation = observe(robot)?;
-        observation.check()?;
-        Ok(self.step(&observation))
+impl FollowsWalls for TwoLevelWallFollower {
+    type Observation = WallObservation;
+
+    fn steer(&mut self, seen: &WallObservation, _seconds: f64) -> Result<Twist> {
+        seen.check()?;
+        Ok(self.step(seen))
     }
 
     fn period(&self) -> f64 {

@@ -66,7 +66,7 @@ pub use troop::{RecordedTroop, ReplayTroop};
 pub use truth::{RecordedTruth, ReplayTruth};
 pub use writer::LogWriter;
 
-pub use super::{Behaviour, Troop, Witness};
+pub use super::{Troop, TroopStep, Witness};
 
 #[cfg(test)]
 mod tests;

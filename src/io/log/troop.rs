@@ -12,7 +12,7 @@ use super::values::Values;
 use super::{LogWriter, Recorder, Replay, ReplayTruth};
 use crate::geometry::Pose;
 use crate::io::troop::no_robot;
-use crate::io::{Behaviour, Error, ErrorKind, Result, RobotIo, RobotTruth, Troop, Witness};
+use crate::io::{Error, ErrorKind, Result, RobotIo, RobotTruth, Troop, TroopStep, Witness};
 
 /// A troop that is recorded, made by [`LogWriter::troop`]: each robot's calls as those of a
 /// [`Recorder`], with the ends of the runs among them.
@@ -51,7 +51,7 @@ impl<'a, T: Troop<'a>, W: Write + 'a> Troop<'a> for RecordedTroop<T, W> {
         self.inner.robots()
     }
 
-    fn control(&mut self, robot: usize, period: f64, mut behaviour: Behaviour<'a>) -> Result<()> {
+    fn control(&mut self, robot: usize, period: f64, mut behaviour: TroopStep<'a>) -> Result<()> {
         self.notes(robot)?;
         let mut port = Some(self.writer.port(robot));
         let recorded = move |robot: &mut dyn RobotIo| {
@@ -110,7 +110,7 @@ struct Member<'a> {
     robot: Replay,
     truth: ReplayTruth,
     orders: Orders,
-    behaviour: Option<Behaviour<'a>>,
+    behaviour: Option<TroopStep<'a>>,
 }
 
 impl std::fmt::Debug for ReplayTroop<'_> {
@@ -230,7 +230,7 @@ impl<'a> Troop<'a> for ReplayTroop<'a> {
         self.members.len()
     }
 
-    fn control(&mut self, robot: usize, period: f64, behaviour: Behaviour<'a>) -> Result<()> {
+    fn control(&mut self, robot: usize, period: f64, behaviour: TroopStep<'a>) -> Result<()> {
         let member = self.member(robot)?;
         member.orders.take(CONTROL, period)?.ok_or_else(|| ended("the behaviours were given"))?;
         member.behaviour = Some(behaviour);

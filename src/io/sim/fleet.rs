@@ -197,7 +197,7 @@ impl<'a> Troop<'a> for Fleet<'a> {
         self.len()
     }
 
-    fn control(&mut self, robot: usize, period: f64, mut behaviour: troop::Behaviour<'a>) -> Result<()> {
+    fn control(&mut self, robot: usize, period: f64, mut behaviour: troop::TroopStep<'a>) -> Result<()> {
         Fleet::control(self, robot, period, move |robot| behaviour(robot))
     }
 

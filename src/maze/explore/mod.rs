@@ -35,4 +35,6 @@ pub enum Verdict {
     Unreachable,
     /// The maze is known as far as it can be reached.
     Explored,
+    /// The time of the run was over first.
+    TimedOut,
 }

@@ -1,9 +1,11 @@
 use std::f64::consts::FRAC_PI_2;
+use std::ops::ControlFlow;
 
 use super::cell_drive::{CellDrive, CellDriveParameters, read};
 use crate::geometry::{Pose, Twist};
+use crate::io::control::{Behaviour, Decision, Manoeuvre, Senses, halts};
 use crate::io::error::require_positive;
-use crate::io::{Clock, DistanceSensors, Drive, Result};
+use crate::io::{DistanceSensors, Drive, Result};
 use crate::maze::Direction;
 
 /// How a robot drives from one cell to the next.
@@ -33,12 +35,6 @@ pub struct LeftHandParameters {
     pub period: f64,
 }
 
-/// The same on the way.
-enum Way {
-    OpenLoop { length: f64, speed: f64 },
-    Controlled(Box<CellDrive>),
-}
-
 impl LeftHandParameters {
     /// The book's program, open loop: 400 mm, 45 degrees and 180 mm a second, cells of 360 mm.
     pub fn as_printed() -> Self {
@@ -61,8 +57,8 @@ impl LeftHandParameters {
 /// Keeps the left hand on the wall: left where that is free, else straight on, else right, else back (book, section 9.2).
 ///
 /// ```
-/// use roverlab::maze::{LeftHand, LeftHandParameters};
-/// let rule = LeftHand::new(LeftHandParameters::as_printed())?;
+/// use roverlab::maze::{Direction, LeftHand, LeftHandParameters};
+/// let rule = LeftHand::new(LeftHandParameters::as_printed(), Direction::North)?;
 /// // Front, left, right: quarter turns to the left.
 /// assert_eq!(rule.choose([0.1, 0.5, 0.5]), 1);
 /// assert_eq!(rule.choose([0.5, 0.1, 0.5]), 0);
@@ -73,33 +69,89 @@ impl LeftHandParameters {
 #[derive(Debug, Clone)]
 pub struct LeftHand {
     parameters: LeftHandParameters,
+    controller: Option<CellDrive>,
+    phase: Phase,
+    at: (i32, i32),
+    heading: Direction,
+    cells: usize,
 }
+
+/// What the robot does.
+#[derive(Debug, Clone, Copy)]
+enum Phase {
+    /// It stands in a cell.
+    Choosing,
+    /// It turns on the spot.
+    Turning,
+    /// It drives into the next cell.
+    Driving,
+    /// It comes to rest before it reads its sensors again, for at most so many steps.
+    Resting(usize),
+}
+
+/// Seconds, and metres per second, of coming to rest.
+const REST: f64 = 0.3;
+const AT_REST: f64 = 2e-3;
 
 /// How a drive along the left wall ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum LeftHandOutcome {
-    /// The caller had seen enough.
-    Finished,
+    /// Who watched had seen enough.
+    Stopped,
+    /// The time was over first.
+    TimedOut,
     /// Something holds the robot.
     Stalled,
 }
 
+halts!(LeftHandOutcome);
+
+/// What a [`LeftHand`] sees at a step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LeftHandObservation {
+    /// Where odometry takes the robot to be.
+    pub pose: Pose,
+    /// How fast it drives by odometry.
+    pub speed: Twist,
+    /// What the sensors at the front, on the left and on the right read, in metres.
+    pub readings: [f64; 3],
+    /// Whether its last manoeuvre has ended, or there was none.
+    pub done: bool,
+    /// Whether something holds it.
+    pub stalled: bool,
+}
+
 impl LeftHand {
-    /// The rule for a robot. Fails with the name of the parameter that is out of range.
-    pub fn new(parameters: LeftHandParameters) -> Result<Self> {
+    /// The rule for a robot that faces a direction. Fails with the name of the parameter that is out of range.
+    pub fn new(parameters: LeftHandParameters, heading: Direction) -> Result<Self> {
         require_positive("threshold", parameters.threshold)?;
         require_positive("turn rate", parameters.turn_rate)?;
         require_positive("control period", parameters.period)?;
-        match parameters.straight {
+        let controller = match parameters.straight {
             Straight::OpenLoop { length, speed } => {
                 require_positive("length", length)?;
                 require_positive("speed", speed)?;
+                None
             }
-            Straight::Controlled(drive) => {
-                CellDrive::new(drive)?;
-            }
-        }
-        Ok(Self { parameters })
+            Straight::Controlled(drive) => Some(CellDrive::new(drive)?),
+        };
+        Ok(Self { parameters, controller, phase: Phase::Choosing, at: (0, 0), heading, cells: 0 })
+    }
+
+    /// Where the robot takes itself to be, or to be driving from: cells to the east and to the north since the start.
+    pub fn at(&self) -> (i32, i32) {
+        self.at
+    }
+
+    /// Where it faces, or turns to.
+    pub fn heading(&self) -> Direction {
+        self.heading
+    }
+
+    /// How many cells it has driven into.
+    pub fn cells(&self) -> usize {
+        self.cells
     }
 
     /// Quarter turns to the left, -1 to 2, for readings at the front, on the left and on the right.
@@ -112,93 +164,93 @@ impl LeftHand {
         }
     }
 
-    /// Drives from cell to cell until `finished`, which is asked after each cell with the cells to the east and to the north
-    /// since the start, as the robot counts them, and with its heading. `watch` is called at each step.
-    pub fn run<R: Clock + Drive + DistanceSensors + ?Sized>(
-        &self,
-        robot: &mut R,
-        mut heading: Direction,
-        mut finished: impl FnMut((i32, i32), Direction) -> bool,
-        mut watch: impl FnMut(),
-    ) -> Result<LeftHandOutcome> {
-        let mut at = (0, 0);
-        let mut way = match self.parameters.straight {
-            Straight::Controlled(drive) => Way::Controlled(Box::new(CellDrive::new(drive)?)),
-            Straight::OpenLoop { length, speed } => Way::OpenLoop { length, speed },
-        };
-        loop {
-            let quarters = self.choose(read(robot)?);
-            if quarters != 0 {
-                robot.turn(f64::from(quarters) * FRAC_PI_2, self.parameters.turn_rate)?;
-                self.await_manoeuvre(robot, |pose| {
-                    if let Way::Controlled(controller) = &mut way {
-                        controller.turned(pose);
-                    }
-                    watch();
-                })?;
-                heading = heading.turned_right((4 - quarters) as usize % 4);
+    fn turn_or_drive(&mut self, seen: &LeftHandObservation) -> Decision<Self> {
+        let quarters = self.choose(seen.readings);
+        if quarters == 0 {
+            return self.set_off(seen);
+        }
+        self.heading = self.heading.turned_right((4 - quarters) as usize % 4);
+        self.phase = Phase::Turning;
+        let angle = f64::from(quarters) * FRAC_PI_2;
+        Ok(ControlFlow::Continue(Manoeuvre::Turn(angle, self.parameters.turn_rate)))
+    }
+
+    /// Begins to drive into the next cell.
+    fn set_off(&mut self, seen: &LeftHandObservation) -> Decision<Self> {
+        self.phase = Phase::Driving;
+        match self.parameters.straight {
+            Straight::OpenLoop { length, speed } => {
+                Ok(ControlFlow::Continue(Manoeuvre::Straight(length, speed)))
             }
-            let stalled = match &mut way {
-                Way::Controlled(controller) => self.drive(robot, controller, &mut watch)?,
-                &mut Way::OpenLoop { length, speed } => {
-                    robot.straight(length, speed)?;
-                    self.await_manoeuvre(robot, |_| watch())?;
-                    robot.is_stalled()?
-                }
-            };
-            if stalled {
-                robot.set_speed(Twist::STOP)?;
-                return Ok(LeftHandOutcome::Stalled);
-            }
-            let (dx, dy) = heading.step();
-            at = (at.0 + dx, at.1 + dy);
-            if finished(at, heading) {
-                return Ok(LeftHandOutcome::Finished);
-            }
+            Straight::Controlled(_) => self.drive(seen),
         }
     }
 
-    fn await_manoeuvre<R: Clock + Drive + ?Sized>(
-        &self,
-        robot: &mut R,
-        mut watch: impl FnMut(Pose),
-    ) -> Result<()> {
-        while !robot.is_done()? && !robot.is_stalled()? {
-            robot.wait(self.parameters.period)?;
-            watch(robot.pose()?);
-        }
-        Ok(())
-    }
-
-    /// Drives into the next cell. Returns whether something holds the robot.
-    fn drive<R: Clock + Drive + DistanceSensors + ?Sized>(
-        &self,
-        robot: &mut R,
-        controller: &mut CellDrive,
-        watch: &mut impl FnMut(),
-    ) -> Result<bool> {
+    fn drive(&mut self, seen: &LeftHandObservation) -> Decision<Self> {
         let period = self.parameters.period;
-        loop {
-            let pose: Pose = robot.pose()?;
-            let readings = read(robot)?;
-            let Some(speed) = controller.step(pose, readings, period)? else { break };
-            if robot.is_stalled()? {
-                return Ok(true);
+        let Some(controller) = &mut self.controller else {
+            if seen.done && !seen.stalled {
+                self.arrive();
             }
-            robot.set_speed(speed)?;
-            robot.wait(period)?;
-            watch();
+            return Ok(ControlFlow::Continue(Manoeuvre::Continue));
+        };
+        let speed = controller.step(seen.pose, seen.readings, period)?;
+        if speed.is_none() {
+            controller.begin();
+            self.phase = Phase::Resting((REST / period) as usize);
         }
-        robot.set_speed(Twist::STOP)?;
-        // The robot comes to rest before it reads its sensors again.
-        for _ in 0..(0.3 / period) as usize {
-            if robot.speed()?.linear.abs() < 2e-3 {
-                break;
+        Ok(ControlFlow::Continue(Manoeuvre::Speed(speed.unwrap_or(Twist::STOP))))
+    }
+
+    fn arrive(&mut self) {
+        let (dx, dy) = self.heading.step();
+        self.at = (self.at.0 + dx, self.at.1 + dy);
+        self.cells += 1;
+        self.phase = Phase::Choosing;
+    }
+}
+
+impl Behaviour for LeftHand {
+    type Observation = LeftHandObservation;
+    type Command = Manoeuvre;
+    type Outcome = LeftHandOutcome;
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn step(&mut self, _time: f64, seen: &LeftHandObservation) -> Decision<Self> {
+        let waits = Ok(ControlFlow::Continue(Manoeuvre::Continue));
+        match self.phase {
+            Phase::Choosing => self.turn_or_drive(seen),
+            Phase::Turning => {
+                if let Some(controller) = &mut self.controller {
+                    controller.turned(seen.pose);
+                }
+                if seen.done || seen.stalled { self.set_off(seen) } else { waits }
             }
-            robot.wait(period)?;
-            watch();
+            Phase::Driving if seen.stalled => Ok(ControlFlow::Break(LeftHandOutcome::Stalled)),
+            Phase::Driving => self.drive(seen),
+            Phase::Resting(left) => {
+                self.phase = Phase::Resting(left.saturating_sub(1));
+                if left == 0 || seen.speed.linear.abs() < AT_REST {
+                    self.arrive();
+                }
+                waits
+            }
         }
-        controller.begin();
-        Ok(false)
+    }
+}
+
+impl<R: DistanceSensors + Drive + ?Sized> Senses<R> for LeftHand {
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LeftHandObservation) -> Result<()> {
+        *seen = LeftHandObservation {
+            pose: robot.pose()?,
+            speed: robot.speed()?,
+            readings: read(robot)?,
+            done: robot.is_done()?,
+            stalled: robot.is_stalled()?,
+        };
+        Ok(())
     }
 }

@@ -1,8 +1,10 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::ops::ControlFlow;
 
 use crate::geometry::{Point, Pose, Twist};
+use crate::io::control::{Behaviour, Decision, Halt, Senses};
 use crate::io::error::{require_finite, require_positive};
-use crate::io::{Clock, Drive, Lidar, LidarScan, Result};
+use crate::io::{Drive, Lidar, LidarScan, Result};
 
 /// What [`LidarLeft`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,8 +43,8 @@ impl LidarLeftParameters {
 /// Drives along the wall on the left by a lidar, and turns right where a wall is ahead (book, section 9.4).
 ///
 /// The shortest beam within 45 degrees of the left meets the wall at a right angle: its direction tells how the robot stands
-/// to the wall, its length how far it is. A proportional controller of both steers. All points that were seen are put down
-/// where odometry has the robot, and make a map that is as good as odometry.
+/// to the wall, its length how far it is. A proportional controller of both steers. All points that were
+/// [seen](LidarLeftObservation::points), put down where odometry has the robot, make a map that is as good as odometry.
 #[derive(Debug, Clone)]
 pub struct LidarLeft {
     parameters: LidarLeftParameters,
@@ -92,27 +94,41 @@ impl LidarLeft {
         let turn = p.angle_gain * (angle - FRAC_PI_2) + p.distance_gain * off;
         Twist::new(p.speed, turn.clamp(-p.turn_rate, p.turn_rate))
     }
+}
 
-    /// Drives until `finished`, which is asked at each step with the pose by odometry and what was seen, as points in
-    /// odometry's frame.
-    pub fn run<R: Clock + Drive + Lidar + ?Sized>(
-        &mut self,
-        robot: &mut R,
-        mut finished: impl FnMut(Pose, &[Point]) -> bool,
-    ) -> Result<()> {
-        let mut scan = LidarScan::default();
-        let mut points = Vec::new();
-        loop {
-            let pose = robot.pose()?;
-            robot.scan_into(&mut scan)?;
-            points.clear();
-            points.extend(scan.points().map(|point| pose.to_world(point)));
-            if finished(pose, &points) {
-                return robot.set_speed(Twist::STOP);
-            }
-            let speed = self.step(pose, &scan);
-            robot.set_speed(speed)?;
-            robot.wait(self.parameters.period)?;
-        }
+/// What a [`LidarLeft`] sees at a step.
+#[derive(Debug, Clone, Default)]
+pub struct LidarLeftObservation {
+    /// Where odometry takes the robot to be.
+    pub pose: Pose,
+    /// What it sees from there.
+    pub scan: LidarScan,
+}
+
+impl LidarLeftObservation {
+    /// What was seen, as points in odometry's frame: a piece of the map.
+    pub fn points(&self) -> impl Iterator<Item = Point> {
+        self.scan.points().map(|point| self.pose.to_world(point))
+    }
+}
+
+impl Behaviour for LidarLeft {
+    type Observation = LidarLeftObservation;
+    type Command = Twist;
+    type Outcome = Halt;
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn step(&mut self, _time: f64, seen: &LidarLeftObservation) -> Decision<Self> {
+        Ok(ControlFlow::Continue(LidarLeft::step(self, seen.pose, &seen.scan)))
+    }
+}
+
+impl<R: Drive + Lidar + ?Sized> Senses<R> for LidarLeft {
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LidarLeftObservation) -> Result<()> {
+        seen.pose = robot.pose()?;
+        robot.scan_into(&mut seen.scan)
     }
 }

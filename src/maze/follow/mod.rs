@@ -8,5 +8,5 @@ mod place;
 mod tests;
 
 pub use cell_drive::{CellDrive, CellDriveParameters};
-pub use left_hand::{LeftHand, LeftHandOutcome, LeftHandParameters, Straight};
-pub use lidar_left::{LidarLeft, LidarLeftParameters};
+pub use left_hand::{LeftHand, LeftHandObservation, LeftHandOutcome, LeftHandParameters, Straight};
+pub use lidar_left::{LidarLeft, LidarLeftObservation, LidarLeftParameters};

@@ -2,6 +2,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::geometry::Pose;
+use crate::io::control::{Halt, run, until};
 use crate::io::sim::{NoiseModel, SimOptions, Simulation};
 use crate::kinematics::OdometryErrors;
 use crate::maze::generate::perfect;
@@ -26,7 +27,7 @@ fn maze(seed: u64) -> Maze {
 }
 
 /// All the way round, back where it began and without a contact.
-const GOOD: (LeftHandOutcome, bool, u32) = (LeftHandOutcome::Finished, true, 0);
+const GOOD: (LeftHandOutcome, bool, u32) = (LeftHandOutcome::Stopped, true, 0);
 
 /// A drive all the way round. Returns how it ended, whether the robot was where it took itself to be, and contacts.
 fn round(
@@ -41,21 +42,13 @@ fn round(
     let scene = Scene::with_robot(scale.world(maze), spec.clone(), start);
     let simulation = Simulation::new(&scene, SimOptions { seed, noise, ..SimOptions::default() }).unwrap();
     let mut robot = simulation.robot(0).unwrap();
-    let mut cells = 0;
-    let outcome = LeftHand::new(parameters)
-        .unwrap()
-        .run(
-            &mut robot,
-            maze.heading(),
-            |at, _| {
-                cells += 1;
-                at == (0, 0) || cells > 200
-            },
-            || (),
-        )
-        .unwrap();
+    let mut rule = LeftHand::new(parameters, maze.heading()).unwrap();
+    let outcome = run(&mut robot, &mut rule, 3600.0, |_, rule, _| {
+        until((rule.cells() > 0 && rule.at() == (0, 0)) || rule.cells() > 200)
+    });
+    let outcome = outcome.unwrap();
     let end = simulation.truth().robot(0).unwrap();
-    let home = cells == 2 * (maze.cell_count() - 1);
+    let home = rule.cells() == 2 * (maze.cell_count() - 1);
     let there = scale.cell_of(maze, end.pose.position()) == Some(maze.start());
     (outcome, home && there, end.contacts)
 }
@@ -153,13 +146,14 @@ fn a_lidar_leads_round() {
         let mut robot = simulation.robot(0).unwrap();
         let parameters = LidarLeftParameters::for_corridor(scale.cell - scale.wall);
         let mut seen = 0;
-        let drive = LidarLeft::new(parameters).unwrap().run(&mut robot, |_, points| {
-            seen += points.len();
+        let mut follower = LidarLeft::new(parameters).unwrap();
+        let drive = run(&mut robot, &mut follower, 600.0, |_, _, step| {
+            seen += step.seen.points().count();
             let cell = scale.cell_of(&maze, truth.robot(0).unwrap().pose.position()).unwrap();
             visited[maze.index(cell)] = true;
-            visited.iter().all(|&visited| visited)
+            until(visited.iter().all(|&visited| visited))
         });
-        drive.unwrap();
+        assert_eq!(drive.unwrap(), Halt::Stopped);
         assert_eq!(truth.robot(0).unwrap().contacts, 0, "seed {seed}");
         assert!(seen > 10_000);
     }
@@ -182,7 +176,7 @@ proptest! {
 
     #[test]
     fn the_left_hand_turns_to_what_is_free(readings in prop::array::uniform3(0.05..1.0f64)) {
-        let rule = LeftHand::new(LeftHandParameters::as_printed()).unwrap();
+        let rule = LeftHand::new(LeftHandParameters::as_printed(), Direction::North).unwrap();
         let [front, left, right] = readings.map(|reading| reading > 0.4);
         let expected = if left { 1 } else if front { 0 } else if right { -1 } else { 2 };
         prop_assert_eq!(rule.choose(readings), expected);
@@ -211,7 +205,7 @@ fn it_steers_to_the_middle_and_stops_at_walls() {
     let broken = CellDriveParameters { speed: -1.0, ..drive };
     assert!(CellDrive::new(broken).unwrap_err().to_string().contains("speed"));
     let printed = LeftHandParameters { threshold: f64::NAN, ..LeftHandParameters::as_printed() };
-    assert!(LeftHand::new(printed).unwrap_err().to_string().contains("threshold"));
+    assert!(LeftHand::new(printed, Direction::North).unwrap_err().to_string().contains("threshold"));
     let lidar = LidarLeftParameters { period: 0.0, ..LidarLeftParameters::for_corridor(0.3) };
     assert!(LidarLeft::new(lidar).unwrap_err().to_string().contains("period"));
 }
@@ -263,9 +257,10 @@ fn after_a_long_corridor_the_opening_is_found() {
             let maze = long_corridor();
             let scene = Scene::with_robot(scale.world(&maze), spec.clone(), start);
             let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, seed)).unwrap();
-            let rule = LeftHand::new(LeftHandParameters::controlled(drive)).unwrap();
+            let mut rule = LeftHand::new(LeftHandParameters::controlled(drive), maze.heading()).unwrap();
             let mut robot = simulation.robot(0).unwrap();
-            rule.run(&mut robot, maze.heading(), |at, _| at == (16, 1), || ()).unwrap();
+            let outcome = run(&mut robot, &mut rule, 600.0, |_, rule, _| until(rule.at() == (16, 1)));
+            assert_eq!(outcome.unwrap(), LeftHandOutcome::Stopped);
             let end = simulation.truth().robot(0).unwrap();
             let cell = scale.cell_of(&maze, end.pose.position());
             assert_eq!((cell, end.contacts), (Some(Cell::new(16, 1)), 0), "{} {seed}", spec.name);

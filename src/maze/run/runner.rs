@@ -3,6 +3,7 @@ use super::look::{self, View};
 use super::rig::Rig;
 use super::tracker::{Tracker, TrackerParameters};
 use crate::geometry::{Pose, Twist, angle_difference};
+use crate::io::control::{Stopwatch, stopping};
 use crate::io::{Clock, DistanceSensors, Drive, Error, ErrorKind, Result};
 use crate::maze::{
     Cell, Direction, Explorer, FastPlan, FastPlanner, Maze, RunLimits, Scale, Step, Trajectory, Unknown,
@@ -83,17 +84,24 @@ pub struct MazeRunner<'r, R: ?Sized> {
     visited: Vec<bool>,
     explorer: FastPlanner,
     racer: FastPlanner,
+    /// Seconds for all that it does, counted from where its clock is asked first.
+    time_limit: f64,
+    clock: Option<Stopwatch>,
 }
 
 impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
-    /// A robot that stands in the middle of the maze's start cell and faces its start heading. `maze` is what it knows.
+    /// A robot that stands in the middle of the maze's start cell and faces its start heading. `maze` is what it knows. It has
+    /// `time_limit` seconds for all that it does, infinity for any time; what is not done then fails with
+    /// [`TimedOut`](ErrorKind::TimedOut).
     pub fn new(
         robot: &'r mut R,
         rig: Rig,
         maze: Maze,
         scale: Scale,
         parameters: RunnerParameters,
+        time_limit: f64,
     ) -> Result<Self> {
+        Stopwatch::check_limit(time_limit)?;
         let invalid = |error: crate::maze::LimitsError| {
             Error::new(ErrorKind::InvalidInput, error.to_string()).with_source(error)
         };
@@ -104,7 +112,20 @@ impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
         let localiser = MazeLocaliser::new(rig.clone(), scale, scale.pose(at.0, at.1), odometry);
         let mut visited = vec![false; maze.cell_count()];
         visited[maze.index(at.0)] = true;
-        Ok(Self { robot, parameters, rig, scale, localiser, maze, at, visited, explorer, racer })
+        Ok(Self {
+            robot,
+            parameters,
+            rig,
+            scale,
+            localiser,
+            maze,
+            at,
+            visited,
+            explorer,
+            racer,
+            time_limit,
+            clock: None,
+        })
     }
 
     /// What is known about the maze.
@@ -139,19 +160,32 @@ impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
         explorer: &mut dyn Explorer,
         watch: &mut dyn FnMut(Pose),
     ) -> Result<Exploration> {
-        let begin = self.robot.now()?;
+        let begin = self.now()?;
         let mut looks = 0;
+        let verdict = match self.explore_to_end(explorer, &mut looks, watch) {
+            Err(_) if self.is_over() => Verdict::TimedOut,
+            verdict => verdict?,
+        };
+        let visited = self.visited.iter().filter(|&&visited| visited).count();
+        Ok(Exploration { verdict, visited, looks, time: self.now()? - begin })
+    }
+
+    fn explore_to_end(
+        &mut self,
+        explorer: &mut dyn Explorer,
+        looks: &mut usize,
+        watch: &mut dyn FnMut(Pose),
+    ) -> Result<Verdict> {
         loop {
             if !self.maze.is_known(self.at.0) {
                 self.look_around(watch)?;
-                looks += 1;
+                *looks += 1;
             }
             match explorer.next(&self.maze, self.at) {
                 Step::Go(cell) => self.go_to(cell, watch)?,
                 Step::Finished(verdict) => {
                     self.face(self.maze.heading(), watch)?;
-                    let visited = self.visited.iter().filter(|&&visited| visited).count();
-                    return Ok(Exploration { verdict, visited, looks, time: self.robot.now()? - begin });
+                    return Ok(verdict);
                 }
             }
         }
@@ -221,11 +255,30 @@ impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
         Ok(readings)
     }
 
-    /// Lets time pass up to the next step.
-    fn wait_for_tick(&mut self) -> Result<()> {
+    fn now(&mut self) -> Result<f64> {
+        match &mut self.clock {
+            Some(clock) => clock.now(self.robot),
+            clock => Ok(clock.insert(Stopwatch::start(self.robot, self.time_limit)?).time()),
+        }
+    }
+
+    fn is_over(&self) -> bool {
+        self.clock.is_some_and(|clock| clock.is_over())
+    }
+
+    /// Where a time lies among the ticks at which steps are made: that of the last one.
+    fn tick(&self, time: f64) -> f64 {
         let period = self.parameters.tracker.period;
-        let now = self.robot.now()?;
-        let next = (now / period + 1e-6).floor() * period + period;
+        (time / period + 1e-6).floor() * period
+    }
+
+    /// Lets time pass up to the next step. Fails if the time is over.
+    fn wait_for_tick(&mut self) -> Result<()> {
+        let now = self.now()?;
+        if self.is_over() {
+            return Err(Error::new(ErrorKind::TimedOut, "the time limit of the run is over"));
+        }
+        let next = self.tick(now) + self.parameters.tracker.period;
         self.robot.wait(next - now)
     }
 
@@ -276,27 +329,32 @@ impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
         Ok(time)
     }
 
-    /// Follows a trajectory to its end. Returns the seconds that it took.
+    /// Follows a trajectory to its end, where the robot is stopped. Returns the seconds that it took.
     fn follow(&mut self, trajectory: Trajectory, watch: &mut dyn FnMut(Pose)) -> Result<f64> {
+        let followed = self.follow_to_end(trajectory, watch);
+        stopping::<_, Twist, _>(self.robot, followed)
+    }
+
+    fn follow_to_end(&mut self, trajectory: Trajectory, watch: &mut dyn FnMut(Pose)) -> Result<f64> {
         let tracker = Tracker::new(trajectory, self.parameters.tracker, self.rig.lag);
-        let period = self.parameters.tracker.period;
         let limit = 2.0 * tracker.trajectory().duration() + 5.0;
         self.wait_for_tick()?;
         // Steps are counted from the tick at which the motors first obey.
-        let begin = (self.robot.now()? / period + 1e-6).floor() * period;
+        let begin = self.now()?;
+        let begin = self.tick(begin);
         loop {
-            let now = (self.robot.now()? / period + 1e-6).floor() * period - begin;
+            let now = match &mut self.clock {
+                Some(clock) => clock.step(self.robot)?,
+                None => begin,
+            };
+            let now = self.tick(now) - begin;
             self.sense()?;
             let pose = self.localiser.pose();
             watch(pose);
             let speed = self.robot.speed()?;
-            let Some(command) = tracker.step(now, pose, speed) else {
-                self.robot.set_speed(Twist::STOP)?;
-                return Ok(now);
-            };
+            let Some(command) = tracker.step(now, pose, speed) else { return Ok(now) };
             self.robot.set_speed(command)?;
             if now > limit || self.robot.is_stalled()? {
-                self.robot.set_speed(Twist::STOP)?;
                 let message = format!("the robot is stuck at {:.3}, {:.3} m", pose.x, pose.y);
                 return Err(Error::new(ErrorKind::Diverged, message));
             }

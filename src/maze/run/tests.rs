@@ -37,7 +37,8 @@ impl Trial {
         known.set_goals(self.maze.goals());
         let mut robot = simulation.robot(0).unwrap();
         let truth = simulation.truth();
-        let mut runner = MazeRunner::new(&mut robot, rig, known, self.scale, self.parameters).unwrap();
+        let (scale, parameters) = (self.scale, self.parameters);
+        let mut runner = MazeRunner::new(&mut robot, rig, known, scale, parameters, f64::INFINITY).unwrap();
         drive(&mut runner, &truth);
         assert_known_rightly(runner.maze(), &self.maze);
         truth.robot(0).unwrap().contacts

@@ -1,7 +1,8 @@
 use super::parameters::BugParameters;
-use super::report::{BugEvent, BugObservation, BugOutcome, BugPhase};
+use super::report::{BugEvent, BugOutcome, BugPhase};
 use super::wall_ends::{WallEnds, overhangs};
 use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math};
+use crate::io::control::LidarObservation;
 use crate::io::{Error, Result};
 use crate::nav::boundary::{WallSide, nearer_side};
 use crate::nav::surroundings::Surroundings;
@@ -108,12 +109,12 @@ impl Body {
     }
 
     /// Takes in what the robot measures.
-    pub(super) fn perceive(&mut self, observation: &BugObservation<'_>) -> Result<()> {
-        check_measured(&observation.odometry, observation.scan)?;
+    pub(super) fn perceive(&mut self, observation: &LidarObservation) -> Result<()> {
+        check_measured(&observation.odometry, &observation.scan)?;
         self.measured.clear();
         self.measured.extend(observation.scan.points());
         self.pose = self.locate(observation);
-        self.filter.update(self.pose, observation.scan)?;
+        self.filter.update(self.pose, &observation.scan)?;
         let reach = REACH * self.parameters.follow_distances().step;
         let error = EXACT + NOISE_SLACK * self.filter.noise();
         self.ends.update(&self.pose, &self.measured, ENDS_REACH * reach, error);
@@ -126,7 +127,7 @@ impl Body {
     }
 
     /// The pose by odometry, corrected by matching the scan as measured.
-    fn locate(&mut self, observation: &BugObservation<'_>) -> Pose {
+    fn locate(&mut self, observation: &LidarObservation) -> Pose {
         if !self.parameters.match_scans {
             return observation.odometry;
         }

@@ -1,10 +1,9 @@
 use super::body::Body;
-use super::family::{Bug, family, run_bug};
+use super::family::{Bug, family};
 use super::progress::LapRule;
-use super::report::{BugEvent, BugObservation, BugOutcome, BugPhase};
+use super::report::{BugEvent, BugPhase};
 use super::strategy::{Decision, Sight, Strategy};
-use crate::geometry::{Point, Pose, Twist};
-use crate::io::{Clock, Drive, Lidar, Result};
+use crate::geometry::{Point, Pose};
 
 family! {
     /// DistBug: to a goal through unknown obstacles, with a proof when there is no way (book, sections 10.1 and 10.2;
@@ -107,26 +106,5 @@ impl DistBug {
     /// Takes the events that have happened since the last call.
     pub fn take_events(&mut self) -> Vec<BugEvent> {
         Bug::take_events(self)
-    }
-
-    /// One control step: what the robot shall do until the next.
-    pub fn step(&mut self, observation: &BugObservation<'_>) -> Result<Twist> {
-        Bug::step(self, observation)
-    }
-
-    /// Ends the run with a verdict from outside, such as that the time is over.
-    pub fn end(&mut self, outcome: BugOutcome) {
-        Bug::end(self, outcome);
-    }
-
-    /// Drives a robot to the goal, or finds that there is no way, within `time_limit` seconds. `observe` is called
-    /// after every step. See [`run_bug`].
-    pub fn run<R: Clock + Drive + Lidar + ?Sized>(
-        &mut self,
-        robot: &mut R,
-        time_limit: f64,
-        observe: impl FnMut(&mut Self, f64),
-    ) -> Result<BugOutcome> {
-        run_bug(self, robot, time_limit, observe)
     }
 }

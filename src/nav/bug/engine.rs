@@ -1,12 +1,14 @@
 use std::f64::consts::FRAC_PI_2;
+use std::ops::ControlFlow;
 
 use super::body::{Body, GoalView};
 use super::parameters::BugParameters;
 use super::progress::{Lap, LoopProgress};
-use super::report::{BugEvent, BugObservation, BugOutcome, BugPhase};
+use super::report::{BugEvent, BugOutcome, BugPhase};
 use super::strategy::{Decision, Place, Sight, Strategy};
 use crate::geometry::{Point, Twist, math, normalize_angle};
 use crate::io::Result;
+use crate::io::control::LidarObservation;
 use crate::nav::boundary::{BoundaryFollower, WallSide};
 
 /// A body that acts by a strategy: to the goal, along boundaries, and to a verdict.
@@ -42,8 +44,16 @@ impl<S: Strategy> Engine<S> {
         Ok(Self { body: Body::new(goal, parameters, S::SLOW_TO_PASS)?, strategy, following: None })
     }
 
-    /// One control step: what the robot shall do until the next.
-    pub(super) fn step(&mut self, observation: &BugObservation<'_>) -> Result<Twist> {
+    /// What the robot shall do until the next step, or how its run has ended.
+    pub(super) fn decide(&mut self, seen: &LidarObservation) -> Result<ControlFlow<BugOutcome, Twist>> {
+        let twist = self.steer(seen)?;
+        Ok(match self.body.phase {
+            BugPhase::Ended(outcome) => ControlFlow::Break(outcome),
+            _ => ControlFlow::Continue(twist),
+        })
+    }
+
+    fn steer(&mut self, observation: &LidarObservation) -> Result<Twist> {
         self.body.perceive(observation)?;
         if self.body.phase == BugPhase::LookingRound {
             return Ok(self.body.look_round());

@@ -1,16 +1,18 @@
 use std::fmt::Debug;
 
 use super::parameters::BugParameters;
-use super::report::{BugEvent, BugObservation, BugOutcome, BugPhase};
+use super::report::{BugEvent, BugOutcome, BugPhase};
 use crate::geometry::{Point, Pose, Twist};
-use crate::io::beat::Beat;
-use crate::io::{Clock, Drive, Lidar, LidarScan, Result};
+use crate::io::control::{Behaviour, LidarObservation, Senses};
+use crate::io::{Drive, Lidar, Result};
 
 /// A bug algorithm: to a goal through unknown obstacles by what a robot senses around it.
 ///
 /// All drive at the goal until something is in the way, follow its boundary, and leave it again; they differ in when
-/// they leave, when they turn back, and when they give up. Give every step an observation, or let [`run_bug`] do so.
-pub trait Bug: Debug {
+/// they leave, when they turn back, and when they give up.
+pub trait Bug:
+    Behaviour<Observation = LidarObservation, Command = Twist, Outcome = BugOutcome> + Debug
+{
     /// What the algorithm is called.
     fn name(&self) -> &'static str;
 
@@ -19,12 +21,6 @@ pub trait Bug: Debug {
 
     /// What it goes by.
     fn parameters(&self) -> &BugParameters;
-
-    /// One control step: what the robot shall do until the next.
-    fn step(&mut self, observation: &BugObservation<'_>) -> Result<Twist>;
-
-    /// Ends the run with a verdict from outside, such as that the time is over.
-    fn end(&mut self, outcome: BugOutcome);
 
     /// What the robot is doing.
     fn phase(&self) -> BugPhase;
@@ -93,31 +89,9 @@ impl PathBound {
     }
 }
 
-/// Drives a robot to the goal of a bug, or finds that there is no way, within `time_limit` seconds. `observe` is called
-/// after every step.
-///
-/// Fails if the robot does, or if its clock stands still.
-pub fn run_bug<B: Bug + ?Sized, R: Clock + Drive + Lidar + ?Sized>(
-    bug: &mut B,
-    robot: &mut R,
-    time_limit: f64,
-    mut observe: impl FnMut(&mut B, f64),
-) -> Result<BugOutcome> {
-    let mut scan = LidarScan::default();
-    let mut beat = Beat::start(robot, bug.parameters().period)?;
-    loop {
-        if beat.step(robot)? >= time_limit {
-            bug.end(BugOutcome::TimedOut);
-        }
-        robot.scan_into(&mut scan)?;
-        let observation = BugObservation { odometry: robot.pose()?, speed: robot.speed()?, scan: &scan };
-        let twist = bug.step(&observation)?;
-        robot.set_speed(twist)?;
-        observe(bug, beat.now());
-        if let BugPhase::Ended(outcome) = bug.phase() {
-            return Ok(outcome);
-        }
-        beat.rest(robot)?;
+impl<R: Drive + Lidar + ?Sized, B: Bug + ?Sized> Senses<R> for B {
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LidarObservation) -> Result<()> {
+        seen.read(robot)
     }
 }
 
@@ -138,6 +112,29 @@ macro_rules! family {
             }
         }
 
+        impl crate::io::control::Behaviour for $bug {
+            type Observation = crate::io::control::LidarObservation;
+            type Command = crate::geometry::Twist;
+            type Outcome = crate::nav::BugOutcome;
+
+            fn period(&self) -> f64 {
+                self.0.body.parameters.period
+            }
+
+            fn step(
+                &mut self,
+                _time: f64,
+                seen: &crate::io::control::LidarObservation,
+            ) -> crate::io::control::Decision<Self> {
+                self.0.decide(seen)
+            }
+
+            fn halt(&mut self, halt: crate::io::control::Halt) -> crate::nav::BugOutcome {
+                self.0.body.end(halt.into());
+                halt.into()
+            }
+        }
+
         impl crate::nav::Bug for $bug {
             fn name(&self) -> &'static str {
                 $name
@@ -149,17 +146,6 @@ macro_rules! family {
 
             fn parameters(&self) -> &crate::nav::BugParameters {
                 &self.0.body.parameters
-            }
-
-            fn step(
-                &mut self,
-                observation: &crate::nav::BugObservation<'_>,
-            ) -> crate::io::Result<crate::geometry::Twist> {
-                self.0.step(observation)
-            }
-
-            fn end(&mut self, outcome: crate::nav::BugOutcome) {
-                self.0.body.end(outcome);
             }
 
             fn phase(&self) -> crate::nav::BugPhase {

@@ -18,12 +18,12 @@ mod tour;
 mod wall_ends;
 
 pub use distbug::DistBug;
-pub use family::{Bug, Guarantee, PathBound, run_bug};
+pub use family::{Bug, Guarantee, PathBound};
 pub use kind::{BugKind, UnknownBug};
 pub use memory::{Alg1, Alg2, Rev1, Rev2};
 pub use parameters::BugParameters;
 pub use plain::{Bug2, Class1, OneBug};
-pub use report::{BugEvent, BugObservation, BugOutcome, BugPhase};
+pub use report::{BugEvent, BugOutcome, BugPhase};
 pub use tangent::TangentBug;
 pub use tour::{Bug1, LeaveBug};
 
@@ -35,5 +35,3 @@ pub type DistBugOutcome = BugOutcome;
 pub type DistBugPhase = BugPhase;
 /// Something worth telling that happened in a step of DistBug.
 pub type DistBugEvent = BugEvent;
-/// What a step of DistBug is given.
-pub type DistBugObservation<'a> = BugObservation<'a>;

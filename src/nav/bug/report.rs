@@ -1,5 +1,5 @@
-use crate::geometry::{Point, Pose, Twist};
-use crate::io::LidarScan;
+use crate::geometry::Point;
+use crate::io::control::halts;
 use crate::nav::boundary::WallSide;
 
 /// How the run of a bug ended.
@@ -11,7 +11,11 @@ pub enum BugOutcome {
     Unreachable,
     /// The time was over.
     TimedOut,
+    /// Who watched had seen enough.
+    Stopped,
 }
+
+halts!(BugOutcome);
 
 /// What the robot is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,15 +57,4 @@ pub enum BugEvent {
     },
     /// The run is over.
     End(BugOutcome),
-}
-
-/// What a step of a bug is given.
-#[derive(Debug, Clone, Copy)]
-pub struct BugObservation<'a> {
-    /// The pose by odometry, relative to the start.
-    pub odometry: Pose,
-    /// The speed by odometry.
-    pub speed: Twist,
-    /// A scan all round, made at that pose.
-    pub scan: &'a LidarScan,
 }

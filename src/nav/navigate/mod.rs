@@ -13,4 +13,4 @@ mod tests;
 
 pub use navigator::Navigator;
 pub use parameters::NavigateParameters;
-pub use report::{NavigateEvent, NavigateObservation, NavigateOutcome, NavigatePhase};
+pub use report::{NavigateEvent, NavigateOutcome, NavigatePhase};

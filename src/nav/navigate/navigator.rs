@@ -1,12 +1,14 @@
+use std::ops::ControlFlow;
+
 use super::chart::{Chart, LEVELS};
 use super::locator::Locator;
 use super::parameters::NavigateParameters;
-use super::report::{NavigateEvent, NavigateObservation, NavigateOutcome, NavigatePhase};
+use super::report::{NavigateEvent, NavigateOutcome, NavigatePhase};
 use super::route::Route;
 use super::steering::Steering;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
-use crate::io::beat::Beat;
-use crate::io::{Clock, Drive, Error, Lidar, LidarScan, Result};
+use crate::io::control::{Behaviour, Decision, Halt, LidarObservation, Senses};
+use crate::io::{Drive, Error, Lidar, Result};
 use crate::nav::surroundings::Surroundings;
 use crate::scan::{ScanFilter, check_measured};
 use crate::world::{GridCell, World};
@@ -178,16 +180,15 @@ impl Navigator {
         std::mem::take(&mut self.events)
     }
 
-    /// Ends the run with a verdict from outside, such as that the time is over.
-    pub fn end(&mut self, outcome: NavigateOutcome) {
+    fn end(&mut self, outcome: NavigateOutcome) {
         if !matches!(self.phase, NavigatePhase::Ended(_)) {
             self.phase = NavigatePhase::Ended(outcome);
             self.events.push(NavigateEvent::End(outcome));
         }
     }
 
-    /// One control step: what the robot shall do until the next.
-    pub fn step(&mut self, observation: &NavigateObservation<'_>) -> Result<Twist> {
+    /// What the robot shall do until the next step.
+    fn steer(&mut self, observation: &LidarObservation) -> Result<Twist> {
         if matches!(self.phase, NavigatePhase::Ended(_)) {
             return Ok(Twist::STOP);
         }
@@ -207,14 +208,14 @@ impl Navigator {
     }
 
     /// Takes in what the robot measures.
-    fn perceive(&mut self, observation: &NavigateObservation<'_>) -> Result<()> {
-        check_measured(&observation.odometry, observation.scan)?;
+    fn perceive(&mut self, observation: &LidarObservation) -> Result<()> {
+        check_measured(&observation.odometry, &observation.scan)?;
         self.pose = if self.parameters.match_scans {
-            self.locator.locate(observation.odometry, observation.scan)
+            self.locator.locate(observation.odometry, &observation.scan)
         } else {
             self.start.compose(&observation.odometry)
         };
-        self.filter.update(self.pose, observation.scan)?;
+        self.filter.update(self.pose, &observation.scan)?;
         self.points.clear();
         self.points.extend(self.filter.points());
         self.surroundings.update(self.points.iter().copied(), NEAR);
@@ -373,33 +374,33 @@ impl Navigator {
         let Self { parameters, surroundings, near: points, .. } = self;
         Steering { parameters, surroundings, points, clearance }
     }
+}
 
-    /// Drives a robot to the goal, or finds that there is no way, within `time_limit` seconds. `observe` is called after
-    /// every step.
-    ///
-    /// Fails if the robot does, or if its clock stands still.
-    pub fn run<R: Clock + Drive + Lidar + ?Sized>(
-        &mut self,
-        robot: &mut R,
-        time_limit: f64,
-        mut observe: impl FnMut(&mut Self, f64),
-    ) -> Result<NavigateOutcome> {
-        let mut scan = LidarScan::default();
-        let mut beat = Beat::start(robot, self.parameters.period)?;
-        loop {
-            if beat.step(robot)? >= time_limit {
-                self.end(NavigateOutcome::TimedOut);
-            }
-            robot.scan_into(&mut scan)?;
-            let observation =
-                NavigateObservation { odometry: robot.pose()?, speed: robot.speed()?, scan: &scan };
-            let twist = self.step(&observation)?;
-            robot.set_speed(twist)?;
-            observe(self, beat.now());
-            if let NavigatePhase::Ended(outcome) = self.phase() {
-                return Ok(outcome);
-            }
-            beat.rest(robot)?;
-        }
+impl Behaviour for Navigator {
+    type Observation = LidarObservation;
+    type Command = Twist;
+    type Outcome = NavigateOutcome;
+
+    fn period(&self) -> f64 {
+        self.parameters.period
+    }
+
+    fn step(&mut self, _time: f64, seen: &LidarObservation) -> Decision<Self> {
+        let twist = self.steer(seen)?;
+        Ok(match self.phase {
+            NavigatePhase::Ended(outcome) => ControlFlow::Break(outcome),
+            _ => ControlFlow::Continue(twist),
+        })
+    }
+
+    fn halt(&mut self, halt: Halt) -> NavigateOutcome {
+        self.end(halt.into());
+        halt.into()
+    }
+}
+
+impl<R: Drive + Lidar + ?Sized> Senses<R> for Navigator {
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LidarObservation) -> Result<()> {
+        seen.read(robot)
     }
 }

@@ -1,5 +1,5 @@
-use crate::geometry::{Point, Pose, Twist};
-use crate::io::LidarScan;
+use crate::geometry::Point;
+use crate::io::control::halts;
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,7 +12,11 @@ pub enum NavigateOutcome {
     Stuck,
     /// The time was over.
     TimedOut,
+    /// Who watched had seen enough.
+    Stopped,
 }
+
+halts!(NavigateOutcome);
 
 /// What the robot is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,15 +61,4 @@ pub enum NavigateEvent {
     },
     /// The run is over.
     End(NavigateOutcome),
-}
-
-/// What a step is given.
-#[derive(Debug, Clone, Copy)]
-pub struct NavigateObservation<'a> {
-    /// The pose by odometry, relative to the start.
-    pub odometry: Pose,
-    /// The speed by odometry.
-    pub speed: Twist,
-    /// A scan all round, made at that pose.
-    pub scan: &'a LidarScan,
 }

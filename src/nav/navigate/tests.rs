@@ -1,6 +1,8 @@
+use std::ops::ControlFlow;
+
 use super::*;
-use crate::geometry::{Point, Pose, Twist};
-use crate::io::LidarScan;
+use crate::geometry::{Point, Pose};
+use crate::io::control::{Behaviour, LidarObservation};
 use crate::world::{Wall, World};
 
 /// Two rooms of 1 m with a door of `door` metres in the wall between them.
@@ -31,9 +33,8 @@ fn narrow_doors_are_passed_with_less_clearance_and_closed_ones_told_at_once() {
     let mut closed = navigator(0.1);
     assert_eq!(closed.phase(), NavigatePhase::Ended(NavigateOutcome::Unreachable));
     assert_eq!(closed.take_events(), [NavigateEvent::End(NavigateOutcome::Unreachable)]);
-    let scan = LidarScan::default();
-    let observation = NavigateObservation { odometry: Pose::default(), speed: Twist::STOP, scan: &scan };
-    assert_eq!(closed.step(&observation).unwrap(), Twist::STOP);
+    let decision = closed.step(0.0, &LidarObservation::default()).unwrap();
+    assert_eq!(decision, ControlFlow::Break(NavigateOutcome::Unreachable));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 use super::layout::{EventLayout, EventShape};
 use super::line;
 use crate::geometry::{Point, Pose, Twist};
-use crate::io::{self, Clock, Drive, Lidar, LidarScan};
+use crate::io::LidarScan;
 use crate::race::cone::{Cone, ConeColour};
 use crate::race::error::PlanError;
 use crate::race::hold::Hold;
@@ -80,7 +80,7 @@ pub enum EventPhase {
 /// lane that there is behind a finish. That of a skidpad leads around the inner cones as near as is safe.
 #[derive(Debug, Clone)]
 pub struct EventRacer {
-    parameters: EventParameters,
+    pub(in crate::race) parameters: EventParameters,
     event: EventShape,
     map: ConeMap,
     reckoning: Reckoning,
@@ -187,30 +187,6 @@ impl EventRacer {
             EventPhase::Finished => Twist::default(),
             EventPhase::Lost => self.brake(speed),
         }
-    }
-
-    /// Drives until it stands behind the finish, or is lost and stands, or a time is over. `watch` is told of every decision.
-    pub fn run<R: Clock + Drive + Lidar>(
-        &mut self,
-        robot: &mut R,
-        seconds: f64,
-        mut watch: impl FnMut(&mut R, &Self),
-    ) -> io::Result<EventPhase> {
-        let mut scan = LidarScan::default();
-        let end = robot.now()? + seconds;
-        while robot.now()? < end {
-            robot.scan_into(&mut scan)?;
-            let (pose, speed) = (robot.pose()?, robot.speed()?);
-            let command = self.step(pose, speed, &scan);
-            robot.set_speed(command)?;
-            watch(robot, self);
-            if self.is_done(speed) {
-                break;
-            }
-            robot.wait(self.parameters.period)?;
-        }
-        robot.set_speed(Twist::default())?;
-        Ok(self.phase)
     }
 
     /// Whether it stands and drives no more.

@@ -6,9 +6,10 @@ use super::*;
 use crate::geometry::{Point, Pose, direction};
 use crate::io::sim::NoiseModel;
 use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions};
-use crate::io::{Camera, Clock, Drive, Lidar, LidarScan, Resolution};
+use crate::io::{Camera, Clock, Drive, Lidar, LidarScan, Resolution, control};
 use crate::race::{
-    CameraMount, CameraSight, CarOutline, Cone, ConeColour, ConeTrack, Event, RacerParameters, Verdict,
+    CameraMount, CameraSight, CarOutline, Cone, ConeColour, ConeTrack, Event, RaceOutcome, RacerParameters,
+    Verdict,
 };
 use crate::world::Colour;
 
@@ -188,8 +189,8 @@ fn without_cones_it_stops_and_says_so() {
         EventRacer::skidpad(EventParameters::default()),
     ] {
         let mut world = world(&ConeTrack { start: Some(Pose::default()), ..ConeTrack::default() }, 1);
-        let phase = racer.run(&mut world.car(0).unwrap(), 20.0, |_, _| ()).unwrap();
-        assert_eq!((phase, racer.layout()), (EventPhase::Lost, None));
+        let outcome = control::run(&mut world.car(0).unwrap(), &mut racer, 20.0, |_, _, _| {}).unwrap();
+        assert_eq!((outcome, racer.layout()), (RaceOutcome::Lost, None));
         let truth = world.truth(0).unwrap();
         assert!(truth.distance < 0.1 && world.time() < 5.0, "{truth:?}");
     }
@@ -222,8 +223,8 @@ fn time_may_be_over_before_the_finish() {
     let track = skidpad(9.125, 7.625, 10.625);
     let mut racer = racer_for(&EventCourse::of(&track, &OUTLINE).unwrap());
     let mut world = world(&track, 1);
-    let phase = racer.run(&mut world.car(0).unwrap(), 5.0, |_, _| ()).unwrap();
-    assert_eq!(phase, EventPhase::Driving);
+    let outcome = control::run(&mut world.car(0).unwrap(), &mut racer, 5.0, |_, _, _| {}).unwrap();
+    assert_eq!((outcome, racer.phase()), (RaceOutcome::TimedOut, EventPhase::Driving));
     assert!(world.time() < 5.1);
 }
 

@@ -1,5 +1,7 @@
 //! EyeSim's mazes (`.maz`): walls as a picture of `_` and `|`, one cell every two columns.
 //!
+//! The character in column `i`, from 0, belongs to `x = (i + 1) / 2` cells, rounded down, from the left edge.
+//!
 //! ```text
 //!  _ _ _
 //! |_   _|
@@ -8,11 +10,12 @@
 //! 360
 //! ```
 //!
-//! * `|` in the first, third, … column is a wall of one cell's height. `_` in the second, fourth, … column is a wall
-//!   below its cell; in the first line, the maze's upper edge.
-//! * A letter in such a column stands in the middle of its cell. A capital has a wall below it as well. `s` and `u`
-//!   head up, `l` left, `d` down, `r` right; `o` is a golf ball, `x` a crate; other letters are places for
-//!   simulation scripts to use. `.` and blanks are empty.
+//! * `|` is a wall of one cell's height at `x`. It usually stands in an even column; one in an odd column, the place
+//!   of a cell, counts as well: it closes that cell on the right.
+//! * `_` in an odd column is a wall below the cell that ends at `x`; in the first line, the maze's upper edge.
+//! * A letter stands in the middle of the cell that ends at `x`, in an odd or an even column. A capital has a wall below
+//!   it as well. `s` and `u` head up, `l` left, `d` down, `r` right; `o` is a golf ball, `x` a crate; other letters are
+//!   places for simulation scripts to use. `.` and blanks are empty.
 //! * The cell size in millimetres is a single number before or after the picture; 360 without one.
 //! * The lower left corner of the picture is the origin. Empty lines, comments and lines that begin with anything but
 //!   `|`, `_` or a blank are skipped.
@@ -289,7 +292,7 @@ impl<'a> Picture<'a> {
         // The uppermost line holds nothing but the upper edge, unless something stands in it.
         let roof = usize::from(!rows[0].1.contains(|c: char| c == '|' || c.is_alphabetic()));
         let count = rows.len() - roof;
-        // The characters of a row reach into column (length / 2), and a `|` behind the last cell adds none.
+        // The last character of a row stands at half the row's length, or begins there.
         let columns = rows.iter().map(|row| row.1.chars().count() / 2).max().unwrap_or(0);
         let mut maze = Maze::new(columns, count, cell).ok_or_else(|| {
             let found = format!("a maze of {columns} by {count} cells");
@@ -312,17 +315,17 @@ impl<'a> Picture<'a> {
 impl Maze {
     /// Enters a character of the picture. Returns whether it has a meaning in its column.
     fn draw(&mut self, row: usize, column: usize, c: char) -> bool {
-        let in_cell = column % 2 == 1;
-        match c {
-            '|' if !in_cell => self.set_wall_left(column / 2, row, true),
-            '_' if in_cell => self.set_wall_below(column / 2, row, true),
-            _ if in_cell && c.is_ascii_alphabetic() => {
-                self.set_letter(column / 2, row, Some(c));
+        let edge = column.div_ceil(2);
+        match (c, edge.checked_sub(1)) {
+            ('|', _) => self.set_wall_left(edge, row, true),
+            ('_', Some(cell)) if column % 2 == 1 => self.set_wall_below(cell, row, true),
+            (c, Some(cell)) if c.is_ascii_alphabetic() => {
+                self.set_letter(cell, row, Some(c));
                 if c.is_ascii_uppercase() {
-                    self.set_wall_below(column / 2, row, true);
+                    self.set_wall_below(cell, row, true);
                 }
             }
-            ' ' | '.' | '_' => {}
+            (' ' | '.' | '_', _) => {}
             _ => return false,
         }
         true
@@ -420,6 +423,20 @@ mod tests {
         assert_eq!(bottom, [segment(0.0, 0.0, 0.36, 0.0), segment(0.72, 0.0, 1.08, 0.0)]);
     }
 
+    /// As people draw by hand: a row that is shifted by a column from some place on.
+    #[test]
+    fn bars_and_letters_count_in_any_column() {
+        let bars = world(" _ _ _\n|  _ _|\n|_ __|\n1000\n");
+        let right: Vec<Segment> =
+            lines(&bars).into_iter().filter(|s| s.a.x == s.b.x && s.a.x > 0.0).collect();
+        assert_eq!(right, [segment(3.0, 0.0, 3.0, 2.0)], "the edge goes all the way up");
+        let letters = world(" _ _\n| S |\n|_ a|\n1000\n");
+        let places: Vec<(char, Point)> = letters.places.iter().map(|p| (p.letter, p.position)).collect();
+        assert_eq!(places, [('S', Point::new(0.5, 1.5)), ('a', Point::new(1.5, 0.5))]);
+        assert!(letters.start.is_some(), "the robot starts in the cell before");
+        assert!(lines(&letters).contains(&segment(0.0, 1.0, 1.0, 1.0)), "a capital stands on a wall");
+    }
+
     #[test]
     fn the_cell_size_stands_first_or_last_or_nowhere() {
         let cell = |text: &str| parse_maze(text, "test.maz").unwrap().value.cell;
@@ -440,7 +457,6 @@ mod tests {
                 "m.maz:4:1: `maze` is no row of a maze; skipped",
                 "m.maz:6:1: a number inside the picture; ignored",
                 "m.maz:8:1: a second cell size; this one counts",
-                "m.maz:3:2: `|` has no meaning here; ignored",
                 "m.maz:3:3: `7` has no meaning here; ignored",
             ]
         );

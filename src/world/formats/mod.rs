@@ -20,6 +20,7 @@ pub mod ros_map;
 pub mod sim;
 mod source;
 pub mod wld;
+mod world_file;
 mod yaml;
 mod yaml_events;
 

@@ -2,8 +2,9 @@
 
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::Result;
+use roverlab::io::control::run;
 use roverlab::io::sim::SimOptions;
-use roverlab::nav::{BugKind, BugParameters, DistBug, DistBugParameters, WallSide, run_bug};
+use roverlab::nav::{BugKind, BugParameters, DistBug, DistBugParameters, WallSide};
 use roverlab::world::{RobotSpec, Scene, Wall, World};
 
 use super::{Scenario, drive, noise, note, ride};
@@ -28,7 +29,7 @@ pub(super) fn distbug(scene: &Scene, options: SimOptions, goal: Point, time_limi
     let mut verdict = String::new();
     let log = drive(scene, options, |robot| {
         let mut behaviour = DistBug::new(goal, DistBugParameters::default())?;
-        let outcome = behaviour.run(robot, time_limit, |_, _| {})?;
+        let outcome = run(robot, &mut behaviour, time_limit, |_, _, _| {})?;
         note(&mut verdict, "outcome", &outcome);
         note(&mut verdict, "events", &behaviour.take_events());
         note(&mut verdict, "pose as the robot sees it", &behaviour.pose());
@@ -54,9 +55,9 @@ fn family() -> Result<String> {
         let mut bug = kind.with(Point::new(2.2, 0.1), BugParameters { side, ..BugParameters::default() })?;
         let mut verdict = String::new();
         log += &ride(&cove(), noise(1.0, 81), |robot| {
-            let outcome = run_bug(bug.as_mut(), robot, 120.0, |bug, time| {
+            let outcome = run(robot, bug.as_mut(), 120.0, |_, bug, step| {
                 for event in bug.take_events() {
-                    note(&mut verdict, "event", &(time, bug.pose(), event));
+                    note(&mut verdict, "event", &(step.time, bug.pose(), event));
                 }
             })?;
             note(&mut verdict, "outcome", &(kind, outcome, bug.guarantee(), bug.goal_distance()));

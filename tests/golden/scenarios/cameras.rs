@@ -6,6 +6,7 @@ use std::sync::Arc;
 use roverlab::drive::colour::{ColourTracker, HomeParameters, PushHome, TrackerParameters};
 use roverlab::drive::motion_watch::{MotionWatch, WatchParameters};
 use roverlab::geometry::{Pose, Twist, direction};
+use roverlab::io::control::run;
 use roverlab::io::sim::{Fleet, Lcd, SimOptions, Simulation};
 use roverlab::io::wrappers::Traced;
 use roverlab::io::{
@@ -107,9 +108,8 @@ fn tracking() -> Result<String> {
             let image = robot.image()?;
             note(&mut seen, "taught", &teach_hue(&image, ColourFinder::LIMITS).map_err(other)?);
             let mut tracker = ColourTracker::new(finder(method, geometry)?, TrackerParameters::default());
-            let outcome = tracker.run(robot, 25.0, |_, tracker, _| {
+            let outcome = run(robot, &mut tracker, 25.0, |_, tracker, _| {
                 note(&mut seen, "seen", &(tracker.phase(), tracker.sighting(), tracker.target()));
-                Ok(())
             })?;
             note(&mut seen, "outcome", &outcome);
             Ok(())
@@ -125,9 +125,8 @@ fn push_home() -> Result<String> {
     let log = ride(&scene, SimOptions { pushing: true, ..noise(0.5, 123) }, |robot| {
         let home = robot.pose()?.position();
         let mut push = PushHome::new(finder(FindMethod::Blob, geometry)?, home, HomeParameters::default());
-        let outcome = push.run(robot, 40.0, |_, push, _| {
+        let outcome = run(robot, &mut push, 40.0, |_, push, _| {
             note(&mut seen, "seen", &(push.phase(), push.object()));
-            Ok(())
         })?;
         note(&mut seen, "outcome", &outcome);
         Ok(())

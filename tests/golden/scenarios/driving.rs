@@ -7,6 +7,7 @@ use roverlab::drive::{
     Steering, Tour, TourParameters, Waypoint,
 };
 use roverlab::geometry::{Point, Pose, Twist};
+use roverlab::io::control::run;
 use roverlab::io::{Clock, Drive, Lidar, LidarScan, Result};
 use roverlab::kinematics::{
     Ackermann, CarState, Differential, Displacement, OdometryErrors, OdometryUncertainty, Omni, PlanarTwist,
@@ -16,7 +17,7 @@ use roverlab::random::Stream;
 use roverlab::scan::{Landmark, LandmarkFilter};
 use roverlab::world::{DriveSpec, ObjectKind, RobotSpec, Scene, Shape, World};
 
-use super::{Scenario, in_room, noise, note, other, ride, room};
+use super::{Robot, Scenario, in_room, noise, note, other, ride, room};
 
 pub(super) const SCENARIOS: &[Scenario] = &[
     Scenario::new("kinematics", kinematics),
@@ -156,7 +157,7 @@ fn a_to_b() -> Result<String> {
         log += &ride(&scene, noise(1.0, 21), |robot| {
             let plan = behaviour.plan(Pose::default())?;
             note(&mut verdict, "plan", &plan.map(|path| (path.length(), path.end(), path.max_curvature())));
-            let outcome = behaviour.run(robot, 30.0, |_, _| {})?;
+            let outcome = run(robot, &mut behaviour, 30.0, |_, _, _| {})?;
             note(&mut verdict, "outcome", &(method, outcome));
             Ok(())
         })?;
@@ -176,7 +177,12 @@ fn chase() -> Result<String> {
         let mut outcome = None;
         log += &ride(&scene, noise(1.0, 22), |robot| {
             let mut behaviour = Chase::new(method, ChaseParameters::default())?;
-            outcome = Some(behaviour.run(robot, 12.0, |_, time| Ok(quarry(time)), |_, _| {})?);
+            outcome = Some(run(
+                robot,
+                &mut behaviour.after(|_: &mut Robot, time| Ok(quarry(time))),
+                12.0,
+                |_, _, _| {},
+            )?);
             Ok(())
         })?;
         note(&mut log, "outcome", &(method, outcome));
@@ -201,7 +207,7 @@ fn ackermann() -> Result<String> {
         let mut behaviour = CarToB::new(method, goal, driver, CarParameters::default())?;
         let mut outcome = None;
         log += &ride(&scene, noise(1.0, 23), |robot| {
-            outcome = Some(behaviour.run(robot, 25.0, |_, _| {})?);
+            outcome = Some(run(robot, &mut behaviour, 25.0, |_, _, _| {})?);
             Ok(())
         })?;
         note(&mut log, "outcome", &(method, outcome));
@@ -225,7 +231,7 @@ fn mecanum() -> Result<String> {
         let parameters = OmniParameters { spin, ..OmniParameters::default() };
         log += &ride(&scene, noise(1.0, 24), |robot| {
             let tracker = OmniTracker::new(robot.pose()?, route, parameters)?;
-            tracker.run(robot, &driver, |_, _| {})
+            run(robot, &mut tracker.by(driver), 60.0, |_, _, _| {}).map(|_| ())
         })?;
     }
     Ok(log)
@@ -235,7 +241,7 @@ fn random_drive() -> Result<String> {
     let mut turns = 0;
     let mut log = ride(&in_room(0.5, 0.5, 0.3), noise(1.0, 25), |robot| {
         let mut behaviour = RandomDrive::new(RandomDriveParameters::default(), Stream::new(25))?;
-        behaviour.run(robot, 40.0, |_| {})?;
+        run(robot, &mut behaviour, 40.0, |_, _, _| {})?;
         turns = behaviour.turns();
         Ok(())
     })?;

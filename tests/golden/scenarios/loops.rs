@@ -1,24 +1,23 @@
 //! How the loops that run behaviours begin and end: at the time limit, blocked, with a sensor, link or clock
 //! that fails, and at the end of the simulation.
 
-use std::ops::ControlFlow;
-
 use roverlab::drive::colour::{ColourTracker, HomeParameters, PushHome, TrackerParameters};
 use roverlab::drive::motion_watch::{MotionWatch, WatchParameters};
 use roverlab::drive::{
-    AToB, AToBParameters, CarDriver, CarParameters, CarToB, Chase, ChaseParameters, Goal, LidarWallFollower,
-    LidarWallParameters, Method, OmniDriver, OmniParameters, OmniTracker, RandomDrive, RandomDriveParameters,
-    WallFollower, WallFollowerParameters, run_along_wall,
+    AToB, AToBParameters, AlongWall, CarDriver, CarParameters, CarToB, Chase, ChaseParameters, Goal,
+    LidarWallFollower, LidarWallParameters, Method, OmniDriver, OmniParameters, OmniTracker, RandomDrive,
+    RandomDriveParameters, WallFollower, WallFollowerParameters,
 };
 use roverlab::evolve::Gait;
 use roverlab::geometry::{Point, Pose, Twist};
+use roverlab::io::control::{run, until};
 use roverlab::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions, SharedRace};
 use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
 use roverlab::io::wrappers::{Faulty, Traced};
 use roverlab::io::{Clock, Display, Drive, Encoders, Keys, Lidar, Radio, Result, RobotIo};
 use roverlab::kinematics::{Ackermann, Omni};
 use roverlab::maze::{Direction, LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters};
-use roverlab::nav::{BugKind, BugParameters, DistBug, NavigateParameters, Navigator, run_bug};
+use roverlab::nav::{BugKind, BugParameters, DistBug, NavigateParameters, Navigator};
 use roverlab::race::{EventParameters, EventRacer, GapDriver, Racer, RacerParameters};
 use roverlab::random::Stream;
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
@@ -51,82 +50,80 @@ const LOOPS: [Loop; 20] = [
     ("by another estimate", RobotSpec::s4, |robot| {
         let mut behaviour = AToB::new(Method::Arc, Goal::point(GOAL), AToBParameters::default())?;
         let estimate = |robot: &mut Robot| Ok(robot.pose()?.compose(&Pose::new(0.01, 0.0, 0.0)));
-        said(behaviour.run_with(robot, LIMIT, estimate, |_, _| {})?)
+        said(run(robot, &mut behaviour.by(estimate), LIMIT, |_, _, _| {})?)
     }),
     ("chase", RobotSpec::s4, |robot| {
         let mut behaviour = Chase::new(Method::Dog, ChaseParameters::default())?;
         let goal = |_: &mut Robot, time| Ok(Pose::new(0.4 + 0.1 * time, 0.2, 0.0));
-        said(behaviour.run(robot, LIMIT, goal, |_, _| {})?)
+        said(run(robot, &mut behaviour.after(goal), LIMIT, |_, _, _| {})?)
     }),
     ("car", RobotSpec::car, |robot| {
         let kinematics = Ackermann::new(0.12, 0.1, 0.5).map_err(other)?;
         let driver = CarDriver { kinematics, full_speed: 0.5 };
         let mut behaviour = CarToB::new(Method::Arc, Goal::point(GOAL), driver, CarParameters::default())?;
-        said(behaviour.run(robot, LIMIT, |_, _| {})?)
+        said(run(robot, &mut behaviour, LIMIT, |_, _, _| {})?)
     }),
     ("Mecanum", RobotSpec::omni, |robot| {
         let kinematics = Omni::mecanum(0.2, 0.2).map_err(other)?;
         let tracker = OmniTracker::new(robot.pose()?, &[GOAL], OmniParameters::default())?;
-        said(tracker.run(robot, &OmniDriver { kinematics, full_speed: 0.5 }, |_, _| {})?)
+        let driver = OmniDriver { kinematics, full_speed: 0.5 };
+        said(run(robot, &mut tracker.by(driver), LIMIT, |_, _, _| {})?)
     }),
     ("wall", RobotSpec::s4, |robot| {
-        let mut follower = WallFollower::new(WallFollowerParameters::default())?;
-        said(run_along_wall(robot, &mut follower, LIMIT, |_, _| ControlFlow::Continue(()))?)
+        let mut along = AlongWall::new(WallFollower::new(WallFollowerParameters::default())?);
+        said(run(robot, &mut along, LIMIT, |_, _, _| {})?)
     }),
     ("wall, stopped", RobotSpec::s4, |robot| {
-        let mut follower = LidarWallFollower::new(LidarWallParameters::default())?;
-        let watch = |time, _: &_| if time > 1.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-        said(run_along_wall(robot, &mut follower, LIMIT, watch)?)
+        let mut along = AlongWall::new(LidarWallFollower::new(LidarWallParameters::default())?);
+        said(run(robot, &mut along, LIMIT, |_, _, step| until(step.time > 1.0))?)
     }),
     ("random", RobotSpec::s4, |robot| {
         let mut behaviour = RandomDrive::new(RandomDriveParameters::default(), Stream::new(181))?;
-        said(behaviour.run(robot, LIMIT, |_| {})?)
+        said(run(robot, &mut behaviour, LIMIT, |_, _, _| {})?)
     }),
     ("left hand", RobotSpec::s4, |robot| {
-        let rule = LeftHand::new(LeftHandParameters::as_printed())?;
-        said(rule.run(robot, Direction::North, |(x, y), _| x.abs() + y.abs() > 1, || ())?)
+        let mut rule = LeftHand::new(LeftHandParameters::as_printed(), Direction::North)?;
+        said(run(robot, &mut rule, LIMIT, |_, rule, _| until(rule.at().0.abs() + rule.at().1.abs() > 1))?)
     }),
     ("left by lidar", RobotSpec::s4, |robot| {
         let mut follower = LidarLeft::new(LidarLeftParameters::for_corridor(0.36))?;
-        said(follower.run(robot, |pose, _| pose.x * pose.x + pose.y * pose.y > 0.04)?)
+        said(run(robot, &mut follower, LIMIT, |_, _, step| {
+            let pose = step.seen.pose;
+            until(pose.x * pose.x + pose.y * pose.y > 0.04)
+        })?)
     }),
     ("bug", RobotSpec::s4, |robot| {
         let mut bug = BugKind::Bug2.with(GOAL, BugParameters::default())?;
-        said(run_bug(bug.as_mut(), robot, LIMIT, |_, _| {})?)
+        said(run(robot, bug.as_mut(), LIMIT, |_, _, _| {})?)
     }),
     ("DistBug", RobotSpec::s4, |robot| {
-        said(DistBug::new(GOAL, BugParameters::default())?.run(robot, LIMIT, |_, _| {})?)
+        said(run(robot, &mut DistBug::new(GOAL, BugParameters::default())?, LIMIT, |_, _, _| {})?)
     }),
     ("navigate", RobotSpec::s4, |robot| {
         let goal = Point::new(1.4, 0.9);
         let mut navigator = Navigator::new(&room(), START, goal, NavigateParameters::default())?;
-        said(navigator.run(robot, LIMIT, |_, _| {})?)
+        said(run(robot, &mut navigator, LIMIT, |_, _, _| {})?)
     }),
     ("colour", RobotSpec::s4, |robot| {
-        said(
-            ColourTracker::new(finder()?, TrackerParameters::default()).run(
-                robot,
-                LIMIT,
-                |_, _, _| Ok(()),
-            )?,
-        )
+        let mut tracker = ColourTracker::new(finder()?, TrackerParameters::default());
+        said(run(robot, &mut tracker, LIMIT, |_, _, _| {})?)
     }),
     ("home", RobotSpec::s4, |robot| {
         let mut push = PushHome::new(finder()?, Point::origin(), HomeParameters::default());
-        said(push.run(robot, LIMIT, |_, _, _| Ok(()))?)
+        said(run(robot, &mut push, LIMIT, |_, _, _| {})?)
     }),
     ("motion", RobotSpec::s4, |robot| {
         let mut watch = MotionWatch::new(WatchParameters::new(1.0)).map_err(other)?;
-        said(watch.run(robot, LIMIT, |_, _, _| Ok(()))?)
+        said(run(robot, &mut watch, LIMIT, |_, _, _| {})?)
     }),
     ("gait", RobotSpec::s4, |robot| {
         let gait = Gait::from_bytes(&[30, 128, 200, 40, 128, 90], 2, 1)?;
         gait.settle(robot)?;
         said(gait.walk(robot, LIMIT)?)
     }),
-    ("gap", RobotSpec::car, |robot| said(GapDriver::default().run(robot, 0.2, LIMIT)?)),
+    ("gap", RobotSpec::car, |robot| said(run(robot, &mut GapDriver::with_speed(0.2), LIMIT, |_, _, _| {})?)),
     ("racer", RobotSpec::s4, |robot| {
-        said(Racer::new(RacerParameters::default()).run(robot, LIMIT, |_, _| {})?)
+        said(run(robot, &mut Racer::new(RacerParameters::default()), LIMIT, |_, _, _| {})?)
     }),
 ];
 
@@ -138,7 +135,7 @@ fn said(outcome: impl std::fmt::Debug) -> Result<String> {
 
 fn a_to_b(method: Method, robot: &mut Robot) -> Result<String> {
     let mut behaviour = AToB::new(method, Goal::point(GOAL), AToBParameters::default())?;
-    said(behaviour.run(robot, LIMIT, |_, _| {})?)
+    said(run(robot, &mut behaviour, LIMIT, |_, _, _| {})?)
 }
 
 fn finder() -> Result<ColourFinder> {
@@ -194,12 +191,15 @@ fn cars() -> Result<String> {
         car.wait(0.37)?;
         let (mut watched, limit) = (0, 6.0);
         let outcome = match index {
-            0 => said(Racer::new(RacerParameters::default()).run(&mut car, limit, |_, _| watched += 1)?),
+            0 => {
+                let mut racer = Racer::new(RacerParameters::default());
+                said(run(&mut car, &mut racer, limit, |_, _, _| watched += 1)?)
+            }
             1 => {
                 let mut racer = EventRacer::acceleration(EventParameters::default());
-                said(racer.run(&mut car, limit, |_, _| watched += 1)?)
+                said(run(&mut car, &mut racer, limit, |_, _, _| watched += 1)?)
             }
-            _ => said(GapDriver::default().run(&mut car, 0.2, limit)?),
+            _ => said(run(&mut car, &mut GapDriver::with_speed(0.2), limit, |_, _, _| watched += 1)?),
         };
         log += &text(car)?;
         note(&mut log, "outcome", &(outcome?, watched));

@@ -1,6 +1,7 @@
 //! Mazes: files, floods, routes, exploration, time-optimal plans, and robots that drive in them.
 
 use roverlab::geometry::Pose;
+use roverlab::io::control::{run, until};
 use roverlab::io::sim::NoiseModel;
 use roverlab::io::{Error, ErrorKind, Result};
 use roverlab::kinematics::OdometryErrors;
@@ -26,10 +27,7 @@ pub(super) const SCENARIOS: &[Scenario] = &[
     Scenario::new("maze-lidar", lidar),
     Scenario::new("micromouse", micromouse),
     Scenario::new("mms", mms),
-    #[cfg(feature = "proptest")]
     Scenario::new("maze-generators", generators),
-    #[cfg(not(feature = "proptest"))]
-    Scenario::without("maze-generators", "built without the feature `proptest`"),
 ];
 
 const MAZE: &str = "\
@@ -191,17 +189,14 @@ fn left_hand() -> Result<String> {
         LeftHandParameters::controlled(CellDriveParameters::pid(&rig, scale, speed)),
     ] {
         let mut cells = Vec::new();
-        let rule = LeftHand::new(parameters)?;
+        let mut rule = LeftHand::new(parameters, Direction::North)?;
         log += &ride(&scene(scale, spec.clone())?, noise(0.5, 71), |robot| {
-            rule.run(
-                robot,
-                Direction::North,
-                |cell, heading| {
-                    cells.push((cell, heading));
-                    cells.len() > 9
-                },
-                || (),
-            )?;
+            run(robot, &mut rule, 600.0, |_, rule, _| {
+                if rule.cells() > cells.len() {
+                    cells.push((rule.at(), rule.heading()));
+                }
+                until(cells.len() > 9)
+            })?;
             Ok(())
         })?;
         note(&mut log, "cells", &cells);
@@ -216,11 +211,12 @@ fn lidar() -> Result<String> {
     let log = ride(&scene(scale, RobotSpec::s4())?, noise(1.0, 72), |robot| {
         let mut follower = LidarLeft::new(LidarLeftParameters::for_corridor(scale.cell))?;
         let mut steps = 0;
-        follower.run(robot, |pose, points| {
+        run(robot, &mut follower, 60.0, |_, _, step| {
             steps += 1;
-            note(&mut seen, "seen", &(pose, points.len()));
-            steps > 400
+            note(&mut seen, "seen", &(step.seen.pose, step.seen.points().count()));
+            until(steps > 400)
         })
+        .map(|_| ())
     })?;
     Ok(log + &seen)
 }
@@ -231,7 +227,8 @@ fn micromouse() -> Result<String> {
     let (scale, spec) = (Scale::MICROMOUSE, mouse());
     let log = ride(&scene(scale, spec.clone())?, noise(1.0, 73), |robot| {
         let known = unexplored(&maze()?)?;
-        let mut runner = MazeRunner::new(robot, rig(&spec)?, known, scale, RunnerParameters::MICROMOUSE)?;
+        let parameters = RunnerParameters::MICROMOUSE;
+        let mut runner = MazeRunner::new(robot, rig(&spec)?, known, scale, parameters, f64::INFINITY)?;
         let mut explorer = TwoPhaseExplorer::new(Goals::StepsAndTime(Box::new(runner.planner())));
         let mut watch = |pose: Pose| note(&mut told, "at", &pose);
         let exploration = runner.explore(&mut explorer, &mut watch)?;
@@ -264,7 +261,6 @@ fn mms() -> Result<String> {
     Ok(log)
 }
 
-#[cfg(feature = "proptest")]
 fn generators() -> Result<String> {
     use roverlab::maze::generate::{braided, competition, perfect};
 

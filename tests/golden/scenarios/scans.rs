@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use roverlab::drive::{RandomDrive, RandomDriveParameters};
+use roverlab::drive::{RandomDrive, RandomDriveObservation, RandomDriveParameters};
 use roverlab::geometry::{Point, Pose, Twist};
+use roverlab::io::control::{Senses, run};
 use roverlab::io::sim::Lcd;
 use roverlab::io::{Clock, Drive, Lidar, LidarScan, Result};
 use roverlab::nav::{NavigateParameters, Navigator};
@@ -116,19 +117,19 @@ fn localisation() -> Result<String> {
         let parameters = LocaliserParameters { range_error: 0.01, ..LocaliserParameters::default() };
         let mut localiser = Localiser::new(map, parameters)?;
         let mut wander = RandomDrive::new(RandomDriveParameters::default(), Stream::new(104))?;
-        let (mut scan, mut points) = (LidarScan::default(), Vec::new());
+        let mut seen = RandomDriveObservation::default();
         for step in 0..120 {
-            RandomDrive::look(robot, &mut scan, &mut points)?;
-            let odometry = robot.pose()?;
+            wander.sense(robot, 0.0, &mut seen)?;
+            let odometry = seen.pose;
             if step % 4 == 0 {
-                localiser.update(odometry, &scan)?;
+                localiser.update(odometry, &seen.scan)?;
                 let is_one = matches!(localiser.localisation(), Localisation::One(_));
                 note(&mut found, "place", &(is_one, localiser.searches(), localiser.place(odometry)));
                 for Hypothesis { pose, covariance, probability, explained } in numbers(&localiser) {
                     note(&mut found, "hypothesis", &(pose, covariance, probability, explained));
                 }
             }
-            let twist = wander.step(odometry, &points)?;
+            let twist = wander.step(odometry, &seen.points)?;
             robot.set_speed(twist)?;
             robot.wait(0.1)?;
         }
@@ -164,9 +165,9 @@ fn navigate() -> Result<String> {
     let log = ride(&scene, noise(1.0, 105), |robot| {
         let mut navigator = Navigator::new(&known, start, goal, NavigateParameters::default())?;
         note(&mut told, "plan", &(navigator.path_length(), navigator.path()));
-        let outcome = navigator.run(robot, 40.0, |navigator, time| {
+        let outcome = run(robot, &mut navigator, 40.0, |_, navigator, step| {
             let events = navigator.take_events();
-            note(&mut told, "at", &(time, navigator.phase(), navigator.pose(), events));
+            note(&mut told, "at", &(step.time, navigator.phase(), navigator.pose(), events));
         })?;
         note(&mut told, "outcome", &(outcome, navigator.goal_distance(), navigator.unknown_obstacles()));
         Ok(())

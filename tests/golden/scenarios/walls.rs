@@ -1,13 +1,12 @@
 //! Following walls.
 
-use std::ops::ControlFlow;
-
 use roverlab::drive::{
-    FollowsWalls, LidarWallFollower, LidarWallParameters, PidWallFollower, PidWallParameters,
-    TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallSide, run_along_wall,
+    AlongWall, FollowsWalls, LidarWallFollower, LidarWallParameters, PidWallFollower, PidWallParameters,
+    TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallReading, WallSide,
 };
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::Result;
+use roverlab::io::control::run;
 use roverlab::world::{RobotSpec, Scene, Wall, World};
 
 use super::{Robot, Scenario, noise, note, ride};
@@ -29,12 +28,13 @@ fn nook() -> Scene {
 }
 
 /// A follower's run, with its opinion about the wall at every step.
-fn follow<F: FollowsWalls<Robot>>(seed: u64, mut follower: F) -> Result<String> {
+fn follow<F: FollowsWalls<Observation: WallReading<Robot>>>(seed: u64, follower: F) -> Result<String> {
     let mut verdict = String::new();
+    let mut along = AlongWall::new(follower);
     let log = ride(&nook(), noise(1.0, seed), |robot| {
-        let outcome = run_along_wall(robot, &mut follower, 40.0, |time, follower| {
-            note(&mut verdict, "at", &(time, follower.is_beside_wall(), follower.wall_side()));
-            ControlFlow::Continue(())
+        let outcome = run(robot, &mut along, 40.0, |_, along, step| {
+            let wall = &along.controller;
+            note(&mut verdict, "at", &(step.time, wall.is_beside_wall(), wall.wall_side()));
         })?;
         note(&mut verdict, "outcome", &outcome);
         Ok(())

@@ -1,0 +1,353 @@
+//! Memory that a program and the runner share. No descriptor of it is left open in the program, so whatever a program
+//! closes, its report and its way to the world stay.
+
+#![allow(unsafe_code)]
+
+use std::io;
+use std::os::fd::{AsRawFd, FromRawFd, OwnedFd, RawFd};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
+
+use crate::wire::LONGEST;
+
+/// Bytes of the part that holds the report.
+pub const REPORT: usize = 1 << 17;
+/// Where the report begins.
+const REPORT_START: usize = 4096;
+/// Where questions and answers begin.
+const FRAME_START: usize = REPORT_START + REPORT;
+const SIZE: usize = FRAME_START + LONGEST;
+/// Says that it is what it should be.
+const MAGIC: u32 = 0x0b10_5007;
+
+/// The words at the beginning.
+#[derive(Debug, Clone, Copy)]
+enum Word {
+    Magic,
+    /// Whose turn it is; see [`Turn`].
+    Turn,
+    /// Bytes of the question or the answer.
+    Length,
+    /// Whether a process that the program has forked has called.
+    Forked,
+    /// 1, and how the program ended above it, as `waitpid` tells.
+    Status,
+}
+
+/// What has happened last.
+const IDLE: u32 = 0;
+const QUESTION: u32 = 1;
+const ANSWER: u32 = 2;
+/// The program has no more questions.
+const LEFT: u32 = 3;
+
+/// Looks at a word before the system is asked to wait for it: the other side mostly answers within this time, if it
+/// has a processor of its own.
+const SPINS: u32 = 2000;
+
+/// The memory.
+#[derive(Debug)]
+pub struct Memory {
+    start: *mut u8,
+    spins: u32,
+}
+
+// SAFETY: it is memory of its own, which lives as long as this handle; words are atomic, and whose turn it is decides
+// who touches the bytes behind them.
+unsafe impl Send for Memory {}
+// SAFETY: as above.
+unsafe impl Sync for Memory {}
+
+impl Drop for Memory {
+    fn drop(&mut self) {
+        // SAFETY: it was mapped with this size, and nothing points to it any more.
+        unsafe { libc::munmap(self.start.cast(), SIZE) };
+    }
+}
+
+/// What has come from a program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Asked {
+    /// A question.
+    Question(Vec<u8>),
+    /// One of so many bytes, which is none.
+    TooLong(usize),
+    /// Nothing for now.
+    Nothing,
+    /// There will be no more.
+    Left,
+}
+
+impl Memory {
+    /// New memory, and the descriptor under which a program that is started inherits it.
+    pub fn create() -> io::Result<(Self, OwnedFd)> {
+        let file = anonymous_file()?;
+        let memory = Self::map(file.as_raw_fd())?;
+        memory.word(Word::Magic).store(MAGIC, Ordering::Release);
+        Ok((memory, file))
+    }
+
+    /// The memory that whoever started this process has left open under a number, which is closed.
+    pub fn inherit(number: RawFd) -> io::Result<Self> {
+        let refused = || io::Error::new(io::ErrorKind::InvalidInput, "not the memory of a runner");
+        // SAFETY: an all-zero record of this type is valid, and the kernel fills it.
+        let mut state: libc::stat = unsafe { std::mem::zeroed() };
+        // SAFETY: the kernel checks the number, and writes to a record that lives until it returns.
+        let known = number > 2 && unsafe { libc::fstat(number, &raw mut state) } == 0;
+        if !known || state.st_size != SIZE as i64 {
+            return Err(refused());
+        }
+        let memory = Self::map(number)?;
+        if memory.word(Word::Magic).load(Ordering::Acquire) != MAGIC {
+            return Err(refused());
+        }
+        // SAFETY: the descriptor is open and was left to this library, which needs it no more.
+        drop(unsafe { OwnedFd::from_raw_fd(number) });
+        Ok(memory)
+    }
+
+    fn map(file: RawFd) -> io::Result<Self> {
+        let rights = libc::PROT_READ | libc::PROT_WRITE;
+        // SAFETY: asks for a new place in memory; the kernel checks the rest.
+        let start = unsafe { libc::mmap(std::ptr::null_mut(), SIZE, rights, libc::MAP_SHARED, file, 0) };
+        if start == libc::MAP_FAILED {
+            return Err(io::Error::last_os_error());
+        }
+        let several = std::thread::available_parallelism().is_ok_and(|number| number.get() > 1);
+        Ok(Self { start: start.cast(), spins: if several { SPINS } else { 0 } })
+    }
+
+    fn word(&self, word: Word) -> &AtomicU32 {
+        // SAFETY: a multiple of four below the size, and words are only touched as atomic ones.
+        unsafe { AtomicU32::from_ptr(self.start.cast::<u32>().add(16 * word as usize)) }
+    }
+
+    fn write(&self, at: usize, bytes: &[u8]) {
+        let room = SIZE.saturating_sub(at).min(bytes.len());
+        // SAFETY: the place and as many bytes lie within the memory, and what is copied does not.
+        unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), self.start.add(at), room) };
+    }
+
+    fn read(&self, at: usize, length: usize) -> Vec<u8> {
+        let mut bytes = vec![0; SIZE.saturating_sub(at).min(length)];
+        // SAFETY: as for `write`.
+        unsafe { std::ptr::copy_nonoverlapping(self.start.add(at), bytes.as_mut_ptr(), bytes.len()) };
+        bytes
+    }
+
+    /// Writes a part of the report.
+    pub fn write_report(&self, at: usize, bytes: &[u8]) {
+        let room = REPORT.saturating_sub(at).min(bytes.len());
+        self.write(REPORT_START + at, &bytes[..room]);
+    }
+
+    /// The report.
+    pub fn report(&self) -> Vec<u8> {
+        self.read(REPORT_START, REPORT)
+    }
+
+    /// Notes that a process that the program has forked has called.
+    pub fn note_fork(&self) {
+        self.word(Word::Forked).store(1, Ordering::Relaxed);
+    }
+
+    /// Whether one has.
+    pub fn has_forked(&self) -> bool {
+        self.word(Word::Forked).load(Ordering::Relaxed) != 0
+    }
+
+    /// Notes how the program ended.
+    pub fn note_status(&self, status: i32) {
+        self.word(Word::Status).store((status as u32) << 8 | 1, Ordering::Release);
+    }
+
+    /// Whether it is known how the program ended.
+    pub fn has_status(&self) -> bool {
+        self.word(Word::Status).load(Ordering::Acquire) & 1 != 0
+    }
+
+    /// Asks the world.
+    pub fn ask(&self, question: &[u8]) -> Vec<u8> {
+        self.put(question);
+        self.say(QUESTION);
+        while self.word(Word::Turn).load(Ordering::Acquire) == QUESTION {
+            self.pause(QUESTION, Duration::from_secs(1));
+        }
+        self.frame(LONGEST)
+    }
+
+    /// Says that there will be no more questions.
+    pub fn leave(&self) {
+        self.say(LEFT);
+    }
+
+    /// The next question, for which the world waits so long at most.
+    pub fn asked(&self, longest: usize, patience: Duration) -> Asked {
+        let turn = self.word(Word::Turn);
+        let mut now = turn.load(Ordering::Acquire);
+        if now == IDLE || now == ANSWER {
+            self.pause(now, patience);
+            now = turn.load(Ordering::Acquire);
+        }
+        match now {
+            QUESTION => {
+                let length = self.word(Word::Length).load(Ordering::Relaxed) as usize;
+                if length > longest { Asked::TooLong(length) } else { Asked::Question(self.frame(longest)) }
+            }
+            LEFT => Asked::Left,
+            _ => Asked::Nothing,
+        }
+    }
+
+    /// Whether there is a question, or the program has left, after so long at most.
+    pub fn is_asked(&self, patience: Duration) -> bool {
+        let turn = self.word(Word::Turn);
+        let now = turn.load(Ordering::Acquire);
+        if now == ANSWER || now == IDLE {
+            self.pause(now, patience);
+        }
+        matches!(turn.load(Ordering::Acquire), QUESTION | LEFT)
+    }
+
+    /// Answers.
+    pub fn answer(&self, answer: &[u8]) {
+        self.put(answer);
+        self.say(ANSWER);
+    }
+
+    fn put(&self, frame: &[u8]) {
+        self.write(FRAME_START, frame);
+        self.word(Word::Length).store(frame.len() as u32, Ordering::Relaxed);
+    }
+
+    fn frame(&self, longest: usize) -> Vec<u8> {
+        let length = self.word(Word::Length).load(Ordering::Relaxed) as usize;
+        self.read(FRAME_START, length.min(longest))
+    }
+
+    fn say(&self, turn: u32) {
+        self.word(Word::Turn).store(turn, Ordering::Release);
+        wake(self.word(Word::Turn));
+    }
+
+    /// Waits while it is somebody's turn, at most so long.
+    fn pause(&self, turn: u32, patience: Duration) {
+        let word = self.word(Word::Turn);
+        for _ in 0..self.spins {
+            if word.load(Ordering::Acquire) != turn {
+                return;
+            }
+            std::hint::spin_loop();
+        }
+        wait(word, turn, patience);
+    }
+}
+
+/// A file without a name, of the right size.
+#[cfg(target_os = "linux")]
+fn anonymous_file() -> io::Result<OwnedFd> {
+    let flags = libc::MFD_CLOEXEC | libc::MFD_ALLOW_SEALING;
+    // SAFETY: the name ends with a zero byte.
+    let number = unsafe { libc::memfd_create(c"robios".as_ptr(), flags) };
+    if number < 0 {
+        return Err(io::Error::last_os_error());
+    }
+    // SAFETY: the descriptor is new, and nobody else has it.
+    let file = unsafe { OwnedFd::from_raw_fd(number) };
+    let seals = libc::F_SEAL_SHRINK | libc::F_SEAL_GROW | libc::F_SEAL_SEAL;
+    // A program cannot cut off what the runner looks at.
+    // SAFETY: changes the size of a file, and what may become of it.
+    if unsafe {
+        libc::ftruncate(number, SIZE as i64) != 0 || libc::fcntl(number, libc::F_ADD_SEALS, seals) != 0
+    } {
+        return Err(io::Error::last_os_error());
+    }
+    Ok(file)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn anonymous_file() -> io::Result<OwnedFd> {
+    use std::sync::atomic::AtomicUsize;
+    static FILES: AtomicUsize = AtomicUsize::new(0);
+    let name = format!("robios-memory-{}-{}", std::process::id(), FILES.fetch_add(1, Ordering::Relaxed));
+    let path = std::env::temp_dir().join(name);
+    let file = std::fs::OpenOptions::new().read(true).write(true).create_new(true).open(&path)?;
+    std::fs::remove_file(&path)?;
+    file.set_len(SIZE as u64)?;
+    Ok(file.into())
+}
+
+#[cfg(target_os = "linux")]
+fn wait(word: &AtomicU32, value: u32, patience: Duration) {
+    let time = libc::timespec {
+        tv_sec: patience.as_secs() as libc::time_t,
+        tv_nsec: libc::c_long::from(patience.subsec_nanos() as i32),
+    };
+    let nothing = std::ptr::null::<u32>();
+    // SAFETY: the kernel compares a word of memory that is mapped, and reads a time that lives until it returns.
+    unsafe {
+        libc::syscall(libc::SYS_futex, word.as_ptr(), libc::FUTEX_WAIT, value, &raw const time, nothing, 0)
+    };
+}
+
+#[cfg(target_os = "linux")]
+fn wake(word: &AtomicU32) {
+    // SAFETY: the kernel looks for who waits for a word of memory that is mapped.
+    unsafe { libc::syscall(libc::SYS_futex, word.as_ptr(), libc::FUTEX_WAKE, i32::MAX) };
+}
+
+/// Where the system cannot wait for a word, a short nap does.
+#[cfg(not(target_os = "linux"))]
+fn wait(_: &AtomicU32, _: u32, patience: Duration) {
+    std::thread::sleep(patience.min(Duration::from_micros(50)));
+}
+
+#[cfg(not(target_os = "linux"))]
+fn wake(_: &AtomicU32) {}
+
+#[cfg(test)]
+mod tests {
+    use std::os::fd::IntoRawFd;
+
+    use super::*;
+
+    #[test]
+    fn questions_and_answers_cross_it() {
+        let (ours, file) = Memory::create().unwrap();
+        let theirs = Memory::inherit(file.into_raw_fd()).unwrap();
+        assert_eq!(ours.asked(100, Duration::ZERO), Asked::Nothing);
+        std::thread::scope(|scope| {
+            let program = scope.spawn(|| {
+                for i in 0..1000_u32 {
+                    assert_eq!(theirs.ask(&i.to_le_bytes()), (i + 1).to_le_bytes());
+                }
+                theirs.leave();
+            });
+            loop {
+                match ours.asked(100, Duration::from_secs(10)) {
+                    Asked::Question(bytes) => {
+                        let number = u32::from_le_bytes(bytes.try_into().unwrap());
+                        ours.answer(&(number + 1).to_le_bytes());
+                    }
+                    Asked::Left => break,
+                    other => panic!("{other:?}"),
+                }
+            }
+            program.join().unwrap();
+        });
+        theirs.write_report(REPORT - 2, b"abcd");
+        assert_eq!(ours.report()[REPORT - 2..], *b"ab", "what is behind it is left alone");
+    }
+
+    #[test]
+    fn no_length_is_believed_and_no_stranger_accepted() {
+        let (ours, file) = Memory::create().unwrap();
+        ours.word(Word::Length).store(u32::MAX, Ordering::Relaxed);
+        ours.word(Word::Turn).store(QUESTION, Ordering::Relaxed);
+        assert_eq!(ours.asked(100, Duration::ZERO), Asked::TooLong(u32::MAX as usize));
+        drop(file);
+        assert!(Memory::inherit(-1).is_err());
+        let other = std::fs::File::open("/dev/null").unwrap();
+        assert!(Memory::inherit(other.as_raw_fd()).is_err());
+    }
+}

@@ -1,0 +1,145 @@
+//! Limits that hold, and programs that do what they should not: close what is not theirs, leave their first thread, fork,
+//! end their parent, wait for each other.
+
+use std::time::Instant;
+
+use serde_json::Value;
+
+use super::{Folder, compiler, report};
+
+const BUSY: &str = "#include \"eyebot.h\"\nint main() { for (;;) PSDGet(1); }\n";
+const HANG: &str = "#include \"eyebot.h\"\nint main() { LCDPrintf(\"on\"); for (;;) ; }\n";
+
+/// Runs a program alone, and then beside another one that does nothing, and returns what is told of it each time.
+fn alone_and_beside(name: &str, text: &str, options: &[&str]) -> [Value; 2] {
+    let folder = Folder::new(&format!("limits-{name}"));
+    let file = folder.write(&format!("{name}.c"), text);
+    folder.write("idle.c", "#include \"eyebot.h\"\nint main() { OSWait(100); return 0; }\n");
+    let script = folder.write("two.sim", &format!("S4 500 500 0 {name}.x\nS4 500 1500 0 idle.x\n"));
+    [file, script].map(|file| report(&[options, &[file.to_str().unwrap()]].concat()))
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+#[test]
+#[allow(clippy::disallowed_methods, reason = "a limit in real time is what is tested")]
+fn the_real_limit_ends_shared_runs() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("limits-real");
+    folder.write("busy.c", BUSY);
+    folder.write("hang.c", HANG);
+    for (first, second) in [("busy", "busy"), ("busy", "hang"), ("hang", "hang")] {
+        let script = folder.write("two.sim", &format!("S4 500 500 0 {first}.x\nS4 500 1500 0 {second}.x\n"));
+        let picture = folder.0.join("run.svg").display().to_string();
+        let begin = Instant::now();
+        let all = report(&[
+            "--real-limit",
+            "2",
+            "--time-limit",
+            "900000",
+            "--hang-limit",
+            "900",
+            "--picture",
+            &picture,
+            script.to_str().unwrap(),
+        ]);
+        assert!(begin.elapsed().as_secs_f64() < 30.0, "{first}, {second}: {all}");
+        for robot in all["robots"].as_array().unwrap() {
+            assert_eq!(robot["outcome"], "timed_out", "{all}");
+            assert_eq!(robot["error"], "ended after 2 real seconds", "{all}");
+        }
+    }
+}
+
+#[test]
+fn the_first_thread_may_leave() {
+    if !compiler() || !cfg!(target_os = "linux") {
+        return;
+    }
+    let text = "#include \"eyebot.h\"\nvoid *drive(void *a) { VWStraight(200, 200); VWWait(); LCDPrintf(\"there\"); \
+                return a; }\nint main() { pthread_t t; pthread_create(&t, NULL, drive, NULL); pthread_exit(NULL); }\n";
+    for all in alone_and_beside("leave", text, &["--real-limit", "30"]) {
+        let robot = &all["robots"][0];
+        assert_eq!((&robot["outcome"], &robot["lcd_text"]), (&"finished".into(), &"there".into()), "{all}");
+        assert!(number(&robot["sim_time_s"]) > 1.0 && number(&robot["path_length_mm"]) > 195.0, "{all}");
+    }
+}
+
+#[test]
+fn time_passes_while_a_program_waits_for_a_process() {
+    if !compiler() || !cfg!(target_os = "linux") {
+        return;
+    }
+    // The child sleeps by the real clock, and has no robot.
+    let text = "#include \"eyebot.h\"\n#include <sys/wait.h>\nint main() { VWSetSpeed(100, 0);\n\
+                if (fork() == 0) { int failed = VWSetSpeed(300, 0); sleep(2); _exit(failed); }\n\
+                wait(NULL); VWSetSpeed(0, 0); OSWait(500); return 0; }\n";
+    for all in alone_and_beside("forks", text, &["--real-limit", "30"]) {
+        let robot = &all["robots"][0];
+        assert_eq!(robot["outcome"], "finished", "{all}");
+        let path = number(&robot["path_length_mm"]);
+        assert!((150.0..450.0).contains(&path), "two seconds at 100 mm/s, and what the machine adds: {all}");
+        let warnings = all["warnings"].as_array().unwrap();
+        assert!(
+            warnings.iter().any(|text| text.as_str().unwrap().contains("has forked calls RoBIOS")),
+            "{all}"
+        );
+    }
+}
+
+#[test]
+fn a_program_may_close_all_descriptors() {
+    if !compiler() {
+        return;
+    }
+    let text = "#include \"eyebot.h\"\nint main() { int i; VWStraight(100, 100); for (i = 3; i < 4096; i++) close(i);\n\
+                VWWait(); LCDPrintf(\"there\"); for (i = 3; i < 4096; i++) close(i); VWStraight(100, 100); VWWait();\n\
+                return 0; }\n";
+    for all in alone_and_beside("closes", text, &[]) {
+        let robot = &all["robots"][0];
+        assert_eq!((&robot["outcome"], &robot["lcd_text"]), (&"finished".into(), &"there".into()), "{all}");
+        assert!((number(&robot["path_length_mm"]) - 200.0).abs() < 3.0, "{all}");
+    }
+}
+
+#[test]
+fn a_program_that_ends_its_parent_is_reported() {
+    if !compiler() || !cfg!(target_os = "linux") {
+        return;
+    }
+    for (name, how) in [("parent", "kill(getppid(), SIGKILL)"), ("group", "kill(0, SIGKILL)")] {
+        let text = format!(
+            "#include \"eyebot.h\"\nint main() {{ VWStraight(100, 100); VWWait(); {how}; for (;;) pause(); }}\n"
+        );
+        for all in alone_and_beside(name, &text, &["--real-limit", "30"]) {
+            let robot = &all["robots"][0];
+            assert_eq!(robot["outcome"], "failed", "{all}");
+            assert!(robot["error"].as_str().unwrap().contains("has ended its parent process"), "{all}");
+            assert!(number(&robot["path_length_mm"]) > 95.0 && number(&robot["sim_time_s"]) > 1.0, "{all}");
+        }
+    }
+}
+
+#[test]
+fn programs_that_wait_for_each_other_are_named() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("limits-deadlock");
+    folder.write(
+        "wait.c",
+        "#include \"eyebot.h\"\nint main() { char text[100]; int id; OSWait(500); RADIOReceive(&id, text, 100); \
+         return 0; }\n",
+    );
+    let script = folder.write("two.sim", "S4 500 500 0 wait.x\nLabBot 500 1500 0 wait.x\n");
+    let all = report(&["--time-limit", "20", script.to_str().unwrap()]);
+    let errors: Vec<&str> = (0..2).map(|robot| all["robots"][robot]["error"].as_str().unwrap()).collect();
+    assert!(
+        errors[0].contains("waited for a radio message since 0.5") && errors[0].contains("robot 2, wait.x")
+    );
+    assert!(errors[1].contains("robot 1, wait.x") && errors[1].contains("none of them sends"), "{all}");
+}

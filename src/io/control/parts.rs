@@ -1,0 +1,105 @@
+use super::{Behaviour, Command, Decision, Halt, Senses};
+use crate::geometry::{Pose, Twist};
+use crate::io::{Drive, Lidar, LidarScan, Result};
+
+/// A scan, and where the robot is and how it moves by odometry: what navigation and racing go by.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LidarObservation {
+    /// The scan.
+    pub scan: LidarScan,
+    /// The pose at which it was made.
+    pub odometry: Pose,
+    /// The speed.
+    pub speed: Twist,
+}
+
+impl LidarObservation {
+    /// Reads it from a robot.
+    pub fn read<R: Drive + Lidar + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
+        robot.scan_into(&mut self.scan)?;
+        self.odometry = robot.pose()?;
+        self.speed = robot.speed()?;
+        Ok(())
+    }
+}
+
+impl<R: Drive + ?Sized> Command<R> for Twist {
+    fn apply(&self, robot: &mut R) -> Result<()> {
+        robot.set_speed(*self)
+    }
+
+    fn stop(robot: &mut R) -> Result<()> {
+        robot.set_speed(Self::STOP)
+    }
+}
+
+/// A speed, or a short manoeuvre that the drive carries out by itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Manoeuvre {
+    /// Drive at this speed.
+    Speed(Twist),
+    /// Drive so many metres straight on, at a speed in m/s.
+    Straight(f64, f64),
+    /// Turn on the spot by so many radians, at a speed in rad/s.
+    Turn(f64, f64),
+    /// Go on with what was told before.
+    Continue,
+}
+
+impl<R: Drive + ?Sized> Command<R> for Manoeuvre {
+    fn apply(&self, robot: &mut R) -> Result<()> {
+        match *self {
+            Self::Speed(twist) => robot.set_speed(twist),
+            Self::Straight(distance, speed) => robot.straight(distance, speed),
+            Self::Turn(angle, speed) => robot.turn(angle, speed),
+            Self::Continue => Ok(()),
+        }
+    }
+
+    fn stop(robot: &mut R) -> Result<()> {
+        robot.set_speed(Twist::STOP)
+    }
+}
+
+/// A behaviour whose observations a function reads, given the robot and the time: by other sensors, or by an estimate that is
+/// better than odometry. The function also [prepares](Senses::prepare) the robot, if that is needed.
+#[derive(Debug)]
+pub struct SensedBy<'b, B: ?Sized, F> {
+    behaviour: &'b mut B,
+    sense: F,
+}
+
+impl<'b, B: ?Sized, F> SensedBy<'b, B, F> {
+    /// A behaviour that sees by a function.
+    pub fn new(behaviour: &'b mut B, sense: F) -> Self {
+        Self { behaviour, sense }
+    }
+}
+
+impl<B: Behaviour + ?Sized, F> Behaviour for SensedBy<'_, B, F> {
+    type Observation = B::Observation;
+    type Command = B::Command;
+    type Outcome = B::Outcome;
+
+    fn period(&self) -> f64 {
+        self.behaviour.period()
+    }
+
+    fn step(&mut self, time: f64, seen: &B::Observation) -> Decision<B> {
+        self.behaviour.step(time, seen)
+    }
+
+    fn halt(&mut self, halt: Halt) -> B::Outcome {
+        self.behaviour.halt(halt)
+    }
+}
+
+impl<R: ?Sized, B, F> Senses<R> for SensedBy<'_, B, F>
+where
+    B: Behaviour + ?Sized,
+    F: FnMut(&mut R, f64, &mut B::Observation) -> Result<()>,
+{
+    fn sense(&mut self, robot: &mut R, time: f64, seen: &mut B::Observation) -> Result<()> {
+        (self.sense)(robot, time, seen)
+    }
+}
