@@ -10,6 +10,7 @@ use roverlab::world::formats::{self, DiskFiles};
 use roverlab::world::{RobotPlacement, RobotSpec, Scene, World};
 
 use crate::costs::{Costs, Frames};
+use crate::walker::is_walker;
 
 /// The world of a run, and which robot of it a program drives.
 #[derive(Debug, Clone, PartialEq)]
@@ -163,6 +164,15 @@ impl Plan {
                 let parsed = formats::parse_scene_tolerantly(bytes, &file.display().to_string(), &mut files);
                 let parsed = parsed.map_err(|error| error.to_string())?;
                 warnings.extend(parsed.warnings.iter().map(ToString::to_string));
+                let mut names: Vec<_> =
+                    parsed.value.robots.iter().map(|robot| robot.spec.name.as_str()).collect();
+                names.sort_unstable();
+                names.dedup();
+                for name in names.into_iter().filter(|name| is_walker(name)) {
+                    warnings.push(format!(
+                        "{name} is the walking robot that is built in, whatever its file says"
+                    ));
+                }
                 parsed.value
             }
             None => Scene::new(World::walled(DEFAULT_SIZE, DEFAULT_SIZE)),

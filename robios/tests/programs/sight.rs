@@ -23,7 +23,8 @@ fn numbers(report: &Value) -> Vec<i32> {
 }
 
 fn warnings(report: &Value) -> Vec<&str> {
-    report["warnings"].as_array().unwrap().iter().map(|warning| warning.as_str().unwrap()).collect()
+    let list = report["warnings"].as_array();
+    list.into_iter().flatten().map(|warning| warning.as_str().unwrap()).collect()
 }
 
 /// Writes an image of one colour in a folder below.
