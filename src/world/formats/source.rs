@@ -64,13 +64,12 @@ impl DiskFiles {
         let plain = self.plain(reference);
         let folder = Path::new(referrer).parent().filter(|folder| !folder.as_os_str().is_empty());
         let folder = folder.unwrap_or(Path::new("."));
-        let written = [folder.join(reference), folder.join(&plain)].into_iter().find(|path| path.is_file());
-        let elsewhere = || {
-            let last = [Some(PathBuf::from(&plain)), self.home.as_deref().map(|home| home.join(&plain))];
-            let last = last.into_iter().flatten().find(|path| path.is_file());
-            last.or_else(|| in_any_case(folder, Path::new(&plain))).or_else(|| installed(folder, &plain))
-        };
-        written.or_else(elsewhere)
+        let exact = |places: &[PathBuf]| places.iter().find(|path| path.is_file()).cloned();
+        exact(&[folder.join(reference), folder.join(&plain)])
+            .or_else(|| in_any_case(folder, Path::new(&plain)))
+            .or_else(|| installed(folder, &plain))
+            .or_else(|| exact(&[PathBuf::from(&plain)]))
+            .or_else(|| exact(&[self.home.as_deref()?.join(&plain)]))
     }
 }
 
