@@ -62,8 +62,7 @@ impl DiskFiles {
 
     fn find(&self, reference: &str, referrer: &str) -> Option<PathBuf> {
         let plain = self.plain(reference);
-        let folder = Path::new(referrer).parent().filter(|folder| !folder.as_os_str().is_empty());
-        let folder = folder.unwrap_or(Path::new("."));
+        let folder = Path::new(referrer).parent().unwrap_or(Path::new(""));
         let exact = |places: &[PathBuf]| places.iter().find(|path| path.is_file()).cloned();
         exact(&[folder.join(reference), folder.join(&plain)])
             .or_else(|| in_any_case(folder, Path::new(&plain)))
@@ -117,15 +116,16 @@ fn kind_folders(file: &Path) -> &'static [&'static str] {
 /// use std::path::Path;
 /// use roverlab::world::formats::in_any_case;
 ///
-/// assert_eq!(in_any_case(Path::new("."), Path::new("SRC/LIB.RS")), Some("./src/lib.rs".into()));
-/// assert_eq!(in_any_case(Path::new("."), Path::new("src")), None);
+/// assert_eq!(in_any_case(Path::new("src"), Path::new("LIB.RS")), Some("src/lib.rs".into()));
+/// assert_eq!(in_any_case(Path::new(""), Path::new("src")), None);
 /// ```
 pub fn in_any_case(folder: &Path, path: &Path) -> Option<PathBuf> {
     let mut place = folder.to_owned();
     for part in path.components() {
         match part {
             Component::Normal(name) if !place.join(name).exists() => {
-                let entries = std::fs::read_dir(&place).ok()?.filter_map(Result::ok);
+                let here = if place.as_os_str().is_empty() { Path::new(".") } else { &place };
+                let entries = std::fs::read_dir(here).ok()?.filter_map(Result::ok);
                 let mut names: Vec<_> = entries.map(|entry| entry.file_name()).collect();
                 names.sort();
                 let wanted = name.to_string_lossy();
