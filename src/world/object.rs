@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use image::RgbaImage;
 
-use super::{Body, Colour};
+use super::{Body, Colour, Mesh};
 use crate::geometry::{Point, Pose};
 
 /// A solid that stands on the floor, upright.
@@ -79,8 +79,10 @@ pub struct ObjectKind {
     pub falls: bool,
     /// Cubic metres of water that it displaces, for things that float.
     pub buoyancy: Option<f64>,
-    /// The 3D model that EyeSim shows, if any.
+    /// The file of its 3D model, if it has one.
     pub model: Option<PathBuf>,
+    /// The surface that cameras see; without it, they see the shape.
+    pub mesh: Option<Arc<Mesh>>,
     /// What its description file says about its solid beyond the shape.
     pub body: Body,
 }
@@ -97,22 +99,9 @@ impl ObjectKind {
             falls: false,
             buoyancy: None,
             model: None,
+            mesh: None,
             body: Body::default(),
         }
-    }
-
-    /// EyeSim's predefined kinds, matched without regard to case: `can`, `soccer`, `golf`, `crate`.
-    pub fn predefined(name: &str) -> Option<Self> {
-        let (shape, colour, mass) = match name.to_ascii_lowercase().as_str() {
-            "can" => (Shape::Cylinder { radius: 0.033, height: 0.115 }, Colour::RED, 0.4),
-            "soccer" => (Shape::Sphere { radius: 0.110 }, Colour::WHITE, 0.43),
-            "golf" => (Shape::Sphere { radius: 0.0215 }, Colour::from_hex(0xff_a5_00), 0.046),
-            "crate" => {
-                (Shape::Box { length: 0.2, width: 0.2, height: 0.2 }, Colour::from_hex(0x9c_6b_30), 2.0)
-            }
-            _ => return None,
-        };
-        Some(Self { mass, ..Self::new(name, shape, colour) })
     }
 }
 

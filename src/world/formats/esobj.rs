@@ -2,14 +2,14 @@
 //!
 //! | line | meaning |
 //! |---|---|
-//! | `obj FILE` | the 3D model |
+//! | `obj FILE` | the 3D model that cameras see, a Wavefront OBJ in metres before it is scaled |
 //! | `name NAME` | by which scenes place it; the file's name without it |
-//! | `scale S` | millimetres in a unit of the model; 1 without it |
+//! | `scale S` | the factor for the model and for its colliders, whose numbers are in millimetres; 1 without it |
 //! | `mass KG X Y Z` | its mass and the middle of it |
 //! | `[collider] box X Y Z SX SY SZ` | a solid cuboid: middle, sizes |
 //! | `[collider] sphere X Y Z R` | a solid ball |
 //! | `[collider] capsule X Y Z R H AXIS` | a solid capsule along `x`, `y` or `z` |
-//! | `buoyancy VOLUME` | cubic metres of water that it displaces |
+//! | `buoyancy VOLUME` | cubic metres of water that it displaces; kept, as there is no water |
 //! | `fixed` | nothing moves it |
 //! | `falls` | robots knock it over; a line of our own, which EyeSim skips |
 //! | `cone R TOP HEIGHT` | its shape is a cone with these radii of foot and top instead; a line of our own |
@@ -24,8 +24,9 @@ use super::args::Args;
 use super::error::{FormatError, Location, Notes, Parsed};
 use super::lexer::{self, Line, quote, shown};
 use super::limits::{MAX_METRES, MAX_PARTS};
+use super::model;
 use super::number::{self, MILLI, millimetres};
-use super::source::check_length;
+use super::source::{Files, check_length};
 use crate::world::{Axis, Body, Collider, Colour, ObjectKind, Place3, Shape};
 
 /// The colour of objects that state none.
@@ -34,22 +35,45 @@ pub const DEFAULT_COLOUR: Colour = Colour::new(160, 160, 160);
 /// The shape of objects without colliders.
 pub const DEFAULT_SHAPE: Shape = Shape::Cylinder { radius: 0.05, height: 0.1 };
 
-/// Reads an object.
+/// Reads an object, without its 3D model: [`load_object`](super::load_object) and scripts read that too.
 pub fn parse(text: &str, file: &str) -> Result<Parsed<ObjectKind>, FormatError> {
+    let (kind, _) = read(text, file)?;
+    Ok(kind)
+}
+
+/// Reads an object and its 3D model.
+pub(super) fn parse_with_model(
+    text: &str,
+    file: &str,
+    files: &mut Files<'_>,
+) -> Result<Parsed<ObjectKind>, FormatError> {
+    let (Parsed { value: mut kind, warnings }, model_at) = read(text, file)?;
+    let mut notes = Notes::new(file);
+    notes.extend(warnings);
+    if let Some(model) = &kind.model {
+        kind.mesh = model::load(model, (file, model_at), (kind.body.scale, kind.colour), files, &mut notes)?;
+    }
+    Ok(notes.finish(kind))
+}
+
+/// Reads an object, and tells where it names its model.
+fn read(text: &str, file: &str) -> Result<(Parsed<ObjectKind>, Location), FormatError> {
     check_length(text, file)?;
     let kind = ObjectKind::new(super::stem(file), DEFAULT_SHAPE, DEFAULT_COLOUR);
-    let mut reader = Reader { kind, cone: None, notes: Notes::new(file) };
+    let mut reader = Reader { kind, cone: None, model_at: Location::START, notes: Notes::new(file) };
     for (number, text) in lexer::numbered(text) {
         if let Some(line) = lexer::line(file, number, text)? {
             reader.line(&line)?;
         }
     }
-    Ok(reader.finish())
+    let model_at = reader.model_at;
+    Ok((reader.finish(), model_at))
 }
 
 struct Reader<'f> {
     kind: ObjectKind,
     cone: Option<Shape>,
+    model_at: Location,
     notes: Notes<'f>,
 }
 
@@ -60,6 +84,7 @@ impl Reader<'_> {
             "obj" => {
                 let model = args.path("the model's file", &[".obj"], &mut self.notes)?;
                 self.kind.model = Some(PathBuf::from(model));
+                self.model_at = line.location(1);
             }
             "name" => self.kind.name = args.name("a name")?,
             "scale" => self.kind.body.scale = args.plain("a scale", f64::MIN_POSITIVE..=MAX_METRES)?,
@@ -79,7 +104,13 @@ impl Reader<'_> {
                     _ => return Err(line.error(1, "`box`, `sphere` or `capsule`")),
                 }
             }
-            "buoyancy" => self.kind.buoyancy = Some(args.plain("a volume in cubic metres", 0.0..=1e9)?),
+            "buoyancy" => {
+                let volume = args.plain("a volume in cubic metres", 0.0..=1e9)?;
+                self.kind.buoyancy = Some(volume);
+                if volume > 0.0 {
+                    self.notes.warn(line.location(0), "`buoyancy`: water is not simulated");
+                }
+            }
             "fixed" => self.kind.fixed = true,
             "falls" => self.kind.falls = true,
             "cone" => {
@@ -137,8 +168,10 @@ impl Reader<'_> {
             None => {
                 let message = "no collider; a cylinder of 100 mm across and 100 mm high is taken";
                 self.notes.warn(Location::START, message);
-                // There is nothing to scale.
-                body.scale = 1.0;
+                if self.kind.model.is_none() {
+                    // There is nothing to scale.
+                    body.scale = 1.0;
+                }
             }
             Some(shape) => {
                 self.kind.shape = shape;
@@ -165,7 +198,9 @@ fn write_kind(text: &mut String, kind: &ObjectKind) -> std::fmt::Result {
         writeln!(text, "obj {}", quote(&model.to_string_lossy()))?;
     }
     writeln!(text, "name {}", quote(&kind.name))?;
-    let keep = kind.body.shape() == Some(kind.shape);
+    // Without colliders there is only the model to scale.
+    let bare = kind.model.is_some() && kind.body.colliders.is_empty() && kind.shape == DEFAULT_SHAPE;
+    let keep = bare || kind.body.shape() == Some(kind.shape);
     let scale = if keep { kind.body.scale } else { 1.0 };
     writeln!(text, "scale {}", number::print(scale, 0))?;
     writeln!(text, "mass {} {}", number::print(kind.mass, 0), model_place(kind.body.mass_centre))?;
@@ -253,7 +288,7 @@ mod tests {
         let parsed = parse("obj a.obj\nbuoyancy 0.5", "a.esObj").unwrap();
         assert_eq!(parsed.value.shape, DEFAULT_SHAPE);
         assert_eq!(parsed.value.buoyancy, Some(0.5));
-        assert_eq!(parsed.warnings.len(), 1);
+        assert_eq!(parsed.warnings.len(), 2, "also of the water that there is none of");
     }
 
     #[test]
@@ -267,8 +302,9 @@ mod tests {
 
     #[test]
     fn predefined_objects_survive() {
-        for name in ["can", "soccer", "golf", "crate"] {
-            let kind = ObjectKind::predefined(name).unwrap();
+        for name in ObjectKind::PREDEFINED {
+            // What is drawn in code is in no file.
+            let kind = ObjectKind { mesh: None, ..ObjectKind::predefined(name).unwrap() };
             assert_eq!(object(&print(&kind)), kind);
         }
     }
@@ -314,7 +350,7 @@ mod tests {
         #[test]
         fn what_is_printed_reads_back(kind in kind()) {
             let parsed = parse(&print(&kind), "x.esObj").unwrap();
-            prop_assert_eq!(parsed.warnings, vec![]);
+            prop_assert_eq!(parsed.warnings.len(), usize::from(kind.buoyancy > Some(0.0)));
             prop_assert_eq!(parsed.value, kind);
         }
 

@@ -46,6 +46,9 @@ impl Space {
             if let Some(hit) = ray.hit(placed) {
                 *nearest = lesser(hit, *nearest);
             }
+            if let Some(hit) = placed.mast.as_ref().and_then(|mast| ray.hit_box(&mast.shape, &mast.span)) {
+                *nearest = lesser(hit, *nearest);
+            }
         };
         self.grid.loose_walls().iter().for_each(|&n| wall(n, &mut nearest));
         self.grid.loose_solids().iter().for_each(|&n| solid(n, &mut nearest));

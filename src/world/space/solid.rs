@@ -1,6 +1,6 @@
-use super::shape::{OrientedBox, Shape as Placed};
+use super::shape::{Block, OrientedBox, Shape as Placed};
 use crate::geometry::{Aabb, Point, Pose};
-use crate::world::{Footprint, Object, RobotPlacement, Shape};
+use crate::world::{Footprint, Mast, Object, RobotPlacement, Shape};
 
 /// What stands upright: an outline on the floor between two heights.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,17 +15,26 @@ pub struct Solid {
     pub top: f64,
     /// Metres by which a disc's radius is less, as rays meet it, for each metre above its foot.
     pub taper: f64,
+    /// What stands up from it, which rays alone meet.
+    pub mast: Option<Mast>,
 }
 
 impl Solid {
-    /// A solid of the same outline at all heights.
+    /// A solid of the same outline at all heights, without a mast.
     pub fn new(outline: Footprint, pose: Pose, bottom: f64, top: f64) -> Self {
-        Self { outline, pose, bottom, top, taper: 0.0 }
+        Self { outline, pose, bottom, top, taper: 0.0, mast: None }
     }
 
     /// The heights between which it stands.
     pub fn span(&self) -> Span {
         Span { bottom: self.bottom, top: self.top }
+    }
+
+    /// The mast where it is.
+    pub(super) fn placed_mast(&self) -> Option<Block> {
+        let Mast { outline, top } = self.mast?;
+        let span = Span { bottom: self.top, top: self.bottom + top };
+        Some(Block { shape: OrientedBox::placed(&outline, &self.pose), span })
     }
 }
 
@@ -65,7 +74,8 @@ impl From<&RobotPlacement> for Solid {
     /// A robot as others meet it.
     fn from(robot: &RobotPlacement) -> Self {
         let bottom = robot.elevation;
-        Self::new(robot.spec.footprint, robot.pose, bottom, bottom + robot.spec.height)
+        let spec = &robot.spec;
+        Self { mast: spec.mast, ..Self::new(spec.footprint, robot.pose, bottom, bottom + spec.height) }
     }
 }
 

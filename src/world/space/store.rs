@@ -31,6 +31,7 @@ pub(super) struct Placed {
     pub(super) shape: Shape,
     pub(super) span: Span,
     pub(super) taper: f64,
+    pub(super) mast: Option<Block>,
     /// The cells that list it; `None`: every question tests it.
     pub(super) cells: Option<Cells>,
     /// It is not, or not wholly, on cells.
@@ -66,7 +67,8 @@ impl Space {
         let id = SolidId(u32::try_from(self.solids.len()).expect("fewer than 2^32 solids"));
         let shape = solid.outline.at(&solid.pose);
         let span = solid.span();
-        self.solids.push(Placed { solid, shape, span, taper: solid.taper, cells: None, stray: false });
+        let (taper, mast) = (solid.taper, solid.placed_mast());
+        self.solids.push(Placed { solid, shape, span, taper, mast, cells: None, stray: false });
         self.list(id.0, &shape.bounds());
         if self.solids.len() >= self.full_at || self.strays > self.strays_allowed {
             self.rebuild();
@@ -83,6 +85,7 @@ impl Space {
         let placed = &mut self.solids[id.index()];
         placed.solid.pose = pose;
         placed.shape = placed.solid.outline.at(&pose);
+        placed.mast = placed.solid.placed_mast();
         let bounds = placed.shape.bounds();
         let cells = self.grid.place_for(&bounds);
         if cells.is_some() && cells == placed.cells {

@@ -4,6 +4,7 @@ use super::super::esobj::model_place;
 use super::super::lexer::{self, quote};
 use super::super::number::{self, degrees, millimetres, undo_shift};
 use super::read::DEFAULT_STEERING;
+use crate::geometry::Aabb;
 use crate::world::{CameraSpec, CarDynamics, Collider, DriveSpec, Footprint, MotorSpec, PsdSpec, RobotSpec};
 
 /// Writes a robot, so that [`parse`](super::parse) gives it back.
@@ -25,6 +26,7 @@ fn write_spec(text: &mut String, spec: &RobotSpec) -> Result {
     writeln!(text, "mass {} {}", number::print(spec.mass, 0), model_place(spec.body.mass_centre))?;
     write_drive(text, spec)?;
     write_solid(text, spec)?;
+    write_mast(text, spec)?;
     write_motor(text, spec)?;
     spec.psds.iter().try_for_each(|psd| write_psd(text, psd, spec.body.axle[0]))?;
     write_lidar(text, spec)?;
@@ -106,11 +108,18 @@ fn write_solid(text: &mut String, spec: &RobotSpec) -> Result {
     let height = millimetres(spec.height);
     match &spec.footprint {
         Footprint::Disc { radius } => writeln!(text, "outline disc {} {height}", millimetres(*radius)),
-        Footprint::Rectangle(b) => {
-            let sides = [b.min.x, b.min.y, b.max.x, b.max.y].map(millimetres).join(" ");
-            writeln!(text, "outline rectangle {sides} {height}")
-        }
+        Footprint::Rectangle(b) => writeln!(text, "outline rectangle {} {height}", sides(b)),
     }
+}
+
+fn write_mast(text: &mut String, spec: &RobotSpec) -> Result {
+    let Some(mast) = &spec.mast else { return Ok(()) };
+    writeln!(text, "mast {} {}", sides(&mast.outline), millimetres(mast.top))
+}
+
+fn sides(rectangle: &Aabb) -> String {
+    let (low, high) = (rectangle.min, rectangle.max);
+    [low.x, low.y, high.x, high.y].map(millimetres).join(" ")
 }
 
 fn write_collider(text: &mut String, collider: &Collider) -> Result {
