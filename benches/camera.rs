@@ -7,7 +7,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use image::RgbImage;
 use roverlab::geometry::Pose;
 use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
-use roverlab::io::{Camera, Resolution};
+use roverlab::io::{Camera, Clock, Resolution};
 use roverlab::random::Stream;
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Shape, World};
 
@@ -49,7 +49,11 @@ fn images(c: &mut Criterion) {
             let colours: std::collections::BTreeSet<[u8; 3]> = image.pixels().map(|pixel| pixel.0).collect();
             assert!(colours.len() > 50, "{} colours", colours.len());
             group.bench_function(format!("{resolution:?}, {name}"), |b| {
-                b.iter(|| robot.image_into(black_box(&mut image)));
+                b.iter(|| {
+                    // The next frame: until then the image is the same.
+                    robot.wait(0.04)?;
+                    robot.image_into(black_box(&mut image))
+                });
             });
         }
     }

@@ -148,7 +148,7 @@ fn discs(c: &mut Criterion) {
     let world = World::walled(4.0, 4.0);
     let mut space = Space::new(&world.walls);
     for pose in free_poses(&world, 20, 0.2, 4) {
-        space.add(Solid { outline: Footprint::Disc { radius: 0.1 }, pose, bottom: 0.0, top: 0.2 });
+        space.add(Solid::new(Footprint::Disc { radius: 0.1 }, pose, 0.0, 0.2));
     }
     let alone = |pose: &Pose| space.clearance(&ROBOT, pose, ROBOT_SPAN, 1.0, None) > 0.0;
     let poses: Vec<Pose> = free_poses(&world, 256, 0.1, 5).into_iter().filter(alone).collect();
@@ -176,7 +176,7 @@ fn discs(c: &mut Criterion) {
 fn crowd(world: &World, robots: usize) -> (Space, Vec<(SolidId, Pose)>) {
     let mut space = Space::new(&world.walls);
     let poses = free_poses(world, robots, 0.07, 6);
-    let add = |pose: Pose| (space.add(Solid { outline: ROBOT, pose, bottom: 0.0, top: 0.09 }), pose);
+    let add = |pose: Pose| (space.add(Solid::new(ROBOT, pose, 0.0, 0.09)), pose);
     let robots = poses.into_iter().map(add).collect();
     (space, robots)
 }

@@ -26,7 +26,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The robot counts from where it stands, so the goal is given in its own frame.
     let mut bug = DistBug::new(start.to_local(goal), DistBugParameters::default())?;
     let outcome = run(&mut robot, &mut bug, 600.0, |_, bug, step| {
-        let time = step.time;
         for event in bug.take_events() {
             let (mark, letter, point, words) = match event {
                 Event::Hit { point, side } => (Mark::HitPoint, 'H', point, format!("wall on the {side:?}")),
@@ -35,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             };
             // Every hit point is followed by its leave point.
             let (name, point) = (format!("{letter}{}", marks.len() / 2 + 1), start.to_world(point));
-            println!("{time:5.1} s: {mark:?} {name} at ({:.2}, {:.2}) m, {words}", point.x, point.y);
+            println!("{:5.1} s: {mark:?} {name} at ({:.2}, {:.2}) m, {words}", step.time, point.x, point.y);
             marks.push((mark, point, name));
         }
         let here = start.compose(&bug.pose());

@@ -53,7 +53,7 @@
 //! | 10 Navigation | planning on grid maps: A\*, Dijkstra, jump point search, any-angle paths, quadtrees | [`nav::grid`], [`world`] |
 //! | 11 Robot vision | edges, colours, motion, blobs, lines | [`vision`] |
 //! | 12 Evolution | genetic algorithms, evolution strategy with covariance adaptation | [`evolve`] |
-//! | 14 Formula SAE | tracks of cones, the way between them, racing lines, referee; racing cars | [`race`], [`io::sim::race`] |
+//! | 14 Formula SAE | tracks of cones, the way between them, racing lines, referee; racing cars | [`race`], [`io::sim`] |
 //! | 14 Formula SAE | the safety system's state machine, monitors, stopping distance | [`safety`] |
 //!
 //! Beside the chapters: [`geometry`] has poses, angles and units; [`random`] seeded random streams; [`world`] what a

@@ -15,7 +15,6 @@ use roverlab::drive::{
 use roverlab::evolve::Gait;
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::control::{Behaviour, Command, Decision, Halt, Run, Senses, run, until};
-use roverlab::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions};
 use roverlab::io::sim::{Fleet, SimOptions, SimRobot, Simulation};
 use roverlab::io::wrappers::Faulty;
 use roverlab::io::{Call, Clock, Drive, Error, ErrorKind, MockRobot, Result};
@@ -25,10 +24,12 @@ use roverlab::maze::{
     RecursiveExplorer, Rig, RunnerParameters, Scale, Wall, mouse,
 };
 use roverlab::nav::{BugKind, BugParameters, DistBug, NavigateParameters, Navigator};
-use roverlab::race::{EventParameters, EventRacer, GapDriver, RaceOutcome, Racer, RacerParameters};
+use roverlab::race::{
+    Cone, ConeTrack, EventParameters, EventRacer, GapDriver, RaceOutcome, Racer, RacerParameters,
+};
 use roverlab::random::Stream;
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
-use roverlab::world::{Colour, RobotSpec, Scene, World};
+use roverlab::world::{RobotSpec, Scene, World};
 
 type Robot = Faulty<SimRobot>;
 
@@ -262,19 +263,20 @@ fn an_exploration_ends_by_the_same_rules() {
 #[test]
 fn a_racing_car_with_a_broken_clock_stops() {
     let rows = (0..200).flat_map(|k| [1.7, -1.7].map(|y| Point::new(3.5 * f64::from(k), y)));
-    let cones: Vec<RaceCone> = rows.map(|place| RaceCone::new(place, Colour::BLUE)).collect();
+    let track = ConeTrack { cones: rows.map(Cone::unknown).collect(), ..ConeTrack::default() };
+    let scene = track.scene(&[Pose::new(-2.0, 0.0, 0.0)]);
     for (fault, expected) in [("clock@2", "stands still"), ("clock=-60@2", "runs backwards"), ("", "")] {
-        let start = [(RaceCarSpec::default(), Pose::new(-2.0, 0.0, 0.0))];
-        let mut race = Race::new(&cones, &start, RaceOptions::default()).unwrap();
+        let race = Simulation::new(&scene, SimOptions::default()).unwrap();
         let faults = if fault.is_empty() { Vec::new() } else { vec![fault.parse().unwrap()] };
-        let mut car = Faulty::new(race.car(0).unwrap(), faults);
+        let mut car = Faulty::new(race.robot(0).unwrap(), faults);
         let ended = run(&mut car, &mut Racer::new(RacerParameters::default()), 4.0, |_, _, _| {});
         match ended {
             Err(error) => assert!(!fault.is_empty() && error.to_string().contains(expected), "{error}"),
             Ok(outcome) => assert_eq!((outcome, fault), (RaceOutcome::TimedOut, "")),
         }
         drop(car);
-        assert!(race.time() < 4.1, "{fault}: drove for {} s", race.time());
+        let time = race.truth().time();
+        assert!(time < 4.1, "{fault}: drove for {time} s");
     }
 }
 
@@ -315,7 +317,7 @@ impl<R: ?Sized> Senses<R> for Plain {
     }
 }
 
-/// A robot whose clock shows what a function makes of the time, and whose drive fails if wished.
+/// A robot whose clock shows what a function makes of the time, and which cannot be stopped if wished.
 struct Odd {
     time: f64,
     shown: fn(f64) -> f64,
@@ -342,7 +344,7 @@ impl Odd {
 
 impl Drive for Odd {
     fn set_speed(&mut self, twist: Twist) -> Result<()> {
-        if !self.drive {
+        if !self.drive && twist == Twist::STOP {
             return Err(Error::new(ErrorKind::Other, "the drive is broken"));
         }
         self.told.push(twist);
@@ -432,15 +434,13 @@ fn the_first_error_is_told_and_the_robot_is_stopped() {
     let error = run(&mut robot, &mut behaviour, 9.0, |_, _, _| {}).unwrap_err();
     assert_eq!(error.to_string(), "the behaviour is at its wits' end");
     assert_eq!((robot.told.len(), robot.told[2]), (3, Twist::STOP));
-    // The drive fails as well: that comes second.
+    // A robot that cannot be stopped comes second.
+    robot.drive = false;
     let mut behaviour = Plain { at: 3, ending: broken, ..Plain::default() };
-    let ended = run(&mut robot, &mut behaviour, 9.0, |robot, behaviour, _| robot.drive = behaviour.steps < 2);
+    let ended = run(&mut robot, &mut behaviour, 9.0, |_, _, _| {});
     assert_eq!(ended.unwrap_err().to_string(), "the behaviour is at its wits' end");
-    // Where nothing else is wrong, a robot that cannot be stopped is.
-    robot.drive = true;
-    let ended = run(&mut robot, &mut Plain::default(), 0.35, |robot, _, step| {
-        robot.drive = step.time < robot.time + 1.0 && robot.told.len() < 6;
-    });
+    // Where nothing else is wrong, it is the error.
+    let ended = run(&mut robot, &mut Plain::default(), 0.35, |_, _, _| {});
     assert_eq!(ended.unwrap_err().to_string(), "the drive is broken");
     // So is one of who watches.
     robot.drive = true;

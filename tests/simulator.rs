@@ -20,5 +20,7 @@ mod lockstep;
 mod motion;
 #[path = "simulator/noise.rs"]
 mod noise;
+#[path = "simulator/race_car.rs"]
+mod race_car;
 #[path = "simulator/threads.rs"]
 mod threads;

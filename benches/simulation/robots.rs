@@ -140,7 +140,7 @@ fn apart(poses: Vec<Pose>, robots: usize) -> Vec<Pose> {
     let mut kept = Vec::with_capacity(robots);
     for pose in poses {
         if kept.len() < robots && space.clearance(&outline, &pose, span, 0.02, None) > 0.01 {
-            space.add(Solid { outline, pose, bottom: span.bottom, top: span.top });
+            space.add(Solid::new(outline, pose, span.bottom, span.top));
             kept.push(pose);
         }
     }

@@ -5,13 +5,17 @@
 use libfuzzer_sys::fuzz_target;
 use roverlab::world::formats::{MemoryFiles, sim};
 
-const FILES: [(&str, &[u8]); 6] = [
+const FILES: [(&str, &[u8]); 10] = [
     ("small.maz", include_bytes!("../../tests/data/formats/small.maz")),
     (".\\room.wld", include_bytes!("../../tests/data/formats/room.wld")),
     ("cart.robi", include_bytes!("../../tests/data/formats/cart.robi")),
     ("sign.esObj", include_bytes!("../../tests/data/formats/sign.esObj")),
     ("room.yaml", include_bytes!("../../tests/data/formats/room.yaml")),
     ("room.pgm", include_bytes!("../../tests/data/formats/room.pgm")),
+    ("tiles 1.png", include_bytes!("../../tests/data/formats/tiles 1.png")),
+    ("sign.obj", include_bytes!("../../tests/data/formats/sign.obj")),
+    ("sign.mtl", include_bytes!("../../tests/data/formats/sign.mtl")),
+    ("plate.png", include_bytes!("../../tests/data/formats/plate.png")),
 ];
 
 fuzz_target!(|text: &str| {
@@ -22,7 +26,7 @@ fuzz_target!(|text: &str| {
     }
     let mut files = MemoryFiles::default();
     files.0.extend(FILES.map(|(name, bytes)| (name.to_string(), bytes.to_vec())));
-    for name in ["a.wld", "a.maz", "a.robi", "a.esObj", "a.yaml"] {
+    for name in ["a.wld", "a.maz", "a.robi", "a.esObj", "a.yaml", "a.obj", "a.mtl"] {
         files.0.insert(name.into(), other.as_bytes().to_vec());
     }
     let Ok(scene) = sim::parse(script, "fuzz.sim", &mut files) else { return };

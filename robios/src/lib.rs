@@ -48,7 +48,6 @@
 pub mod ask;
 pub mod costs;
 mod ffi;
-pub mod files;
 pub mod keyboard;
 pub mod keys;
 pub mod link;

@@ -6,11 +6,11 @@ use std::sync::Arc;
 
 use roverlab::geometry::{Pose, units};
 use roverlab::io::sim::SimOptions;
-use roverlab::world::formats;
+use roverlab::world::formats::{self, DiskFiles};
 use roverlab::world::{RobotPlacement, RobotSpec, Scene, World};
 
 use crate::costs::{Costs, Frames};
-use crate::files::LenientFiles;
+use crate::walker::is_walker;
 
 /// The world of a run, and which robot of it a program drives.
 #[derive(Debug, Clone, PartialEq)]
@@ -160,11 +160,19 @@ impl Plan {
         let mut scene = match found {
             Some(file) => {
                 let bytes = formats::read_file(&file).map_err(|error| error.to_string())?;
-                let mut files = LenientFiles::new();
+                let mut files = DiskFiles::new();
                 let parsed = formats::parse_scene_tolerantly(bytes, &file.display().to_string(), &mut files);
                 let parsed = parsed.map_err(|error| error.to_string())?;
-                warnings.append(&mut files.warnings);
                 warnings.extend(parsed.warnings.iter().map(ToString::to_string));
+                let mut names: Vec<_> =
+                    parsed.value.robots.iter().map(|robot| robot.spec.name.as_str()).collect();
+                names.sort_unstable();
+                names.dedup();
+                for name in names.into_iter().filter(|name| is_walker(name)) {
+                    warnings.push(format!(
+                        "{name} is the walking robot that is built in, whatever its file says"
+                    ));
+                }
                 parsed.value
             }
             None => Scene::new(World::walled(DEFAULT_SIZE, DEFAULT_SIZE)),
@@ -212,14 +220,13 @@ pub fn parse_pose(text: &str) -> Result<Pose, String> {
 
 /// A robot by the name of a file or of one that is built in.
 fn robot(name: &str, warnings: &mut Vec<String>) -> Result<RobotSpec, String> {
-    let named = RobotSpec::predefined(name);
-    let named = named.or_else(|| name.eq_ignore_ascii_case("car").then(RobotSpec::car));
-    if let Some(spec) = named {
+    if let Some(spec) = RobotSpec::predefined(name) {
         return Ok(spec);
     }
     if !Path::new(name).exists() && !name.to_ascii_lowercase().ends_with(".robi") {
         return Err(format!(
-            "robot {name:?}; expected S4, LabBot, Omni, Car, or the file of a description, .robi"
+            "robot {name:?}; expected {}, or the file of a description, .robi",
+            RobotSpec::PREDEFINED.join(", ")
         ));
     }
     let parsed = formats::load_robot(name).map_err(|error| error.to_string())?;

@@ -15,6 +15,8 @@ mod endings;
 mod limits;
 #[path = "programs/scripts.rs"]
 mod scripts;
+#[path = "programs/sight.rs"]
+mod sight;
 #[path = "programs/time.rs"]
 mod time;
 

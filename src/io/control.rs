@@ -160,8 +160,8 @@ pub struct Step<'a, O> {
     pub seen: &'a O,
 }
 
-/// Runs a behaviour on a robot for at most `time_limit` seconds, infinity for any time. `watch` is called after each step and
-/// at the end; if it breaks or fails, that ends the run.
+/// Runs a behaviour on a robot for at most `time_limit` seconds, infinity for any time. `watch` is called at each step,
+/// before the robot is told what was decided, and at the end; if it breaks or fails, that ends the run.
 ///
 /// Steps are a period apart. One that is late begins the next one at once, and what was missed is not made up for. At the
 /// end, however it comes, the robot is stopped; an error while it stops does not hide an earlier one.
@@ -181,18 +181,24 @@ where
     V: Verdict,
 {
     let mut run = Run::new(behaviour, time_limit)?;
-    loop {
-        let flow = run.step(robot, behaviour)?;
+    let ended = loop {
+        let decision = match run.decide(robot, behaviour) {
+            Ok(decision) => decision,
+            Err(error) => break Err(error),
+        };
         let step = Step { time: run.clock.map_or(0.0, |clock| clock.time()), seen: &run.seen };
-        match (watch(robot, behaviour, step).verdict(), flow) {
-            (Ok(_), ControlFlow::Break(outcome)) => return Ok(outcome),
-            (Ok(ControlFlow::Break(())), _) => {
-                return stopping::<_, B::Command, _>(robot, Ok(behaviour.halt(Halt::Stopped)));
+        match (watch(robot, behaviour, step).verdict(), decision) {
+            (Err(error), _) => break Err(error),
+            (Ok(_), ControlFlow::Break(outcome)) => break Ok(outcome),
+            (Ok(ControlFlow::Break(())), _) => break Ok(behaviour.halt(Halt::Stopped)),
+            (Ok(ControlFlow::Continue(())), ControlFlow::Continue(command)) => {
+                if let Err(error) = command.apply(robot).and_then(|()| run.rest(robot)) {
+                    break Err(error);
+                }
             }
-            (Ok(ControlFlow::Continue(())), _) => run.rest::<_, B::Command>(robot)?,
-            (Err(error), _) => return stopping::<_, B::Command, _>(robot, Err(error)),
         }
-    }
+    };
+    stopping::<_, B::Command, _>(robot, ended)
 }
 
 /// Stops a robot with what has come of its run.
@@ -249,17 +255,21 @@ impl<B: Behaviour + ?Sized> Run<B> {
         B: Senses<R>,
         B::Command: Command<R>,
     {
-        match self.decide(robot, behaviour) {
-            Ok(ControlFlow::Continue(())) => Ok(ControlFlow::Continue(())),
+        let applied = self.decide(robot, behaviour).and_then(|decision| match decision {
+            ControlFlow::Continue(command) => command.apply(robot).map(ControlFlow::Continue),
+            ControlFlow::Break(outcome) => Ok(ControlFlow::Break(outcome)),
+        });
+        match applied {
+            Ok(ControlFlow::Continue(())) => applied,
             ended => stopping::<_, B::Command, _>(robot, ended),
         }
     }
 
-    fn decide<R>(&mut self, robot: &mut R, behaviour: &mut B) -> Result<ControlFlow<B::Outcome>>
+    /// Reads and decides, unless the time is over.
+    fn decide<R>(&mut self, robot: &mut R, behaviour: &mut B) -> Decision<B>
     where
         R: Clock + ?Sized,
         B: Senses<R>,
-        B::Command: Command<R>,
     {
         let clock = match &mut self.clock {
             Some(clock) => clock,
@@ -275,22 +285,14 @@ impl<B: Behaviour + ?Sized> Run<B> {
             return Ok(ControlFlow::Break(behaviour.halt(Halt::TimedOut)));
         }
         behaviour.sense(robot, time, &mut self.seen)?;
-        match behaviour.step(time, &self.seen)? {
-            ControlFlow::Continue(command) => command.apply(robot).map(ControlFlow::Continue),
-            ControlFlow::Break(outcome) => Ok(ControlFlow::Break(outcome)),
-        }
+        behaviour.step(time, &self.seen)
     }
 
     /// Waits until the next step is due or the time is over.
-    fn rest<R: Clock + ?Sized, C: Command<R>>(&mut self, robot: &mut R) -> Result<()> {
-        let Some(clock) = &mut self.clock else { return Ok(()) };
-        self.due += self.period;
-        match clock.wait_until(robot, self.due) {
-            Ok(due) => {
-                self.due = due;
-                Ok(())
-            }
-            Err(error) => stopping::<_, C, _>(robot, Err(error)),
+    fn rest<R: Clock + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
+        if let Some(clock) = &mut self.clock {
+            self.due = clock.wait_until(robot, self.due + self.period)?;
         }
+        Ok(())
     }
 }

@@ -1,6 +1,6 @@
 use super::Displacement;
 use super::integrate::sinc;
-use crate::geometry::{Pose, Twist, math, normalize_angle};
+use crate::geometry::{Pose, Twist, angle_difference, math, normalize_angle};
 
 /// A velocity in the plane with a sideways part, as robots on Mecanum wheels have it; in the robot's own frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -57,6 +57,16 @@ pub struct PlanarMotion {
 }
 
 impl PlanarMotion {
+    /// The motion that leads from one pose to another, turning by less than a half turn.
+    pub fn between(start: Pose, end: Pose) -> Self {
+        let angle = angle_difference(end.heading, start.heading);
+        let half = 0.5 * angle;
+        let (sin, cos) = math::sin_cos(start.heading + half);
+        let (x, y) = (end.x - start.x, end.y - start.y);
+        let scale = 1.0 / sinc(half);
+        Self { forward: (x * cos + y * sin) * scale, left: (y * cos - x * sin) * scale, angle }
+    }
+
     /// Metres along the path.
     pub fn length(&self) -> f64 {
         if self.left == 0.0 { self.forward.abs() } else { math::hypot(self.forward, self.left) }

@@ -49,7 +49,7 @@ pub(super) fn solids(world: &World, frame: &Frame) -> Group {
 pub(super) fn object_symbol(shape: &Shape, colour: Colour, at: Pixel) -> Group {
     match shape {
         Shape::Box { .. } => solid_box(at, 11.0, 11.0, 0.0, colour),
-        Shape::Cylinder { .. } => solid_disc(at, 6.0, colour),
+        Shape::Cylinder { .. } | Shape::Cone { .. } => solid_disc(at, 6.0, colour),
         Shape::Sphere { .. } => ball(at, 6.0, colour),
     }
 }
@@ -144,7 +144,7 @@ fn object(object: &Object, frame: &Frame) -> Group {
     let (at, colour) = (frame.at(object.pose.position()), object.kind.colour);
     let pixels = |metres: f64| frame.length(metres).max(SMALLEST_OBJECT);
     match object.kind.shape {
-        Shape::Cylinder { radius, .. } => solid_disc(at, pixels(radius), colour),
+        Shape::Cylinder { radius, .. } | Shape::Cone { radius, .. } => solid_disc(at, pixels(radius), colour),
         Shape::Sphere { radius } => ball(at, pixels(radius), colour),
         Shape::Box { length, width, .. } => {
             solid_box(at, pixels(length), pixels(width), object.pose.heading, colour)

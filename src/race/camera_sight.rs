@@ -41,6 +41,8 @@ const HUES: [(ConeColour, u8, u8); 3] =
     [(ConeColour::Orange, 10, 27), (ConeColour::Yellow, 28, 52), (ConeColour::Blue, 140, 185)];
 const LEAST_SATURATION: u8 = 90;
 const LEAST_PIXELS: usize = 6;
+/// Levels by which the channels of gray ground differ because of noise.
+const GROUND_CHROMA: u8 = 10;
 /// Metres of the ground that one row of an image may show: the racing car's camera does 14 m away with 640 columns, and 20 m away with
 /// 1296.
 const COARSEST: f64 = 2.0 / 3.0;
@@ -50,6 +52,8 @@ const COARSEST: f64 = 2.0 / 3.0;
 const CERTAIN: f64 = 11.0;
 const LARGE: f64 = 2.0 * LEAST_PIXELS as f64;
 const CONE: [f64; 2] = [0.12, 0.3];
+/// Metres from the edge of a cone's foot, which an image shows, to its middle.
+const FOOT: f64 = 0.129;
 /// Pixels at the border of an image within which a cone may be cut off, in shares of its width and height.
 const BORDER: f64 = 0.05;
 
@@ -65,6 +69,23 @@ fn class(pixel: [u8; 3]) -> Option<usize> {
         return None;
     }
     HUES.iter().position(|(_, from, to)| (*from..=*to).contains(&hue))
+}
+
+/// How colourful a pixel is; noise that the ground has is none.
+fn chroma(image: &RgbImage, column: usize, row: usize) -> f64 {
+    let [red, green, blue] = image.get_pixel(column as u32, row as u32).0;
+    let (most, least) = (red.max(green).max(blue), red.min(green).min(blue));
+    f64::from((most - least).saturating_sub(GROUND_CHROMA))
+}
+
+/// The row at which a cone ends, between whole rows: what is colourful below the cone's inside, as much as that, is the
+/// cone's as well. It is the same for dark and for bright cones, and for a camera that blurs.
+fn foot(image: &RgbImage, top: usize, [column, last]: [usize; 2]) -> f64 {
+    let inside = last.saturating_sub(2).max(top);
+    let whole = chroma(image, column, inside).max(1.0);
+    let below = (inside + 1)..(last + 4).min(image.height() as usize);
+    let shares = below.map(|row| (chroma(image, column, row) / whole).min(1.0));
+    (inside + 1) as f64 + shares.sum::<f64>()
 }
 
 impl CameraSight {
@@ -92,7 +113,7 @@ impl CameraSight {
                     continue;
                 }
                 let column = 0.5 * (blob.min.0 + blob.max.0 + 1) as f64;
-                let row = (blob.max.1 + 1) as f64;
+                let row = foot(image, blob.min.1, [(blob.min.0 + blob.max.0) / 2, blob.max.1]);
                 found.extend(self.mount.place(column, row, width as f64, height as f64).map(
                     |(position, range, error)| {
                         let size = (blob.max.0 - blob.min.0) as f64 * range / self.mount.focal(width as f64);
@@ -166,7 +187,7 @@ impl CameraMount {
         (depth > 1e-3).then_some([0.5 * width - left * scale, 0.5 * height + below * scale, depth])
     }
 
-    /// The place on the ground that a pixel shows, its distance from the camera, and how far a pixel more is.
+    /// The middle of the cone whose foot begins at a pixel, its distance from the camera, and how far a pixel more is.
     fn place(&self, column: f64, row: f64, width: f64, height: f64) -> Option<(Point, f64, f64)> {
         let focal = self.focal(width);
         let (sin, cos) = math::sin_cos(self.pitch);
@@ -178,13 +199,15 @@ impl CameraMount {
                 (depth * (cos + above * sin), depth)
             })
         };
-        let (ahead, depth) = ground(row)?;
-        let left = depth * (0.5 * width - column) / focal;
-        let range = math::hypot(ahead, left);
-        if range > self.farthest(width) {
+        let (nearer, depth) = ground(row)?;
+        let aside = depth * (0.5 * width - column) / focal;
+        let edge = math::hypot(nearer, aside);
+        if edge > self.farthest(width) {
             return None;
         }
-        let next = ground(row - 1.0).map_or(range, |(farther, _)| farther - ahead);
+        let range = edge + FOOT;
+        let [ahead, left] = [nearer, aside].map(|metres| metres * range / edge.max(FOOT));
+        let next = ground(row - 1.0).map_or(range, |(farther, _)| farther - nearer);
         Some((Point::new(self.forward + ahead, left), range, 0.03 + 0.5 * next))
     }
 }
@@ -193,35 +216,37 @@ impl CameraMount {
 mod tests {
     use super::*;
     use crate::geometry::{Point, Pose};
-    use crate::io::sim::NoiseModel;
-    use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions};
+    use crate::io::sim::{SimOptions, SimRobot, Simulation};
     use crate::io::{Camera, Resolution};
-    use crate::world::Colour;
+    use crate::race::{Cone, ConeTrack};
 
     /// One that has seen an image.
     fn sight() -> CameraSight {
         CameraSight { size: [640.0, 480.0], ..CameraSight::default() }
     }
 
+    /// A car before cones.
+    fn car_before(cones: &[Cone], noise: f64) -> SimRobot {
+        let track = ConeTrack { cones: cones.to_vec(), ..ConeTrack::default() };
+        let scene = track.scene(&[Pose::default()]);
+        Simulation::new(&scene, SimOptions::with_noise(noise, 1)).unwrap().robot(0).unwrap()
+    }
+
     #[test]
     fn cones_are_found_in_place_and_colour() {
-        let painted = [
-            (Point::new(5.0, 1.5), 0x1f_4f_d8, ConeColour::Blue),
-            (Point::new(5.5, -1.5), 0xf2_c8_11, ConeColour::Yellow),
-            (Point::new(9.0, 0.5), 0xf0_70_10, ConeColour::Orange),
+        let cones = [
+            Cone::new(Point::new(5.0, 1.5), ConeColour::Blue),
+            Cone::new(Point::new(5.5, -1.5), ConeColour::Yellow),
+            Cone::new(Point::new(9.0, 0.5), ConeColour::Orange),
         ];
-        let cones: Vec<RaceCone> =
-            painted.iter().map(|(place, paint, _)| RaceCone::new(*place, Colour::from_hex(*paint))).collect();
         for noise in [0.0, 1.0] {
-            let options = RaceOptions { noise: NoiseModel::real().scaled(noise), ..RaceOptions::default() };
-            let mut race = Race::new(&cones, &[(RaceCarSpec::default(), Pose::default())], options).unwrap();
-            let mut car = race.car(0).unwrap();
+            let mut car = car_before(&cones, noise);
             car.set_resolution(Resolution::Vga).unwrap();
             let found = CameraSight::new(CameraMount::default()).find(&car.image().unwrap());
             assert_eq!(found.len(), 3, "{found:?}");
-            for (place, _, colour) in painted {
+            for Cone { position, colour } in cones {
                 let seen = found.iter().find(|seen| seen.colour == colour).unwrap();
-                let away = (seen.position - place).norm();
+                let away = (seen.position - position).norm();
                 assert!(away < 3.0 * seen.error && seen.is_cone(), "{colour:?}: {away} m off, {seen:?}");
             }
         }
@@ -271,19 +296,20 @@ mod tests {
     fn a_place_is_where_its_pixel_is() {
         let mount = CameraMount::default();
         for (x, y) in [(4.0, 1.0), (9.0, -3.0), (6.0, 0.0)] {
+            // The near edge of the foot, as the camera sees it.
+            let eye = Point::new(mount.forward, 0.0);
+            let middle = eye + (Point::new(x, y) - eye) * (1.0 + FOOT / (Point::new(x, y) - eye).norm());
             let [column, row, _] = mount.project(Point::new(x, y), [640.0, 480.0]).unwrap();
             let (place, ..) = mount.place(column, row, 640.0, 480.0).unwrap();
-            assert!((place - Point::new(x, y)).norm() < 1e-9, "{place}");
+            assert!((place - middle).norm() < 1e-9, "{place}");
         }
         assert_eq!(mount.project(Point::new(-3.0, 0.0), [640.0, 480.0]), None);
     }
 
     #[test]
     fn finer_images_show_cones_farther_off() {
-        let cones = [RaceCone::new(Point::new(18.0, 1.0), Colour::from_hex(0x1f_4f_d8))];
-        let options = RaceOptions { noise: NoiseModel::ideal(), ..RaceOptions::default() };
-        let mut race = Race::new(&cones, &[(RaceCarSpec::default(), Pose::default())], options).unwrap();
-        let mut car = race.car(0).unwrap();
+        let cones = [Cone::new(Point::new(18.0, 1.0), ConeColour::Blue)];
+        let mut car = car_before(&cones, 0.0);
         let mut sight = CameraSight::new(CameraMount::default());
         for (resolution, seen) in [(Resolution::Vga, 0), (Resolution::Cam1Mp, 1)] {
             car.set_resolution(resolution).unwrap();

@@ -1,4 +1,7 @@
-use crate::geometry::{Point, Pose};
+use std::sync::Arc;
+
+use crate::geometry::{Aabb, Point, Pose};
+use crate::world::{Colour, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Shape, World};
 
 /// The colour of a cone: blue stands on the left of the track, yellow on the right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -31,6 +34,24 @@ impl ConeColour {
         if matches!(self, Self::BigOrange) { 0.505 } else { 0.325 }
     }
 
+    /// How it is painted.
+    pub const fn paint(self) -> Colour {
+        match self {
+            Self::Blue => Colour::from_hex(0x1f_4f_d8),
+            Self::Yellow => Colour::from_hex(0xf2_c8_11),
+            Self::Orange | Self::BigOrange => Colour::from_hex(0xf0_70_10),
+            Self::Unknown => Colour::from_hex(0x90_90_90),
+        }
+    }
+
+    /// The cone as an object of a world. It falls when a car touches it.
+    pub fn kind(self) -> ObjectKind {
+        let (radius, height) = (self.radius(), self.height());
+        let shape = Shape::Cone { radius, top: TIP * radius, height };
+        let name = format!("cone-{self:?}").to_lowercase();
+        ObjectKind { mass: MASS, falls: true, ..ObjectKind::new(name, shape, self.paint()) }
+    }
+
     /// On which side of the track it belongs: 1 for the left, -1 for the right, 0 for either.
     pub const fn side(self) -> i8 {
         match self {
@@ -40,6 +61,13 @@ impl ConeColour {
         }
     }
 }
+
+/// The radius of a cone's tip as a share of that of its foot.
+const TIP: f64 = 0.2;
+/// Kilograms of a cone.
+const MASS: f64 = 0.45;
+/// Metres of ground around the cones of a track.
+const MARGIN: f64 = 5.0;
 
 /// A cone on the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,6 +117,25 @@ impl ConeTrack {
     /// The cones of a colour.
     pub fn of(&self, colour: ConeColour) -> impl Iterator<Item = Point> + Clone + '_ {
         self.cones.iter().filter(move |cone| cone.colour == colour).map(|cone| cone.position)
+    }
+
+    /// The ground with the cones, and racing cars at some poses of the middle of their rear axles.
+    pub fn scene(&self, cars: &[Pose]) -> Scene {
+        let mut world = World::empty(1.0, 1.0);
+        let around = Aabb::around(self.cones.iter().map(|cone| cone.position));
+        world.floor = around.unwrap_or(world.floor).inflated(MARGIN);
+        let kinds = ConeColour::ALL.map(|colour| Arc::new(colour.kind()));
+        let object = |cone: &Cone| {
+            let kind = Arc::clone(&kinds[cone.colour as usize]);
+            Object::new(kind, Pose::new(cone.position.x, cone.position.y, 0.0))
+        };
+        world.objects.extend(self.cones.iter().map(object));
+        let car = Arc::new(RobotSpec::race_car());
+        let placed = |pose: &Pose| RobotPlacement {
+            objects_before: self.cones.len(),
+            ..RobotPlacement::new(Arc::clone(&car), *pose)
+        };
+        Scene { robots: cars.iter().map(placed).collect(), ..Scene::new(world) }
     }
 
     /// The event that the cones stand for, by the book of rules: an acceleration strip ends in a box of orange cones, and a

@@ -1,7 +1,11 @@
 use super::error::{PlanError, positive};
 use super::hold::Hold;
 use super::racing_line::curvature;
+use super::tyres::Tyres;
 use crate::geometry::Point;
+use crate::world::{DriveSpec, RobotSpec};
+
+const GRAVITY: f64 = 9.81;
 
 /// What a car's tyres and motors do.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,6 +27,33 @@ impl CarLimits {
     pub const fn circle(grip: f64, drive: f64, brake: f64, top_speed: f64) -> Self {
         let hold = Hold::Ellipse { across: grip, turned: 0.0, along: grip };
         Self { hold, drive, brake, top_speed, turning: f64::INFINITY }
+    }
+
+    /// What a car with [`CarDynamics`](crate::world::CarDynamics) can do in balance; `None` without them.
+    ///
+    /// ```
+    /// use roverlab::{race::CarLimits, world::RobotSpec};
+    /// let limits = CarLimits::of(&RobotSpec::race_car()).unwrap();
+    /// assert_eq!((limits.top_speed, limits.brake), (30.0, 11.0));
+    /// ```
+    pub fn of(car: &RobotSpec) -> Option<Self> {
+        let DriveSpec::Ackermann { wheelbase, max_steering, dynamics: Some(dynamics), .. } = car.drive else {
+            return None;
+        };
+        let tyres = Tyres {
+            grip: dynamics.grip,
+            stiffness: dynamics.stiffness * GRAVITY,
+            front: dynamics.balance,
+            wheelbase,
+            lock: max_steering,
+        };
+        Some(Self {
+            hold: Hold::Balance(tyres),
+            drive: car.motor.max_acceleration,
+            brake: dynamics.brake,
+            top_speed: car.drive.top_speed(),
+            turning: f64::INFINITY,
+        })
     }
 
     fn check(&self) -> Result<(), PlanError> {

@@ -1,11 +1,9 @@
 use super::*;
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::control::run;
-use crate::io::sim::NoiseModel;
-use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions};
-use crate::io::{Drive, Lidar, LidarScan};
+use crate::io::sim::{SimOptions, Simulation, TICK};
+use crate::io::{Clock, Drive, Lidar, LidarScan};
 use crate::random::Stream;
-use crate::world::Colour;
 
 /// What came of a race on a generated track.
 #[derive(Debug)]
@@ -25,36 +23,36 @@ fn race(seed: u64, laps: usize) -> Raced {
 }
 
 fn race_on(track: &ConeTrack, corridor: Corridor, seed: u64, laps: usize) -> Raced {
-    let cones: Vec<RaceCone> =
-        track.cones.iter().map(|cone| RaceCone::new(cone.position, Colour::BLUE)).collect();
-    let options = RaceOptions { seed, noise: NoiseModel::real(), ..RaceOptions::default() };
     let start = track.start.unwrap();
-    let mut world = Race::new(&cones, &[(RaceCarSpec::default(), start)], options).unwrap();
+    let simulation =
+        Simulation::new(&track.scene(&[start]), SimOptions { seed, ..SimOptions::default() }).unwrap();
+    let (mut car, world) = (simulation.robot(0).unwrap(), simulation.truth());
     let wheels = [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y));
     let mut referee = Referee::new(corridor, wheels);
     let mut racer = Racer::new(RacerParameters { laps, ..RacerParameters::default() });
     let mut scan = LidarScan::default();
     let mut first = 0;
     while world.time() < 150.0 * laps as f64 {
-        let mut car = world.car(0).unwrap();
         car.scan_into(&mut scan).unwrap();
         let (pose, speed) = (car.pose().unwrap(), car.speed().unwrap());
         let command = racer.step(pose, speed, &scan);
         car.set_speed(command).unwrap();
         for _ in 0..5 {
-            world.advance(0.01);
-            let truth = world.truth(0).unwrap();
-            referee.see(world.time(), truth.pose, truth.hits);
+            car.wait(TICK).unwrap();
+            let truth = world.robot(0).unwrap();
+            let hits = truth.contacts as usize;
+            referee.see(world.time(), truth.pose, hits);
             if racer.phase() == RacePhase::Mapping {
-                first = truth.hits;
+                first = hits;
             }
         }
         if racer.phase() == RacePhase::Finished && speed.linear < 0.05 {
             break;
         }
     }
-    let away =
-        |place: Point| cones.iter().map(|cone| (cone.position - place).norm()).fold(f64::INFINITY, f64::min);
+    let away = |place: Point| {
+        track.cones.iter().map(|cone| (cone.position - place).norm()).fold(f64::INFINITY, f64::min)
+    };
     let error = racer.map().cones().map(|cone| away(start.to_world(cone.position))).fold(0.0, f64::max);
     Raced { verdict: referee.verdict().clone(), phase: racer.phase(), laps: racer.laps(), first, error }
 }
@@ -65,18 +63,18 @@ fn a_line_that_moves_aside_is_come_to_without_weaving() {
     let profile = SpeedProfile::open(&straight(0.0), &RacerParameters::default().limits, 30.0, 0.0).unwrap();
     let tracker =
         |y: f64| LineTracker::new(straight(y), profile.clone(), false, TrackerParameters::default());
-    let options = RaceOptions { noise: NoiseModel::ideal(), ..RaceOptions::default() };
-    let mut world = Race::new(&[], &[(RaceCarSpec::default(), Pose::default())], options).unwrap();
+    let scene = ConeTrack::default().scene(&[Pose::default()]);
+    let world = Simulation::new(&scene, SimOptions::ideal()).unwrap();
+    let mut car = world.robot(0).unwrap();
     let (mut before, mut moved) = (tracker(0.0), tracker(0.8));
     let (mut most, mut last) = (0.0_f64, 0.0);
-    while world.truth(0).unwrap().pose.x < 700.0 {
-        let pose = world.truth(0).unwrap().pose;
-        let mut car = world.car(0).unwrap();
+    while world.truth().pose(0).unwrap().x < 700.0 {
+        let pose = world.truth().pose(0).unwrap();
         let speed = car.speed().unwrap();
         let line = if pose.x < 500.0 { &mut before } else { &mut moved };
         let (command, aside) = line.step(pose, speed).unwrap();
         car.set_speed(command).unwrap();
-        world.advance(0.05);
+        car.wait(0.05).unwrap();
         if pose.x > 500.0 {
             assert!(speed.linear > 29.0, "{speed:?}");
             (most, last) = (most.max(aside), aside);
@@ -159,13 +157,13 @@ fn missing_and_false_cones_are_borne() {
 
 /// A car before a straight lane of so many pairs of cones, four metres from pair to pair.
 fn on_a_strip(pairs: u32) -> (RaceOutcome, f64, f64) {
-    let strip = |x: f64| [1.6, -1.6].map(|y| RaceCone::new(Point::new(x, y), Colour::BLUE));
-    let cones: Vec<RaceCone> = (0..pairs).map(|k| 4.0 * f64::from(k)).flat_map(strip).collect();
-    let start = Pose::new(-2.0, 0.0, 0.0);
-    let mut world = Race::new(&cones, &[(RaceCarSpec::default(), start)], RaceOptions::default()).unwrap();
+    let strip = |x: f64| [1.6, -1.6].map(|y| Cone::unknown(Point::new(x, y)));
+    let cones = (0..pairs).map(|k| 4.0 * f64::from(k)).flat_map(strip).collect();
+    let scene = ConeTrack { cones, ..ConeTrack::default() }.scene(&[Pose::new(-2.0, 0.0, 0.0)]);
+    let world = Simulation::new(&scene, SimOptions::default()).unwrap();
     let mut racer = Racer::new(RacerParameters::default());
-    let outcome = run(&mut world.car(0).unwrap(), &mut racer, 120.0, |_, _, _| {}).unwrap();
-    (outcome, world.truth(0).unwrap().pose.x, world.time())
+    let outcome = run(&mut world.robot(0).unwrap(), &mut racer, 120.0, |_, _, _| {}).unwrap();
+    (outcome, world.truth().pose(0).unwrap().x, world.truth().time())
 }
 
 #[test]
@@ -180,30 +178,28 @@ fn a_car_without_a_lane_stops() {
 #[test]
 fn a_car_that_is_not_where_its_map_says_stops() {
     let GeneratedTrack { track, corridor } = generate(21, &TrackOptions::drawn(21)).unwrap();
-    let cones: Vec<RaceCone> =
-        track.cones.iter().map(|cone| RaceCone::new(cone.position, Colour::BLUE)).collect();
-    let mut world =
-        Race::new(&cones, &[(RaceCarSpec::default(), track.start.unwrap())], RaceOptions::default()).unwrap();
+    let world = Simulation::new(&track.scene(&[track.start.unwrap()]), SimOptions::default()).unwrap();
+    let mut car = world.robot(0).unwrap();
+    let metres = || world.truth().robot(0).unwrap().path_length;
     let mut racer = Racer::new(RacerParameters::default());
     let mut scan = LidarScan::default();
     // Where the car believes to be leaps by some metres in the third lap, as after a bad correction of its odometry.
     let leap = |racer: &Racer| if racer.laps() < 2 { Pose::default() } else { Pose::new(4.0, 3.0, 0.4) };
     let (mut before, mut fast) = (0.0, 0.0);
-    while world.time() < 400.0 {
-        let mut car = world.car(0).unwrap();
+    while car.now().unwrap() < 400.0 {
         car.scan_into(&mut scan).unwrap();
         let (pose, speed) = (car.pose().unwrap(), car.speed().unwrap());
         let command = racer.step(leap(&racer).compose(&pose), speed, &scan);
         car.set_speed(command).unwrap();
-        world.advance(0.05);
+        car.wait(0.05).unwrap();
         if racer.laps() < 2 {
-            (before, fast) = (world.truth(0).unwrap().distance, speed.linear);
+            (before, fast) = (metres(), speed.linear);
         }
         if racer.is_done(speed) {
             break;
         }
     }
-    let gone = world.truth(0).unwrap().distance - before;
+    let gone = metres() - before;
     // A second until it knows, then it brakes by 4 m/s²: it goes no farther than both take at its speed, and a tenth more for lags.
     let most = 1.1 * (fast + fast * fast / 8.0);
     assert!(racer.phase() == RacePhase::Lost && gone < most, "{:?} after {gone} of {most} m", racer.phase());

@@ -53,7 +53,7 @@ fn published_cone_maps_have_a_way_between_their_cones() {
 #[test]
 #[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn published_circuits_bend_no_more_than_the_published_lines() {
-    // That of the car of `io::sim::race`, 1.4 m wide.
+    // That of the racing car, 1.4 m wide.
     const HALF_WIDTH: f64 = 0.7;
     let mut table = String::new();
     let mut worst = (0.0_f64, f64::INFINITY);

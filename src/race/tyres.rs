@@ -171,20 +171,25 @@ const TURNS: usize = 3;
 mod tests {
     use super::*;
     use crate::geometry::{Pose, Twist};
-    use crate::io::Drive;
-    use crate::io::sim::NoiseModel;
-    use crate::io::sim::race::{Race, RaceCarSpec, RaceOptions};
+    use crate::io::sim::{SimOptions, Simulation, TICK};
+    use crate::io::{Clock, Drive};
+    use crate::kinematics::PlanarMotion;
+    use crate::race::ConeTrack;
     use proptest::prelude::*;
 
     /// A car that is steered for a circle at a speed, for some seconds: speed and rate of turn as they are, and how far it slides to
     /// the left at its rear axle.
     fn driven(curvature: f64, speed: f64, tyres: Option<Tyres>) -> (Twist, f64) {
-        let options = RaceOptions { noise: NoiseModel::real().scaled(0.0), ..RaceOptions::default() };
-        let mut race = Race::new(&[], &[(RaceCarSpec::default(), Pose::default())], options).unwrap();
+        let scene = ConeTrack::default().scene(&[Pose::default()]);
+        let race = Simulation::new(&scene, SimOptions::ideal()).unwrap();
+        let mut car = race.robot(0).unwrap();
         let bend = tyres.map_or(curvature, |t| t.steering(curvature, speed * speed * curvature, 0.0));
-        race.car(0).unwrap().set_speed(Twist::new(speed, speed * bend)).unwrap();
-        race.advance(8.0);
-        (race.car(0).unwrap().speed().unwrap(), race.truth(0).unwrap().slip)
+        car.set_speed(Twist::new(speed, speed * bend)).unwrap();
+        car.wait(8.0).unwrap();
+        let before = race.truth().pose(0).unwrap();
+        car.wait(TICK).unwrap();
+        let motion = PlanarMotion::between(before, race.truth().pose(0).unwrap());
+        (car.speed().unwrap(), motion.left / TICK)
     }
 
     proptest! {

@@ -3,11 +3,10 @@
 use super::supervised_tests::{drive, mock, station, stationed};
 use super::*;
 use crate::geometry::{Point, Pose, Twist};
-use crate::io::sim::race::{Race, RaceCarSpec, RaceOptions, SharedRace};
-use crate::io::sim::{NoiseModel, SimOptions, Simulation};
+use crate::io::sim::{SimOptions, Simulation};
 use crate::io::wrappers::{Fault, Faulty};
 use crate::io::{Clock, DistanceSensors, Drive, Lidar, LidarScan, MockRobot, Motors, Psd, Script};
-use crate::world::{RobotSpec, Scene, World};
+use crate::world::{DriveSpec, RobotSpec, Scene, World};
 
 /// A mock under the safety system that goes wrong in the way of a text.
 type FaultyMock<S> = Supervised<Faulty<MockRobot>, S>;
@@ -200,15 +199,19 @@ fn a_vehicle_that_hangs_is_missed() {
 /// Metres that a car with some brake goes from where it is stopped with 10 m/s by a hard cause, or a soft one, and those of its
 /// bound for the brake that it should have.
 fn stopping_way(hard: bool, brake: f64) -> (f64, f64) {
-    let spec = RaceCarSpec { brake, ..RaceCarSpec::default() };
-    let options = RaceOptions { noise: NoiseModel::real(), ..RaceOptions::default() };
-    let race = SharedRace::new(Race::new(&[], &[(spec, Pose::default())], options).unwrap());
+    let mut spec = RobotSpec::race_car();
+    if let DriveSpec::Ackermann { dynamics: Some(dynamics), .. } = &mut spec.drive {
+        dynamics.brake = brake;
+    }
+    let scene = Scene::with_robot(World::empty(1.0, 1.0), spec, Pose::default());
+    let simulation = Simulation::new(&scene, SimOptions::default()).unwrap();
+    let race = simulation.truth();
     let parameters = SupervisorParameters::default();
     let ordered = station(move |now, panel| {
         panel.emergency_button = hard && now > 4.0;
         panel.heartbeat = panel.heartbeat.filter(|_| hard || now < 4.0);
     });
-    let mut car = Supervised::new(race.car(0).unwrap(), ordered, parameters.clone()).unwrap();
+    let mut car = Supervised::new(simulation.robot(0).unwrap(), ordered, parameters.clone()).unwrap();
     let (mut from, mut fast) = (0.0, 0.0);
     while race.time() < 14.0 {
         if car.last_stop().is_none() {
@@ -218,19 +221,19 @@ fn stopping_way(hard: bool, brake: f64) -> (f64, f64) {
         let _ = car.set_speed(Twist::new(10.0, 0.0));
         let _ = car.wait(0.02);
     }
-    let (state, spec) = (car.last_stop().unwrap().state, RaceCarSpec::default());
+    let (state, spec) = (car.last_stop().unwrap().state, RobotSpec::race_car());
     assert_eq!(state.severity(), if hard { 2 } else { 1 });
     let metres = race.robot(0).unwrap().path_length;
     car.wait(0.1).unwrap();
     assert!(race.robot(0).unwrap().path_length - metres < 1e-3 && fast > 9.0, "it stands: {fast}");
-    let model = parameters.stopping_in(state, 1.0 / spec.speed_gain, spec.brake);
+    let model = parameters.stopping_in(state, spec.motor.time_constant, spec.deceleration());
     (metres - from, model.distance(fast))
 }
 
 /// Each kind of stop has a bound of its own, which is no wider than it has to be: worse brakes do not keep it.
 #[test]
 fn safe_and_emergency_stops_have_their_own_bounds() {
-    let brake = RaceCarSpec::default().brake;
+    let brake = RobotSpec::race_car().deceleration();
     let (hard, hard_bound) = stopping_way(true, brake);
     assert!(hard <= hard_bound && hard_bound < 1.25 * hard, "{hard} of {hard_bound}");
     let (soft, soft_bound) = stopping_way(false, brake);

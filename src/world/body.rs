@@ -175,7 +175,8 @@ impl Body {
     pub fn collider_of_shape(shape: Shape) -> Collider {
         let centre = [0.0, 0.0, 0.5 * shape.height()];
         match shape {
-            Shape::Cylinder { radius, height } => {
+            // The formats have no cones.
+            Shape::Cylinder { radius, height } | Shape::Cone { radius, height, .. } => {
                 Collider::Capsule { radius, height, axis: Axis::Up, centre }
             }
             Shape::Sphere { radius } => Collider::Sphere { radius, centre },

@@ -261,7 +261,9 @@ impl Solid {
     fn of_object(object: &Object) -> Self {
         let middle = object.pose.position();
         match object.kind.shape {
-            Shape::Cylinder { radius, .. } | Shape::Sphere { radius } => Self::Disc { middle, radius },
+            Shape::Cylinder { radius, .. } | Shape::Cone { radius, .. } | Shape::Sphere { radius } => {
+                Self::Disc { middle, radius }
+            }
             Shape::Box { length, width, .. } => {
                 let axis = direction(object.pose.heading);
                 let half = axis * (0.5 * length);

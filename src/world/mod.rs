@@ -5,15 +5,18 @@
 
 mod bit_grid;
 mod body;
+mod built_in;
 mod clearance;
 mod colour;
 pub mod formats;
 pub mod generate;
 mod grid;
+mod mesh;
 mod object;
 mod robot;
 mod scene;
 pub mod space;
+mod texture;
 mod wall;
 
 pub use bit_grid::{BitGrid, BitGridError, GridCell};
@@ -21,9 +24,12 @@ pub use body::{Axis, Body, Collider, Place3};
 pub use clearance::{Clearance, Raster, RasterError};
 pub use colour::Colour;
 pub use grid::{Cell, GridError, OccupancyGrid};
+pub use mesh::{Face, Material, Mesh};
 pub use object::{Billboard, Marker, Object, ObjectKind, Shape};
 pub use robot::{
-    CameraSpec, DriveSpec, Footprint, LidarSpec, MotorSpec, Mount, PsdSpec, RobotSpec, SpecError,
+    CameraSpec, CarDynamics, DriveSpec, Footprint, LidarSpec, Mast, MotorSpec, Mount, PsdSpec, RobotSpec,
+    SpecError,
 };
 pub use scene::{Place, RobotPlacement, Scene, Settings, Terrain, World};
+pub use texture::Texture;
 pub use wall::Wall;

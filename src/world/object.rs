@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use image::RgbaImage;
 
-use super::{Body, Colour};
+use super::{Body, Colour, Mesh};
 use crate::geometry::{Point, Pose};
 
 /// A solid that stands on the floor, upright.
@@ -14,6 +14,15 @@ pub enum Shape {
     Cylinder {
         /// Metres from the axis to the surface.
         radius: f64,
+        /// Metres from foot to top.
+        height: f64,
+    },
+    /// A blunt cone.
+    Cone {
+        /// Metres from the axis to the edge of its foot.
+        radius: f64,
+        /// Metres from the axis to the edge of its top.
+        top: f64,
         /// Metres from foot to top.
         height: f64,
     },
@@ -37,7 +46,7 @@ impl Shape {
     /// Metres from the foot to the top.
     pub fn height(&self) -> f64 {
         match *self {
-            Shape::Cylinder { height, .. } | Shape::Box { height, .. } => height,
+            Shape::Cylinder { height, .. } | Shape::Cone { height, .. } | Shape::Box { height, .. } => height,
             Shape::Sphere { radius } => 2.0 * radius,
         }
     }
@@ -46,6 +55,7 @@ impl Shape {
     pub fn bounding_radius(&self) -> f64 {
         match *self {
             Shape::Cylinder { radius, .. } | Shape::Sphere { radius } => radius,
+            Shape::Cone { radius, top, .. } => radius.max(top),
             Shape::Box { length, width, .. } => 0.5 * crate::geometry::math::hypot(length, width),
         }
     }
@@ -64,10 +74,15 @@ pub struct ObjectKind {
     pub mass: f64,
     /// Whether it stays where it is when something pushes it.
     pub fixed: bool,
+    /// Whether it falls over when a robot that weighs no less than it does touches it. It lies flat then: nothing
+    /// meets it and no sensor sees it.
+    pub falls: bool,
     /// Cubic metres of water that it displaces, for things that float.
     pub buoyancy: Option<f64>,
-    /// The 3D model that EyeSim shows, if any.
+    /// The file of its 3D model, if it has one.
     pub model: Option<PathBuf>,
+    /// The surface that cameras see; without it, they see the shape.
+    pub mesh: Option<Arc<Mesh>>,
     /// What its description file says about its solid beyond the shape.
     pub body: Body,
 }
@@ -81,24 +96,12 @@ impl ObjectKind {
             colour,
             mass: 1.0,
             fixed: false,
+            falls: false,
             buoyancy: None,
             model: None,
+            mesh: None,
             body: Body::default(),
         }
-    }
-
-    /// EyeSim's predefined kinds, matched without regard to case: `can`, `soccer`, `golf`, `crate`.
-    pub fn predefined(name: &str) -> Option<Self> {
-        let (shape, colour, mass) = match name.to_ascii_lowercase().as_str() {
-            "can" => (Shape::Cylinder { radius: 0.033, height: 0.115 }, Colour::RED, 0.4),
-            "soccer" => (Shape::Sphere { radius: 0.110 }, Colour::WHITE, 0.43),
-            "golf" => (Shape::Sphere { radius: 0.0215 }, Colour::from_hex(0xff_a5_00), 0.046),
-            "crate" => {
-                (Shape::Box { length: 0.2, width: 0.2, height: 0.2 }, Colour::from_hex(0x9c_6b_30), 2.0)
-            }
-            _ => return None,
-        };
-        Some(Self { mass, ..Self::new(name, shape, colour) })
     }
 }
 

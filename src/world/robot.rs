@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 
 use super::Body;
-use crate::geometry::{Aabb, Point, units};
+use crate::geometry::Aabb;
 
 /// A description of a robot: its drive, outline and sensors. EyeSim's `.robi`.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +16,8 @@ pub struct RobotSpec {
     pub footprint: Footprint,
     /// Metres from the floor to its top: what other robots' sensors see.
     pub height: f64,
+    /// What stands up above that, if anything.
+    pub mast: Option<Mast>,
     /// Kilograms.
     pub mass: f64,
     /// Its position-sensitive devices: single-ray distance sensors.
@@ -24,7 +26,7 @@ pub struct RobotSpec {
     pub lidar: Option<LidarSpec>,
     /// Its camera, if it has one.
     pub camera: Option<CameraSpec>,
-    /// The 3D model that EyeSim shows, if any.
+    /// The 3D model that EyeSim shows, if any. Cameras here see the outline.
     pub model: Option<PathBuf>,
     /// What its description file says about its solid beyond footprint and height.
     pub body: Body,
@@ -59,6 +61,8 @@ pub enum DriveSpec {
         max_wheel_speed: f64,
         /// Encoder ticks in one turn of a wheel.
         ticks_per_turn: f64,
+        /// Its mass and its tyres, for a car so fast that they matter; without it, wheels roll and never slip.
+        dynamics: Option<CarDynamics>,
     },
     /// Four Mecanum wheels.
     Omni {
@@ -73,6 +77,63 @@ pub enum DriveSpec {
         /// Encoder ticks in one turn of a wheel.
         ticks_per_turn: f64,
     },
+}
+
+impl DriveSpec {
+    /// The fastest rim speed of its wheels, in metres per second.
+    pub fn top_speed(&self) -> f64 {
+        match *self {
+            Self::Differential { wheel_diameter, max_wheel_speed, .. }
+            | Self::Ackermann { wheel_diameter, max_wheel_speed, .. }
+            | Self::Omni { wheel_diameter, max_wheel_speed, .. } => 0.5 * wheel_diameter * max_wheel_speed,
+        }
+    }
+
+    /// Mass and tyres of a fast car.
+    pub fn dynamics(&self) -> Option<CarDynamics> {
+        match *self {
+            Self::Ackermann { dynamics, .. } => dynamics,
+            Self::Differential { .. } | Self::Omni { .. } => None,
+        }
+    }
+}
+
+/// Mass and tyres of a car: the dynamic bicycle model, with an axle's two tyres in one and no transfer of load.
+///
+/// The car accelerates as its [`MotorSpec`] says: the time constant is that with which its speed controller closes a
+/// difference, and the acceleration the motors' greatest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CarDynamics {
+    /// Metres from the rear axle to the centre of mass.
+    pub mass_centre: f64,
+    /// The radius of gyration about the upright axis, in metres.
+    pub gyration: f64,
+    /// The radius of the friction circle as an acceleration, in m/s².
+    pub grip: f64,
+    /// The cornering force of a tyre for its load and its slip angle, in 1/rad.
+    pub stiffness: f64,
+    /// Grip and stiffness of the front tyres as a share of those of the rear ones: less than 1, so that the front
+    /// slides first.
+    pub balance: f64,
+    /// The greatest deceleration by the brakes, in m/s².
+    pub brake: f64,
+    /// Radians per second at which the steering turns.
+    pub steering_rate: f64,
+}
+
+impl Default for CarDynamics {
+    /// A student's Formula car.
+    fn default() -> Self {
+        Self {
+            mass_centre: 0.75,
+            gyration: 0.70,
+            grip: 12.0,
+            stiffness: 22.0,
+            balance: 0.9,
+            brake: 11.0,
+            steering_rate: 2.0,
+        }
+    }
 }
 
 /// What a robot's motors can do.
@@ -116,6 +177,29 @@ impl Footprint {
             }
         }
     }
+
+    /// Whether a rectangle of the robot's frame lies within the outline.
+    fn holds(&self, part: &Aabb) -> bool {
+        match self {
+            Footprint::Disc { radius } => Footprint::Rectangle(*part).bounding_radius() <= *radius,
+            Footprint::Rectangle(b) => {
+                b.min.x <= part.min.x
+                    && b.min.y <= part.min.y
+                    && part.max.x <= b.max.x
+                    && part.max.y <= b.max.y
+            }
+        }
+    }
+}
+
+/// A part of a robot that is higher and narrower than the rest: a handle, a pole. Rays meet it; what drives into the robot
+/// meets its footprint, in which the mast stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mast {
+    /// Its rectangle in the robot's frame.
+    pub outline: Aabb,
+    /// Metres from the robot's foot to the mast's top.
+    pub top: f64,
 }
 
 /// Where a sensor sits on a robot.
@@ -191,7 +275,8 @@ pub struct CameraSpec {
     pub max_tilt: f64,
     /// The horizontal field of view, in radians.
     pub field_of_view: f64,
-    /// Whether the lens is a fisheye.
+    /// Whether the lens is equidistant, as fisheyes are: a place in the picture is as far from the middle as its angle from
+    /// the line of sight says, twice as far for twice the angle. Other cameras are pinholes.
     pub fisheye: bool,
 }
 
@@ -211,124 +296,25 @@ pub struct SpecError {
 }
 
 impl RobotSpec {
-    /// EyeSim's S4: a small differential drive robot with four PSDs, a lidar and a camera.
-    ///
-    /// Wheels, encoders and track are those of its description file; the outline is a disc of 60 mm.
-    pub fn s4() -> Self {
-        Self {
-            name: "S4".into(),
-            drive: DriveSpec::Differential {
-                wheel_diameter: 0.054,
-                track: 0.090,
-                max_wheel_speed: units::from_deg(3600.0),
-                ticks_per_turn: 1100.0,
-            },
-            motor: MotorSpec::default(),
-            footprint: Footprint::Disc { radius: 0.060 },
-            height: 0.090,
-            mass: 0.5,
-            psds: four_psds(0.060, 0.045, 0.030),
-            lidar: Some(LidarSpec::default()),
-            camera: Some(CameraSpec {
-                mount: Mount { x: 0.062, y: 0.0, z: 0.060, yaw: 0.0 },
-                tilt: 0.0,
-                max_pan: units::from_deg(90.0),
-                max_tilt: units::from_deg(90.0),
-                field_of_view: CameraSpec::DEFAULT_FIELD_OF_VIEW,
-                fisheye: false,
-            }),
-            model: None,
-            body: Body::default(),
+    /// Checks that a mast stands on the robot.
+    pub(super) fn validate_mast(&self) -> Result<(), SpecError> {
+        let Some(Mast { outline, top }) = self.mast else { return Ok(()) };
+        let wrong = |parameter, value, expected| {
+            Err(SpecError { robot: self.name.clone(), parameter, value, expected })
+        };
+        if !(top.is_finite() && top > self.height) {
+            return wrong("the mast's top", top, "a finite number above the robot's height");
         }
+        if !self.footprint.holds(&outline) {
+            let reach = Footprint::Rectangle(outline).bounding_radius();
+            return wrong("the mast's reach", reach, "a mast within the robot's outline");
+        }
+        Ok(())
     }
 
-    /// EyeSim's LabBot: a larger differential drive robot.
-    pub fn labbot() -> Self {
-        Self {
-            name: "LabBot".into(),
-            drive: DriveSpec::Differential {
-                wheel_diameter: 0.045,
-                track: 0.140,
-                max_wheel_speed: units::from_deg(3600.0),
-                ticks_per_turn: 540.0,
-            },
-            footprint: Footprint::Disc { radius: 0.090 },
-            height: 0.120,
-            mass: 1.5,
-            psds: four_psds(0.045, 0.027, 0.040),
-            ..Self::s4()
-        }
-    }
-
-    /// A robot on four Mecanum wheels, after the book's Omni-1 (section 7.2), with an S4's sensors.
-    pub fn omni() -> Self {
-        let (half_length, half_width) = (0.130, 0.120);
-        Self {
-            name: "Omni".into(),
-            drive: DriveSpec::Omni {
-                wheel_diameter: 0.060,
-                track: 0.180,
-                wheelbase: 0.160,
-                max_wheel_speed: units::from_deg(900.0),
-                ticks_per_turn: 1200.0,
-            },
-            footprint: Footprint::Rectangle(Aabb::new(
-                Point::new(-half_length, -half_width),
-                Point::new(half_length, half_width),
-            )),
-            height: 0.120,
-            mass: 2.5,
-            psds: four_psds(half_length, half_width, 0.040),
-            ..Self::s4()
-        }
-    }
-
-    /// A model car that is steered as its big sisters are (book, section 7.1), with an S4's sensors. Its turning circle
-    /// measures 0.45 m in radius.
-    pub fn car() -> Self {
-        let (wheelbase, half_width) = (0.260, 0.090);
-        let (back, front) = (-0.060, 0.320);
-        Self {
-            name: "Car".into(),
-            drive: DriveSpec::Ackermann {
-                wheel_diameter: 0.064,
-                track: 0.160,
-                wheelbase,
-                max_steering: units::from_deg(30.0),
-                max_wheel_speed: units::from_deg(900.0),
-                ticks_per_turn: 1300.0,
-            },
-            footprint: Footprint::Rectangle(Aabb::new(
-                Point::new(back, -half_width),
-                Point::new(front, half_width),
-            )),
-            height: 0.120,
-            mass: 2.0,
-            psds: [(1, "PSD_FRONT", front, 0.0), (4, "PSD_BACK", back, 180.0)]
-                .into_iter()
-                .map(|(id, name, x, yaw)| PsdSpec {
-                    id,
-                    name: name.into(),
-                    mount: Mount { x, y: 0.0, z: 0.050, yaw: units::from_deg(yaw) },
-                    max_range: PsdSpec::DEFAULT_MAX_RANGE,
-                })
-                .collect(),
-            lidar: Some(LidarSpec {
-                mount: Mount { x: 0.5 * wheelbase, z: 0.100, ..Mount::default() },
-                ..LidarSpec::default()
-            }),
-            ..Self::s4()
-        }
-    }
-
-    /// A robot that every scene knows by name, without regard to case: `S4`, `LabBot` or `Omni`.
-    pub fn predefined(name: &str) -> Option<Self> {
-        match name.to_ascii_lowercase().as_str() {
-            "s4" => Some(Self::s4()),
-            "labbot" => Some(Self::labbot()),
-            "omni" => Some(Self::omni()),
-            _ => None,
-        }
+    /// How fast it can brake, in metres per second squared.
+    pub fn deceleration(&self) -> f64 {
+        self.drive.dynamics().map_or(self.motor.max_acceleration, |dynamics| dynamics.brake)
     }
 
     /// Checks that every length, speed and count makes sense.
@@ -357,6 +343,7 @@ impl RobotSpec {
                 max_wheel_speed,
                 ticks_per_turn,
                 max_steering,
+                dynamics,
             } => {
                 positive("wheel diameter", wheel_diameter)?;
                 positive("track", track)?;
@@ -364,6 +351,19 @@ impl RobotSpec {
                 positive("maximal steering", max_steering)?;
                 positive("maximal wheel speed", max_wheel_speed)?;
                 positive("ticks per turn", ticks_per_turn)?;
+                if let Some(dynamics) = dynamics {
+                    let within = |parameter, value: f64, most: f64, expected| {
+                        check(parameter, value, value > 0.0 && value < most, expected)
+                    };
+                    within("mass centre", dynamics.mass_centre, wheelbase, "a place between the axles")?;
+                    // The integration is stable for cars that are not stiffer or lighter than these.
+                    within("radius of gyration", dynamics.gyration, 100.0, "more than 0 and less than 100")?;
+                    within("grip", dynamics.grip, 100.0, "more than 0 and less than 100")?;
+                    within("tyre stiffness", dynamics.stiffness, 100.0, "more than 0 and less than 100")?;
+                    within("balance of the tyres", dynamics.balance, 10.0, "more than 0 and less than 10")?;
+                    within("brake", dynamics.brake, 100.0, "more than 0 and less than 100")?;
+                    within("steering rate", dynamics.steering_rate, 100.0, "more than 0 and less than 100")?;
+                }
             }
             DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn } => {
                 positive("wheel diameter", wheel_diameter)?;
@@ -378,6 +378,7 @@ impl RobotSpec {
         positive("maximal acceleration", self.motor.max_acceleration)?;
         positive("footprint radius", self.footprint.bounding_radius())?;
         positive("height", self.height)?;
+        self.validate_mast()?;
         for psd in &self.psds {
             positive("PSD maximal range", psd.max_range)?;
         }
@@ -395,22 +396,4 @@ impl RobotSpec {
         }
         Ok(())
     }
-}
-
-/// PSDs 1 to 4 at the front, left, right and back, as the simulator numbers them.
-fn four_psds(ahead: f64, aside: f64, z: f64) -> Vec<PsdSpec> {
-    [
-        (1, "PSD_FRONT", ahead, 0.0, 0.0),
-        (2, "PSD_LEFT", ahead - 0.005, aside, 90.0),
-        (3, "PSD_RIGHT", ahead - 0.005, -aside, -90.0),
-        (4, "PSD_BACK", -ahead, 0.0, 180.0),
-    ]
-    .into_iter()
-    .map(|(id, name, x, y, yaw)| PsdSpec {
-        id,
-        name: name.into(),
-        mount: Mount { x, y, z, yaw: units::from_deg(yaw) },
-        max_range: PsdSpec::DEFAULT_MAX_RANGE,
-    })
-    .collect()
 }

@@ -1,7 +1,6 @@
-use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::{Billboard, Cell, Marker, Object, OccupancyGrid, RobotSpec, Wall};
+use super::{Billboard, Cell, Marker, Object, OccupancyGrid, RobotSpec, Texture, Wall};
 use crate::geometry::{Aabb, Point, Pose, Vector};
 
 /// A place without robots: floor, walls, objects and marks.
@@ -10,7 +9,7 @@ pub struct World {
     /// The floor. Nothing stops a robot at its edge; only walls do.
     pub floor: Aabb,
     /// An image stretched over the floor.
-    pub floor_texture: Option<PathBuf>,
+    pub floor_texture: Option<Texture>,
     /// The walls.
     pub walls: Vec<Wall>,
     /// The map that the walls outline, if they come from one: walls alone do not tell on which side of them it is solid.
@@ -112,7 +111,7 @@ pub struct Terrain {
     /// Metres above the floor of a white pixel; black is 0.
     pub max_elevation: f64,
     /// The gray image.
-    pub image: PathBuf,
+    pub image: Texture,
 }
 
 /// A robot placed in a world.

@@ -143,6 +143,7 @@ fn scenes_that_make_no_sense_are_refused() {
             track: 0.2,
             wheelbase: 0.3,
             max_steering: 1.6,
+            dynamics: None,
             max_wheel_speed: 10.0,
             ticks_per_turn: 100.0,
         };

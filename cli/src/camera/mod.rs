@@ -156,6 +156,9 @@ fn head(args: &Args, scene: &roverlab::world::Scene) -> Result<[(u8, f64); 2], F
     Ok([(own + 1, pan), (own + 2, tilt)])
 }
 
+/// Seconds from one image of the simulator's camera to the next.
+const FRAME: f64 = 1.0 / 30.0;
+
 /// Turns the head, then takes images and shows each on the display.
 fn look(
     robot: &mut (impl Camera + Clock + Display + Servos),
@@ -175,6 +178,7 @@ fn look(
     let stopwatch = Stopwatch::start();
     for _ in 0..images {
         robot.image_into(&mut image)?;
+        robot.wait(FRAME)?;
     }
     let seconds = stopwatch.seconds();
     robot.draw_image(Picture::Rgb(&image), Viewport::default())?;

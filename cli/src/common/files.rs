@@ -54,6 +54,7 @@ impl CommonArgs {
 fn attachment(name: &str, bytes: &[u8]) -> Attachment {
     let media_type = match name.rsplit('.').next() {
         Some("png") => "image/png",
+        Some("jpg" | "jpeg") => "image/jpeg",
         Some("pgm") => "image/x-portable-graymap",
         Some("bmp") => "image/bmp",
         _ => "text/plain",

@@ -9,12 +9,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use roverlab::geometry::Pose;
 use roverlab::io::log::{Attachment, Header, LogError, LogWriter, Player, Troop, Witness};
 use roverlab::io::robios::{RobiosRobot, RobiosTruth};
-use roverlab::io::sim::race::{Race, RaceCarSpec, SharedRace};
 use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, Simulation};
 use roverlab::io::wrappers::{Deadman, Fault, Faulty, Quantised};
 use roverlab::io::{self, Key, RobotIo};
 use roverlab::safety::{SpeedError, StoppingModel};
-use roverlab::world::{MotorSpec, Scene, formats};
+use roverlab::world::{RobotPlacement, Scene, formats};
 
 use super::supervision::{DEADMAN, Stops, guarded};
 use super::{CommonArgs, Failure, Origin};
@@ -61,7 +60,6 @@ enum Play {
     Simulation(Simulation),
     /// Each robot alone in a world of its own.
     Apart(Vec<Simulation>),
-    Race(SharedRace),
     Recording(Player),
     /// The one robot behind a library, until it is taken, and what is known about it.
     Library(PathBuf, Mutex<(Option<RobiosRobot>, Option<RobiosTruth>)>),
@@ -200,22 +198,6 @@ impl CommonArgs {
         Ok(stage)
     }
 
-    /// As [`stage`](Self::stage), with the cars of a race; the scene shows its cones.
-    pub(crate) fn stage_race(
-        &self,
-        scene: &Scene,
-        race: impl FnOnce() -> io::Result<Race>,
-    ) -> Result<Stage, Failure> {
-        let stage = match self.player() {
-            Some(player) => Stage::new(Play::Recording(player), Vec::new()),
-            None => Stage::race(race().map_err(Failure::input)?, self.faults()?),
-        };
-        let car = RaceCarSpec::default();
-        let (lag, deceleration) = (1.0 / car.speed_gain, car.brake);
-        let model = StoppingModel { reaction: 0.0, lag, deceleration, error: SpeedError::NONE };
-        self.recorded(scene, stage, vec![model])
-    }
-
     fn recorded(&self, scene: &Scene, stage: Stage, models: Vec<StoppingModel>) -> Result<Stage, Failure> {
         let player = match &stage.play {
             Play::Recording(player) => Some(player.clone()),
@@ -298,14 +280,13 @@ impl CommonArgs {
 
 /// How the robots of a scene stop.
 fn motors(scene: &Scene) -> Vec<StoppingModel> {
-    let motors = scene.robots.iter().map(|robot| robot.spec.motor);
-    let model = |motor: MotorSpec| StoppingModel {
+    let model = |robot: &RobotPlacement| StoppingModel {
         reaction: 0.0,
-        lag: motor.time_constant,
-        deceleration: motor.max_acceleration,
+        lag: robot.spec.motor.time_constant,
+        deceleration: robot.spec.deceleration(),
         error: SpeedError::NONE,
     };
-    motors.map(model).collect()
+    scene.robots.iter().map(model).collect()
 }
 
 /// World and robots as text.
@@ -339,11 +320,6 @@ impl Stage {
         Ok(Self::new(Play::Simulation(simulation), faults))
     }
 
-    /// A race that nobody records, with faults of the first car.
-    pub(crate) fn race(race: Race, faults: Vec<Fault>) -> Self {
-        Self::new(Play::Race(SharedRace::new(race)), faults)
-    }
-
     fn new(play: Play, faults: Vec<Fault>) -> Self {
         Self {
             play,
@@ -369,7 +345,6 @@ impl Stage {
                 self.faulty(Quantised::new(simulated(simulation, index)?), index)?
             }
             Play::Simulation(simulation) => self.faulty(simulated(simulation, index)?, index)?,
-            Play::Race(race) => self.faulty(race.car(index).map_err(Failure::input)?, index)?,
             Play::Apart(simulations) => self.faulty(simulated(&simulations[index], 0)?, index)?,
             Play::Library(library, taken) => {
                 let robot = taken.lock().unwrap_or_else(PoisonError::into_inner).0.take();
@@ -413,7 +388,6 @@ impl Stage {
         let witness: StageTruth = match &self.play {
             Play::Simulation(simulation) => Box::new(simulation.truth()),
             Play::Apart(simulations) => Box::new(simulations[index].truth()),
-            Play::Race(race) => Box::new(race.clone()),
             Play::Recording(player) => Box::new(player.truth(index).map_err(|error| foreign(&error))?),
             Play::Library(library, taken) => {
                 let truth = taken.lock().unwrap_or_else(PoisonError::into_inner).1.take();
@@ -431,8 +405,8 @@ impl Stage {
         match &self.play {
             Play::Simulation(simulation) => simulation.press_key(index, time, key),
             Play::Apart(simulations) => simulations[index].press_key(0, time, key),
-            // A racing car has no keys, and whoever stands beside a real robot presses its keys.
-            Play::Race(_) | Play::Recording(_) | Play::Library(..) => Ok(()),
+            // Whoever stands beside a real robot presses its keys.
+            Play::Recording(_) | Play::Library(..) => Ok(()),
         }
     }
 }

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use roverlab::geometry::{Point, Pose};
-use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
-use roverlab::io::sim::{NoiseModel, RobotTruth};
+use roverlab::io::sim::{RobotTruth, SimOptions};
 use roverlab::io::{self, LidarScan, LidarSettings, RobotIo};
 use roverlab::picture::{Picture, Style};
 use roverlab::race::{GapDriver, Verdict};
+use roverlab::world::RobotSpec;
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, Stage, rounded};
-use crate::cones::{Course, Judge, check_campaign, check_race, colour, pass};
+use crate::cones::{Course, Judge, check_campaign, check_race, pass};
 
 /// The command line of `cone-drive`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -78,7 +78,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         Some(path) => Course::from_file(common, path)?,
         None => Course::generated(common.seed)?,
     };
-    let stage = common.stage_race(&course.scene(), || world(&course, args, common.seed))?;
+    let stage = common.stage(&course.scene(&[course.start]), options(args, common.seed))?;
     let driven = drive(&course, args, &stage)?;
     let file = common.picture_file("cone_drive.svg");
     let saved = file.as_ref().map(|file| picture(&course, &driven).save(file)).transpose();
@@ -114,11 +114,9 @@ fn report(args: &Args, course: &Course, driven: Driven) -> Report {
     }
 }
 
-/// The world of a drive.
-fn world(course: &Course, args: &Args, seed: u64) -> io::Result<Race> {
-    let noise = NoiseModel::real().scaled(args.common.noise);
-    let options = RaceOptions { seed, noise, ..RaceOptions::default() };
-    Race::new(&course.race_cones(), &[(RaceCarSpec::default(), course.start)], options)
+/// How the world of a drive runs.
+fn options(args: &Args, seed: u64) -> SimOptions {
+    SimOptions::with_noise(args.common.noise, seed)
 }
 
 fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Driven, Failure> {
@@ -145,13 +143,13 @@ fn laps<R: RobotIo + ?Sized>(course: &Course, args: &Args, car: &mut R, judge: &
     let limit = args.common.time_limit.unwrap_or(usual);
     // As the book sets it: 180 points over 180 degrees.
     car.configure_lidar(LidarSettings { field_of_view: std::f64::consts::PI, tilt: 0.0, points: 180 })?;
-    car.set_motor(1, args.speed / RaceCarSpec::default().top_speed)?;
+    car.set_motor(1, args.speed / RobotSpec::race_car().drive.top_speed())?;
     while judge.time() < limit && judge.verdict().lap_times.len() < laps {
         car.scan_into(&mut scan)?;
         if let Some(position) = driver.step(&scan) {
             car.set_servo(1, position)?;
         }
-        pass(car, &mut [judge], 0.1)?;
+        pass(car, judge, 0.1)?;
         // Off the track for good: there are no cones to steer by.
         if judge.verdict().off_course > 0 && lost(course, judge.truth().pose) {
             break;
@@ -170,7 +168,8 @@ fn campaign(args: &Args, tracks: u32) -> Result<Report, Failure> {
     check_campaign(&args.common)?;
     for seed in (0..u64::from(tracks)).map(|track| args.common.seed.wrapping_add(track)) {
         let course = Course::generated(seed)?;
-        let stage = Stage::race(world(&course, args, seed).map_err(Failure::run)?, args.common.faults()?);
+        let scene = course.scene(&[course.start]);
+        let stage = Stage::simulated(&scene, options(args, seed), args.common.faults()?)?;
         let driven = drive(&course, args, &stage)?;
         let verdict = &driven.verdict;
         let done = verdict.lap_times.len() >= usize::from(args.laps);
@@ -195,7 +194,7 @@ fn picture(course: &Course, driven: &Driven) -> Picture {
     let mut picture = Picture::new(&course.frame(&driven.trail));
     picture.title("Cone drive, as printed");
     for cone in &course.cones {
-        picture.disc(cone.position, 0.3, Style::aid().colour(colour(cone.colour)).filled(1.0));
+        picture.disc(cone.position, 0.3, Style::aid().colour(cone.colour.paint()).filled(1.0));
     }
     picture
         .speed_path(driven.trail.iter().map(|(pose, speed)| (pose.to_world(Point::new(0.8, 0.0)), *speed)));

@@ -17,7 +17,7 @@ pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Fa
         let mut course = Course::generated(seed)?;
         course.spoil(spoils, seed);
         let settings = args.settings(seed);
-        let stage = Stage::race(settings.world(&course).map_err(Failure::run)?, common.faults()?);
+        let stage = Stage::simulated(&settings.scene(&course), settings.options(), common.faults()?)?;
         let outcome = race(&course, &settings, &stage)?;
         let verdict = &outcome.verdict;
         clean += u32::from(outcome.is_clean());

@@ -10,7 +10,7 @@ use svg::Document;
 use svg::node::element::{Animate, AnimateTransform, Circle, Polygon, Polyline};
 
 use super::race::Outcome;
-use crate::cones::{Course, colour};
+use crate::cones::Course;
 
 /// The track, the cones, the racing line, and the driven line coloured by speed.
 pub(crate) fn picture(course: &Course, outcome: &Outcome) -> Picture {
@@ -27,11 +27,8 @@ pub(crate) fn picture(course: &Course, outcome: &Outcome) -> Picture {
         picture.line(edge, Style::aid().width(1.0).opacity(0.4));
     }
     for (index, Cone { position, colour: paint }) in course.cones.iter().enumerate() {
-        let style = if fallen(index) {
-            Style::aid().colour(Colour::RED)
-        } else {
-            Style::aid().colour(colour(*paint))
-        };
+        let style =
+            if fallen(index) { Style::aid().colour(Colour::RED) } else { Style::aid().colour(paint.paint()) };
         let radius = if course.wide { 1.2 } else { 2.0 * paint.radius() };
         picture.disc(*position, radius, style.filled(1.0));
     }
@@ -111,7 +108,7 @@ fn document(course: &Course, outcome: &Outcome) -> Document {
                 .set("cx", x)
                 .set("cy", y)
                 .set("r", radius)
-                .set("fill", colour(cone.colour).to_string()),
+                .set("fill", cone.colour.paint().to_string()),
         );
     }
     let others = outcome.other.iter().map(|other| &other.trail);

@@ -1,7 +1,6 @@
 //! One run of an acceleration or a skidpad.
 
 use roverlab::geometry::Point;
-use roverlab::io::sim::race::RaceCarSpec;
 use roverlab::io::{self, Resolution, RobotIo};
 use roverlab::race::{EventCourse, EventParameters, EventPhase, EventRacer, EventShape};
 
@@ -28,7 +27,7 @@ pub(crate) fn race(
     };
     let driven = drive(settings, car.as_mut(), &mut judge, &mut racer);
     drop(car);
-    let optima = event.optima(&limits(&RaceCarSpec::default()), &Course::outline());
+    let optima = event.optima(&limits()?, &Course::outline());
     let verdict = judge.verdict().clone();
     Ok(Outcome {
         over_optimum: verdict.lap_times.iter().zip(optima).map(|(time, optimum)| time / optimum).collect(),
@@ -39,6 +38,7 @@ pub(crate) fn race(
         trail: judge.trail().to_vec(),
         line: line(course, &racer),
         standing: judge.standing(),
+        touched: judge.touched(),
         other: None,
     })
 }
@@ -58,7 +58,7 @@ fn drive<R: RobotIo + ?Sized>(
         let seen = eyes.look(car)?;
         let (pose, speed) = (car.pose()?, car.speed()?);
         car.set_speed(racer.decide(pose, speed, &seen))?;
-        pass(car, &mut [&mut *judge], period)?;
+        pass(car, judge, period)?;
         if racer.is_done(car.speed()?) {
             break;
         }

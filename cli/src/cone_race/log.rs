@@ -7,7 +7,7 @@ use roverlab::world::World;
 
 use super::{Args, Sensors};
 use crate::common::{Failure, Outcome, Report, rounded};
-use crate::cones::{colour, refuse};
+use crate::cones::refuse;
 
 /// Metres of the way ahead that are compared with the lane.
 const AHEAD: f64 = 8.0;
@@ -124,7 +124,7 @@ fn picture(frames: &[ConeFrame], found: &Found) -> Picture {
     }
     for cone in cones {
         let radius = if cone.colour == ConeColour::BigOrange { 0.4 } else { 0.3 };
-        picture.disc(cone.position, radius, Style::aid().colour(colour(cone.colour)).filled(1.0));
+        picture.disc(cone.position, radius, Style::aid().colour(cone.colour.paint()).filled(1.0));
     }
     if frames.iter().all(|frame| frame.speed.is_some()) {
         picture.speed_path(driven.zip(frames.iter().filter_map(|frame| frame.speed)));

@@ -9,7 +9,6 @@ mod race;
 use std::path::{Path, PathBuf};
 
 use roverlab::geometry::{Point, Segment};
-use roverlab::io::sim::race::RaceCarSpec;
 use roverlab::race::{ClosedSpline, Event, EventCourse, TrackFile, parse_track};
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, check_writable, is_same_file, rounded};
@@ -180,12 +179,12 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if let Some(line) = &published {
         check_line(&course, line)?;
     }
-    if let Some(reason) = course.impassable(&RaceCarSpec::default()) {
+    if let Some(reason) = course.impassable() {
         return Ok(impassable(&course, reason));
     }
     course.spoil(spoils, common.seed);
     let settings = args.settings(common.seed);
-    let stage = common.stage_race(&course.scene(), || settings.world(&course))?;
+    let stage = common.stage(&settings.scene(&course), settings.options())?;
     let outcome = race::race(&course, &settings, &stage)?;
     let (picture, animation, trouble) = draw(args, &course, &outcome);
     let rms = published.and_then(|other| distance(&other, &outcome.line));
@@ -263,7 +262,7 @@ fn report(course: &Course, outcome: &race::Outcome) -> Report {
         .field("cones", course.cones.len())
         .field("mapped", !outcome.line.is_empty())
         .field("other_cones_hit", outcome.other.as_ref().map(|other| other.cones_hit))
-        .field("touched", outcome.other.as_ref().map(|other| other.touched));
+        .field("touched", outcome.other.as_ref().map(|_| outcome.touched));
     Report {
         sim_time: Some(outcome.time),
         collisions: Some(outcome.truth.contacts.into()),

@@ -1,14 +1,16 @@
 //! One race.
 
+use std::thread;
+
 use image::RgbImage;
 use roverlab::geometry::{Point, Pose, Twist};
-use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
-use roverlab::io::sim::{NoiseModel, RobotTruth};
-use roverlab::io::{self, Clock, LidarScan, RobotIo};
+use roverlab::io::sim::{RobotTruth, SimOptions};
+use roverlab::io::{self, LidarScan, RobotIo};
 use roverlab::race::{
-    CameraMount, CameraSight, CarLimits, Cone, ConeMap, Hold, LaneFinder, LineTracker, RacePhase, Racer,
-    Sighting, SpeedProfile, Tyres, Verdict, sightings,
+    CameraMount, CameraSight, CarLimits, Cone, ConeMap, LaneFinder, LineTracker, RacePhase, Racer, Sighting,
+    SpeedProfile, Verdict, sightings,
 };
+use roverlab::world::{RobotSpec, Scene};
 
 use super::Sensors;
 use super::event;
@@ -28,14 +30,21 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
-    /// The world of a race.
-    pub(crate) fn world(&self, course: &Course) -> io::Result<Race> {
-        let noise = NoiseModel::real().scaled(self.noise);
-        let options = RaceOptions { seed: self.seed, noise, ..RaceOptions::default() };
+    /// Cones and cars.
+    pub(crate) fn scene(&self, course: &Course) -> Scene {
         let starts = [Some(course.start), self.other.then(|| course.ahead(HEAD_START))];
-        let cars: Vec<_> =
-            starts.into_iter().flatten().map(|start| (RaceCarSpec::default(), start)).collect();
-        Race::new(&course.race_cones(), &cars, options)
+        course.scene(&starts.into_iter().flatten().collect::<Vec<_>>())
+    }
+
+    /// How the world of a race runs.
+    pub(crate) fn options(&self) -> SimOptions {
+        SimOptions::with_noise(self.noise, self.seed)
+    }
+
+    /// Seconds that a race takes at most: a first lap at a crawl, and all others at a walk.
+    fn limit(&self, course: &Course) -> f64 {
+        let slow = if self.other { 2.0 } else { 3.0 };
+        self.limit.unwrap_or(course.corridor.length() * (1.0 + self.laps as f64 / slow))
     }
 }
 
@@ -45,6 +54,8 @@ const HEAD_START: f64 = 6.0;
 const STROLL: f64 = 3.0;
 const LOOK_AHEAD: f64 = 3.5;
 const SIGHT: f64 = 24.0;
+/// Metres from its rear axle to halfway between the axles.
+const MIDDLE: f64 = 0.775;
 
 /// The second car, which drives in the middle of the lane that it sees, whatever it was like a lap ago.
 struct Other {
@@ -53,8 +64,13 @@ struct Other {
     map: ConeMap,
     lane: LaneFinder,
     judge: Judge,
-    decisions: u32,
 }
+
+/// Seconds between two decisions of a second car.
+const OTHER_PERIOD: f64 = 0.1;
+/// The second car by radio, and what it is told when the race is over.
+const OTHER: u32 = 2;
+const OVER: &[u8] = b"over";
 
 impl Other {
     fn new(course: &Course, stage: &Stage) -> Result<Self, Failure> {
@@ -66,26 +82,29 @@ impl Other {
             map: ConeMap::new(parameters.map),
             lane: LaneFinder::new(parameters.lane),
             judge,
-            decisions: 0,
         })
     }
 
-    /// Steers at every second decision of the racer, which is ten times a second.
-    fn act(&mut self) -> io::Result<()> {
-        self.decisions += 1;
-        if !self.decisions.is_multiple_of(2) {
-            return Ok(());
+    /// Drives until it hears that the race is over, or time is.
+    fn drive(mut self, limit: f64) -> io::Result<Second> {
+        while self.judge.time() < limit && self.car.receive()?.is_none() {
+            let command = self.decide()?;
+            self.car.set_speed(command)?;
+            pass(self.car.as_mut(), &mut self.judge, OTHER_PERIOD)?;
         }
+        Ok(Second { cones_hit: self.judge.verdict().cones_hit, trail: self.judge.trail().to_vec() })
+    }
+
+    fn decide(&mut self) -> io::Result<Twist> {
         self.car.scan_into(&mut self.scan)?;
         self.map.update(self.car.pose()?, &sightings(&self.scan));
         let pose = self.map.pose();
         let near: Vec<Cone> =
             self.map.fresh_cones().filter(|cone| (cone.position - pose.position()).norm() < SIGHT).collect();
-        let middle = pose.compose(&Pose::new(0.5 * RaceCarSpec::default().wheelbase(), 0.0, 0.0));
+        let middle = pose.compose(&Pose::new(MIDDLE, 0.0, 0.0));
         let lane = self.lane.step(middle, &near);
         // Without a lane it stands, and looks on.
-        let command = lane.map_or(Twist::STOP, |lane| pursue(&lane.points, pose));
-        self.car.set_speed(command)
+        Ok(lane.map_or(Twist::STOP, |lane| pursue(&lane.points, pose)))
     }
 }
 
@@ -102,26 +121,7 @@ fn pursue(line: &[Point], rear: Pose) -> Twist {
 #[derive(Debug, Clone)]
 pub(crate) struct Second {
     pub(crate) cones_hit: usize,
-    /// Whether the two cars touched.
-    pub(crate) touched: bool,
     pub(crate) trail: Vec<(Pose, f64)>,
-}
-
-/// Two cars to which time passes when the first one waits. The second one gets to notice it: its safety system has to look.
-struct Both<'a, R: ?Sized> {
-    waits: &'a mut R,
-    other: &'a mut (dyn RobotIo + Send),
-}
-
-impl<R: Clock + ?Sized> Clock for Both<'_, R> {
-    fn now(&mut self) -> io::Result<f64> {
-        self.waits.now()
-    }
-
-    fn wait(&mut self, seconds: f64) -> io::Result<()> {
-        self.waits.wait(seconds)?;
-        self.other.wait(0.0)
-    }
 }
 
 /// How a race ended.
@@ -152,6 +152,8 @@ pub(crate) struct Outcome {
     /// Of each flying lap on a racing line, the lap time over the quasi-steady optimum on that line.
     pub(crate) over_optimum: Vec<f64>,
     pub(crate) standing: Vec<bool>,
+    /// Whether the car touched another one.
+    pub(crate) touched: bool,
     /// What became of a second car.
     pub(crate) other: Option<Second>,
 }
@@ -164,8 +166,7 @@ impl Outcome {
 
     /// Whether all laps were driven without a penalty.
     pub(crate) fn is_clean(&self) -> bool {
-        let touched = self.other.as_ref().is_some_and(|other| other.touched);
-        self.is_finished() && self.verdict.cones_hit + self.verdict.off_course == 0 && !touched
+        self.is_finished() && self.verdict.cones_hit + self.verdict.off_course == 0 && !self.touched
     }
 }
 
@@ -210,13 +211,13 @@ struct Plans {
 }
 
 impl Plans {
-    fn see(&mut self, racer: &Racer) {
+    fn see(&mut self, racer: &Racer, limits: &CarLimits) {
         let flying = std::mem::replace(&mut self.racing, racer.phase() == RacePhase::Racing) && self.racing;
         let points = racer.line().filter(|_| self.racing).map(LineTracker::points);
         if self.first.is_empty() {
             self.first = points.map(<[Point]>::to_vec).unwrap_or_default();
         }
-        let optimum = |points: &[Point]| SpeedProfile::closed(points, &limits(&RaceCarSpec::default())).ok();
+        let optimum = |points: &[Point]| SpeedProfile::closed(points, limits).ok();
         if racer.laps() < self.optima.len() {
             return;
         }
@@ -231,21 +232,9 @@ impl Plans {
     }
 }
 
-/// What a car can do at most, in balance: what the optimum is for.
-pub(super) fn limits(spec: &RaceCarSpec) -> CarLimits {
-    CarLimits {
-        hold: Hold::Balance(Tyres {
-            grip: spec.grip,
-            stiffness: spec.stiffness * 9.81,
-            front: spec.balance,
-            wheelbase: spec.wheelbase(),
-            lock: spec.max_steering,
-        }),
-        drive: spec.drive,
-        brake: spec.brake,
-        top_speed: spec.top_speed,
-        turning: f64::INFINITY,
-    }
+/// What the car can do at most, in balance: what the optimum is for.
+pub(super) fn limits() -> Result<CarLimits, Failure> {
+    CarLimits::of(&RobotSpec::race_car()).ok_or_else(|| Failure::run("a racing car without tyres"))
 }
 
 /// Races on a course.
@@ -255,16 +244,23 @@ pub(crate) fn race(course: &Course, settings: &Settings, stage: &Stage) -> Resul
     }
     let mut judge = Judge::new(course, stage.truth(0)?, 0).map_err(Failure::run)?;
     let mut car = stage.robot(0)?;
-    let mut other = settings.other.then(|| Other::new(course, stage)).transpose()?;
+    let other = settings.other.then(|| Other::new(course, stage)).transpose()?;
     let mut plans = Plans::default();
-    let driven = drive(course, settings, car.as_mut(), (&mut judge, other.as_mut()), &mut plans);
-    // The second car goes first: while the other one may have to stop, nobody looks at it.
-    let other = other.map(|other| Second {
-        cones_hit: other.judge.verdict().cones_hit,
-        touched: judge.touched(),
-        trail: other.judge.trail().to_vec(),
+    let limits = limits()?;
+    let (driven, other) = thread::scope(|scope| {
+        let limit = settings.limit(course);
+        let other = other.map(|other| scope.spawn(move || other.drive(limit)));
+        let driven = drive(course, settings, car.as_mut(), &mut judge, |racer| plans.see(racer, &limits));
+        // A car that does not hear it drives until time is over.
+        let told = if other.is_some() { car.send(OTHER, OVER) } else { Ok(()) };
+        drop(car);
+        let other = other.map(|other| other.join().expect("the second car's thread does not panic"));
+        (driven.and_then(|ending| told.map(|()| ending)), other.transpose())
     });
-    drop(car);
+    let (driven, other) = match other {
+        Ok(other) => (driven, other),
+        Err(error) => (driven.and(Err(error)), None),
+    };
     let line = plans.first.iter().map(|point| course.start.to_world(*point)).collect();
     Ok(Outcome {
         over_optimum: plans.over_optimum(&judge.verdict().lap_times),
@@ -275,6 +271,7 @@ pub(crate) fn race(course: &Course, settings: &Settings, stage: &Stage) -> Resul
         trail: judge.trail().to_vec(),
         line,
         standing: judge.standing(),
+        touched: judge.touched(),
         other,
     })
 }
@@ -283,8 +280,8 @@ fn drive<R: RobotIo + ?Sized>(
     course: &Course,
     settings: &Settings,
     car: &mut R,
-    (judge, mut other): (&mut Judge, Option<&mut Other>),
-    plans: &mut Plans,
+    judge: &mut Judge,
+    mut see: impl FnMut(&Racer),
 ) -> io::Result<Ending> {
     let parameters = course.parameters(settings.laps);
     let mut racer = Racer::new(parameters);
@@ -292,22 +289,13 @@ fn drive<R: RobotIo + ?Sized>(
     if settings.sensors != Sensors::Lidar {
         car.set_resolution(course.resolution())?;
     }
-    // A first lap at a crawl, and all others at a walk.
-    let slow = if settings.other { 2.0 } else { 3.0 };
-    let limit = settings.limit.unwrap_or(course.corridor.length() * (1.0 + settings.laps as f64 / slow));
+    let limit = settings.limit(course);
     while judge.time() < limit {
         let seen = eyes.look(car)?;
         let (pose, speed) = (car.pose()?, car.speed()?);
         car.set_speed(racer.decide(pose, speed, &seen))?;
-        match &mut other {
-            Some(other) => {
-                other.act()?;
-                let mut both = Both { waits: &mut *car, other: other.car.as_mut() };
-                pass(&mut both, &mut [&mut *judge, &mut other.judge], parameters.period)?;
-            }
-            None => pass(car, &mut [&mut *judge], parameters.period)?,
-        }
-        plans.see(&racer);
+        pass(car, judge, parameters.period)?;
+        see(&racer);
         if racer.is_done(speed) {
             break;
         }

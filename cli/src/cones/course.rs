@@ -1,17 +1,15 @@
 //! What is raced on: a file, or a track of our own.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use roverlab::geometry::{Aabb, Point, Pose, math};
 use roverlab::io::Resolution;
-use roverlab::io::sim::race::{RaceCarSpec, RaceCone};
 use roverlab::race::{
     CarOutline, CentreLine, CentreLineParameters, Cone, ConeColour, ConeTrack, Corridor, EventCourse,
     GeneratedTrack, LaneParameters, RacerParameters, TrackFile, TrackOptions, generate, lined, parse_track,
 };
 use roverlab::random::Stream;
-use roverlab::world::{Colour, Object, ObjectKind, Scene, Settings, Shape, World};
+use roverlab::world::{Scene, World};
 
 use crate::common::{CommonArgs, Failure};
 
@@ -27,9 +25,9 @@ pub(crate) struct Course {
     pub(crate) event: Option<EventCourse>,
 }
 
-/// Metres of ground around the cones.
+/// Metres of ground around what was driven.
 const MARGIN: f64 = 5.0;
-/// Metres beyond that ground within which a picture shows where a car has left.
+/// Metres beyond the ground around the cones within which a picture shows where a car has left.
 const BEYOND: f64 = 40.0;
 
 /// What is done to the cones before the race.
@@ -170,8 +168,9 @@ impl Course {
         }
     }
 
-    /// Why a car cannot go around it, whatever its program: a gate between a blue and a yellow cone is narrower than the car.
-    pub(crate) fn impassable(&self, car: &RaceCarSpec) -> Option<String> {
+    /// Why the car cannot go around it, whatever its program: a gate between a blue and a yellow cone is narrower than the car.
+    pub(crate) fn impassable(&self) -> Option<String> {
+        let width = 2.0 * Self::outline().half_width;
         let of = |paint: ConeColour| self.cones.iter().filter(move |cone| cone.colour == paint);
         let gates = of(ConeColour::Blue).flat_map(|left| {
             let free = |right: &Cone| {
@@ -180,23 +179,11 @@ impl Course {
             of(ConeColour::Yellow).map(free)
         });
         let narrowest = gates.fold(f64::INFINITY, f64::min);
-        (narrowest < car.width).then(|| {
+        (narrowest < width).then(|| {
             format!(
-                "a gate leaves {narrowest:.2} m between the feet of its cones; expected at least the car's width of {:.2} m",
-                car.width
+                "a gate leaves {narrowest:.2} m between the feet of its cones; expected at least the car's width of {width:.2} m"
             )
         })
-    }
-
-    /// The cones as the simulator takes them.
-    pub(crate) fn race_cones(&self) -> Vec<RaceCone> {
-        let cone = |cone: &Cone| RaceCone {
-            position: cone.position,
-            radius: cone.colour.radius(),
-            height: cone.colour.height(),
-            colour: colour(cone.colour),
-        };
-        self.cones.iter().map(cone).collect()
     }
 
     /// The pose in the middle, so many metres behind the line.
@@ -210,10 +197,7 @@ impl Course {
 
     /// The ground around the cones.
     pub(crate) fn ground(&self) -> World {
-        let around = Aabb::around(self.cones.iter().map(|cone| cone.position));
-        let mut world = World::empty(1.0, 1.0);
-        world.floor = around.unwrap_or(world.floor).inflated(MARGIN);
-        world
+        World { objects: Vec::new(), ..self.scene(&[]).world }
     }
 
     /// The ground around the cones and around what was driven, for pictures; far off the track, a car may leave it.
@@ -227,19 +211,9 @@ impl Course {
         world
     }
 
-    /// The ground with the cones, for recordings.
-    pub(crate) fn scene(&self) -> Scene {
-        let mut world = self.ground();
-        let kinds = ConeColour::ALL.map(|paint| {
-            let shape = Shape::Cylinder { radius: paint.radius(), height: paint.height() };
-            Arc::new(ObjectKind::new(format!("cone-{paint:?}").to_lowercase(), shape, colour(paint)))
-        });
-        let object = |cone: &Cone| {
-            let kind = Arc::clone(&kinds[cone.colour as usize]);
-            Object::new(kind, Pose::new(cone.position.x, cone.position.y, 0.0))
-        };
-        world.objects.extend(self.cones.iter().map(object));
-        Scene { world, robots: Vec::new(), settings: Settings::default() }
+    /// The ground with the cones, and with cars.
+    pub(crate) fn scene(&self, cars: &[Pose]) -> Scene {
+        ConeTrack { cones: self.cones.clone(), ..ConeTrack::default() }.scene(cars)
     }
 
     /// How it is raced.
@@ -276,15 +250,5 @@ impl Course {
     /// The referee's wheels in the frame of the car.
     pub(crate) fn wheels() -> [Point; 4] {
         [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y))
-    }
-}
-
-/// How a cone is painted.
-pub(crate) fn colour(colour: ConeColour) -> Colour {
-    match colour {
-        ConeColour::Blue => Colour::from_hex(0x1f_4f_d8),
-        ConeColour::Yellow => Colour::from_hex(0xf2_c8_11),
-        ConeColour::Orange | ConeColour::BigOrange => Colour::from_hex(0xf0_70_10),
-        ConeColour::Unknown => Colour::from_hex(0x90_90_90),
     }
 }

@@ -137,22 +137,14 @@ impl Judge {
     }
 }
 
-/// Lets time pass in ticks, at each of which the judges look.
-pub(crate) fn pass<R: Clock + ?Sized>(
-    robot: &mut R,
-    judges: &mut [&mut Judge],
-    seconds: f64,
-) -> io::Result<()> {
-    let before: Vec<(f64, f64)> = judges.iter().map(|judge| (judge.time, judge.last.path_length)).collect();
+/// Lets time pass in ticks, at each of which the judge looks.
+pub(crate) fn pass<R: Clock + ?Sized>(robot: &mut R, judge: &mut Judge, seconds: f64) -> io::Result<()> {
+    let (time, metres) = (judge.time, judge.last.path_length);
     for _ in 0..(seconds / TICK).round().max(1.0) as usize {
         robot.wait(TICK)?;
-        for judge in judges.iter_mut() {
-            judge.look()?;
-        }
+        judge.look()?;
     }
-    for (judge, (time, metres)) in judges.iter_mut().zip(before) {
-        let speed = (judge.last.path_length - metres) / (judge.time - time).max(TICK);
-        judge.trail.push((judge.last.pose, speed));
-    }
+    let speed = (judge.last.path_length - metres) / (judge.time - time).max(TICK);
+    judge.trail.push((judge.last.pose, speed));
     Ok(())
 }

@@ -4,6 +4,6 @@ mod course;
 mod judge;
 mod options;
 
-pub(crate) use course::{Course, Spoils, colour};
+pub(crate) use course::{Course, Spoils};
 pub(crate) use judge::{Judge, pass};
 pub(crate) use options::{check_campaign, check_race, refuse};

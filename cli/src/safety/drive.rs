@@ -3,18 +3,17 @@
 use std::fmt;
 
 use roverlab::geometry::{Point, Pose};
-use roverlab::io::sim::NoiseModel;
-use roverlab::io::sim::race::{Race, RaceCarSpec, RaceOptions};
 use roverlab::io::wrappers::{Fault, FaultKind};
-use roverlab::io::{self, Clock, Drive, Lidar, LidarScan};
+use roverlab::io::{Clock, Drive, Lidar, LidarScan};
 use roverlab::race::{Racer, RacerParameters, sightings};
 use roverlab::safety::{Causes, SafetyState, SpeedError, StoppingModel, Supervised, SupervisorParameters};
+use roverlab::world::RobotSpec;
 use serde_json::{Value, json};
 
 use super::Args;
 use super::base::{Answer, Base, SeenStop};
 use super::crew::{Crew, Event, STEP};
-use crate::common::{CommonArgs, DEADMAN, Driven as Robot, Failure, Stage, rounded};
+use crate::common::{DEADMAN, Driven as Robot, Failure, Stage, rounded};
 use crate::cones::{Course, Judge, pass};
 
 /// A stop, and what was true about it.
@@ -91,13 +90,6 @@ pub(crate) struct Driven {
     pub(crate) judge: Judge,
 }
 
-/// The world of the drive.
-pub(crate) fn world(course: &Course, common: &CommonArgs) -> io::Result<Race> {
-    let noise = NoiseModel::real().scaled(common.noise);
-    let options = RaceOptions { seed: common.seed, noise, ..RaceOptions::default() };
-    Race::new(&course.race_cones(), &[(RaceCarSpec::default(), course.start)], options)
-}
-
 /// Drives until everything has happened.
 pub(crate) fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Driven, Failure> {
     let mut judge = Judge::new(course, stage.truth(0)?, 0).map_err(Failure::run)?;
@@ -123,8 +115,8 @@ pub(crate) fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Drive
 
 /// Metres that the car may go in a stop.
 fn bound(parameters: &SupervisorParameters, seen: &SeenStop) -> f64 {
-    let spec = RaceCarSpec::default();
-    let stopping = parameters.stopping_in(seen.answer.state, 1.0 / spec.speed_gain, spec.brake);
+    let spec = RobotSpec::race_car();
+    let stopping = parameters.stopping_in(seen.answer.state, spec.motor.time_constant, spec.deceleration());
     // Without a link, or while a call hangs, the brake is in the hands of the car's own watchdog.
     let alone = seen.alone || seen.answer.causes.has(Causes::LINK);
     let reaction = stopping.reaction + if alone { DEADMAN } else { 0.0 };
@@ -170,7 +162,7 @@ fn program(car: &mut Supervised<Robot, Base>, judge: &mut Judge, limit: f64) -> 
         }
         // A wait that fails has taken its time, but for a car that is out of reach for good.
         let before = judge.time();
-        let passed = pass(car, &mut [judge], STEP);
+        let passed = pass(car, judge, STEP);
         if passed.is_err() && (judge.look().is_err() || judge.time() <= before) {
             break;
         }

@@ -6,11 +6,12 @@ mod drive;
 
 use std::path::PathBuf;
 
+use roverlab::io::sim::SimOptions;
 use roverlab::picture::{Picture, Style};
 use roverlab::world::Colour;
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
-use crate::cones::{Course, check_race, colour};
+use crate::cones::{Course, check_race};
 use crew::Event;
 use drive::{Driven, Stopped};
 
@@ -67,7 +68,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         Some(path) => Course::from_file(common, path)?,
         None => Course::generated(common.seed)?,
     };
-    let stage = common.stage_race(&course.scene(), || drive::world(&course, common))?.with_deadman();
+    let options = SimOptions::with_noise(common.noise, common.seed);
+    let stage = common.stage(&course.scene(&[course.start]), options)?.with_deadman();
     let driven = drive::drive(&course, args, &stage)?;
     for stop in &driven.stops {
         common.tell(stop);
@@ -113,7 +115,7 @@ fn picture(course: &Course, driven: &Driven) -> Picture {
     let mut picture = Picture::new(&course.ground());
     picture.title("Stops under the safety system");
     for cone in &course.cones {
-        picture.disc(cone.position, 0.3, Style::aid().colour(colour(cone.colour)).filled(1.0));
+        picture.disc(cone.position, 0.3, Style::aid().colour(cone.colour.paint()).filled(1.0));
     }
     picture.speed_path(driven.judge.trail().iter().map(|(pose, speed)| (pose.position(), *speed)));
     for stop in &driven.stops {

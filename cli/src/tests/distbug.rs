@@ -253,6 +253,7 @@ fn robots_that_cannot_do_it_are_refused() {
     let s4 = RobotSpec::s4();
     refused("blind.robi", RobotSpec { lidar: None, ..s4.clone() }, &["blind.robi", "without a lidar"]);
     let car = DriveSpec::Ackermann {
+        dynamics: None,
         wheel_diameter: 0.05,
         track: 0.1,
         wheelbase: 0.1,

@@ -3,8 +3,8 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use eyesim::files::in_any_case;
 use roverlab::world::Scene;
+use roverlab::world::formats::in_any_case;
 
 use super::options::{Options, ends_in, whole};
 use super::work_folder::WorkFolder;

@@ -79,7 +79,9 @@ fn mark(entity: &mut Fields<'_>, mark: &Marker) {
 fn object(entity: &mut Fields<'_>, object: &Object) {
     let shape = object.kind.shape;
     let (field, across) = match shape {
-        Shape::Cylinder { radius, .. } => (CYLINDERS, [2.0 * radius, 2.0 * radius]),
+        Shape::Cylinder { radius, .. } | Shape::Cone { radius, .. } => {
+            (CYLINDERS, [2.0 * radius, 2.0 * radius])
+        }
         Shape::Sphere { radius } => (SPHERES, [2.0 * radius, 2.0 * radius]),
         Shape::Box { length, width, .. } => (CUBES, [length, width]),
     };

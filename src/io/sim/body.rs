@@ -71,12 +71,17 @@ const STALL_TICKS: u32 = 50;
 impl Touch {
     pub(super) fn begin(&mut self, place: Point) {
         if !self.touching {
-            self.contacts += 1;
-            if self.places.len() < MAX_CONTACT_PLACES {
-                self.places.push(place);
-            }
+            self.count(place);
         }
         self.touching = true;
+    }
+
+    /// Counts a contact that is over at once.
+    pub(super) fn count(&mut self, place: Point) {
+        self.contacts += 1;
+        if self.places.len() < MAX_CONTACT_PLACES {
+            self.places.push(place);
+        }
     }
 
     /// Forgets what the robot touches: it is taken elsewhere.

@@ -1,4 +1,5 @@
 use super::autopilot::Autopilot;
+use super::bicycle::Bicycle;
 use super::course::Course;
 use super::drive_errors::DriveErrors;
 use super::drive_mechanics::Mechanics;
@@ -6,14 +7,15 @@ use super::wheels::{WheelSpec, Wheels};
 use super::{NoiseModel, TICK};
 use crate::geometry::{Pose, Twist, units};
 use crate::io::{Error, ErrorKind, Result};
-use crate::kinematics::{Ackermann, CarState, Differential, Displacement};
+use crate::kinematics::{Ackermann, CarState, Differential, Displacement, PlanarMotion, PlanarTwist};
 use crate::random::Stream;
 use crate::world::MotorSpec;
 
 /// A car: motor 1 drives the rear axle through a differential gear, servo 1 steers the front wheels.
 ///
 /// Its odometry takes the axle's roll from the motor's encoder and the direction from the steering. Errors are those of
-/// the rear wheels, as on a robot with two wheels.
+/// the rear wheels, as on a robot with two wheels. Of a fast car with [dynamics](Bicycle), mass and tyres decide how it
+/// moves, and a gyroscope measures how it turns.
 #[derive(Debug, Clone)]
 pub(super) struct Car {
     nominal: Ackermann,
@@ -25,6 +27,9 @@ pub(super) struct Car {
     wanted: f64,
     odometry: Course,
     errors: DriveErrors<2>,
+    bicycle: Option<Bicycle>,
+    /// What a fast car's odometry measures.
+    measured: Twist,
 }
 
 /// Degrees per second at which a servo turns the wheels.
@@ -49,15 +54,37 @@ impl Car {
             wanted: 0.0,
             odometry: Course::new(Pose::default()),
             errors: DriveErrors::of_two_wheels(noise, stream),
+            bicycle: None,
+            measured: Twist::STOP,
         }
     }
 
-    /// Lets motor and servo follow their commands for one tick and returns the robot's true motion.
-    pub(super) fn step(&mut self) -> Displacement {
+    /// The same car with mass and tyres, if it has any.
+    pub(super) fn with_dynamics(self, bicycle: Option<Bicycle>) -> Self {
+        Self { bicycle, ..self }
+    }
+
+    /// Lets motor and servo follow their commands for one tick and returns the robot's true motion, if nothing is in
+    /// the way.
+    pub(super) fn step(&mut self) -> PlanarMotion {
         // A manoeuvre starts when the wheels point where it needs them.
         let aims = self.steering != self.wanted && !self.autopilot.is_done();
         let command = if aims { [0.0] } else { self.autopilot.command(&self.wheels) };
+        let before = self.steering;
         let steering = self.steer();
+        if let Some(bicycle) = &mut self.bicycle {
+            let [speed, angle] = self.errors.command_factors();
+            let motion = bicycle.step(command[0] * speed, [before * angle, self.steering * angle]);
+            if motion == PlanarMotion::default() {
+                self.settle(motion);
+            }
+            return motion;
+        }
+        self.roll(command, steering).into()
+    }
+
+    /// Lets wheels that never slip follow a command.
+    fn roll(&mut self, command: [f64; 1], steering: f64) -> Displacement {
         if self.wheels.rest(&command) {
             return Displacement::default();
         }
@@ -71,9 +98,20 @@ impl Car {
         self.errors.motion(self.axle.track * self.errors.size(), [rear.left, rear.right])
     }
 
+    /// Takes notice of the car's true motion in this tick.
+    pub(super) fn settle(&mut self, moved: PlanarMotion) {
+        let Some(bicycle) = &mut self.bicycle else { return };
+        self.measured = bicycle.settle(moved);
+        let motion = PlanarTwist::from(self.measured).during(TICK);
+        self.wheels.turn([bicycle.speed()], [motion.forward]);
+        self.wheels.measure();
+        self.odometry.advance(motion);
+    }
+
     /// Turns the front wheels for one tick. Returns their mean angle in it.
     fn steer(&mut self) -> f64 {
-        let most = units::from_deg(STEERING_RATE) * TICK;
+        let rate = self.bicycle.as_ref().map_or(units::from_deg(STEERING_RATE), Bicycle::steering_rate);
+        let most = rate * TICK;
         let before = self.steering;
         let missing = self.wanted - before;
         self.steering = if missing.abs() <= most { self.wanted } else { before + most.copysign(missing) };
@@ -158,6 +196,9 @@ impl Mechanics for Car {
     }
 
     fn twist(&self) -> Twist {
+        if self.bicycle.is_some() {
+            return self.measured;
+        }
         let [speed] = self.wheels.speeds();
         self.nominal.forward(CarState { speed, steering: self.steering })
     }

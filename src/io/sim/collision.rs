@@ -29,25 +29,31 @@ impl Engine {
         let reaches = self.bodies.iter().zip(motions).map(|(body, &motion)| reach(body, motion));
         let farthest = reaches.fold(0.0, f64::max) + SLACK;
         for (index, &motion) in motions.iter().enumerate() {
-            let body = &mut self.bodies[index];
-            body.solid_budget -= farthest;
+            self.bodies[index].solid_budget -= farthest;
             if motion == PlanarMotion::default() {
                 self.stand(index);
                 continue;
             }
-            let reach = reach(body, motion);
-            body.wall_budget -= reach;
-            body.solid_budget -= reach;
-            if body.wall_budget > 0.0 && body.solid_budget > 0.0 {
-                body.course.advance(motion);
-                body.path_length += motion.length();
-                body.touch.held_ticks = 0;
-            } else {
-                self.move_among_things(index, motion, reach);
-            }
-            let body = &self.bodies[index];
+            let moved = self.move_body(index, motion);
+            let body = &mut self.bodies[index];
+            body.drive.settle(moved);
             self.space.set_pose(body.solid, body.pose());
         }
+    }
+
+    /// Moves a robot, and returns how far it came.
+    fn move_body(&mut self, index: usize, motion: PlanarMotion) -> PlanarMotion {
+        let body = &mut self.bodies[index];
+        let reach = reach(body, motion);
+        body.wall_budget -= reach;
+        body.solid_budget -= reach;
+        if body.wall_budget <= 0.0 || body.solid_budget <= 0.0 {
+            return self.move_among_things(index, motion, reach);
+        }
+        body.course.advance(motion);
+        body.path_length += motion.length();
+        body.touch.held_ticks = 0;
+        motion
     }
 
     /// A robot without motion may have been touched, and its toucher gone away again.
@@ -63,7 +69,7 @@ impl Engine {
     }
 
     /// Moves a robot that has something near it, in strides that cannot jump over anything.
-    fn move_among_things(&mut self, index: usize, motion: PlanarMotion, reach: f64) {
+    fn move_among_things(&mut self, index: usize, motion: PlanarMotion, reach: f64) -> PlanarMotion {
         let body = &self.bodies[index];
         let start = body.pose();
         let strides = (reach / body.stride).ceil().max(1.0);
@@ -72,8 +78,9 @@ impl Engine {
             left: motion.left / strides,
             angle: motion.angle / strides,
         };
+        let mut free = true;
         for _ in 0..strides as u32 {
-            self.stride(index, part, reach / strides);
+            free &= self.stride(index, part, reach / strides);
         }
         let body = &mut self.bodies[index];
         let end = body.pose();
@@ -81,9 +88,11 @@ impl Engine {
         body.path_length += moved;
         let turned = crate::geometry::angle_difference(end.heading, start.heading).abs();
         body.note_motion(reach, moved + spin_radius(body) * turned);
+        if free { motion } else { PlanarMotion::between(start, end) }
     }
 
-    fn stride(&mut self, index: usize, motion: PlanarMotion, reach: f64) {
+    /// Moves a robot by a part of its motion. Returns whether nothing was in the way.
+    fn stride(&mut self, index: usize, motion: PlanarMotion, reach: f64) -> bool {
         let body = &mut self.bodies[index];
         let before = body.course;
         body.course.advance(motion);
@@ -91,6 +100,11 @@ impl Engine {
         let (outline, span, me) = (body.outline, body.span, Some(body.solid));
         body.wall_budget = self.space.walls_clearance(&outline, &wished.pose(), span, LOOK_AHEAD);
         body.solid_budget = self.space.solids_clearance(&outline, &wished.pose(), span, LOOK_AHEAD, me);
+        if body.solid_budget <= 0.0 && self.topple(index, &wished.pose()) {
+            let clearance = self.space.solids_clearance(&outline, &wished.pose(), span, LOOK_AHEAD, me);
+            self.bodies[index].solid_budget = clearance;
+        }
+        let body = &self.bodies[index];
         let mut nearest = body.wall_budget.min(body.solid_budget);
         if nearest <= 0.0 && self.options.pushing && self.push(index, &wished.pose()) {
             let body = &mut self.bodies[index];
@@ -99,7 +113,7 @@ impl Engine {
             // What was pushed lies at the rim and is no contact; its neighbours are looked at again soon.
             body.solid_budget = 0.0;
             if nearest > 0.0 {
-                return;
+                return true;
             }
         }
         let body = &mut self.bodies[index];
@@ -107,7 +121,9 @@ impl Engine {
             body.touch.touching = false;
         } else if nearest <= 0.0 {
             self.free(index, before, wished, reach);
+            return false;
         }
+        true
     }
 
     /// Frees a robot from what its wish ran into. Usually it ends within `reach` of where it was.
@@ -180,8 +196,10 @@ impl Engine {
 
     /// Puts an object that there is somewhere else.
     pub(super) fn place_object(&mut self, object: usize, pose: Pose) {
-        let solid = self.movables[object].solid;
-        self.space.set_pose(solid, pose);
+        let movable = self.movables[object];
+        self.space.set_pose(movable.solid, pose);
+        // A hand puts it upright.
+        self.space.set_top(movable.solid, movable.top);
         self.look_around_again();
     }
 

@@ -2,6 +2,7 @@ use image::RgbImage;
 
 use super::body::Body;
 use super::camera::{CameraDevice, Moment, Studio};
+use super::lockstep::{Ticking, no_robot};
 use super::movable::{Movable, movables};
 use super::options::ticks_in;
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
@@ -59,6 +60,16 @@ const MAX_MESSAGE: usize = 65_536;
 const MAX_MAILBOX: usize = 10_000;
 /// The fastest speeds, in metres or radians per second, that a command may name.
 const MAX_COMMAND: f64 = 1e9;
+
+impl Ticking for Engine {
+    fn time(&self) -> u64 {
+        self.tick
+    }
+
+    fn tick(&mut self) {
+        self.step();
+    }
+}
 
 impl Engine {
     pub(super) fn new(scene: &Scene, options: SimOptions) -> Result<Self> {
@@ -143,6 +154,8 @@ impl Engine {
         }
         if moving {
             self.move_bodies(&motions);
+        } else {
+            self.bodies.iter_mut().for_each(|body| body.touch.held_ticks = 0);
         }
         self.motions = motions;
         self.deliver();
@@ -301,10 +314,6 @@ impl Engine {
         self.outbox.push(Letter { from: index as u32 + 1, to, data: data.to_vec() });
         Ok(())
     }
-}
-
-pub(super) fn no_robot(index: usize, robots: usize) -> Error {
-    Error::invalid_input("robot", index, &format!("an index below {robots}, the number of robots"))
 }
 
 /// Fails unless walls and objects are where numbers say.

@@ -1,4 +1,5 @@
 use super::NoiseModel;
+use super::bicycle::Bicycle;
 use super::car::Car;
 use super::drive_mechanics::Mechanics;
 use super::drivetrain::Drivetrain;
@@ -41,9 +42,12 @@ impl Powertrain {
                 let drive = Differential { track };
                 Self::Differential(Drivetrain::new(drive, &wheels, motor, noise, ideal_encoders, stream))
             }
-            DriveSpec::Ackermann { track, wheelbase, max_steering, .. } => {
+            DriveSpec::Ackermann { track, wheelbase, max_steering, dynamics, .. } => {
                 let drive = Ackermann::new(wheelbase, track, max_steering).map_err(invalid)?;
-                Self::Car(Box::new(Car::new(drive, track, &wheels, motor, noise, ideal_encoders, stream)))
+                let own = stream.child("dynamics", 0);
+                let bicycle = dynamics.map(|dynamics| Bicycle::new(dynamics, motor, wheelbase, noise, own));
+                let car = Car::new(drive, track, &wheels, motor, noise, ideal_encoders, stream);
+                Self::Car(Box::new(car.with_dynamics(bicycle)))
             }
             DriveSpec::Omni { track, wheelbase, .. } => {
                 let drive = Omni::mecanum(track, wheelbase).map_err(invalid)?;
@@ -56,8 +60,15 @@ impl Powertrain {
     pub(super) fn step(&mut self) -> PlanarMotion {
         match self {
             Self::Differential(drive) => drive.step().into(),
-            Self::Car(drive) => drive.step().into(),
+            Self::Car(drive) => drive.step(),
             Self::Omni(drive) => drive.step(),
+        }
+    }
+
+    /// Takes notice of the robot's true motion in this tick: walls may have been in the way.
+    pub(super) fn settle(&mut self, moved: PlanarMotion) {
+        if let Self::Car(drive) = self {
+            drive.settle(moved);
         }
     }
 

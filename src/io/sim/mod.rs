@@ -24,6 +24,7 @@
 //! ```
 
 mod autopilot;
+mod bicycle;
 mod body;
 mod camera;
 mod car;
@@ -34,16 +35,15 @@ mod drive_mechanics;
 mod drivetrain;
 mod engine;
 mod fleet;
+mod lockstep;
 mod mechanics;
 mod movable;
 mod noise;
 mod omni;
 mod options;
 mod pushing;
-pub mod race;
 mod robot;
 mod robot_traits;
-mod shared;
 mod simulation;
 #[cfg(feature = "physics")]
 pub mod starman;

@@ -1,18 +1,23 @@
 use crate::world::World;
 use crate::world::space::SolidId;
 
-/// An object and what it takes to push it.
+/// An object and what it takes to push it or to knock it over.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Movable {
     pub(super) solid: SolidId,
     /// Kilograms; infinite for what is fixed.
     pub(super) mass: f64,
+    /// Whether it falls instead of being pushed.
+    pub(super) falls: bool,
+    /// Metres from the floor to its top while it stands.
+    pub(super) top: f64,
 }
 
 pub(super) fn movables(world: &World, solids: &[SolidId]) -> Vec<Movable> {
     let movable = |(&solid, object): (&SolidId, &crate::world::Object)| {
         let mass = if object.kind.fixed { f64::INFINITY } else { object.kind.mass };
-        Movable { solid, mass }
+        let top = object.elevation + object.kind.shape.height();
+        Movable { solid, mass, falls: object.kind.falls, top }
     };
     solids.iter().zip(&world.objects).map(movable).collect()
 }

@@ -1,6 +1,7 @@
-//! Things that robots push.
+//! Things that robots push or knock over.
 
 use super::engine::Engine;
+use super::movable::Movable;
 use crate::geometry::{Pose, Vector};
 use crate::world::space::{Contact, SolidId};
 
@@ -18,13 +19,36 @@ impl Engine {
         let mut moved = false;
         for contact in &contacts {
             let Some(solid) = contact.with else { continue };
-            let light = self.movables.get(solid.index()).is_some_and(|movable| movable.mass <= strength);
+            let light = self.movable(solid).is_some_and(|movable| movable.mass <= strength);
             if light {
                 moved |= self.shift(solid, -contact.normal * (contact.depth + CLEAR), index);
             }
         }
         self.contacts = contacts;
         moved
+    }
+
+    /// Knocks over what a robot at a pose would be in and what falls. Each is a contact. Returns whether anything fell.
+    pub(super) fn topple(&mut self, index: usize, pose: &Pose) -> bool {
+        self.depth_at(index, pose);
+        let strength = self.bodies[index].spec.mass;
+        let contacts = std::mem::take(&mut self.contacts);
+        let mut fell = false;
+        for solid in contacts.iter().filter_map(|contact| contact.with) {
+            if self.movable(solid).is_some_and(|movable| movable.falls && movable.mass <= strength) {
+                let thing = *self.space.solid(solid);
+                self.space.set_top(solid, thing.bottom);
+                self.bodies[index].touch.count(thing.pose.position());
+                fell = true;
+            }
+        }
+        self.contacts = contacts;
+        fell
+    }
+
+    /// The object that a solid is; robots are none.
+    fn movable(&self, solid: SolidId) -> Option<&Movable> {
+        self.movables.get(solid.index())
     }
 
     /// Moves a thing unless that takes it into a wall, another thing, or a robot other than the one that pushes.

@@ -1,8 +1,8 @@
 use std::sync::Arc;
 
 use super::engine::Engine;
-use super::shared::Shared;
-use super::{SimOptions, SimRobot, Truth};
+use super::lockstep::Lockstep;
+use super::{SimOptions, SimRobot, TICK, Truth};
 use crate::io::{Key, Result};
 use crate::world::Scene;
 
@@ -16,14 +16,16 @@ use crate::world::Scene;
 /// calls [`now`](crate::io::Clock::now) first.
 #[derive(Debug, Clone)]
 pub struct Simulation {
-    shared: Arc<Shared>,
+    shared: Arc<Lockstep<Engine>>,
 }
 
 impl Simulation {
     /// A simulation of a scene. Fails when an option or a robot's description makes no sense, or a robot has a
     /// drive that is not simulated.
     pub fn new(scene: &Scene, options: SimOptions) -> Result<Self> {
-        Ok(Self { shared: Arc::new(Shared::new(Engine::new(scene, options)?)) })
+        let engine = Engine::new(scene, options)?;
+        let robots = engine.bodies.len();
+        Ok(Self { shared: Arc::new(Lockstep::new(engine, TICK, robots)) })
     }
 
     /// Takes a robot, by its index in the scene. Fails when there is none, or somebody has it.
@@ -38,6 +40,6 @@ impl Simulation {
 
     /// Schedules a key press on a robot, in seconds since the start. One whose time has passed is due at once.
     pub fn press_key(&self, robot: usize, time: f64, key: Key) -> Result<()> {
-        self.shared.lock().engine.press_key(robot, time, key)
+        self.shared.lock().world.press_key(robot, time, key)
     }
 }

@@ -1,40 +1,40 @@
 use std::sync::Arc;
 
 use super::engine::{Engine, Thing};
-use super::shared::Shared;
+use super::lockstep::Lockstep;
 use crate::geometry::Pose;
 use crate::io::{Error, Result, RobotTruth, Witness};
 
 /// What is true in a simulated world. No robot reaches it; verdicts, pictures and tests do.
 #[derive(Debug, Clone)]
 pub struct Truth {
-    shared: Arc<Shared>,
+    shared: Arc<Lockstep<Engine>>,
 }
 
 impl Truth {
-    pub(super) fn new(shared: Arc<Shared>) -> Self {
+    pub(super) fn new(shared: Arc<Lockstep<Engine>>) -> Self {
         Self { shared }
     }
 
     /// Seconds since the start of the world.
     pub fn time(&self) -> f64 {
-        self.shared.lock().engine.time()
+        self.shared.lock().world.time()
     }
 
     /// A robot's pose in the world.
     pub fn pose(&self, robot: usize) -> Result<Pose> {
-        Ok(self.shared.lock().engine.body(robot)?.pose())
+        Ok(self.shared.lock().world.body(robot)?.pose())
     }
 
     /// All that is true about a robot.
     pub fn robot(&self, robot: usize) -> Result<RobotTruth> {
-        robot_truth(&self.shared.lock().engine, robot)
+        robot_truth(&self.shared.lock().world, robot)
     }
 
     /// An object's pose in the world, by its index in the scene: robots may have pushed it.
     pub fn object(&self, object: usize) -> Result<Pose> {
         let state = self.shared.lock();
-        let engine = &state.engine;
+        let engine = &state.world;
         let objects = engine.space.solids() - engine.bodies.len();
         let found = engine.movables.get(object).map(|movable| engine.space.solid(movable.solid).pose);
         found.ok_or_else(|| {
@@ -43,15 +43,23 @@ impl Truth {
         })
     }
 
+    /// Whether an object has been knocked over, by its index in the scene.
+    pub fn has_fallen(&self, object: usize) -> Result<bool> {
+        self.object(object)?;
+        let state = self.shared.lock();
+        let solid = state.world.space.solid(state.world.movables[object].solid);
+        Ok(solid.top <= solid.bottom)
+    }
+
     /// Puts a robot somewhere else at the beginning of the next tick, on behalf of the program of the robot `by`.
     ///
     /// What programs in lockstep move in this way depends on ticks alone, never on which of them was faster: in one tick,
     /// the robots' wishes are fulfilled in the order of their indices.
     pub fn move_robot(&self, by: usize, robot: usize, pose: Pose) -> Result<()> {
         let mut state = self.shared.lock();
-        state.engine.body(robot)?;
+        state.world.body(robot)?;
         require_finite_pose(pose)?;
-        state.engine.place_later(by, Thing::Robot(robot), pose);
+        state.world.place_later(by, Thing::Robot(robot), pose);
         Ok(())
     }
 
@@ -59,16 +67,16 @@ impl Truth {
     pub fn move_object(&self, by: usize, object: usize, pose: Pose) -> Result<()> {
         self.object(object)?;
         require_finite_pose(pose)?;
-        self.shared.lock().engine.place_later(by, Thing::Object(object), pose);
+        self.shared.lock().world.place_later(by, Thing::Object(object), pose);
         Ok(())
     }
 
     /// Puts a robot somewhere else, as a hand would. Its odometry does not notice.
     pub fn set_pose(&self, robot: usize, pose: Pose) -> Result<()> {
         let mut state = self.shared.lock();
-        state.engine.body(robot)?;
+        state.world.body(robot)?;
         require_finite_pose(pose)?;
-        state.engine.place(robot, pose);
+        state.world.place(robot, pose);
         Ok(())
     }
 
@@ -76,7 +84,7 @@ impl Truth {
     pub fn set_object(&self, object: usize, pose: Pose) -> Result<()> {
         self.object(object)?;
         require_finite_pose(pose)?;
-        self.shared.lock().engine.place_object(object, pose);
+        self.shared.lock().world.place_object(object, pose);
         Ok(())
     }
 }

@@ -80,6 +80,14 @@ impl<const N: usize> Wheels<N> {
         })
     }
 
+    /// Takes the rim speeds and the rolling of a tick as they are.
+    pub(super) fn turn(&mut self, speeds: [f64; N], rolled: [f64; N]) {
+        self.speeds = speeds;
+        for (roll, rolled) in self.roll.iter_mut().zip(rolled) {
+            *roll += rolled;
+        }
+    }
+
     /// What the encoders counted in this tick, in metres.
     pub(super) fn measure(&mut self) -> [f64; N] {
         std::array::from_fn(|wheel| {

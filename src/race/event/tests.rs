@@ -4,14 +4,12 @@ use std::f64::consts::TAU;
 
 use super::*;
 use crate::geometry::{Point, Pose, direction};
-use crate::io::sim::NoiseModel;
-use crate::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions};
+use crate::io::sim::{SimOptions, Simulation, TICK};
 use crate::io::{Camera, Clock, Drive, Lidar, LidarScan, Resolution, control};
 use crate::race::{
-    CameraMount, CameraSight, CarOutline, Cone, ConeColour, ConeTrack, Event, RaceOutcome, RacerParameters,
-    Verdict,
+    CameraMount, CameraSight, CarLimits, CarOutline, Cone, ConeColour, ConeTrack, Event, RaceOutcome, Verdict,
 };
-use crate::world::Colour;
+use crate::world::RobotSpec;
 
 const OUTLINE: CarOutline = CarOutline { half_width: 0.7, nose: 2.15, ahead: 0.9, room: 0.0 };
 
@@ -71,19 +69,9 @@ fn racer_for(course: &EventCourse) -> EventRacer {
     }
 }
 
-fn world(track: &ConeTrack, seed: u64) -> Race {
-    let paint = |colour| match colour {
-        ConeColour::Blue => 0x1f_4f_d8,
-        ConeColour::Yellow => 0xf2_c8_11,
-        _ => 0xf0_70_10,
-    };
-    let cones: Vec<RaceCone> = track
-        .cones
-        .iter()
-        .map(|cone| RaceCone::new(cone.position, Colour::from_hex(paint(cone.colour))))
-        .collect();
-    let options = RaceOptions { seed, noise: NoiseModel::real(), ..RaceOptions::default() };
-    Race::new(&cones, &[(RaceCarSpec::default(), track.start.unwrap())], options).unwrap()
+fn world(track: &ConeTrack, seed: u64) -> Simulation {
+    let scene = track.scene(&[track.start.unwrap()]);
+    Simulation::new(&scene, SimOptions { seed, ..SimOptions::default() }).unwrap()
 }
 
 /// One run with lidar or camera: what the referee saw, whether all was complete, and how the car ended.
@@ -92,13 +80,13 @@ fn run(track: &ConeTrack, seed: u64, camera: bool) -> (Verdict, bool, EventPhase
     let wheels = [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y));
     let mut racer = racer_for(&course);
     let mut referee = EventReferee::new(course, wheels, Point::new(OUTLINE.nose, 0.0));
-    let mut world = world(track, seed);
+    let world = world(track, seed);
+    let (mut car, truth) = (world.robot(0).unwrap(), world.truth());
+    car.set_resolution(Resolution::Vga).unwrap();
     let (mut scan, mut sight) = (LidarScan::default(), CameraSight::new(CameraMount::default()));
-    while world.time() < 60.0 {
-        let mut car = world.car(0).unwrap();
+    while truth.time() < 60.0 {
         let (pose, speed) = (car.pose().unwrap(), car.speed().unwrap());
         let command = if camera {
-            car.set_resolution(Resolution::Vga).unwrap();
             racer.decide(pose, speed, &sight.find(&car.image().unwrap()))
         } else {
             car.scan_into(&mut scan).unwrap();
@@ -106,11 +94,11 @@ fn run(track: &ConeTrack, seed: u64, camera: bool) -> (Verdict, bool, EventPhase
         };
         car.set_speed(command).unwrap();
         for _ in 0..5 {
-            world.advance(0.01);
-            let truth = world.truth(0).unwrap();
-            referee.see(world.time(), truth.pose, truth.hits);
+            car.wait(TICK).unwrap();
+            let seen = truth.robot(0).unwrap();
+            referee.see(truth.time(), seen.pose, seen.contacts as usize);
         }
-        if racer.is_done(world.car(0).unwrap().speed().unwrap()) {
+        if racer.is_done(car.speed().unwrap()) {
             break;
         }
     }
@@ -120,13 +108,7 @@ fn run(track: &ConeTrack, seed: u64, camera: bool) -> (Verdict, bool, EventPhase
 /// A run that ends behind its finish, without a penalty, near the optimum.
 fn assert_clean(track: &ConeTrack, seed: u64, camera: bool, over: f64) {
     let course = EventCourse::of(track, &OUTLINE).unwrap();
-    let spec = RaceCarSpec::default();
-    let limits = crate::race::CarLimits {
-        hold: crate::race::Hold::Balance(crate::race::Tyres::default()),
-        drive: spec.drive,
-        brake: spec.brake,
-        ..RacerParameters::default().limits
-    };
+    let limits = CarLimits::of(&RobotSpec::race_car()).unwrap();
     let optima = course.optima(&limits, &OUTLINE);
     let found = run(track, seed, camera);
     let (verdict, complete, phase) = &found;
@@ -188,11 +170,11 @@ fn without_cones_it_stops_and_says_so() {
         EventRacer::acceleration(EventParameters::default()),
         EventRacer::skidpad(EventParameters::default()),
     ] {
-        let mut world = world(&ConeTrack { start: Some(Pose::default()), ..ConeTrack::default() }, 1);
-        let outcome = control::run(&mut world.car(0).unwrap(), &mut racer, 20.0, |_, _, _| {}).unwrap();
+        let world = world(&ConeTrack { start: Some(Pose::default()), ..ConeTrack::default() }, 1);
+        let outcome = control::run(&mut world.robot(0).unwrap(), &mut racer, 20.0, |_, _, _| {}).unwrap();
         assert_eq!((outcome, racer.layout()), (RaceOutcome::Lost, None));
-        let truth = world.truth(0).unwrap();
-        assert!(truth.distance < 0.1 && world.time() < 5.0, "{truth:?}");
+        let truth = world.truth().robot(0).unwrap();
+        assert!(truth.path_length < 0.1 && world.truth().time() < 5.0, "{truth:?}");
     }
 }
 
@@ -200,21 +182,23 @@ fn without_cones_it_stops_and_says_so() {
 fn it_stops_when_it_sees_no_more() {
     for track in [strip(1.5, 5.0, 25.0), skidpad(9.125, 7.625, 10.625)] {
         let mut racer = racer_for(&EventCourse::of(&track, &OUTLINE).unwrap());
-        let mut world = world(&track, 3);
+        let world = world(&track, 3);
+        let mut car = world.robot(0).unwrap();
         let mut scan = LidarScan::default();
-        while world.time() < 20.0 && racer.phase() != EventPhase::Finished {
-            let mut car = world.car(0).unwrap();
+        while car.now().unwrap() < 20.0 && racer.phase() != EventPhase::Finished {
             car.scan_into(&mut scan).unwrap();
             if car.now().unwrap() > 4.0 {
                 scan.ranges.fill(f64::INFINITY);
             }
             let (pose, speed) = (car.pose().unwrap(), car.speed().unwrap());
             car.set_speed(racer.step(pose, speed, &scan)).unwrap();
-            world.advance(0.05);
+            car.wait(0.05).unwrap();
         }
-        let truth = world.truth(0).unwrap();
-        assert_eq!((racer.phase(), truth.hits), (EventPhase::Lost, 0), "{truth:?}");
-        assert!(truth.twist.linear.abs() < 0.05, "{truth:?}");
+        let before = world.truth().robot(0).unwrap();
+        car.wait(1.0).unwrap();
+        let truth = world.truth().robot(0).unwrap();
+        assert_eq!((racer.phase(), truth.contacts), (EventPhase::Lost, 0), "{truth:?}");
+        assert!(truth.path_length - before.path_length < 0.05, "{truth:?}");
     }
 }
 
@@ -222,10 +206,10 @@ fn it_stops_when_it_sees_no_more() {
 fn time_may_be_over_before_the_finish() {
     let track = skidpad(9.125, 7.625, 10.625);
     let mut racer = racer_for(&EventCourse::of(&track, &OUTLINE).unwrap());
-    let mut world = world(&track, 1);
-    let outcome = control::run(&mut world.car(0).unwrap(), &mut racer, 5.0, |_, _, _| {}).unwrap();
+    let world = world(&track, 1);
+    let outcome = control::run(&mut world.robot(0).unwrap(), &mut racer, 5.0, |_, _, _| {}).unwrap();
     assert_eq!((outcome, racer.phase()), (RaceOutcome::TimedOut, EventPhase::Driving));
-    assert!(world.time() < 5.1);
+    assert!(world.truth().time() < 5.1);
 }
 
 #[test]

@@ -6,8 +6,8 @@
 use std::path::Path;
 
 use super::error::{FormatError, Location, Notes, Parsed};
+use super::image_file::decode_image;
 use super::limits::MAX_IMAGE_BYTES;
-use super::ros_map::decode_image;
 use super::source::{SourceFile, read_limited, unreadable};
 use crate::world::BitGrid;
 

@@ -2,15 +2,17 @@
 //!
 //! | line | meaning |
 //! |---|---|
-//! | `obj FILE` | the 3D model |
+//! | `obj FILE` | the 3D model that cameras see, a Wavefront OBJ in metres before it is scaled |
 //! | `name NAME` | by which scenes place it; the file's name without it |
-//! | `scale S` | millimetres in a unit of the model; 1 without it |
+//! | `scale S` | the factor for the model and for its colliders, whose numbers are in millimetres; 1 without it |
 //! | `mass KG X Y Z` | its mass and the middle of it |
 //! | `[collider] box X Y Z SX SY SZ` | a solid cuboid: middle, sizes |
 //! | `[collider] sphere X Y Z R` | a solid ball |
 //! | `[collider] capsule X Y Z R H AXIS` | a solid capsule along `x`, `y` or `z` |
-//! | `buoyancy VOLUME` | cubic metres of water that it displaces |
+//! | `buoyancy VOLUME` | cubic metres of water that it displaces; kept, as there is no water |
 //! | `fixed` | nothing moves it |
+//! | `falls` | robots knock it over; a line of our own, which EyeSim skips |
+//! | `cone R TOP HEIGHT` | its shape is a cone with these radii of foot and top instead; a line of our own |
 //! | `colour R G B` | its colour; a line of our own, which EyeSim skips |
 //!
 //! The model's axes point right, up and forward. The object's shape is the upright one that holds all its colliders.
@@ -22,8 +24,9 @@ use super::args::Args;
 use super::error::{FormatError, Location, Notes, Parsed};
 use super::lexer::{self, Line, quote, shown};
 use super::limits::{MAX_METRES, MAX_PARTS};
+use super::model;
 use super::number::{self, MILLI, millimetres};
-use super::source::check_length;
+use super::source::{Files, check_length};
 use crate::world::{Axis, Body, Collider, Colour, ObjectKind, Place3, Shape};
 
 /// The colour of objects that state none.
@@ -32,21 +35,45 @@ pub const DEFAULT_COLOUR: Colour = Colour::new(160, 160, 160);
 /// The shape of objects without colliders.
 pub const DEFAULT_SHAPE: Shape = Shape::Cylinder { radius: 0.05, height: 0.1 };
 
-/// Reads an object.
+/// Reads an object, without its 3D model: [`load_object`](super::load_object) and scripts read that too.
 pub fn parse(text: &str, file: &str) -> Result<Parsed<ObjectKind>, FormatError> {
+    let (kind, _) = read(text, file)?;
+    Ok(kind)
+}
+
+/// Reads an object and its 3D model.
+pub(super) fn parse_with_model(
+    text: &str,
+    file: &str,
+    files: &mut Files<'_>,
+) -> Result<Parsed<ObjectKind>, FormatError> {
+    let (Parsed { value: mut kind, warnings }, model_at) = read(text, file)?;
+    let mut notes = Notes::new(file);
+    notes.extend(warnings);
+    if let Some(model) = &kind.model {
+        kind.mesh = model::load(model, (file, model_at), (kind.body.scale, kind.colour), files, &mut notes)?;
+    }
+    Ok(notes.finish(kind))
+}
+
+/// Reads an object, and tells where it names its model.
+fn read(text: &str, file: &str) -> Result<(Parsed<ObjectKind>, Location), FormatError> {
     check_length(text, file)?;
     let kind = ObjectKind::new(super::stem(file), DEFAULT_SHAPE, DEFAULT_COLOUR);
-    let mut reader = Reader { kind, notes: Notes::new(file) };
+    let mut reader = Reader { kind, cone: None, model_at: Location::START, notes: Notes::new(file) };
     for (number, text) in lexer::numbered(text) {
         if let Some(line) = lexer::line(file, number, text)? {
             reader.line(&line)?;
         }
     }
-    Ok(reader.finish())
+    let model_at = reader.model_at;
+    Ok((reader.finish(), model_at))
 }
 
 struct Reader<'f> {
     kind: ObjectKind,
+    cone: Option<Shape>,
+    model_at: Location,
     notes: Notes<'f>,
 }
 
@@ -57,6 +84,7 @@ impl Reader<'_> {
             "obj" => {
                 let model = args.path("the model's file", &[".obj"], &mut self.notes)?;
                 self.kind.model = Some(PathBuf::from(model));
+                self.model_at = line.location(1);
             }
             "name" => self.kind.name = args.name("a name")?,
             "scale" => self.kind.body.scale = args.plain("a scale", f64::MIN_POSITIVE..=MAX_METRES)?,
@@ -76,8 +104,21 @@ impl Reader<'_> {
                     _ => return Err(line.error(1, "`box`, `sphere` or `capsule`")),
                 }
             }
-            "buoyancy" => self.kind.buoyancy = Some(args.plain("a volume in cubic metres", 0.0..=1e9)?),
+            "buoyancy" => {
+                let volume = args.plain("a volume in cubic metres", 0.0..=1e9)?;
+                self.kind.buoyancy = Some(volume);
+                if volume > 0.0 {
+                    self.notes.warn(line.location(0), "`buoyancy`: water is not simulated");
+                }
+            }
             "fixed" => self.kind.fixed = true,
+            "falls" => self.kind.falls = true,
+            "cone" => {
+                let radius = args.positive_size("the radius of the cone's foot")?;
+                let top = args.positive_size("the radius of the cone's top")?;
+                let height = args.positive_size("the cone's height")?;
+                self.cone = Some(Shape::Cone { radius, top, height });
+            }
             "colour" | "color" => self.kind.colour = args.colour("the object")?,
             _ => {
                 let message = format!("unknown keyword {}; the line is skipped", shown(line.words[0].text));
@@ -127,8 +168,10 @@ impl Reader<'_> {
             None => {
                 let message = "no collider; a cylinder of 100 mm across and 100 mm high is taken";
                 self.notes.warn(Location::START, message);
-                // There is nothing to scale.
-                body.scale = 1.0;
+                if self.kind.model.is_none() {
+                    // There is nothing to scale.
+                    body.scale = 1.0;
+                }
             }
             Some(shape) => {
                 self.kind.shape = shape;
@@ -138,6 +181,7 @@ impl Reader<'_> {
                 }
             }
         }
+        self.kind.shape = self.cone.unwrap_or(self.kind.shape);
         self.notes.finish(self.kind)
     }
 }
@@ -154,7 +198,9 @@ fn write_kind(text: &mut String, kind: &ObjectKind) -> std::fmt::Result {
         writeln!(text, "obj {}", quote(&model.to_string_lossy()))?;
     }
     writeln!(text, "name {}", quote(&kind.name))?;
-    let keep = kind.body.shape() == Some(kind.shape);
+    // Without colliders there is only the model to scale.
+    let bare = kind.model.is_some() && kind.body.colliders.is_empty() && kind.shape == DEFAULT_SHAPE;
+    let keep = bare || kind.body.shape() == Some(kind.shape);
     let scale = if keep { kind.body.scale } else { 1.0 };
     writeln!(text, "scale {}", number::print(scale, 0))?;
     writeln!(text, "mass {} {}", number::print(kind.mass, 0), model_place(kind.body.mass_centre))?;
@@ -166,8 +212,14 @@ fn write_kind(text: &mut String, kind: &ObjectKind) -> std::fmt::Result {
     if let Some(volume) = kind.buoyancy {
         writeln!(text, "buoyancy {}", number::print(volume, 0))?;
     }
+    if let Shape::Cone { radius, top, height } = kind.shape {
+        writeln!(text, "cone {}", [radius, top, height].map(millimetres).join(" "))?;
+    }
     if kind.fixed {
         writeln!(text, "fixed")?;
+    }
+    if kind.falls {
+        writeln!(text, "falls")?;
     }
     if kind.colour != DEFAULT_COLOUR {
         writeln!(text, "colour {} {} {}", kind.colour.red, kind.colour.green, kind.colour.blue)?;
@@ -236,13 +288,23 @@ mod tests {
         let parsed = parse("obj a.obj\nbuoyancy 0.5", "a.esObj").unwrap();
         assert_eq!(parsed.value.shape, DEFAULT_SHAPE);
         assert_eq!(parsed.value.buoyancy, Some(0.5));
-        assert_eq!(parsed.warnings.len(), 1);
+        assert_eq!(parsed.warnings.len(), 2, "also of the water that there is none of");
+    }
+
+    #[test]
+    fn a_cone_that_falls_survives() {
+        let shape = Shape::Cone { radius: 0.129, top: 0.025, height: 0.325 };
+        let kind = ObjectKind { falls: true, ..ObjectKind::new("Cone", shape, Colour::BLUE) };
+        assert_eq!(object(&print(&kind)), kind);
+        let error = parse("cone 129 -3 325\n", "a.esObj").unwrap_err();
+        assert!(error.to_string().starts_with("a.esObj:1:10: found `-3`"), "{error}");
     }
 
     #[test]
     fn predefined_objects_survive() {
-        for name in ["can", "soccer", "golf", "crate"] {
-            let kind = ObjectKind::predefined(name).unwrap();
+        for name in ObjectKind::PREDEFINED {
+            // What is drawn in code is in no file.
+            let kind = ObjectKind { mesh: None, ..ObjectKind::predefined(name).unwrap() };
             assert_eq!(object(&print(&kind)), kind);
         }
     }
@@ -288,7 +350,7 @@ mod tests {
         #[test]
         fn what_is_printed_reads_back(kind in kind()) {
             let parsed = parse(&print(&kind), "x.esObj").unwrap();
-            prop_assert_eq!(parsed.warnings, vec![]);
+            prop_assert_eq!(parsed.warnings.len(), usize::from(kind.buoyancy > Some(0.0)));
             prop_assert_eq!(parsed.value, kind);
         }
 

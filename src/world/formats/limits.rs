@@ -28,3 +28,5 @@ pub(super) const MAX_PARTS: usize = 10_000;
 pub(super) const MAX_GRID_BYTES: u64 = 64 << 20;
 /// Queries of a scenario file.
 pub(super) const MAX_QUERIES: usize = 1_000_000;
+/// Triangles of a 3D model.
+pub(super) const MAX_FACES: usize = 200_000;

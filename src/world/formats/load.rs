@@ -3,7 +3,7 @@ use std::path::Path;
 use super::error::{FormatError, Location, Notes, Parsed};
 use super::lexer::shown;
 use super::limits::MAX_TEXT_BYTES;
-use super::source::{DiskFiles, FileSource, decode, read_limited, unreadable};
+use super::source::{DiskFiles, FileSource, Files, decode, read_limited, unreadable};
 use super::world_file::{Kind, kind, parse_world};
 use super::{esobj, robi, sim};
 use crate::world::{ObjectKind, RobotSpec, Scene};
@@ -30,28 +30,22 @@ pub fn parse_scene(
     file: &str,
     files: &mut dyn FileSource,
 ) -> Result<Parsed<Scene>, FormatError> {
-    scene_of(bytes, file, files, sim::parse)
+    scene_of(bytes, file, &mut Files::new(files, false))
 }
 
-/// As [`parse_scene`], but that scripts are read as by [`sim::parse_tolerantly`].
+/// As [`parse_scene`], but that scripts are read as by [`sim::parse_tolerantly`], and that a world without the images that it
+/// names has a gray, level floor.
 pub fn parse_scene_tolerantly(
     bytes: Vec<u8>,
     file: &str,
     files: &mut dyn FileSource,
 ) -> Result<Parsed<Scene>, FormatError> {
-    scene_of(bytes, file, files, sim::parse_tolerantly)
+    scene_of(bytes, file, &mut Files::new(files, true))
 }
 
-type ReadScript = fn(&str, &str, &mut dyn FileSource) -> Result<Parsed<Scene>, FormatError>;
-
-fn scene_of(
-    bytes: Vec<u8>,
-    file: &str,
-    files: &mut dyn FileSource,
-    script: ReadScript,
-) -> Result<Parsed<Scene>, FormatError> {
+fn scene_of(bytes: Vec<u8>, file: &str, files: &mut Files<'_>) -> Result<Parsed<Scene>, FormatError> {
     decoded(bytes, file, |text, file| match kind(file) {
-        Kind::Script => script(text, file, files),
+        Kind::Script => sim::parse_with(text, file, files),
         Kind::Other => {
             let expected = "a file that ends in .sim, .wld, .maz, .yaml, .yml or .map";
             Err(FormatError::new(file, Location::START, shown(file), expected))
@@ -71,10 +65,13 @@ pub fn parse_robot(bytes: Vec<u8>, file: &str) -> Result<Parsed<RobotSpec>, Form
     decoded(bytes, file, robi::parse)
 }
 
-/// Reads an object's description, `.esObj`, from disk.
+/// Reads an object's description, `.esObj`, with its 3D model from disk.
 pub fn load_object(path: impl AsRef<Path>) -> Result<Parsed<ObjectKind>, FormatError> {
     let path = path.as_ref();
-    decoded(read_file(path)?, &path.display().to_string(), esobj::parse)
+    let read = |text: &str, file: &str| {
+        esobj::parse_with_model(text, file, &mut Files::new(&mut DiskFiles::new(), false))
+    };
+    decoded(read_file(path)?, &path.display().to_string(), read)
 }
 
 /// The bytes of a file on disk, for the functions that read formats from bytes. Fails as those do for a file that

@@ -7,10 +7,12 @@ mod args;
 pub mod bitmap;
 mod error;
 pub mod esobj;
+mod image_file;
 mod lexer;
 mod limits;
 mod load;
 pub mod maz;
+mod model;
 pub mod movingai;
 mod number;
 pub mod robi;
@@ -26,7 +28,7 @@ pub use error::{FormatError, Location, Parsed, Warning};
 pub use load::{
     load_object, load_robot, load_scene, parse_robot, parse_scene, parse_scene_tolerantly, read_file,
 };
-pub use source::{DiskFiles, FileSource, MemoryFiles, SourceFile};
+pub use source::{DiskFiles, FileSource, MemoryFiles, SourceFile, in_any_case};
 
 pub(crate) use lexer::shown;
 use source::stem;

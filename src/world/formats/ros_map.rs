@@ -19,13 +19,14 @@ use std::fmt::Write as _;
 use std::io::Cursor;
 use std::path::Path;
 
-use image::{DynamicImage, GrayImage, ImageFormat, ImageReader, LumaA};
+use image::{DynamicImage, GrayImage, ImageFormat, LumaA};
 
 use super::error::{FormatError, Location, Notes, Parsed};
+use super::image_file::decode_image;
 use super::lexer::shown;
 use super::limits::{MAX_IMAGE_BYTES, MAX_METRES, MAX_TEXT_BYTES, MAX_WALLS};
 use super::number;
-use super::source::{DiskFiles, FileSource, SourceFile, check_length, decode, read_limited, unreadable};
+use super::source::{DiskFiles, FileSource, check_length, decode, read_limited, unreadable};
 use super::yaml::{self, Scalar, Value};
 use crate::geometry::Pose;
 use crate::world::{GridError, OccupancyGrid, World};
@@ -287,39 +288,6 @@ impl Header<'_> {
     fn wrong(&self, scalar: &Scalar, expected: &str) -> FormatError {
         FormatError::new(self.notes.file, scalar.at, shown(&scalar.text), expected)
     }
-}
-
-/// Bytes that decoding an image may take.
-const MAX_DECODED_BYTES: u64 = 128 << 20;
-
-pub(super) fn decode_image(source: &SourceFile) -> Result<DynamicImage, FormatError> {
-    let error =
-        |found: String, expected: &str| FormatError::new(&source.name, Location::START, found, expected);
-    let mut reader = ImageReader::new(Cursor::new(&source.bytes));
-    let ending = Path::new(&source.name).extension().and_then(|e| e.to_str()).unwrap_or("");
-    let by_name = ImageFormat::from_extension(ending);
-    if let Some(format) = image::guess_format(&source.bytes).ok().or(by_name) {
-        reader.set_format(format);
-    }
-    let mut limits = image::Limits::default();
-    limits.max_alloc = Some(MAX_DECODED_BYTES);
-    reader.limits(limits);
-    let decoded = reader.decode().map_err(|e| {
-        let expected = match &e {
-            image::ImageError::Limits(_) => "an image of at most 128 MiB when decoded",
-            _ => "a whole PGM, PNG or BMP image",
-        };
-        error(format!("a broken image ({e})"), expected)
-    })?;
-    if decoded.width() == 0 || decoded.height() == 0 {
-        let found = format!("an image of {} by {} pixels", decoded.width(), decoded.height());
-        return Err(error(found, "at least one pixel"));
-    }
-    let cells = u64::from(decoded.width()) * u64::from(decoded.height());
-    if cells > OccupancyGrid::MAX_CELLS as u64 {
-        return Err(error(format!("an image of {cells} pixels"), "at most 33554432 pixels"));
-    }
-    Ok(decoded)
 }
 
 impl RosMap {

@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use super::error::{FormatError, Location, Notes};
 use super::limits::MAX_TEXT_BYTES;
@@ -21,12 +21,16 @@ pub trait FileSource {
     fn read(&mut self, reference: &str, referrer: &str, limit: u64) -> io::Result<SourceFile>;
 }
 
-/// Files on disk, looked up as EyeSim does: as written, then from the folder of the file that names it, then from
-/// the home folder.
+/// Files on disk, looked up from the file that names them.
 ///
-/// `\` counts as `/`; a leading `~` and `$HOME` stand for the home folder; EyeSim 6's `%sim%` is dropped, so that
-/// what follows it is looked up in all places. Of a path with a drive letter that leads nowhere, the file's name alone
-/// is looked up in the folder of the file that names it.
+/// First comes the name as written, from the folder of the file that names it. A file that is not there is looked for where
+/// EyeSim's own installation would have it, and where it lies if it came along without the installation's folders: the
+/// rest of the name behind `..` from that folder and the three above it; shorter and shorter ends of the name in that folder;
+/// and the same in the folders that EyeSim has for its kind, such as `texture` or `objects`, in or up to three folders above
+/// it. Last come the working folder and the home folder. Letters may differ in case.
+///
+/// `\` counts as `/`; a leading `~` and `$HOME` stand for the home folder; EyeSim 6's `%sim%` is dropped, and so is a drive
+/// letter where it leads nowhere.
 #[derive(Debug, Clone, Default)]
 pub struct DiskFiles {
     home: Option<PathBuf>,
@@ -43,7 +47,8 @@ impl DiskFiles {
         Self { home }
     }
 
-    fn candidates(&self, reference: &str, referrer: &str) -> Vec<PathBuf> {
+    /// The name with folders between `/`, and the home folder in place of what stands for it.
+    fn plain(&self, reference: &str) -> String {
         let mut written = reference.replace('\\', "/");
         if let Some(home) = self.home.as_deref().and_then(Path::to_str) {
             written = written.replace("${HOME}", home).replace("$HOME", home);
@@ -51,24 +56,150 @@ impl DiskFiles {
                 written = format!("{home}/{rest}");
             }
         }
-        let start = written.get(..5).is_some_and(|start| start.eq_ignore_ascii_case("%sim%"));
-        let plain = if start { written[5..].trim_start_matches('/') } else { &written };
-        let mut list = vec![PathBuf::from(reference), PathBuf::from(plain)];
-        list.extend(Path::new(referrer).parent().map(|folder| folder.join(plain)));
-        list.extend(self.home.as_deref().map(|home| home.join(plain)));
-        // The path of another machine: the file may have come along with the one that names it.
-        let drive = plain.as_bytes().get(1) == Some(&b':');
-        let base = plain.rsplit('/').next().filter(|base| drive && !base.is_empty());
-        list.extend(base.and_then(|base| Some(Path::new(referrer).parent()?.join(base))));
-        list
+        let old = written.get(..5).is_some_and(|start| start.eq_ignore_ascii_case("%sim%"));
+        if old { written[5..].trim_start_matches('/').into() } else { written }
     }
+
+    fn find(&self, reference: &str, referrer: &str) -> Option<PathBuf> {
+        let plain = self.plain(reference);
+        let folder = Path::new(referrer).parent().unwrap_or(Path::new(""));
+        let exact = |places: &[PathBuf]| places.iter().find(|path| path.is_file()).cloned();
+        exact(&[folder.join(reference), folder.join(&plain)])
+            .or_else(|| in_any_case(folder, Path::new(&plain)))
+            .or_else(|| installed(folder, &plain))
+            .or_else(|| exact(&[PathBuf::from(&plain)]))
+            .or_else(|| exact(&[self.home.as_deref()?.join(&plain)]))
+    }
+}
+
+/// How many folders above that of the file that names another one belong to the same installation.
+const LEVELS: usize = 3;
+
+/// A file that is not where its name says, in the folders of EyeSim's installation or brought along without them.
+fn installed(folder: &Path, plain: &str) -> Option<PathBuf> {
+    let bare = plain.trim_start_matches(|c: char| c.is_ascii_alphabetic()).strip_prefix(':').unwrap_or(plain);
+    let parts: Vec<&str> = bare.split('/').filter(|part| !matches!(*part, "" | "." | "..")).collect();
+    let tails: Vec<PathBuf> = (0..parts.len()).map(|from| parts[from..].iter().collect()).collect();
+    let whole = tails.first()?;
+    let mut above = vec![folder.to_owned()];
+    // Folders may be relative, so their ancestors are found by `..`.
+    above.extend((1..=LEVELS).map(|level| folder.join(["..", "../..", "../../.."][level - 1])));
+    let by_root = above.iter().find_map(|root| in_any_case(root, whole));
+    let brought = || tails.iter().find_map(|tail| in_any_case(folder, tail));
+    let by_kind = || {
+        above.iter().find_map(|root| {
+            kind_folders(whole)
+                .iter()
+                .find_map(|kind| tails.iter().find_map(|tail| in_any_case(root, &Path::new(kind).join(tail))))
+        })
+    };
+    by_root.or_else(brought).or_else(by_kind)
+}
+
+/// The folders that EyeSim and its users have for files of a kind.
+fn kind_folders(file: &Path) -> &'static [&'static str] {
+    let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    match ending.to_ascii_lowercase().as_str() {
+        "png" | "jpg" | "jpeg" | "bmp" => {
+            &["texture", "textures", "heightmap", "worlds/texture", "worlds/heightmap"]
+        }
+        "esobj" | "obj" | "mtl" => &["objects", "object"],
+        "robi" => &["robots", "robot"],
+        "wld" | "maz" => &["worlds", "worlds/small", "worlds/aquatic", "world"],
+        _ => &[],
+    }
+}
+
+/// The file of a path from a folder, whose names differ at most in the case of their letters.
+///
+/// ```
+/// use std::path::Path;
+/// use roverlab::world::formats::in_any_case;
+///
+/// assert_eq!(in_any_case(Path::new("src"), Path::new("LIB.RS")), Some("src/lib.rs".into()));
+/// assert_eq!(in_any_case(Path::new(""), Path::new("src")), None);
+/// ```
+pub fn in_any_case(folder: &Path, path: &Path) -> Option<PathBuf> {
+    let mut place = folder.to_owned();
+    for part in path.components() {
+        match part {
+            Component::Normal(name) if !place.join(name).exists() => {
+                let here = if place.as_os_str().is_empty() { Path::new(".") } else { &place };
+                let entries = std::fs::read_dir(here).ok()?.filter_map(Result::ok);
+                let mut names: Vec<_> = entries.map(|entry| entry.file_name()).collect();
+                names.sort();
+                let wanted = name.to_string_lossy();
+                let found = names.into_iter().find(|n| n.to_string_lossy().eq_ignore_ascii_case(&wanted))?;
+                place.push(found);
+            }
+            part => place.push(part),
+        }
+    }
+    place.is_file().then_some(place)
 }
 
 impl FileSource for DiskFiles {
     fn read(&mut self, reference: &str, referrer: &str, limit: u64) -> io::Result<SourceFile> {
-        let found = self.candidates(reference, referrer).into_iter().find(|path| path.is_file());
-        let path = found.ok_or(io::ErrorKind::NotFound)?;
+        let path = self.find(reference, referrer).ok_or(io::ErrorKind::NotFound)?;
         Ok(SourceFile { name: path.display().to_string(), bytes: read_limited(&path, limit)? })
+    }
+}
+
+/// Where the files come from that a file names, and what becomes of one that is missing or broken.
+pub(super) struct Files<'a> {
+    source: &'a mut dyn FileSource,
+    /// Whether the reader gets over it with a warning.
+    pub(super) tolerant: bool,
+}
+
+impl<'a> Files<'a> {
+    pub(super) fn new(source: &'a mut dyn FileSource, tolerant: bool) -> Self {
+        Self { source, tolerant }
+    }
+
+    /// The source itself, for formats that name files of their own.
+    pub(super) fn source(&mut self) -> &mut dyn FileSource {
+        self.source
+    }
+
+    /// Reads the file that is called `reference` at some place of another one.
+    pub(super) fn read(
+        &mut self,
+        reference: &str,
+        named: (&str, Location),
+        limit: u64,
+    ) -> Result<SourceFile, FormatError> {
+        self.read_if_there(reference, named, limit)?.ok_or_else(|| missing(reference, named))
+    }
+
+    /// As [`read`](Self::read); `None` if there is no such file.
+    pub(super) fn read_if_there(
+        &mut self,
+        reference: &str,
+        (referrer, at): (&str, Location),
+        limit: u64,
+    ) -> Result<Option<SourceFile>, FormatError> {
+        match self.source.read(reference, referrer, limit) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(unreadable(&error, reference, referrer, at, limit)),
+            Ok(found) => Ok(Some(found)),
+        }
+    }
+
+    /// Hands on what came of reading, or gets over its error with a warning that ends with what is done instead.
+    pub(super) fn get_over<T>(
+        &self,
+        result: Result<T, FormatError>,
+        instead: &str,
+        notes: &mut Notes<'_>,
+    ) -> Result<Option<T>, FormatError> {
+        match result {
+            Err(error) if self.tolerant => {
+                notes.get_over(error, instead);
+                Ok(None)
+            }
+            result => result.map(Some),
+        }
     }
 }
 
@@ -116,6 +247,11 @@ pub(super) fn unreadable(error: &io::Error, name: &str, file: &str, at: Location
     FormatError::new(file, at, found, expected)
 }
 
+/// The error for a file that does not exist, placed where it is named.
+pub(super) fn missing(name: &str, (file, at): (&str, Location)) -> FormatError {
+    unreadable(&io::ErrorKind::NotFound.into(), name, file, at, 0)
+}
+
 /// The text of a file: UTF-8, or Latin-1 with a warning.
 pub(super) fn decode(bytes: Vec<u8>, notes: &mut Notes<'_>) -> Result<String, FormatError> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) || bytes.contains(&0) {
@@ -160,7 +296,7 @@ mod tests {
     impl Folder {
         fn new(name: &str) -> Self {
             let folder = std::env::temp_dir().join(format!("roverlab-{name}-{}", std::process::id()));
-            for inner in ["home/worlds", "project/scripts"] {
+            for inner in ["home/worlds", "project/scripts", "project/worlds/texture", "project/object/sign"] {
                 std::fs::create_dir_all(folder.join(inner)).unwrap();
             }
             Self(folder)
@@ -194,6 +330,7 @@ mod tests {
         for (reference, expected) in [
             (absolute.as_str(), "project"),
             ("b.wld", "scripts"),
+            ("B.WLD", "scripts"),
             (r"..\b.wld", "project"),
             (r"./../scripts\b.wld", "scripts"),
             ("worlds/a.wld", "home"),
@@ -203,6 +340,19 @@ mod tests {
             (r"%sim%\worlds\a.wld", "home"),
             ("%SIM%b.wld", "scripts"),
             (r"C:\worlds\b.wld", "scripts"),
+        ] {
+            assert_eq!(read(reference).as_deref(), Ok(expected), "{reference}");
+        }
+        // Without the installation's folders, or from another folder of it.
+        folder.write("project/scripts/picture.PNG", "beside");
+        folder.write("project/worlds/texture/carpet.jpg", "installed");
+        folder.write("project/object/sign/sign.esObj", "renamed");
+        for (reference, expected) in [
+            ("../texture/picture.png", "beside"),
+            ("../../../worlds/texture/carpet.jpg", "installed"),
+            ("../texture/Carpet.jpg", "installed"),
+            ("../../objects/sign/Sign.esObj", "renamed"),
+            (r"D:\eyesim\objects\sign\sign.esObj", "renamed"),
         ] {
             assert_eq!(read(reference).as_deref(), Ok(expected), "{reference}");
         }

@@ -3,31 +3,72 @@
 //! | line | meaning |
 //! |---|---|
 //! | `floor W H`, or `width W` and `height H` | a floor from (0, 0) |
-//! | `floor_texture FILE` | an image stretched over it |
+//! | `floor_texture FILE` | an image stretched over it: PNG, JPEG or BMP |
 //! | `X1 Y1 X2 Y2 [THICKNESS HEIGHT [R G B]]` | a wall; other counts of numbers use the first four |
 //! | `push X Y PHI` … `pop` | moves the walls between them: by (X, Y), then turned **clockwise** by PHI |
 //! | `position X Y PHI` | the start pose, PHI counter-clockwise |
-//! | `terrain W H ELEVATION FILE` | a height image; sets the floor's size too |
-//! | `water_level Z` | water |
+//! | `terrain W H ELEVATION FILE` | a height image, in pictures alone; sets the floor's size too |
+//! | `water_level Z` | water, in pictures alone |
 //!
 //! Keywords are read in any case. A line that begins with anything else is skipped with a warning, and so is a wall
 //! of fewer than four numbers, as EyeSim does. A world without a floor gets one that reaches from (0, 0) as far as
 //! its walls. Objects, marks and places do not belong into this format: simulation scripts hold them.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 use super::args::Args;
 use super::error::{FormatError, Location, Notes, Parsed};
+use super::image_file;
 use super::lexer::{self, Line, quote};
 use super::limits::{MAX_METRES, MAX_PUSHES, MAX_WALLS};
 use super::number::{self, degrees, millimetres};
-use super::source::check_length;
+use super::source::{Files, check_length};
 use crate::geometry::{Aabb, Point, Pose, Segment, math, units};
 use crate::world::{Terrain, Wall, World};
 
-/// Reads a world.
+/// Reads a world, without the images that it names: [`load_scene`](super::load_scene) reads these too.
 pub fn parse(text: &str, file: &str) -> Result<Parsed<World>, FormatError> {
+    let (world, _) = read(text, file)?;
+    Ok(world)
+}
+
+/// Reads a world and the images that it names.
+pub(super) fn parse_with_images(
+    text: &str,
+    file: &str,
+    files: &mut Files<'_>,
+) -> Result<Parsed<World>, FormatError> {
+    let (Parsed { value: mut world, warnings }, places) = read(text, file)?;
+    let mut notes = Notes::new(file);
+    notes.extend(warnings);
+    if let Some(texture) = &mut world.floor_texture {
+        image_file::load(texture, (file, places.texture), files, &mut notes, "the floor is gray")?;
+        if texture.image.is_none() {
+            world.floor_texture = None;
+        }
+    }
+    if let Some(terrain) = &mut world.terrain {
+        image_file::load(
+            &mut terrain.image,
+            (file, places.terrain),
+            files,
+            &mut notes,
+            "there are no hills",
+        )?;
+        if terrain.image.image.is_none() {
+            world.terrain = None;
+        }
+    }
+    Ok(notes.finish(world))
+}
+
+/// Where the names of images stand.
+struct Places {
+    texture: Location,
+    terrain: Location,
+}
+
+fn read(text: &str, file: &str) -> Result<(Parsed<World>, Places), FormatError> {
     check_length(text, file)?;
     let mut reader = Reader::new(file);
     for (number, text) in lexer::numbered(text) {
@@ -35,11 +76,13 @@ pub fn parse(text: &str, file: &str) -> Result<Parsed<World>, FormatError> {
             reader.line(&line)?;
         }
     }
-    Ok(reader.finish())
+    let places = Places { ..reader.places };
+    Ok((reader.finish(), places))
 }
 
 struct Reader<'f> {
     world: World,
+    places: Places,
     width: Option<f64>,
     height: Option<f64>,
     frames: Vec<Frame>,
@@ -49,7 +92,8 @@ struct Reader<'f> {
 impl<'f> Reader<'f> {
     fn new(file: &'f str) -> Self {
         let (world, notes) = (World::empty(0.0, 0.0), Notes::new(file));
-        Self { world, width: None, height: None, frames: Vec::new(), notes }
+        let places = Places { texture: Location::START, terrain: Location::START };
+        Self { world, places, width: None, height: None, frames: Vec::new(), notes }
     }
 
     fn line(&mut self, line: &Line<'_>) -> Result<(), FormatError> {
@@ -65,15 +109,20 @@ impl<'f> Reader<'f> {
             "floor_texture" => {
                 let image =
                     args.path("an image file", &[".png", ".jpg", ".jpeg", ".bmp"], &mut self.notes)?;
-                self.world.floor_texture = Some(PathBuf::from(image));
+                self.world.floor_texture = Some(image.into());
+                self.places.texture = line.location(1);
             }
             "push" => self.push(line, &mut args)?,
             "pop" => {
                 self.frames.pop();
             }
             "position" => self.world.start = Some(pose(&mut args)?),
-            "terrain" => self.terrain(&mut args)?,
-            "water_level" => self.world.water_level = Some(args.length("the water level")?),
+            "terrain" => self.terrain(line, &mut args)?,
+            "water_level" => {
+                self.world.water_level = Some(args.length("the water level")?);
+                self.notes
+                    .warn(line.location(0), "`water_level`: water is shown in pictures and not simulated");
+            }
             _ => {
                 let message = format!("unknown keyword {}; the line is skipped", lexer::shown(keyword));
                 self.notes.warn(line.location(0), message);
@@ -101,13 +150,16 @@ impl<'f> Reader<'f> {
         Ok(())
     }
 
-    fn terrain(&mut self, args: &mut Args<'_, '_>) -> Result<(), FormatError> {
+    fn terrain(&mut self, line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<(), FormatError> {
         let width = args.size("the terrain's width")?;
         let height = args.size("the terrain's height")?;
         let max_elevation = args.length("the terrain's highest elevation")?;
         let image = args.path("the terrain's image", &[".png", ".jpg", ".jpeg", ".bmp"], &mut self.notes)?;
-        self.world.terrain = Some(Terrain { width, height, max_elevation, image: PathBuf::from(image) });
+        self.world.terrain = Some(Terrain { width, height, max_elevation, image: image.into() });
+        self.places.terrain = line.location(4);
         self.floor(width, height);
+        self.notes
+            .warn(line.location(0), "`terrain`: hills are shown in pictures; robots drive on a level floor");
         Ok(())
     }
 
@@ -217,12 +269,12 @@ fn write_world(text: &mut String, world: &World) -> std::fmt::Result {
     if let Some(t) = &world.terrain {
         let (width, height, top) =
             (millimetres(t.width), millimetres(t.height), millimetres(t.max_elevation));
-        writeln!(text, "terrain {width} {height} {top} {}", quote(&t.image.to_string_lossy()))?;
+        writeln!(text, "terrain {width} {height} {top} {}", quote(&t.image.file.to_string_lossy()))?;
     }
     let corner = world.floor.max;
     writeln!(text, "floor {} {}", millimetres(corner.x.max(0.0)), millimetres(corner.y.max(0.0)))?;
     if let Some(image) = &world.floor_texture {
-        writeln!(text, "floor_texture {}", quote(&image.to_string_lossy()))?;
+        writeln!(text, "floor_texture {}", quote(&image.file.to_string_lossy()))?;
     }
     if let Some(level) = world.water_level {
         writeln!(text, "water_level {}", millimetres(level))?;
@@ -251,7 +303,7 @@ fn write_wall(text: &mut String, wall: &Wall) -> std::fmt::Result {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::Colour;
+    use crate::world::{Colour, Texture};
     use proptest::prelude::*;
 
     fn world(text: &str) -> World {
@@ -268,7 +320,14 @@ mod tests {
                     0 0 5000 0\n\t0 0 0 4000 20 500 ; thick 1\n0 1 2 3 10 200 255 0 128\n\
                     position 100 200 90\nwater_level 150\nterrain 6000 7000 300 ../h/crater.png";
         let Parsed { value, warnings } = parse(text, "test.wld").unwrap();
-        assert_eq!(warnings, []);
+        let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            warnings,
+            [
+                "test.wld:8:1: `water_level`: water is shown in pictures and not simulated",
+                "test.wld:9:1: `terrain`: hills are shown in pictures; robots drive on a level floor",
+            ]
+        );
         assert_eq!(value.floor.max, Point::new(6.0, 7.0));
         assert_eq!(value.floor_texture, Some("my floor.png".into()));
         assert_eq!(value.walls[0], Wall::new(Point::new(0.0, 0.0), Point::new(5.0, 0.0)));
@@ -327,8 +386,8 @@ mod tests {
         prop_oneof![(-1e6..1e6f64), (-9999..9999i32).prop_map(|mm| f64::from(mm) / 1000.0)]
     }
 
-    fn path() -> impl Strategy<Value = PathBuf> {
-        "[a-z\\\\ ./$#;']{1,12}".prop_map(PathBuf::from)
+    fn path() -> impl Strategy<Value = Texture> {
+        "[a-z\\\\ ./$#;']{1,12}".prop_map(|file| Texture::from(file.as_str()))
     }
 
     fn wall() -> impl Strategy<Value = Wall> {
@@ -367,7 +426,8 @@ mod tests {
         #[test]
         fn what_is_printed_reads_back(world in any_world()) {
             let parsed = parse(&print(&world), "w.wld").unwrap();
-            prop_assert_eq!(parsed.warnings, vec![]);
+            let unused = usize::from(world.terrain.is_some()) + usize::from(world.water_level.is_some());
+            prop_assert_eq!(parsed.warnings.len(), unused);
             prop_assert_eq!(parsed.value, world);
         }
 

@@ -1,24 +1,27 @@
 use super::error::{FormatError, Location, Notes, Parsed};
 use super::lexer::shown;
 use super::limits::MAX_TEXT_BYTES;
-use super::source::{FileSource, decode, unreadable};
+use super::source::{Files, decode, missing, stem};
 use super::{maz, movingai, ros_map, wld};
 use crate::world::World;
 
-/// Finds and reads the world that a file calls `reference` at some place.
+/// Finds and reads the world that a file calls `reference` at some place, or one of that name which is built in.
 pub(super) fn read_world(
     reference: &str,
-    referrer: &str,
-    at: Location,
-    files: &mut dyn FileSource,
+    (referrer, at): (&str, Location),
+    files: &mut Files<'_>,
 ) -> Result<Parsed<World>, FormatError> {
     // A script that names a script, itself for one, is no world: say so before reading it.
     if !matches!(kind(reference), Kind::World | Kind::Maze | Kind::Map | Kind::Grid) {
         return Err(not_a_world(reference, referrer, at));
     }
-    let source = files
-        .read(reference, referrer, MAX_TEXT_BYTES)
-        .map_err(|error| unreadable(&error, reference, referrer, at, MAX_TEXT_BYTES))?;
+    let Some(source) = files.read_if_there(reference, (referrer, at), MAX_TEXT_BYTES)? else {
+        let world = World::predefined(&stem(reference));
+        let world = world.ok_or_else(|| missing(reference, (referrer, at)))?;
+        let mut notes = Notes::new(referrer);
+        notes.warn(at, format!("{} does not exist; the built-in world is used", shown(reference)));
+        return Ok(notes.finish(world));
+    };
     let mut notes = Notes::new(&source.name);
     let text = decode(source.bytes, &mut notes)?;
     let parsed = parse_world(&text, &source.name, files, referrer, at)?;
@@ -30,15 +33,15 @@ pub(super) fn read_world(
 pub(super) fn parse_world(
     text: &str,
     file: &str,
-    files: &mut dyn FileSource,
+    files: &mut Files<'_>,
     referrer: &str,
     at: Location,
 ) -> Result<Parsed<World>, FormatError> {
     match kind(file) {
-        Kind::World => wld::parse(text, file),
+        Kind::World => wld::parse_with_images(text, file, files),
         Kind::Maze => maz::parse(text, file),
         Kind::Map => {
-            let map = ros_map::parse(text, file, files)?;
+            let map = ros_map::parse(text, file, files.source())?;
             let world = ros_map::to_world(&map.value, file)?;
             Ok(map.map(|_| world))
         }

@@ -9,7 +9,7 @@
 //! use roverlab::world::{Footprint, World, space::{Solid, Space}};
 //!
 //! let mut space = Space::new(&World::walled(4.0, 2.0).walls);
-//! let can = Solid { outline: Footprint::Disc { radius: 0.1 }, pose: Pose::new(3.0, 1.0, 0.0), bottom: 0.0, top: 0.2 };
+//! let can = Solid::new(Footprint::Disc { radius: 0.1 }, Pose::new(3.0, 1.0, 0.0), 0.0, 0.2);
 //! let can = space.add(can);
 //! let range = |space: &Space| space.cast_ray(Point::new(1.0, 1.0), Vector::x(), 0.05, 10.0, None);
 //! assert!((range(&space) - 1.9).abs() < 1e-12);

@@ -1,6 +1,6 @@
 use super::shape::{OrientedBox, Shape};
 use super::solid::{SolidId, Span};
-use super::store::Space;
+use super::store::{Placed, Space};
 use crate::geometry::{Point, Vector, cross};
 
 /// A ray. Distances along it are measured on the floor.
@@ -43,7 +43,10 @@ impl Space {
             if except == Some(SolidId(number)) {
                 return;
             }
-            if let Some(hit) = ray.hit(&placed.shape, &placed.span) {
+            if let Some(hit) = ray.hit(placed) {
+                *nearest = lesser(hit, *nearest);
+            }
+            if let Some(hit) = placed.mast.as_ref().and_then(|mast| ray.hit_box(&mast.shape, &mast.span)) {
                 *nearest = lesser(hit, *nearest);
             }
         };
@@ -59,13 +62,31 @@ impl Space {
 }
 
 impl Ray {
-    /// The distance to a shape that stands between two heights.
+    /// The distance to a solid.
     #[inline]
-    fn hit(&self, shape: &Shape, span: &Span) -> Option<f64> {
-        match shape {
-            Shape::Disc { centre, radius } => self.hit_disc(*centre, *radius, span),
-            Shape::Box(shape) => self.hit_box(shape, span),
+    fn hit(&self, placed: &Placed) -> Option<f64> {
+        match &placed.shape {
+            Shape::Disc { centre, radius } if placed.taper == 0.0 => {
+                self.hit_disc(*centre, *radius, &placed.span)
+            }
+            Shape::Disc { centre, .. } => self.hit_cone(*centre, placed),
+            Shape::Box(shape) => self.hit_box(shape, &placed.span),
         }
+    }
+
+    /// The radius of a cone changes evenly along the ray.
+    fn hit_cone(&self, centre: Point, cone: &Placed) -> Option<f64> {
+        let (radius, shrinks) = (cone.radius_at(self.z), cone.taper * self.slope);
+        let to_centre = centre - self.origin;
+        let square = 1.0 - shrinks * shrinks;
+        let middle = (self.direction.dot(&to_centre) - radius * shrinks) / square;
+        let squared = middle * middle - (to_centre.norm_squared() - radius * radius) / square;
+        // A ray as steep as the cone's side, or steeper, meets no side that rays from beside it meet.
+        if squared < 0.0 || square <= 0.0 {
+            return None;
+        }
+        let half = squared.sqrt();
+        self.first_within(middle - half, middle + half, &cone.span)
     }
 
     #[inline]

@@ -3,7 +3,7 @@ use super::fan::{Fan, Sector};
 use super::grid::Cells;
 use super::polar::PolarBuffer;
 use super::ray::Ray;
-use super::shape::Shape;
+use super::shape::{OrientedBox, Shape};
 use super::solid::SolidId;
 use super::store::Space;
 use crate::geometry::{Point, Pose, math};
@@ -143,18 +143,16 @@ impl Space {
 
     fn draw_solid(&self, buffer: &mut PolarBuffer, number: u32, z: f64, seen: &mut [bool]) -> bool {
         let placed = &self.solids[number as usize];
-        if std::mem::replace(&mut seen[number as usize], true) || !placed.span.contains(z) {
+        if std::mem::replace(&mut seen[number as usize], true) {
             return false;
         }
+        if !placed.span.contains(z) {
+            let mast = placed.mast.as_ref().filter(|mast| mast.span.contains(z));
+            return mast.is_some_and(|mast| draw_box(buffer, &mast.shape));
+        }
         match &placed.shape {
-            Shape::Disc { centre, radius } => buffer.draw_disc(*centre, *radius),
-            Shape::Box(shape) => {
-                let stroke = buffer.stroke(shape);
-                if !stroke.inside {
-                    buffer.draw(&stroke);
-                }
-                stroke.inside
-            }
+            Shape::Disc { centre, .. } => buffer.draw_disc(*centre, placed.radius_at(z)),
+            Shape::Box(shape) => draw_box(buffer, shape),
         }
     }
 
@@ -188,6 +186,15 @@ impl Space {
             *range = if hit <= scanner.max_range { hit } else { f64::INFINITY };
         }
     }
+}
+
+/// Draws a box; true if the scanner is in it.
+fn draw_box(buffer: &mut PolarBuffer, shape: &OrientedBox) -> bool {
+    let stroke = buffer.stroke(shape);
+    if !stroke.inside {
+        buffer.draw(&stroke);
+    }
+    stroke.inside
 }
 
 /// Something that may be seen.
@@ -287,7 +294,7 @@ mod tests {
             Footprint::Disc { radius: 0.1 },
             Footprint::Rectangle(Aabb::new(Point::new(-0.1, -0.1), Point::new(0.1, 0.1))),
         ] {
-            let id = space.add(Solid { outline, pose, bottom: 0.0, top: 0.15 });
+            let id = space.add(Solid::new(outline, pose, 0.0, 0.15));
             let mut scanner = Scanner::new(0.0, FRAC_PI_2, 4, 0.1, 0.0, 10.0);
             let mut ranges = [0.0; 4];
             space.scan(&mut scanner, &pose, Some(id), &mut ranges);
@@ -298,6 +305,27 @@ mod tests {
             assert!(near(&ranges, &[1.995, 1.495, 0.9, 0.495]));
             space.set_pose(id, Pose::new(3.0, 1.5, 0.0));
         }
+    }
+
+    /// The level scan, which is drawn, and single rays find the same narrow mast above a wide foot.
+    #[test]
+    fn a_mast_is_met_above_the_foot_alone() {
+        let mut space = Space::new(&World::walled(4.0, 2.0).walls);
+        let outline = Aabb::new(Point::new(-0.05, -0.04), Point::new(-0.03, 0.04));
+        let foot = Solid::new(Footprint::Disc { radius: 0.1 }, Pose::new(1.0, 1.0, 0.0), 0.0, 0.12);
+        let id = space.add(Solid { mast: Some(crate::world::Mast { outline, top: 0.6 }), ..foot });
+        space.set_pose(id, Pose::new(2.0, 1.0, 0.0));
+        for (z, expected) in [(0.1, 0.9), (0.3, 0.95), (0.5, 0.95), (0.61, f64::INFINITY)] {
+            let eye = Point::new(1.0, 1.0);
+            let ray = space.cast_ray(eye, Vector::x(), z, 10.0, None);
+            let scan =
+                scan(&space, Scanner::new(0.0, FRAC_PI_2, 4, z, 0.0, 10.0), Pose::new(1.0, 1.0, 0.0))[0];
+            assert!(near(&[ray, scan], &[expected, expected]), "{z}: {ray} {scan}");
+        }
+        // Tilted by 10 degrees, from 0.1 m up and 0.95 m away.
+        let tilt = crate::geometry::units::from_deg(10.0);
+        let range = scan(&space, Scanner::new(0.0, 0.1, 1, 0.1, tilt, 10.0), Pose::new(1.0, 1.0, 0.0))[0];
+        assert!((range - 0.95 / math::cos(tilt)).abs() < 1e-9, "{range}");
     }
 
     #[test]
@@ -335,7 +363,7 @@ mod tests {
             let mut space = Space::new(&walls);
             for &(x, y, radius, bottom) in &discs {
                 let pose = Pose::new(x, y, 0.0);
-                space.add(Solid { outline: Footprint::Disc { radius }, pose, bottom, top: bottom + 0.1 });
+                space.add(Solid::new(Footprint::Disc { radius }, pose, bottom, bottom + 0.1));
             }
             let filled = |p: Point, h: f64| {
                 let in_wall = |w: &Wall| {

@@ -92,7 +92,7 @@ impl Shape {
     }
 }
 
-/// A box between two heights: a wall.
+/// A box between two heights: a wall, a mast.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Block {
     pub(super) shape: OrientedBox,

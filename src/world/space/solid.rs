@@ -1,6 +1,6 @@
-use super::shape::{OrientedBox, Shape as Placed};
+use super::shape::{Block, OrientedBox, Shape as Placed};
 use crate::geometry::{Aabb, Point, Pose};
-use crate::world::{Footprint, Object, RobotPlacement, Shape};
+use crate::world::{Footprint, Mast, Object, RobotPlacement, Shape};
 
 /// What stands upright: an outline on the floor between two heights.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,12 +13,28 @@ pub struct Solid {
     pub bottom: f64,
     /// Metres from the floor to its top.
     pub top: f64,
+    /// Metres by which a disc's radius is less, as rays meet it, for each metre above its foot.
+    pub taper: f64,
+    /// What stands up from it, which rays alone meet.
+    pub mast: Option<Mast>,
 }
 
 impl Solid {
+    /// A solid of the same outline at all heights, without a mast.
+    pub fn new(outline: Footprint, pose: Pose, bottom: f64, top: f64) -> Self {
+        Self { outline, pose, bottom, top, taper: 0.0, mast: None }
+    }
+
     /// The heights between which it stands.
     pub fn span(&self) -> Span {
         Span { bottom: self.bottom, top: self.top }
+    }
+
+    /// The mast where it is.
+    pub(super) fn placed_mast(&self) -> Option<Block> {
+        let Mast { outline, top } = self.mast?;
+        let span = Span { bottom: self.top, top: self.bottom + top };
+        Some(Block { shape: OrientedBox::placed(&outline, &self.pose), span })
     }
 }
 
@@ -37,14 +53,20 @@ impl From<&Object> for Solid {
     /// An object as robots meet it.
     fn from(object: &Object) -> Self {
         let outline = match object.kind.shape {
-            Shape::Cylinder { radius, .. } | Shape::Sphere { radius } => Footprint::Disc { radius },
+            Shape::Cylinder { radius, .. } | Shape::Cone { radius, .. } | Shape::Sphere { radius } => {
+                Footprint::Disc { radius }
+            }
             Shape::Box { length, width, .. } => {
                 let corner = Point::new(0.5 * length, 0.5 * width);
                 Footprint::Rectangle(Aabb::new(-corner, corner))
             }
         };
         let bottom = object.elevation;
-        Self { outline, pose: object.pose, bottom, top: bottom + object.kind.shape.height() }
+        let taper = match object.kind.shape {
+            Shape::Cone { radius, top, height } => (radius - top) / height,
+            _ => 0.0,
+        };
+        Self { taper, ..Self::new(outline, object.pose, bottom, bottom + object.kind.shape.height()) }
     }
 }
 
@@ -52,7 +74,8 @@ impl From<&RobotPlacement> for Solid {
     /// A robot as others meet it.
     fn from(robot: &RobotPlacement) -> Self {
         let bottom = robot.elevation;
-        Self { outline: robot.spec.footprint, pose: robot.pose, bottom, top: bottom + robot.spec.height }
+        let spec = &robot.spec;
+        Self { mast: spec.mast, ..Self::new(spec.footprint, robot.pose, bottom, bottom + spec.height) }
     }
 }
 

@@ -30,10 +30,24 @@ pub(super) struct Placed {
     solid: Solid,
     pub(super) shape: Shape,
     pub(super) span: Span,
+    pub(super) taper: f64,
+    pub(super) mast: Option<Block>,
     /// The cells that list it; `None`: every question tests it.
     pub(super) cells: Option<Cells>,
     /// It is not, or not wholly, on cells.
     stray: bool,
+}
+
+impl Placed {
+    /// The radius of a disc as rays meet it at a height.
+    #[inline]
+    pub(super) fn radius_at(&self, z: f64) -> f64 {
+        match self.shape {
+            Shape::Disc { radius, .. } if self.taper == 0.0 => radius,
+            Shape::Disc { radius, .. } => radius - self.taper * (z - self.span.bottom),
+            Shape::Box(_) => 0.0,
+        }
+    }
 }
 
 impl Space {
@@ -53,7 +67,8 @@ impl Space {
         let id = SolidId(u32::try_from(self.solids.len()).expect("fewer than 2^32 solids"));
         let shape = solid.outline.at(&solid.pose);
         let span = solid.span();
-        self.solids.push(Placed { solid, shape, span, cells: None, stray: false });
+        let (taper, mast) = (solid.taper, solid.placed_mast());
+        self.solids.push(Placed { solid, shape, span, taper, mast, cells: None, stray: false });
         self.list(id.0, &shape.bounds());
         if self.solids.len() >= self.full_at || self.strays > self.strays_allowed {
             self.rebuild();
@@ -70,12 +85,24 @@ impl Space {
         let placed = &mut self.solids[id.index()];
         placed.solid.pose = pose;
         placed.shape = placed.solid.outline.at(&pose);
+        placed.mast = placed.solid.placed_mast();
         let bounds = placed.shape.bounds();
         let cells = self.grid.place_for(&bounds);
         if cells.is_some() && cells == placed.cells {
             return;
         }
         self.relist(id.0, &bounds);
+    }
+
+    /// Changes the height of a solid's top. One without any height is met by nothing.
+    ///
+    /// # Panics
+    ///
+    /// If the solid is of another space that holds more solids.
+    pub fn set_top(&mut self, id: SolidId, top: f64) {
+        let placed = &mut self.solids[id.index()];
+        placed.solid.top = top;
+        placed.span.top = top;
     }
 
     /// A solid, with its present pose.
@@ -137,7 +164,7 @@ mod tests {
     const DISC: Footprint = Footprint::Disc { radius: 0.1 };
 
     fn disc(x: f64, y: f64) -> Solid {
-        Solid { outline: DISC, pose: Pose::new(x, y, 0.0), bottom: 0.0, top: 0.2 }
+        Solid::new(DISC, Pose::new(x, y, 0.0), 0.0, 0.2)
     }
 
     /// Asks every question once, about a place between two things 1 m to its left and right.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use roverlab::drive::colour::{ColourTracker, HomeParameters, PushHome, TrackerParameters};
 use roverlab::drive::motion_watch::{MotionWatch, WatchParameters};
-use roverlab::geometry::{Pose, Twist};
+use roverlab::geometry::{Pose, Twist, direction};
 use roverlab::io::control::run;
 use roverlab::io::sim::{Fleet, Lcd, SimOptions, Simulation};
 use roverlab::io::wrappers::Traced;
@@ -14,12 +14,13 @@ use roverlab::io::{
 };
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod, teach_hue};
 use roverlab::vision::{HueScale, hue};
-use roverlab::world::{Colour, RobotPlacement, RobotSpec, Scene, World};
+use roverlab::world::{Colour, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
 
 use super::{Scenario, fnv, in_room, noise, note, note_truth, other, ride, room, text};
 
 pub(super) const SCENARIOS: &[Scenario] = &[
     Scenario::new("camera", camera),
+    Scenario::new("camera-sights", sights),
     Scenario::new("colour-tracking", tracking),
     Scenario::new("colour-push-home", push_home),
     Scenario::new("motion-watch", watch),
@@ -42,6 +43,38 @@ fn camera() -> Result<String> {
                 robot.set_servo(servo, 0.8)?;
                 robot.wait(0.7)?;
                 robot.image()?;
+            }
+            Ok(())
+        })?;
+    }
+    Ok(log)
+}
+
+/// Signs, cones and other robots on the model town's floor, through a pinhole and through a fisheye, and on each world that
+/// scripts know.
+fn sights() -> Result<String> {
+    let mut log = String::new();
+    for (i, name) in World::PREDEFINED.into_iter().enumerate() {
+        let mut world = World::predefined(name).expect("a world of that name");
+        let middle = world.floor.min + world.floor.size() * 0.5;
+        for (j, object) in ObjectKind::PREDEFINED.into_iter().enumerate() {
+            let kind = Arc::new(ObjectKind::predefined(object).expect("an object of that name"));
+            let heading = 0.25 * j as f64;
+            let place = middle + direction(heading) * (0.5 + 0.05 * j as f64);
+            world.objects.push(Object::new(kind, Pose::new(place.x, place.y, heading + 0.3)));
+        }
+        let mut spec = RobotSpec::s4();
+        if let Some(camera) = &mut spec.camera {
+            (camera.fisheye, camera.field_of_view) = (i % 2 == 1, 1.0 + 0.2 * i as f64);
+        }
+        let mut scene = Scene::with_robot(world, spec, Pose::new(middle.x, middle.y, 0.0));
+        let other = Pose::new(middle.x, middle.y - 0.4, 2.0);
+        scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::labbot()), other));
+        log += &ride(&scene, noise(0.0, 122), |robot| {
+            for _ in 0..2 {
+                robot.image()?;
+                robot.set_servo(2, -0.4)?;
+                robot.wait(1.2)?;
             }
             Ok(())
         })?;

@@ -1,6 +1,8 @@
 //! How the loops that run behaviours begin and end: at the time limit, blocked, with a sensor, link or clock
 //! that fails, and at the end of the simulation.
 
+use std::thread;
+
 use roverlab::drive::colour::{ColourTracker, HomeParameters, PushHome, TrackerParameters};
 use roverlab::drive::motion_watch::{MotionWatch, WatchParameters};
 use roverlab::drive::{
@@ -11,17 +13,16 @@ use roverlab::drive::{
 use roverlab::evolve::Gait;
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::control::{run, until};
-use roverlab::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions, SharedRace};
 use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
 use roverlab::io::wrappers::{Faulty, Traced};
-use roverlab::io::{Clock, Display, Drive, Encoders, Keys, Lidar, Radio, Result, RobotIo};
+use roverlab::io::{Clock, DistanceSensors, Drive, Keys, Lidar, Psd, Radio, Result};
 use roverlab::kinematics::{Ackermann, Omni};
 use roverlab::maze::{Direction, LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters};
 use roverlab::nav::{BugKind, BugParameters, DistBug, NavigateParameters, Navigator};
-use roverlab::race::{EventParameters, EventRacer, GapDriver, Racer, RacerParameters};
+use roverlab::race::{Cone, ConeTrack, EventParameters, EventRacer, GapDriver, Racer, RacerParameters};
 use roverlab::random::Stream;
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
-use roverlab::world::{Colour, RobotSpec, Scene, World};
+use roverlab::world::{RobotSpec, Scene, World};
 
 use super::{Scenario, noise, note, note_truth, other, room, text};
 
@@ -175,19 +176,19 @@ fn robots() -> Result<String> {
     Ok(log)
 }
 
-/// Two rows of cones.
-fn lane() -> Vec<RaceCone> {
+/// Cars before two rows of cones.
+fn lane(cars: &[Pose]) -> Scene {
     let rows = (0..30).flat_map(|k| [1.7, -1.7].map(|y| Point::new(3.5 * f64::from(k), y)));
-    rows.map(|place| RaceCone::new(place, Colour::BLUE)).collect()
+    ConeTrack { cones: rows.map(Cone::unknown).collect(), ..ConeTrack::default() }.scene(cars)
 }
 
 /// The loops of racing cars.
 fn cars() -> Result<String> {
-    let start = [(RaceCarSpec::default(), Pose::new(-2.0, 0.2, 0.0))];
+    let scene = lane(&[Pose::new(-2.0, 0.2, 0.0)]);
     let mut log = String::new();
     for index in 0..3 {
-        let mut race = Race::new(&lane(), &start, RaceOptions { seed: 183, ..RaceOptions::default() })?;
-        let mut car = Traced::new(race.car(0)?, Vec::new());
+        let race = Simulation::new(&scene, SimOptions { seed: 183, ..SimOptions::default() })?;
+        let mut car = Traced::new(race.robot(0)?, Vec::new());
         car.wait(0.37)?;
         let (mut watched, limit) = (0, 6.0);
         let outcome = match index {
@@ -203,38 +204,37 @@ fn cars() -> Result<String> {
         };
         log += &text(car)?;
         note(&mut log, "outcome", &(outcome?, watched));
-        let truth = race.truth(0).map(|truth| (truth.pose, truth.distance, truth.hits));
-        note(&mut log, "truth", &truth);
+        note_truth(&mut log, &race.truth().robot(0)?);
     }
     Ok(log)
 }
 
-/// Two cars of one race as robots of their own. Capabilities that they lack are errors.
+/// Two cars of one race, each in a thread of its own. Capabilities that they lack are errors.
 fn shared() -> Result<String> {
-    let cars = [0.4, -0.6].map(|y| (RaceCarSpec::default(), Pose::new(-2.0 - 4.0 * y, y, 0.05)));
-    let options = RaceOptions { seed: 184, ..RaceOptions::default() };
-    let race = SharedRace::new(Race::new(&lane(), &cars, options)?);
-    let mut log = String::new();
-    let mut robots: Vec<_> = Vec::new();
-    for index in 0..2 {
-        let car: Box<dyn RobotIo> = Box::new(race.car(index)?);
-        robots.push(Traced::new(car, Vec::new()));
-    }
-    for step in 0..80_u32 {
-        for (robot, speed) in robots.iter_mut().zip([7.0, 3.0]) {
+    let scene = lane(&[0.4, -0.6].map(|y| Pose::new(-2.0 - 4.0 * y, y, 0.05)));
+    let race = Simulation::new(&scene, SimOptions { seed: 184, ..SimOptions::default() })?;
+    let drive = |mut robot: Traced<SimRobot, Vec<u8>>, speed: f64| -> Result<String> {
+        for step in 0..80_u32 {
             robot.set_speed(Twist::new(speed, 0.2 * (f64::from(step % 7) - 3.0)))?;
             robot.pose()?;
             robot.scan()?;
             robot.wait(0.05)?;
         }
-    }
-    for mut robot in robots {
-        let _ = (robot.radio_id(), robot.read_key(), robot.print("x"), robot.encoder(1));
-        log += &text(robot)?;
-    }
+        let _ = (robot.radio_id(), robot.read_key(), robot.distance(Psd::FRONT), robot.turn(1.0, 1.0));
+        text(robot)
+    };
+    let robots = [Traced::new(race.robot(0)?, Vec::new()), Traced::new(race.robot(1)?, Vec::new())];
+    let mut log = String::new();
+    let logs = thread::scope(|scope| {
+        let [first, second] = robots;
+        let second = scope.spawn(|| drive(second, 3.0));
+        (drive(first, 7.0), second.join().expect("no thread panics"))
+    });
+    log += &logs.0?;
+    log += &logs.1?;
     for index in 0..2 {
-        note(&mut log, "time", &race.time());
-        note_truth(&mut log, &race.robot(index)?);
+        note(&mut log, "time", &race.truth().time());
+        note_truth(&mut log, &race.truth().robot(index)?);
     }
     Ok(log)
 }

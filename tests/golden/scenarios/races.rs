@@ -1,20 +1,21 @@
 //! Races: cars between cones with lidar and camera, alone and in pairs, for laps and in events.
 
+use std::cell::RefCell;
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 
 use roverlab::geometry::{Point, Pose, Twist, direction};
-use roverlab::io::sim::NoiseModel;
-use roverlab::io::sim::race::{CarModel, Race, RaceCarSpec, RaceCone, RaceOptions};
+use roverlab::io::sim::{Fleet, SimOptions, Simulation, TICK, Truth};
 use roverlab::io::wrappers::Traced;
 use roverlab::io::{
-    Camera, Clock, Drive, Lidar, LidarScan, LidarSettings, Motors, Resolution, Result, Servos,
+    Camera, Clock, Drive, Encoders, Lidar, LidarScan, LidarSettings, Motors, Resolution, Result, RobotTruth,
+    Servos,
 };
 use roverlab::race::{
     CameraMount, CameraSight, Cone, ConeColour, ConeMap, ConeTrack, EventCourse, EventParameters, EventRacer,
     EventReferee, GapDriver, GeneratedTrack, LaneFinder, Racer, RacerParameters, Referee, TrackOptions,
     generate, sightings,
 };
-use roverlab::world::Colour;
 
 use super::{Scenario, note, other, text};
 
@@ -32,89 +33,84 @@ pub(super) const SCENARIOS: &[Scenario] = &[
 const WHEELS: [Point; 4] =
     [Point::new(0.0, 0.6), Point::new(0.0, -0.6), Point::new(1.55, 0.6), Point::new(1.55, -0.6)];
 
-fn world(track: &ConeTrack, starts: &[Pose], seed: u64) -> Result<Race> {
-    let paint = |colour| match colour {
-        ConeColour::Blue => 0x1f_4f_d8,
-        ConeColour::Yellow => 0xf2_c8_11,
-        _ => 0xf0_70_10,
-    };
-    let cones: Vec<RaceCone> = track
-        .cones
-        .iter()
-        .map(|cone| RaceCone::new(cone.position, Colour::from_hex(paint(cone.colour))))
-        .collect();
-    let cars: Vec<_> = starts.iter().map(|start| (RaceCarSpec::default(), *start)).collect();
-    Race::new(&cones, &cars, RaceOptions { seed, noise: NoiseModel::real(), ..RaceOptions::default() })
+fn world(track: &ConeTrack, starts: &[Pose], seed: u64) -> Result<Simulation> {
+    Simulation::new(&track.scene(starts), SimOptions { seed, ..SimOptions::default() })
 }
 
 /// What is true about a car, number by number, without the names of fields.
-fn note_car(log: &mut String, race: &Race, index: usize) {
-    let Some(truth) = race.truth(index) else { return };
-    let moving = (truth.twist.linear, truth.twist.angular, truth.steering, truth.slip);
-    note(log, "car", &(index, race.time(), truth.pose, moving, truth.hits, truth.touched, truth.distance));
+fn note_car(log: &mut String, time: f64, truth: &RobotTruth) {
+    note(log, "car", &(time, truth.pose, truth.contacts, &truth.contact_places, truth.path_length));
 }
 
 /// Lets time pass in ticks, at each of which a referee looks.
-fn pass(race: &mut Race, seconds: f64, mut see: impl FnMut(f64, Pose, usize)) {
-    for _ in 0..(100.0 * seconds).round() as u32 {
-        race.advance(0.01);
-        if let Some(truth) = race.truth(0) {
-            see(race.time(), truth.pose, truth.hits);
-        }
+fn pass(
+    car: &mut impl Clock,
+    truth: &Truth,
+    seconds: f64,
+    mut see: impl FnMut(f64, Pose, usize),
+) -> Result<()> {
+    for _ in 0..(seconds / TICK).round() as u32 {
+        car.wait(TICK)?;
+        let now = truth.robot(0)?;
+        see(truth.time(), now.pose, now.contacts as usize);
     }
+    Ok(())
 }
 
-/// A car of each model by its speeds, its motor and its servo, over a cone and into another car.
+/// A car by its speeds, its motor and its servo and by manoeuvres, over a cone and into another car.
 fn car() -> Result<String> {
     let mut log = String::new();
-    for model in [CarModel::Kinematic, CarModel::Dynamic] {
-        let spec = RaceCarSpec { model, ..RaceCarSpec::default() };
-        let cones = [(14.0, 0.1), (8.0, 4.0)].map(|(x, y)| RaceCone::new(Point::new(x, y), Colour::RED));
-        let starts = [Pose::default(), Pose::new(17.0, 0.8, 3.0)].map(|pose| (spec, pose));
-        let options =
-            RaceOptions { seed: 60, noise: NoiseModel::real().scaled(2.0), ..RaceOptions::default() };
-        let mut race = Race::new(&cones, &starts, options)?;
-        let mut robot = Traced::new(race.car(0)?, Vec::new()).whole_scans();
-        robot.configure_lidar(LidarSettings { field_of_view: 3.0, tilt: 0.0, points: 120 })?;
-        for (linear, angular) in [(4.0, 0.0), (8.0, 0.0), (12.0, 1.0), (18.0, -0.9), (0.0, 0.0)] {
-            robot.set_speed(Twist::new(linear, angular))?;
-            for _ in 0..3 {
-                robot.wait(0.5)?;
-                robot.pose()?;
-                robot.speed()?;
-                robot.scan()?;
-            }
+    let cones = [(14.0, 0.1), (8.0, 4.0)].map(|(x, y)| Cone::unknown(Point::new(x, y))).to_vec();
+    let track = ConeTrack { cones, ..ConeTrack::default() };
+    let starts = [Pose::default(), Pose::new(50.0, 0.3, 3.0)];
+    let race = Simulation::new(&track.scene(&starts), SimOptions::with_noise(2.0, 60))?;
+    let mut robot = Traced::new(race.robot(0)?, Vec::new()).whole_scans();
+    robot.configure_lidar(LidarSettings { field_of_view: 3.0, tilt: 0.0, points: 120 })?;
+    for (linear, angular) in [(4.0, 0.0), (8.0, 0.0), (12.0, 1.0), (18.0, -0.9), (0.0, 0.0)] {
+        robot.set_speed(Twist::new(linear, angular))?;
+        for _ in 0..3 {
+            robot.wait(0.5)?;
+            robot.pose()?;
+            robot.speed()?;
+            robot.scan()?;
+            robot.is_stalled()?;
         }
-        robot.set_motor(1, 0.3)?;
-        robot.set_servo(1, -0.4)?;
-        robot.wait(2.0)?;
-        robot.set_resolution(Resolution::Qqvga)?;
-        robot.image()?;
-        log += &text(robot)?;
-        note_car(&mut log, &race, 0);
-        note(&mut log, "standing", &(race.hits(), race.standing().collect::<Vec<_>>()));
     }
+    robot.set_motor(1, 0.3)?;
+    robot.set_servo(1, -0.4)?;
+    robot.wait(2.0)?;
+    robot.encoder(1)?;
+    robot.curve(12.0, 0.8, 5.0)?;
+    robot.wait(1.0)?;
+    robot.remaining()?;
+    robot.wait_done()?;
+    robot.set_resolution(Resolution::Qqvga)?;
+    robot.image()?;
+    log += &text(robot)?;
+    note_car(&mut log, race.truth().time(), &race.truth().robot(0)?);
+    note(&mut log, "fallen", &(race.truth().has_fallen(0)?, race.truth().has_fallen(1)?));
     Ok(log)
 }
 
 /// Two laps: the first makes the map, the second is raced.
 fn laps() -> Result<String> {
     let GeneratedTrack { track, corridor } = generate(61, &TrackOptions::drawn(61)).map_err(other)?;
-    let mut race = world(&track, &[track.start_pose().unwrap_or_default()], 61)?;
+    let race = world(&track, &[track.start_pose().unwrap_or_default()], 61)?;
+    let (mut robot, truth) = (race.robot(0)?, race.truth());
     let mut referee = Referee::new(corridor, WHEELS);
     let parameters = RacerParameters { laps: 2, ..RacerParameters::default() };
     let (mut racer, mut scan) = (Racer::new(parameters), LidarScan::default());
     let mut log = String::new();
     let mut noted = None;
-    while race.time() < 200.0 {
-        let mut car = Traced::new(race.car(0)?, Vec::new());
+    while truth.time() < 200.0 {
+        let mut car = Traced::new(&mut robot, Vec::new());
         car.scan_into(&mut scan)?;
         let (pose, speed) = (car.pose()?, car.speed()?);
         car.set_speed(racer.step(pose, speed, &scan))?;
         log += &text(car)?;
-        pass(&mut race, parameters.period, |time, pose, hits| referee.see(time, pose, hits));
+        pass(&mut robot, &truth, parameters.period, |time, pose, hits| referee.see(time, pose, hits))?;
         if noted.replace(racer.phase()) != Some(racer.phase()) {
-            note_car(&mut log, &race, 0);
+            note_car(&mut log, truth.time(), &truth.robot(0)?);
             note(&mut log, "phase", &(racer.phase(), racer.laps(), racer.map().pose()));
             note(&mut log, "map", &racer.map().cones().collect::<Vec<_>>());
             note(&mut log, "line", &racer.line().map(|line| (line.points(), &line.profile().speeds)));
@@ -133,12 +129,12 @@ fn camera() -> Result<String> {
     let track = generate(62, &TrackOptions::drawn(62)).map_err(other)?.track;
     let mut log = String::new();
     for both in [false, true] {
-        let mut race = world(&track, &[track.start_pose().unwrap_or_default()], 62)?;
+        let race = world(&track, &[track.start_pose().unwrap_or_default()], 62)?;
+        let (mut car, truth) = (race.robot(0)?, race.truth());
         let mut racer = Racer::new(RacerParameters::default());
         let mut sight = CameraSight::new(CameraMount::default());
-        race.car(0)?.set_resolution(Resolution::Vga)?;
+        car.set_resolution(Resolution::Vga)?;
         for _ in 0..40 {
-            let mut car = race.car(0)?;
             let found = sight.find(&car.image()?);
             let seen = if both { sight.fuse(&sightings(&car.scan()?), &found) } else { found };
             let (pose, speed) = (car.pose()?, car.speed()?);
@@ -148,10 +144,10 @@ fn camera() -> Result<String> {
                 note(&mut log, "seen", &(cone.position, cone.size, cone.confidence, cone.error, cone.colour));
             }
             note(&mut log, "decision", &(pose, speed, command, racer.map().pose()));
-            pass(&mut race, 0.05, |_, _, _| ());
+            car.wait(0.05)?;
         }
         note(&mut log, "map", &racer.map().cones().collect::<Vec<_>>());
-        note_car(&mut log, &race, 0);
+        note_car(&mut log, truth.time(), &truth.robot(0)?);
     }
     Ok(log)
 }
@@ -160,34 +156,45 @@ fn camera() -> Result<String> {
 fn two_cars() -> Result<String> {
     let track = generate(63, &TrackOptions::drawn(63)).map_err(other)?.track;
     let start = track.start_pose().unwrap_or_default();
-    let mut race = world(&track, &[start, start.compose(&Pose::new(6.0, 0.0, 0.0))], 63)?;
+    let scene = track.scene(&[start, start.compose(&Pose::new(6.0, 0.0, 0.0))]);
     let parameters = RacerParameters::default();
-    let mut racer = Racer::new(parameters);
-    let (mut map, mut finder) = (ConeMap::new(parameters.map), LaneFinder::new(parameters.lane));
-    let mut scan = LidarScan::default();
-    let mut log = String::new();
-    for _ in 0..300 {
-        let mut car = race.car(0)?;
-        car.scan_into(&mut scan)?;
-        let (pose, speed) = (car.pose()?, car.speed()?);
-        car.set_speed(racer.step(pose, speed, &scan))?;
-        let mut ahead = race.car(1)?;
-        ahead.scan_into(&mut scan)?;
-        let seen = sightings(&scan);
-        map.update(ahead.pose()?, &seen);
-        let pose = map.pose();
-        let near = map.fresh_cones().filter(|cone| (cone.position - pose.position()).norm() < 24.0);
-        let near: Vec<Cone> = near.collect();
-        let lane = finder.step(pose, &near).map(|lane| lane.points.clone()).unwrap_or_default();
-        let aim = lane.iter().map(|point| pose.to_local(*point)).find(|point| point.x > 3.0);
-        let command =
-            aim.map_or(Twist::STOP, |aim| Twist::new(3.0, 6.0 * aim.y / aim.coords.norm_squared().max(1.0)));
-        ahead.set_speed(command)?;
-        note(&mut log, "seen", &(seen.len(), near.len(), lane.len(), aim, pose, map.tolerance()));
-        pass(&mut race, parameters.period, |_, _, _| ());
-        note_car(&mut log, &race, 0);
-        note_car(&mut log, &race, 1);
+    let (mut racer, mut seen) = (Racer::new(parameters), LidarScan::default());
+    let log = RefCell::new(String::new());
+    {
+        let mut fleet = Fleet::new(&scene, SimOptions { seed: 63, ..SimOptions::default() })?;
+        fleet.control(0, parameters.period, |car| {
+            car.scan_into(&mut seen)?;
+            let (pose, speed) = (car.pose()?, car.speed()?);
+            car.set_speed(racer.step(pose, speed, &seen))?;
+            Ok(ControlFlow::Continue(()))
+        })?;
+        let (mut map, mut finder) = (ConeMap::new(parameters.map), LaneFinder::new(parameters.lane));
+        let mut scan = LidarScan::default();
+        let log = &log;
+        fleet.control(1, parameters.period, move |car| {
+            car.scan_into(&mut scan)?;
+            let seen = sightings(&scan);
+            map.update(car.pose()?, &seen);
+            let pose = map.pose();
+            let near = map.fresh_cones().filter(|cone| (cone.position - pose.position()).norm() < 24.0);
+            let near: Vec<Cone> = near.collect();
+            let lane = finder.step(pose, &near).map(|lane| lane.points.clone()).unwrap_or_default();
+            let aim = lane.iter().map(|point| pose.to_local(*point)).find(|point| point.x > 3.0);
+            car.set_speed(aim.map_or(Twist::STOP, |aim| {
+                Twist::new(3.0, 6.0 * aim.y / aim.coords.norm_squared().max(1.0))
+            }))?;
+            let numbers = (seen.len(), near.len(), lane.len(), aim, pose, map.tolerance());
+            note(&mut log.borrow_mut(), "seen", &numbers);
+            Ok(ControlFlow::Continue(()))
+        })?;
+        for _ in 0..300 {
+            fleet.run_for(parameters.period)?;
+            for car in 0..2 {
+                note_car(&mut log.borrow_mut(), fleet.time(), &fleet.truth(car)?);
+            }
+        }
     }
+    let mut log = log.into_inner();
     note(&mut log, "others", &racer.map().fresh_others().collect::<Vec<_>>());
     Ok(log)
 }
@@ -195,25 +202,22 @@ fn two_cars() -> Result<String> {
 /// Steering for the nearest gap, as the book prints it.
 fn gaps() -> Result<String> {
     let GeneratedTrack { track, corridor } = generate(64, &TrackOptions::drawn(64)).map_err(other)?;
-    let mut race = world(&track, &[track.start_pose().unwrap_or_default()], 64)?;
+    let race = world(&track, &[track.start_pose().unwrap_or_default()], 64)?;
+    let (mut robot, truth) = (race.robot(0)?, race.truth());
     let mut referee = Referee::new(corridor, WHEELS);
     let (mut driver, mut scan) = (GapDriver::default(), LidarScan::default());
-    race.car(0)?.configure_lidar(LidarSettings {
-        field_of_view: std::f64::consts::PI,
-        tilt: 0.0,
-        points: 180,
-    })?;
-    race.car(0)?.set_motor(1, 0.1)?;
+    robot.configure_lidar(LidarSettings { field_of_view: std::f64::consts::PI, tilt: 0.0, points: 180 })?;
+    robot.set_motor(1, 0.1)?;
     let mut log = String::new();
     for _ in 0..200 {
-        let mut car = Traced::new(race.car(0)?, Vec::new());
+        let mut car = Traced::new(&mut robot, Vec::new());
         car.scan_into(&mut scan)?;
         if let Some(position) = driver.step(&scan) {
             car.set_servo(1, position)?;
         }
         log += &text(car)?;
-        pass(&mut race, 0.1, |time, pose, hits| referee.see(time, pose, hits));
-        note_car(&mut log, &race, 0);
+        pass(&mut robot, &truth, 0.1, |time, pose, hits| referee.see(time, pose, hits))?;
+        note_car(&mut log, truth.time(), &truth.robot(0)?);
     }
     note(&mut log, "verdict", &(referee.verdict().off_course, referee.verdict().cones_hit));
     Ok(log)
@@ -262,17 +266,18 @@ fn event(track: &ConeTrack, mut racer: EventRacer, seed: u64) -> Result<String> 
     let outline = EventParameters::default().outline;
     let Some(course) = EventCourse::of(track, &outline) else { unreachable!("the track is an event's") };
     let mut referee = EventReferee::new(course, WHEELS, Point::new(outline.nose, 0.0));
-    let mut race = world(track, &[track.start_pose().unwrap_or_default()], seed)?;
+    let race = world(track, &[track.start_pose().unwrap_or_default()], seed)?;
+    let (mut robot, truth) = (race.robot(0)?, race.truth());
     let mut scan = LidarScan::default();
     let mut log = String::new();
-    while race.time() < 60.0 {
-        let mut car = Traced::new(race.car(0)?, Vec::new());
+    while truth.time() < 60.0 {
+        let mut car = Traced::new(&mut robot, Vec::new());
         car.scan_into(&mut scan)?;
         let (pose, speed) = (car.pose()?, car.speed()?);
         car.set_speed(racer.step(pose, speed, &scan))?;
         log += &text(car)?;
-        pass(&mut race, 0.05, |time, pose, hits| referee.see(time, pose, hits));
-        note_car(&mut log, &race, 0);
+        pass(&mut robot, &truth, 0.05, |time, pose, hits| referee.see(time, pose, hits))?;
+        note_car(&mut log, truth.time(), &truth.robot(0)?);
         note(&mut log, "layout", &(racer.phase(), racer.layout(), racer.map().pose()));
         if racer.is_done(speed) {
             break;

@@ -1,17 +1,15 @@
 //! Supervision: the state machine, the monitors, and vehicles that are stopped.
 
 use roverlab::geometry::{Point, Pose, Twist};
-use roverlab::io::sim::race::{Race, RaceCarSpec, RaceCone, RaceOptions};
-use roverlab::io::sim::{NoiseModel, Simulation};
+use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::wrappers::{Fault, Faulty, Traced};
 use roverlab::io::{Clock, Drive, Lidar, MockRobot, Motors, Result, Servos};
-use roverlab::race::GapDriver;
+use roverlab::race::{Cone, ConeTrack, GapDriver};
 use roverlab::random::Stream;
 use roverlab::safety::{
     BaseStation, Beat, Causes, Deadline, Debounce, Panel, Requests, SafetyCore, SafetyInputs, SafetyState,
     SignalLimits, SignalMonitor, Station, Supervised, SupervisorParameters, is_inside,
 };
-use roverlab::world::Colour;
 
 use super::{Scenario, in_room, noise, note, text};
 
@@ -153,12 +151,11 @@ fn faults() -> Result<String> {
 fn race_car() -> Result<String> {
     let mut log = String::new();
     let rows = (0..40).flat_map(|k| [1.7, -1.7].map(|y| Point::new(3.0 * f64::from(k), y)));
-    let cones: Vec<RaceCone> = rows.map(|place| RaceCone::new(place, Colour::BLUE)).collect();
-    let options = RaceOptions { seed: 143, noise: NoiseModel::real(), ..RaceOptions::default() };
-    let start = Pose::new(-2.0, 0.2, 0.0);
-    let mut race = Race::new(&cones, &[(RaceCarSpec::default(), start)], options)?;
+    let track = ConeTrack { cones: rows.map(Cone::unknown).collect(), ..ConeTrack::default() };
+    let scene = track.scene(&[Pose::new(-2.0, 0.2, 0.0)]);
+    let race = Simulation::new(&scene, SimOptions { seed: 143, ..SimOptions::default() })?;
     let stop = station(|now, panel| panel.remote_stop = now > 3.0);
-    let mut car = Supervised::new(race.car(0)?, stop, SupervisorParameters::default())?;
+    let mut car = Supervised::new(race.robot(0)?, stop, SupervisorParameters::default())?;
     let mut driver = GapDriver::default();
     for _ in 0..60 {
         let scan = car.scan()?;
@@ -171,7 +168,8 @@ fn race_car() -> Result<String> {
         note_state(&mut log, &car);
     }
     drop(car);
-    note(&mut log, "truth", &race.truth(0).map(|truth| (truth.pose, truth.distance, truth.hits)));
+    let truth = race.truth().robot(0)?;
+    note(&mut log, "truth", &(truth.pose, truth.path_length, truth.contacts));
     Ok(log)
 }
 

@@ -94,7 +94,7 @@ fn note_robot(log: &mut String, spec: &RobotSpec) {
 
 /// The files that the scenes below name.
 fn files() -> MemoryFiles {
-    let files: [(&str, &[u8]); 7] = [
+    let files: [(&str, &[u8]); 12] = [
         (".\\room.wld", include_bytes!("../../data/formats/room.wld")),
         ("room.wld", include_bytes!("../../data/formats/room.wld")),
         ("cart.robi", include_bytes!("../../data/formats/cart.robi")),
@@ -102,6 +102,11 @@ fn files() -> MemoryFiles {
         ("small.maz", include_bytes!("../../data/formats/small.maz")),
         ("room.pgm", include_bytes!("../../data/formats/room.pgm")),
         ("ball.esObj", include_bytes!("../../data/formats/ball.esObj")),
+        ("tiles 1.png", include_bytes!("../../data/formats/tiles 1.png")),
+        ("sign.obj", include_bytes!("../../data/formats/sign.obj")),
+        ("sign.mtl", include_bytes!("../../data/formats/sign.mtl")),
+        ("plate.png", include_bytes!("../../data/formats/plate.png")),
+        ("ball.obj", include_bytes!("../../data/formats/ball.obj")),
     ];
     MemoryFiles(
         files.into_iter().map(|(name, bytes)| (name.to_owned(), bytes.to_vec())).collect::<BTreeMap<_, _>>(),
@@ -219,8 +224,7 @@ fn space() -> Result<String> {
         Footprint::Disc { radius: 0.1 },
         Footprint::Rectangle(Aabb::new(Point::new(-0.1, -0.05), Point::new(0.15, 0.08))),
     ];
-    let solids = outlines
-        .map(|outline| space.add(Solid { outline, pose: Pose::new(2.2, 1.4, 0.3), bottom: 0.0, top: 0.15 }));
+    let solids = outlines.map(|outline| space.add(Solid::new(outline, Pose::new(2.2, 1.4, 0.3), 0.0, 0.15)));
     let mut scanner = Scanner::new(-3.0, 0.06, 101, 0.05, -0.02, 4.0);
     let mut ranges = vec![0.0; scanner.beams()];
     let mut contacts = Vec::new();

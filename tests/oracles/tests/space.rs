@@ -40,7 +40,7 @@ fn outline() -> impl Strategy<Value = Footprint> + Clone {
 
 fn solids() -> impl Strategy<Value = Vec<Solid>> {
     let solid = (outline(), pose(), 0.0..0.1f64, 0.05..0.3f64)
-        .prop_map(|(outline, pose, bottom, height)| Solid { outline, pose, bottom, top: bottom + height });
+        .prop_map(|(outline, pose, bottom, height)| Solid::new(outline, pose, bottom, bottom + height));
     // Many of them are looked at by the cells they are in, few one by one.
     prop_oneof![prop::collection::vec(solid.clone(), 0..20), prop::collection::vec(solid, 65..150)]
 }
@@ -279,7 +279,7 @@ fn crowd(walls: &[Wall], robots: usize) -> Space {
         let rectangle = Aabb::new(Point::new(-radius, -radius), Point::new(2.0 * radius, radius));
         let outline =
             if stream.chance(0.5) { Footprint::Disc { radius } } else { Footprint::Rectangle(rectangle) };
-        space.add(Solid { outline, pose, bottom: 0.0, top: 0.2 });
+        space.add(Solid::new(outline, pose, 0.0, 0.2));
     }
     space
 }

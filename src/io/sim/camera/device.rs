@@ -1,6 +1,7 @@
 use image::RgbImage;
 
 use super::film::Film;
+use super::fisheye::{Fisheye, Gaze};
 use super::studio::Studio;
 use super::view::View;
 use crate::geometry::{Pose, units};
@@ -20,8 +21,14 @@ pub(in crate::io::sim) struct CameraDevice {
     pan: Servo,
     tilt: Servo,
     film: Film,
+    /// The lens, unless the camera is a pinhole.
+    fisheye: Option<Box<Fisheye>>,
+    /// The last image, and the number of its frame.
+    last: Option<(u64, RgbImage)>,
 }
 
+/// Images that the camera takes in a second. Who asks more often gets the same image again.
+const FRAME_RATE: f64 = 30.0;
 /// Degrees per second at which a servo turns.
 const SERVO_RATE: f64 = 30.0;
 /// Pictures of a pinhole camera grow without end towards 180 degrees.
@@ -65,6 +72,8 @@ impl CameraDevice {
             pan: Servo::default(),
             tilt: Servo::default(),
             film: Film::new(stream),
+            fisheye: spec.fisheye.then(|| Box::new(Fisheye::new())),
+            last: None,
         }
     }
 
@@ -82,7 +91,7 @@ impl CameraDevice {
         Ok(())
     }
 
-    /// Takes an image for the robot of an index, which is at a pose.
+    /// The image of the present frame for the robot of an index, which is at a pose: taken when the first one asks for it.
     pub(in crate::io::sim) fn take(
         &mut self,
         studio: &mut Studio,
@@ -91,28 +100,59 @@ impl CameraDevice {
         moment: Moment<'_>,
         image: &mut RgbImage,
     ) -> Result<()> {
-        let view = self.view(&pose, moment.tick)?;
-        studio.scenery.draw(&mut studio.canvas, &view, space, index)?;
+        let frame = (moment.tick as f64 * FRAME_RATE / TICKS_PER_SECOND) as u64;
+        match &self.last {
+            Some((taken, last)) if *taken == frame && last.dimensions() == self.resolution.dimensions() => {
+                copy(last, image);
+                return Ok(());
+            }
+            _ => {}
+        }
+        let gaze = self.gaze(&pose, moment.tick)?;
+        let Studio { scenery, canvas, side, darkroom } = studio;
+        match &mut self.fisheye {
+            Some(lens) => lens.draw((canvas, side), scenery, &gaze, space, index)?,
+            None => {
+                let view = View::new(gaze.eye, gaze.heading, gaze.tilt, gaze.field_of_view, gaze.dimensions);
+                scenery.draw(canvas, &view, space, index)?;
+            }
+        }
         let time = moment.tick as f64 / TICKS_PER_SECOND;
-        self.film.develop(&studio.canvas, time, moment.light, moment.noise, &mut studio.darkroom, image);
+        self.film.develop(canvas, time, moment.light, moment.noise, darkroom, image);
+        let (taken, last) = self.last.get_or_insert_default();
+        *taken = frame;
+        copy(image, last);
         Ok(())
     }
 
-    fn view(&self, robot: &Pose, tick: u64) -> Result<View> {
+    fn gaze(&self, robot: &Pose, tick: u64) -> Result<Gaze> {
         let spec = &self.spec;
-        if !(spec.field_of_view > 0.0 && spec.field_of_view <= units::from_deg(WIDEST)) {
+        let widest = if spec.fisheye { 360.0 } else { WIDEST };
+        if !(spec.field_of_view > 0.0 && spec.field_of_view <= units::from_deg(widest)) {
             let found = units::to_deg(spec.field_of_view);
             let message = format!(
-                "the simulator draws what cameras of at most {WIDEST} degrees see; this one's view is {found} degrees"
+                "the simulator draws what cameras of at most {widest} degrees see; this one's view is {found} degrees"
             );
             return Err(Error::new(ErrorKind::Unsupported, message));
         }
         let mount = Pose::new(spec.mount.x, spec.mount.y, spec.mount.yaw);
         let place = robot.compose(&mount);
-        let eye = [place.x, place.y, self.elevation + spec.mount.z];
-        let heading = place.heading + self.pan.angle(tick);
-        let tilt = spec.tilt + self.tilt.angle(tick);
-        Ok(View::new(eye, heading, tilt, spec.field_of_view, self.resolution.dimensions()))
+        Ok(Gaze {
+            eye: [place.x, place.y, self.elevation + spec.mount.z],
+            heading: place.heading + self.pan.angle(tick),
+            tilt: spec.tilt + self.tilt.angle(tick),
+            field_of_view: spec.field_of_view,
+            dimensions: self.resolution.dimensions(),
+        })
+    }
+}
+
+/// Copies an image, into the memory of the other one if that is as large.
+fn copy(from: &RgbImage, to: &mut RgbImage) {
+    if from.dimensions() == to.dimensions() {
+        to.copy_from_slice(from);
+    } else {
+        to.clone_from(from);
     }
 }
 

@@ -41,6 +41,21 @@ impl Cutter {
         }
     }
 
+    /// As [`draw`](Self::draw), but that the face is seen from behind too.
+    pub(super) fn draw_either_side(
+        &mut self,
+        canvas: &mut Canvas,
+        view: &View,
+        corners: &[Place],
+        colour: Packed,
+    ) {
+        if let Some(plane) = self.look(view, corners)
+            && let Some((top, spans)) = self.cut(view)
+        {
+            canvas.fill(top, spans, &plane.nearness(view), colour);
+        }
+    }
+
     /// Lays a convex face of the floor over what is there.
     pub(super) fn tint(
         &mut self,

@@ -1,6 +1,6 @@
 use super::canvas::{Canvas, Packed, first_pixel};
 use super::light::{lit, scaled};
-use super::texture::{Level, Texture};
+use super::texture::{Level, Texture, between};
 use super::view::View;
 use crate::geometry::{Aabb, Point, Vector};
 use crate::world::Colour;
@@ -25,18 +25,23 @@ pub(super) struct Ground {
     stretched: bool,
 }
 
-/// Where the rays of one row meet the floor: the place of its first pixel, and the step to the next.
+/// The most places of the floor that a pixel averages.
+const MOST_PLACES: u32 = 8;
+
+/// Where the rays of one row meet the floor: the place of its first pixel, and the steps to the next pixel and to the next
+/// row.
 struct FloorRow {
     start: Point,
     step: Vector,
+    depth: Vector,
     /// Metres of floor from one row to the next.
     depth_of_row: f64,
 }
 
 impl Ground {
-    pub(super) fn new(floor: Aabb, image: Option<&image::RgbImage>) -> Self {
-        let up = 0.91;
-        let stretched = image.and_then(|image| Texture::new(image, up));
+    pub(super) fn new(floor: Aabb, image: Option<&image::RgbaImage>) -> Self {
+        let light = Colour::from_hex(lit(Colour::WHITE, [0.0, 0.0, 1.0]));
+        let stretched = image.and_then(|image| Texture::new(image, light));
         match stretched {
             Some(texture) => Self { floor, texture, stretched: true },
             None => Self { floor, texture: speckles(), stretched: false },
@@ -59,30 +64,50 @@ impl Ground {
         let (from, to) = self.on_floor(line, pixels.len());
         pixels[..from].fill(beyond);
         pixels[to..].fill(beyond);
+        if self.stretched {
+            self.draw_image(&mut pixels[from..to], line, from);
+        } else {
+            let size = line.step.norm().max(0.5 * line.depth_of_row);
+            let (level, halvings) = self.texture.level(size / SPECKLE);
+            let texels = Vector::new(1.0 / SPECKLE, 1.0 / SPECKLE) / f64::from(1_u32 << halvings);
+            self.run(line, from, texels, 0.0).repeated(level, &mut pixels[from..to]);
+        }
+    }
+
+    /// The image on the floor, averaged over what each pixel covers: along the row by the texture's smaller versions, and
+    /// across by several places.
+    fn draw_image(&self, pixels: &mut [Packed], line: &FloorRow, from: usize) {
+        let (whole, _) = self.texture.level(1.0);
         let size = self.floor.size();
-        let (columns, rows) = {
-            let (whole, _) = self.texture.level(1.0);
-            if self.stretched {
-                (whole.width as f64 / size.x, whole.height as f64 / size.y)
-            } else {
-                (1.0 / SPECKLE, 1.0 / SPECKLE)
-            }
-        };
-        let pixel = line.step.norm().max(0.5 * line.depth_of_row);
-        let (level, halvings) = self.texture.level(pixel * columns.max(rows));
-        // Exact: a power of two.
-        let scale = 1.0 / f64::from(1_u32 << halvings);
-        let first = line.start + line.step * from as f64;
+        let texels = Vector::new(whole.width as f64 / size.x, whole.height as f64 / size.y);
+        let (wide, deep) =
+            (line.step.component_mul(&texels).norm(), line.depth.component_mul(&texels).norm());
+        // Near the camera a pixel is smaller than a texel; far away it is much deeper than wide.
+        let places = (deep / wide.max(1.0)).min(f64::from(MOST_PLACES)) as u32;
+        let places = places.max(1).next_power_of_two();
+        let (level, halvings) = self.texture.level(wide.max(deep / f64::from(places)));
+        let texels = texels / f64::from(1_u32 << halvings);
+        if places == 1 {
+            self.run(line, from, texels, 0.0).smooth(level, pixels);
+            return;
+        }
+        let back = |place: u32| (f64::from(place) + 0.5) / f64::from(places) - 0.5;
+        let runs: [Run; MOST_PLACES as usize] =
+            std::array::from_fn(|place| self.run(line, from, texels, back(place as u32)));
+        Run::averaged(&runs[..places as usize], level, pixels);
+    }
+
+    /// The texels along a row from a pixel on, `back` parts of a pixel's depth towards the camera.
+    fn run(&self, line: &FloorRow, from: usize, texels: Vector, back: f64) -> Run {
+        let first = line.start + line.step * from as f64 + line.depth * back;
         // The image's first row lies along the far side, at the largest y.
         let corner = Point::new(self.floor.min.x, self.floor.max.y);
-        let run = Run {
-            u: (first.x - corner.x) * columns * scale,
-            v: (corner.y - first.y) * rows * scale,
-            du: line.step.x * columns * scale,
-            dv: -line.step.y * rows * scale,
-        };
-        let pixels = &mut pixels[from..to];
-        if self.stretched { run.within(level, pixels) } else { run.repeated(level, pixels) }
+        Run {
+            u: (first.x - corner.x) * texels.x,
+            v: (corner.y - first.y) * texels.y,
+            du: line.step.x * texels.x,
+            dv: -line.step.y * texels.y,
+        }
     }
 
     /// The pixels of a row that show the floor.
@@ -118,13 +143,43 @@ struct Run {
 }
 
 impl Run {
-    /// Takes texels of an image; what rounding carries over its edge takes the nearest.
-    fn within(&self, level: &Level, pixels: &mut [Packed]) {
-        let (u, v, du, dv) = (self.u as f32, self.v as f32, self.du as f32, self.dv as f32);
+    /// Takes the colours of an image between its texels, for pixels that are smaller than these. At its edges it goes on as
+    /// it ends.
+    fn smooth(&self, level: &Level, pixels: &mut [Packed]) {
+        let edge = |size: usize| (size as f32 - 1.0, size as i32 - 1);
+        let ((right, last_column), (bottom, last_row)) = (edge(level.width), edge(level.height));
+        let (u, v, du, dv) = (self.u as f32 - 0.5, self.v as f32 - 0.5, self.du as f32, self.dv as f32);
         for (i, pixel) in (0_u32..).zip(pixels) {
-            let x = ((u + du * i as f32) as usize).min(level.width - 1);
-            let y = ((v + dv * i as f32) as usize).min(level.height - 1);
-            *pixel = level.texels[y * level.width + x];
+            let (x, y) = ((u + du * i as f32).clamp(0.0, right), (v + dv * i as f32).clamp(0.0, bottom));
+            let (column, row) = (x as i32, y as i32);
+            let (to_right, down) = ((256.0 * (x - column as f32)) as u32, (256.0 * (y - row as f32)) as u32);
+            let (next, below) = ((column + 1).min(last_column) as usize, (row + 1).min(last_row) as usize);
+            let (upper, lower) =
+                (&level.texels[row as usize * level.width..], &level.texels[below * level.width..]);
+            let column = column as usize;
+            let top = between(upper[column], upper[next], to_right);
+            let texel = between(top, between(lower[column], lower[next], to_right), down);
+            *pixel = texel & 0xff_ff_ff;
+        }
+    }
+
+    /// Takes the means of the texels of some runs, whose number is a power of two; what rounding carries over the image's
+    /// edge takes the nearest.
+    fn averaged(runs: &[Run], level: &Level, pixels: &mut [Packed]) {
+        let (last_column, last_row) = (level.width as i32 - 1, level.height as i32 - 1);
+        let shift = runs.len().trailing_zeros();
+        let half = runs.len() as u32 / 2;
+        for (i, pixel) in (0_u32..).zip(pixels) {
+            // Two channels at a time, each with room for the sum above it.
+            let (mut ends, mut middle) = (half << 16 | half, half);
+            for &Run { u, v, du, dv } in runs {
+                let x = ((u + du * f64::from(i)) as i32).clamp(0, last_column);
+                let y = ((v + dv * f64::from(i)) as i32).clamp(0, last_row);
+                let texel = level.texels[y as usize * level.width + x as usize];
+                ends += texel & 0xff_00_ff;
+                middle += texel >> 8 & 0xff;
+            }
+            *pixel = ends >> shift & 0xff_00_ff | (middle >> shift) << 8;
         }
     }
 
@@ -160,7 +215,9 @@ fn floor_row(view: &View, row: usize) -> Option<FloorRow> {
     let eye = Point::new(view.eye[0], view.eye[1]);
     let start = eye + (view.ahead * ahead + view.right * view.ray_x(0.0)) * far;
     let step = view.right * (far / view.focal);
-    Some(FloorRow { start, step, depth_of_row: (far * ahead - below).abs() })
+    // Straight towards the camera, without what perspective does to the sides.
+    let depth = view.ahead * (below - far * ahead);
+    Some(FloorRow { start, step, depth, depth_of_row: (far * ahead - below).abs() })
 }
 
 /// The sky in a row.

@@ -1,28 +1,35 @@
-use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::ball::draw_ball;
 use super::canvas::Canvas;
 use super::face::Cutter;
 use super::ground::Ground;
+use super::model::Model;
 use super::poster::draw_poster;
 use super::solids::{Carpenter, Standing};
 use super::view::View;
 use crate::geometry::{Aabb, Point, Pose, Vector, direction};
 use crate::io::{Error, ErrorKind, Result};
 use crate::world::space::{SolidId, Space};
-use crate::world::{Billboard, Colour, Footprint, Marker, Object, RobotPlacement, Scene, Shape, Wall};
+use crate::world::{
+    Billboard, Colour, Footprint, Marker, Mast, Mesh, Object, RobotPlacement, Scene, Shape, Texture, Wall,
+};
 
 /// All that a camera may see of a scene.
 #[derive(Debug)]
 pub(super) struct Scenery {
     floor: Aabb,
-    /// The image on the floor, until it is loaded.
-    floor_image: Option<PathBuf>,
+    /// The image on the floor.
+    floor_texture: Option<Texture>,
+    /// Floor and sky, once something is to be seen.
     ground: Option<Ground>,
     walls: Vec<([Point; 4], Standing)>,
     markers: Vec<Marker>,
     billboards: Vec<Billboard>,
     things: Vec<Thing>,
+    /// The surfaces of things, each once, and the models of them once something is to be seen.
+    meshes: Vec<Arc<Mesh>>,
+    models: Vec<Model>,
     robots: Vec<Thing>,
     carpenter: Carpenter,
     cutter: Cutter,
@@ -35,12 +42,17 @@ struct Thing {
     form: Form,
     height: f64,
     colour: Colour,
+    mast: Option<Mast>,
+    /// The index of its surface, if that is not its form's.
+    model: Option<usize>,
 }
 
 #[derive(Debug, Clone, Copy)]
 enum Form {
     Ball(f64),
     Cylinder(f64),
+    /// The radii of its foot and its top.
+    Cone(f64, f64),
     Cuboid(Aabb),
 }
 
@@ -64,14 +76,20 @@ impl Scenery {
     pub(super) fn new(scene: &Scene, objects: &[SolidId], robots: &[SolidId]) -> Self {
         let world = &scene.world;
         let robots = robots.iter().zip(&scene.robots).enumerate();
+        let mut meshes = Vec::new();
+        let things =
+            objects.iter().zip(&world.objects).map(|(&solid, object)| thing(solid, object, &mut meshes));
+        let things = things.collect();
         Self {
             floor: world.floor,
-            floor_image: world.floor_texture.clone(),
+            floor_texture: world.floor_texture.clone(),
             ground: None,
             walls: world.walls.iter().map(wall).collect(),
             markers: world.markers.clone(),
             billboards: world.billboards.clone(),
-            things: objects.iter().zip(&world.objects).map(|(&solid, object)| thing(solid, object)).collect(),
+            things,
+            meshes,
+            models: Vec::new(),
             robots: robots.map(|(index, (&solid, placed))| robot(index, solid, placed)).collect(),
             carpenter: Carpenter::default(),
             cutter: Cutter::default(),
@@ -82,8 +100,9 @@ impl Scenery {
     pub(super) fn draw(&mut self, canvas: &mut Canvas, view: &View, space: &Space, me: usize) -> Result<()> {
         canvas.reset(view.width, view.height);
         if self.ground.is_none() {
-            let image = self.floor_image.as_deref().map(load).transpose()?;
-            self.ground = Some(Ground::new(self.floor, image.as_ref()));
+            let image = self.floor_texture.as_ref().map(pixels).transpose()?;
+            self.ground = Some(Ground::new(self.floor, image));
+            self.models = self.meshes.iter().map(|mesh| Model::new(mesh)).collect();
         }
         if let Some(ground) = &self.ground {
             ground.draw(canvas, view);
@@ -96,7 +115,13 @@ impl Scenery {
             self.carpenter.prism(canvas, view, corners, *body);
         }
         for thing in &self.things {
-            thing.draw(&mut self.carpenter, canvas, view, space);
+            match thing.model.and_then(|model| self.models.get(model)) {
+                Some(model) => {
+                    let solid = space.solid(thing.solid);
+                    model.draw(&mut self.cutter, canvas, view, (&solid.pose, solid.bottom));
+                }
+                None => thing.draw(&mut self.carpenter, canvas, view, space),
+            }
         }
         for (_, robot) in self.robots.iter().enumerate().filter(|&(index, _)| index != me) {
             robot.draw_robot(&mut self.carpenter, canvas, view, space);
@@ -111,6 +136,10 @@ impl Scenery {
 impl Thing {
     fn draw(&self, carpenter: &mut Carpenter, canvas: &mut Canvas, view: &View, space: &Space) {
         let solid = space.solid(self.solid);
+        // What has fallen is not seen.
+        if solid.top <= solid.bottom {
+            return;
+        }
         let whole = Standing { bottom: solid.bottom, top: solid.bottom + self.height, colour: self.colour };
         self.draw_part(carpenter, canvas, view, &solid.pose, whole);
     }
@@ -127,12 +156,17 @@ impl Thing {
         let (low, high) = (solid.bottom + FRONT.0 * self.height, solid.bottom + FRONT.1 * self.height);
         let plate = Standing { bottom: low, top: high, colour: Colour::from_hex(0xf2_f2_f2) };
         front.draw_part(carpenter, canvas, view, &solid.pose, plate);
+        if let Some(Mast { outline, top }) = self.mast {
+            let mast = Self { form: Form::Cuboid(outline), ..*self };
+            let body = Standing { bottom: solid.top, top: solid.bottom + top, colour: CHASSIS.0 };
+            mast.draw_part(carpenter, canvas, view, &solid.pose, body);
+        }
     }
 
     /// A box in the middle of a robot's front that stands out a little.
     fn front(&self) -> Aabb {
         let (reach, half) = match self.form {
-            Form::Ball(radius) | Form::Cylinder(radius) => (radius, 0.45 * radius),
+            Form::Ball(radius) | Form::Cylinder(radius) | Form::Cone(radius, _) => (radius, 0.45 * radius),
             Form::Cuboid(Aabb { min, max }) => (max.x, 0.22 * (max.y - min.y)),
         };
         Aabb::new(Point::new(0.5 * reach, -half), Point::new(1.03 * reach, half))
@@ -151,6 +185,7 @@ impl Thing {
                 draw_ball(canvas, view, [pose.x, pose.y, body.bottom + radius], radius, body.colour);
             }
             Form::Cylinder(radius) => carpenter.cylinder(canvas, view, pose.position(), radius, body),
+            Form::Cone(foot, top) => carpenter.cone(canvas, view, pose.position(), [foot, top], body),
             Form::Cuboid(Aabb { min, max }) => {
                 let forward = direction(pose.heading);
                 let left = Vector::new(-forward.y, forward.x);
@@ -173,17 +208,24 @@ fn wall(wall: &Wall) -> ([Point; 4], Standing) {
     ([a - half, b - half, b + half, a + half], body)
 }
 
-fn thing(solid: SolidId, object: &Object) -> Thing {
+fn thing(solid: SolidId, object: &Object, meshes: &mut Vec<Arc<Mesh>>) -> Thing {
     let kind = &object.kind;
     let form = match kind.shape {
         Shape::Sphere { radius } => Form::Ball(radius),
         Shape::Cylinder { radius, .. } => Form::Cylinder(radius),
+        Shape::Cone { radius, top, .. } => Form::Cone(radius, top),
         Shape::Box { length, width, .. } => {
             let corner = Point::new(0.5 * length, 0.5 * width);
             Form::Cuboid(Aabb::new(-corner, corner))
         }
     };
-    Thing { solid, form, height: kind.shape.height(), colour: kind.colour }
+    let model = kind.mesh.as_ref().map(|mesh| {
+        meshes.iter().position(|known| Arc::ptr_eq(known, mesh)).unwrap_or_else(|| {
+            meshes.push(Arc::clone(mesh));
+            meshes.len() - 1
+        })
+    });
+    Thing { solid, form, height: kind.shape.height(), colour: kind.colour, mast: None, model }
 }
 
 fn robot(index: usize, solid: SolidId, placed: &RobotPlacement) -> Thing {
@@ -191,13 +233,14 @@ fn robot(index: usize, solid: SolidId, placed: &RobotPlacement) -> Thing {
         Footprint::Disc { radius } => Form::Cylinder(radius),
         Footprint::Rectangle(rectangle) => Form::Cuboid(rectangle),
     };
-    Thing { solid, form, height: placed.spec.height, colour: ROBOTS[index % ROBOTS.len()] }
+    let colour = ROBOTS[index % ROBOTS.len()];
+    Thing { solid, form, height: placed.spec.height, colour, mast: placed.spec.mast, model: None }
 }
 
-fn load(path: &Path) -> Result<image::RgbImage> {
-    let image = image::open(path).map_err(|error| {
-        let message = format!("the floor's image {}: {error}", path.display());
-        Error::new(ErrorKind::Other, message).with_source(error)
-    })?;
-    Ok(image.into_rgb8())
+/// The pixels of the floor's image, which have been read with the world's file.
+fn pixels(texture: &Texture) -> Result<&image::RgbaImage> {
+    texture.image.as_deref().ok_or_else(|| {
+        let message = format!("the floor's image {} has not been read", texture.file.display());
+        Error::new(ErrorKind::Other, message)
+    })
 }

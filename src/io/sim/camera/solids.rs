@@ -77,6 +77,46 @@ impl Carpenter {
         self.lid(canvas, view, body);
     }
 
+    /// An upright cone between the circles of its foot and its top.
+    pub(super) fn cone(
+        &mut self,
+        canvas: &mut Canvas,
+        view: &View,
+        centre: Point,
+        [foot, top]: [f64; 2],
+        body: Standing,
+    ) {
+        let height = body.top - body.bottom;
+        let middle = [centre.x, centre.y, 0.5 * (body.bottom + body.top)];
+        let reach = math::hypot(foot.max(top), 0.5 * height);
+        let seen = view.see(middle);
+        if view.misses(seen, reach) {
+            return;
+        }
+        let pixels = view.focal * foot.max(top) / seen.norm().max(reach);
+        let facets = ((5.0 * pixels.sqrt()) as usize + 6).min(MAX_FACETS);
+        let step = std::f64::consts::TAU / facets as f64;
+        let mut lower = Vec::with_capacity(facets);
+        arc(&mut lower, centre, Vector::new(foot, 0.0), step, facets);
+        self.outline.clear();
+        arc(&mut self.outline, centre, Vector::new(top, 0.0), step, facets);
+        let slant = math::hypot(height, foot - top).max(f64::MIN_POSITIVE);
+        for (i, &a) in lower.iter().enumerate() {
+            let next = (i + 1) % facets;
+            let (b, c, d) = (lower[next], self.outline[next], self.outline[i]);
+            let out = turned(Vector::x(), (i as f64 + 0.5) * step) * (height / slant);
+            let normal = [out.x, out.y, (foot - top) / slant];
+            let corners = [
+                [a.x, a.y, body.bottom],
+                [b.x, b.y, body.bottom],
+                [c.x, c.y, body.top],
+                [d.x, d.y, body.top],
+            ];
+            self.cutter.draw(canvas, view, &corners, lit(body.colour, normal));
+        }
+        self.lid(canvas, view, body);
+    }
+
     /// A disc on the floor.
     pub(super) fn spot(
         &mut self,

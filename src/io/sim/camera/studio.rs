@@ -9,6 +9,8 @@ use crate::world::space::SolidId;
 pub(in crate::io::sim) struct Studio {
     pub(super) scenery: Scenery,
     pub(super) canvas: Canvas,
+    /// One side of what surrounds a fisheye.
+    pub(super) side: Canvas,
     pub(super) darkroom: Darkroom,
 }
 
@@ -18,6 +20,7 @@ impl Studio {
         Self {
             scenery: Scenery::new(scene, objects, robots),
             canvas: Canvas::default(),
+            side: Canvas::default(),
             darkroom: Darkroom::default(),
         }
     }

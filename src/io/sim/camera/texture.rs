@@ -1,8 +1,13 @@
-use image::RgbImage;
+use image::RgbaImage;
 
 use super::canvas::Packed;
-use super::light::scaled;
 use crate::world::Colour;
+
+/// A texel: a colour, and in the bits above it how opaque it is, 0 to 255.
+pub(super) type Texel = u32;
+
+/// Texels at least this opaque are seen.
+const OPAQUE: Texel = 128;
 
 /// A picture for a surface, beside smaller versions of itself for looking at it from afar.
 #[derive(Debug, Clone)]
@@ -15,13 +20,18 @@ pub(super) struct Texture {
 pub(super) struct Level {
     pub(super) width: usize,
     pub(super) height: usize,
-    pub(super) texels: Vec<Packed>,
+    pub(super) texels: Vec<Texel>,
 }
 
 impl Texture {
-    /// A texture of an image, every channel multiplied by a factor from 0 to 1. `None` for an image without pixels.
-    pub(super) fn new(image: &RgbImage, factor: f64) -> Option<Self> {
-        let texels = image.pixels().map(|&image::Rgb([r, g, b])| scaled(Colour::new(r, g, b), factor));
+    /// A texture of an image, whose channels are multiplied by those of a colour. `None` for an image without pixels.
+    pub(super) fn new(image: &RgbaImage, colour: Colour) -> Option<Self> {
+        let by = [colour.red, colour.green, colour.blue].map(u32::from);
+        let part = |value: u8, by: u32| (u32::from(value) * by + 127) / 255;
+        let texels = image.pixels().map(|&image::Rgba([r, g, b, opacity])| {
+            let [r, g, b] = [part(r, by[0]), part(g, by[1]), part(b, by[2])];
+            u32::from(opacity) << 24 | r << 16 | g << 8 | b
+        });
         let (width, height) = (image.width() as usize, image.height() as usize);
         let first = Level { width, height, texels: texels.collect() };
         (width > 0 && height > 0).then(|| Self::with_smaller_ones(first))
@@ -48,6 +58,24 @@ impl Texture {
 }
 
 impl Level {
+    /// The colour at a place in texels from the upper left corner, between the four texels whose middles are next to it;
+    /// `None` where it is more transparent than not. The picture repeats beyond its edges.
+    pub(super) fn smooth(&self, u: f32, v: f32) -> Option<Packed> {
+        let (u, v) = (u - 0.5, v - 0.5);
+        let (left, above) = (u.floor(), v.floor());
+        let (right_share, below_share) = ((256.0 * (u - left)) as u32, (256.0 * (v - above)) as u32);
+        let column = |place: f32| (place as i64).rem_euclid(self.width as i64) as usize;
+        let row = |place: f32| (place as i64).rem_euclid(self.height as i64) as usize * self.width;
+        let (columns, rows) = ([column(left), column(left + 1.0)], [row(above), row(above + 1.0)]);
+        let at = |x: usize, y: usize| self.texels[rows[y] + columns[x]];
+        let texel = between(
+            between(at(0, 0), at(1, 0), right_share),
+            between(at(0, 1), at(1, 1), right_share),
+            below_share,
+        );
+        (texel >> 24 >= OPAQUE).then_some(texel & 0xff_ff_ff)
+    }
+
     /// Half as wide and half as high, each texel the mean of four.
     fn halved(&self) -> Option<Self> {
         if self.width == 1 && self.height == 1 {
@@ -67,12 +95,21 @@ impl Level {
     }
 }
 
-fn mean(texels: [Packed; 4]) -> Packed {
+fn mean(texels: [Texel; 4]) -> Texel {
     let channel = |shift: u32| {
         let sum: u32 = texels.iter().map(|texel| (texel >> shift) & 255).sum();
         ((sum + 2) / 4) << shift
     };
-    channel(16) | channel(8) | channel(0)
+    channel(24) | channel(16) | channel(8) | channel(0)
+}
+
+/// A texel between two: `share` 256ths of the way from the first to the second.
+#[inline]
+pub(super) fn between(a: Texel, b: Texel, share: u32) -> Texel {
+    // Two channels at a time, each with room for the product above it.
+    const HALF: u32 = 0x00ff_00ff;
+    let mixed = |a: u32, b: u32| ((a & HALF) * (256 - share) + (b & HALF) * share) >> 8 & HALF;
+    mixed(a >> 8, b >> 8) << 8 | mixed(a, b)
 }
 
 #[cfg(test)]
@@ -81,12 +118,16 @@ mod tests {
 
     #[test]
     fn smaller_versions_keep_the_mean() {
-        let image = RgbImage::from_fn(8, 4, |x, y| image::Rgb([(30 * x) as u8, (50 * y) as u8, 7]));
-        let texture = Texture::new(&image, 1.0).unwrap();
+        let image = RgbaImage::from_fn(8, 4, |x, y| image::Rgba([(30 * x) as u8, (50 * y) as u8, 7, 255]));
+        let texture = Texture::new(&image, Colour::WHITE).unwrap();
         let sizes: Vec<_> = texture.levels.iter().map(|level| (level.width, level.height)).collect();
         assert_eq!(sizes, [(8, 4), (4, 2), (2, 1), (1, 1)]);
         let last = texture.levels[3].texels[0];
-        assert!((last >> 16).abs_diff(105) <= 2 && ((last >> 8) & 255).abs_diff(75) <= 2 && last & 255 == 7);
+        assert!(
+            ((last >> 16) & 255).abs_diff(105) <= 2
+                && ((last >> 8) & 255).abs_diff(75) <= 2
+                && last & 255 == 7
+        );
         assert_eq!(texture.level(1.0).1, 0);
         assert_eq!(texture.level(2.0).1, 1);
         assert_eq!(texture.level(1e9).1, 3);
@@ -94,8 +135,30 @@ mod tests {
 
     #[test]
     fn odd_sizes_and_single_rows_shrink_to_one_texel() {
-        let texture = Texture::new(&RgbImage::from_pixel(5, 1, image::Rgb([9, 8, 7])), 1.0).unwrap();
-        assert_eq!(texture.levels.last().map(|level| level.texels.clone()), Some(vec![0x09_08_07]));
-        assert!(Texture::new(&RgbImage::new(0, 3), 1.0).is_none());
+        let image = RgbaImage::from_pixel(5, 1, image::Rgba([9, 8, 7, 255]));
+        let texture = Texture::new(&image, Colour::WHITE).unwrap();
+        assert_eq!(texture.levels.last().map(|level| level.texels.clone()), Some(vec![0xff_09_08_07]));
+        assert!(Texture::new(&RgbaImage::new(0, 3), Colour::WHITE).is_none());
+    }
+
+    #[test]
+    fn between_texels_colours_change_evenly_and_middles_keep_theirs() {
+        let image = RgbaImage::from_fn(4, 2, |x, y| image::Rgba([(80 * x) as u8, (100 * y) as u8, 0, 255]));
+        let texture = Texture::new(&image, Colour::WHITE).unwrap();
+        let (level, _) = texture.level(0.1);
+        let at = |u, v| level.smooth(u, v).unwrap().to_be_bytes();
+        assert_eq!(at(1.5, 0.5), [0, 80, 0, 0]);
+        assert_eq!(at(2.0, 1.0), [0, 120, 50, 0]);
+        // Beyond the right edge it begins anew.
+        assert_eq!(at(4.0, 0.5), [0, 120, 0, 0]);
+        assert_eq!(at(-2.5, 2.5), [0, 80, 0, 0]);
+    }
+
+    #[test]
+    fn what_is_more_transparent_than_not_is_not_there() {
+        let image = RgbaImage::from_fn(2, 1, |x, _| image::Rgba([9, 9, 9, if x == 0 { 0 } else { 255 }]));
+        let texture = Texture::new(&image, Colour::WHITE).unwrap();
+        let (level, _) = texture.level(1.0);
+        assert_eq!((level.smooth(0.5, 0.5), level.smooth(1.5, 0.5)), (None, Some(0x09_09_09)));
     }
 }

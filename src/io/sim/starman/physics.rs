@@ -14,6 +14,7 @@ use super::LIMBS;
 use super::servo::Servo;
 use super::spec::StarmanSpec;
 use crate::geometry::math;
+use crate::io::sim::lockstep::Ticking;
 
 /// Where a Starman's parts are, in the upright plane: x along the floor, y up.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,7 +104,7 @@ impl Figure {
     }
 
     /// Advances by one time step.
-    pub(super) fn step(&mut self) {
+    fn step(&mut self) {
         let spec = &self.spec;
         let stiffness = (TAU * SERVO_FREQUENCY) * (TAU * SERVO_FREQUENCY);
         let damping = 2.0 * SERVO_DAMPING * TAU * SERVO_FREQUENCY;
@@ -169,6 +170,16 @@ impl Figure {
                 part.kinetic_energy() + part.mass() * GRAVITY * part.translation().y
             })
             .sum()
+    }
+}
+
+impl Ticking for Figure {
+    fn time(&self) -> u64 {
+        self.steps
+    }
+
+    fn tick(&mut self) {
+        self.step();
     }
 }
 

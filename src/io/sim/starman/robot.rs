@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use ambassador::Delegate;
 
 use super::physics::{Figure, StarmanTruth};
@@ -7,8 +9,8 @@ use crate::io::delegate::{
     Colour, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Picture, Pixel, Psd, RadioMessage,
     Resolution, Result, RgbImage, Viewport, ambassador_impl_Display,
 };
-use crate::io::error::require_finite;
 use crate::io::sim::Lcd;
+use crate::io::sim::lockstep::{Lockstep, Program};
 use crate::io::{
     Camera, Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Keys, Lidar, Motors, Radio, Servos,
 };
@@ -21,12 +23,8 @@ use crate::io::{
 #[derive(Debug, Delegate)]
 #[delegate(crate::io::Display, target = "lcd")]
 pub struct Starman {
-    figure: Figure,
+    program: Program<Figure>,
     lcd: Lcd,
-    spec: StarmanSpec,
-    /// Seconds by the robot's clock, and how many of them the physics has still to catch up with.
-    time: f64,
-    owed: f64,
     /// What odometry adds to the place along the floor.
     origin: Pose,
     /// Key presses to come, the earliest first.
@@ -35,19 +33,15 @@ pub struct Starman {
 
 /// Seconds that a call takes by the robot's clock, so that a loop without a pause lets the world move.
 const CALL: f64 = 1e-4;
-/// The longest time, in seconds, that one call may let pass.
-const LONGEST: f64 = 1e6;
 
 impl Starman {
     /// A Starman that stands in its initial position. Fails when the specification is out of range.
     pub fn new(spec: &StarmanSpec) -> Result<Self> {
         spec.validate()?;
+        let world = Arc::new(Lockstep::new(Figure::new(spec), spec.time_step, 1));
         Ok(Self {
-            figure: Figure::new(spec),
+            program: Program::claim(&world, 0, CALL, None)?,
             lcd: Lcd::new(),
-            spec: *spec,
-            time: 0.0,
-            owed: 0.0,
             origin: Pose::default(),
             keys: Vec::new(),
         })
@@ -61,7 +55,7 @@ impl Starman {
 
     /// What only the simulator knows; no behaviour has it.
     pub fn truth(&self) -> StarmanTruth {
-        self.figure.truth()
+        self.program.shared().lock().world.truth()
     }
 
     /// What its display shows.
@@ -69,45 +63,38 @@ impl Starman {
         &self.lcd
     }
 
-    fn pass(&mut self, seconds: f64) {
-        self.time += seconds;
-        self.owed += seconds;
-        // Half a step of slack keeps rounding from losing one.
-        while self.owed >= (1.0 - 1e-9) * self.spec.time_step {
-            self.figure.step();
-            self.owed -= self.spec.time_step;
-        }
+    /// Asks the figure for something after the time that a call takes.
+    fn call<T>(&mut self, ask: impl FnOnce(&mut Figure) -> Result<T>) -> Result<T> {
+        self.program.charge();
+        self.program.look(|figure, _| ask(figure))
     }
 }
 
 impl Clock for Starman {
     fn now(&mut self) -> Result<f64> {
-        self.pass(CALL);
-        Ok(self.time)
+        self.call(|_| Ok(()))?;
+        Ok(self.program.time())
     }
 
     fn wait(&mut self, seconds: f64) -> Result<()> {
-        require_finite("time to wait", seconds)?;
-        if seconds > LONGEST {
-            return Err(Error::invalid_input("time to wait", seconds, "at most 1000000 s"));
-        }
-        self.pass(seconds.max(0.0));
-        Ok(())
+        self.program.pass(seconds)?;
+        self.program.look(|_, _| Ok(()))
     }
 }
 
 impl Servos for Starman {
     fn set_servo(&mut self, servo: u8, position: f64) -> Result<()> {
-        self.pass(CALL);
-        let limb = usize::from(servo).wrapping_sub(1);
-        if limb >= LIMBS {
-            return Err(Error::unsupported(format!("servo {servo}")));
-        }
-        if !(-1.0..=1.0).contains(&position) {
-            return Err(Error::invalid_input("servo position", position, "-1 to 1"));
-        }
-        self.figure.send(limb, position);
-        Ok(())
+        self.call(|figure| {
+            let limb = usize::from(servo).wrapping_sub(1);
+            if limb >= LIMBS {
+                return Err(Error::unsupported(format!("servo {servo}")));
+            }
+            if !(-1.0..=1.0).contains(&position) {
+                return Err(Error::invalid_input("servo position", position, "-1 to 1"));
+            }
+            figure.send(limb, position);
+            Ok(())
+        })
     }
 }
 
@@ -126,17 +113,17 @@ impl Drive for Starman {
     }
 
     fn pose(&mut self) -> Result<Pose> {
-        self.pass(CALL);
-        Ok(Pose { x: self.origin.x + self.figure.travelled(), ..self.origin })
+        let travelled = self.call(|figure| Ok(figure.travelled()))?;
+        Ok(Pose { x: self.origin.x + travelled, ..self.origin })
     }
 
     fn set_pose(&mut self, pose: Pose) -> Result<()> {
-        self.pass(CALL);
+        let travelled = self.call(|figure| Ok(figure.travelled()))?;
         if !pose.is_finite() {
             let found = format!("{} m, {} m, {} rad", pose.x, pose.y, pose.heading);
             return Err(Error::invalid_input("pose", found, "finite numbers"));
         }
-        self.origin = Pose { x: pose.x - self.figure.travelled(), ..pose };
+        self.origin = Pose { x: pose.x - travelled, ..pose };
         Ok(())
     }
 
@@ -171,8 +158,9 @@ impl Drive for Starman {
 
 impl Keys for Starman {
     fn read_key(&mut self) -> Result<Option<Key>> {
-        self.pass(CALL);
-        let due = self.keys.first().is_some_and(|(time, _)| *time <= self.time);
+        self.call(|_| Ok(()))?;
+        let now = self.program.time();
+        let due = self.keys.first().is_some_and(|(time, _)| *time <= now);
         Ok(due.then(|| self.keys.remove(0).1))
     }
 
@@ -181,14 +169,13 @@ impl Keys for Starman {
             let message = "the program waits for a key, and no key press is scheduled";
             return Err(Error::new(ErrorKind::Other, message));
         };
-        self.wait(time - self.time)?;
+        self.wait(time - self.program.time())?;
         self.keys.remove(0);
         Ok(key)
     }
 
     fn read_touch(&mut self) -> Result<Option<(i32, i32)>> {
-        self.pass(CALL);
-        Ok(None)
+        self.call(|_| Ok(None))
     }
 }
 

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `drive DIFFERENTIAL_DRIVE`, `ACKERMANN_DRIVE`, `OMNI_DRIVE` | how it moves; other names are read as differential |
 //! | `name NAME` | by which scenes place it; the file's name without it |
-//! | `model FILE [X Y Z RX RY RZ]` | the 3D model, and how it is shifted and turned |
+//! | `model FILE [X Y Z RX RY RZ]` | the 3D model, and how it is shifted and turned; kept, and not shown |
 //! | `collider box SX SY SZ X Y Z`, `sphere R X Y Z`, `capsule R H X Y Z` | solid parts: sizes, then middle |
 //! | `mass KG X Y Z` | its mass and the middle of it |
 //! | `axis UP FORWARD` | the driven axle |
@@ -12,7 +12,7 @@
 //! | `wheel [drive\|turn] DIAMETER DEG_PER_S TICKS HALF_TRACK` | the wheels |
 //! | `psd ID NAME X Y Z R1 R2 R3`, `psd NAME ID X Y Z R` | a distance sensor |
 //! | `camera X Y Z PAN TILT MAX_PAN MAX_TILT` | the camera |
-//! | `fisheye DEG` | its lens |
+//! | `fisheye DEG` | its lens is equidistant and sees so much from left to right |
 //! | `lidar [X Y Z R1 R2 R3] RANGE TILT POINTS`, `lidar RANGE POINTS TILT`, `lidar POINTS TILT` | the scanner |
 //!
 //! The model's axes point right, up and forward. Sensors and footprint of a [`RobotSpec`](crate::world::RobotSpec)
@@ -43,7 +43,9 @@
 //! |---|---|
 //! | `motor LAG ACCELERATION` | seconds, and millimetres per second squared |
 //! | `steering DEG` | the largest steering angle; 30 without it |
+//! | `dynamics MASS GYRATION GRIP STIFFNESS BALANCE BRAKE STEERING` | a fast car's mass and tyres: [`CarDynamics`](crate::world::CarDynamics), in millimetres, their products with 1/s², and degrees per second |
 //! | `outline disc R HEIGHT`, `outline rectangle BACK RIGHT FRONT LEFT HEIGHT` | footprint about the driven axle |
+//! | `mast BACK RIGHT FRONT LEFT HEIGHT` | a narrow part that stands up above the rest, which rays meet |
 //! | `psd_range MM` | how far the `psd` of the line before sees |
 //! | `lidar_range MM` | how far the lidar sees |
 //! | `camera_view DEG` | the camera's horizontal field of view |

@@ -5,7 +5,22 @@ use super::super::error::FormatError;
 use super::super::lexer::Line;
 use super::super::limits::MAX_DEGREES;
 use crate::geometry::{Aabb, Point, units};
-use crate::world::{Axis, Collider, Footprint};
+use crate::world::{Axis, CarDynamics, Collider, Footprint, Mast};
+
+/// A `dynamics` line.
+pub(super) fn dynamics(args: &mut Args<'_, '_>) -> Result<CarDynamics, FormatError> {
+    Ok(CarDynamics {
+        mass_centre: args.positive_size("the distance of the mass from the driven axle")?,
+        gyration: args.positive_size("the radius of gyration")?,
+        grip: args.positive_size("the grip per second squared")?,
+        stiffness: args.plain("the tyres' stiffness per radian", f64::MIN_POSITIVE..=1e3)?,
+        balance: args.plain("the share of the front tyres", f64::MIN_POSITIVE..=1e3)?,
+        brake: args.positive_size("the highest deceleration per second squared")?,
+        steering_rate: units::from_deg(
+            args.degrees("the steering's rate per second", f64::MIN_POSITIVE..=1e4)?,
+        ),
+    })
+}
 
 /// A `wheel` line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,18 +78,27 @@ pub(super) fn outline(line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<(Footp
     let expected = "`disc` or `rectangle`";
     let footprint = match args.word(expected)?.text.to_ascii_lowercase().as_str() {
         "disc" => Footprint::Disc { radius: args.positive_size("the outline's radius")? },
-        "rectangle" => {
-            let mut side = |what: &str| args.length(&format!("the outline's {what} side"));
-            let (back, right, front, left) = (side("back")?, side("right")?, side("front")?, side("left")?);
-            if front == back {
-                return Err(line.error(4, "the outline's front side, apart from its back side"));
-            }
-            if left == right {
-                return Err(line.error(5, "the outline's left side, apart from its right side"));
-            }
-            Footprint::Rectangle(Aabb::new(Point::new(back, right), Point::new(front, left)))
-        }
+        "rectangle" => Footprint::Rectangle(rectangle(line, args, "outline")?),
         _ => return Err(line.error(1, expected)),
     };
     Ok((footprint, args.positive_size("the outline's height")?))
+}
+
+/// A `mast` line.
+pub(super) fn mast(line: &Line<'_>, args: &mut Args<'_, '_>) -> Result<Mast, FormatError> {
+    Ok(Mast { outline: rectangle(line, args, "mast")?, top: args.positive_size("the mast's height")? })
+}
+
+/// Back, right, front and left side of something.
+fn rectangle(line: &Line<'_>, args: &mut Args<'_, '_>, what: &str) -> Result<Aabb, FormatError> {
+    let first = line.words.len() - args.left();
+    let mut side = |which: &str| args.length(&format!("the {what}'s {which} side"));
+    let (back, right, front, left) = (side("back")?, side("right")?, side("front")?, side("left")?);
+    if front == back {
+        return Err(line.error(first + 2, format!("the {what}'s front side, apart from its back side")));
+    }
+    if left == right {
+        return Err(line.error(first + 3, format!("the {what}'s left side, apart from its right side")));
+    }
+    Ok(Aabb::new(Point::new(back, right), Point::new(front, left)))
 }

@@ -10,7 +10,9 @@ use super::mounts::{self, Columns, Raw};
 use super::parts::{self, Wheel};
 use crate::geometry::units;
 use crate::world::formats::{number, stem};
-use crate::world::{Body, CameraSpec, DriveSpec, Footprint, LidarSpec, Mount, PsdSpec, RobotSpec};
+use crate::world::{
+    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, LidarSpec, Mast, Mount, PsdSpec, RobotSpec,
+};
 
 /// The largest steering angle of cars that state none, in radians: 30 degrees.
 pub(super) const DEFAULT_STEERING: f64 = std::f64::consts::FRAC_PI_6;
@@ -52,12 +54,14 @@ struct Reader<'f> {
     wheel: Option<Wheel>,
     turn_axle: Option<f64>,
     steering: f64,
+    dynamics: Option<CarDynamics>,
     psds: Vec<Psd>,
     lidar_mount: Option<Raw>,
     lidar_range: Option<f64>,
     camera_place: Option<[f64; 3]>,
     camera_view: Option<(f64, bool)>,
     outline: Option<(Footprint, f64)>,
+    mast: Option<(Mast, Location)>,
     notes: Notes<'f>,
 }
 
@@ -69,6 +73,7 @@ impl<'f> Reader<'f> {
             psds: Vec::new(),
             lidar: None,
             camera: None,
+            mast: None,
             ..RobotSpec::s4()
         };
         Self {
@@ -77,12 +82,14 @@ impl<'f> Reader<'f> {
             wheel: None,
             turn_axle: None,
             steering: DEFAULT_STEERING,
+            dynamics: None,
             psds: Vec::new(),
             lidar_mount: None,
             lidar_range: None,
             camera_place: None,
             camera_view: None,
             outline: None,
+            mast: None,
             notes: Notes::new(file),
         }
     }
@@ -96,7 +103,10 @@ impl<'f> Reader<'f> {
         match keyword.as_str() {
             "drive" => return self.drive(line, &mut args),
             "name" => self.spec.name = args.name("a name")?,
-            "model" => self.model(&mut args)?,
+            "model" => {
+                self.model(&mut args)?;
+                self.notes.warn(line.location(0), "`model`: cameras see the robot's outline instead");
+            }
             "collider" => {
                 check_parts(line, self.spec.body.colliders.len())?;
                 let collider = parts::collider(line, &mut args)?;
@@ -144,7 +154,9 @@ impl<'f> Reader<'f> {
                 let degrees = args.degrees("the largest steering angle", f64::MIN_POSITIVE..=90.0)?;
                 self.steering = units::from_deg(degrees);
             }
+            "dynamics" => self.dynamics = Some(parts::dynamics(args)?),
             "outline" => self.outline = Some(parts::outline(line, args)?),
+            "mast" => self.mast = Some((parts::mast(line, args)?, line.location(0))),
             "psd_range" => {
                 let range = args.positive_size("the sensor's range")?;
                 let last = self.psds.last_mut().ok_or_else(|| line.error(0, "a `psd` line before it"))?;
@@ -290,6 +302,7 @@ impl<'f> Reader<'f> {
         self.spec.drive = self.drive_spec(drive)?;
         self.place_sensors();
         self.place_footprint(drive);
+        self.place_mast()?;
         // Wheels, outline and axle may each be within their limits, and what comes of them not.
         let reach = self.spec.footprint.bounding_radius() + self.spec.body.axle[0].abs();
         if reach > 0.5 * MAX_METRES {
@@ -337,6 +350,7 @@ impl<'f> Reader<'f> {
                 max_steering: self.steering,
                 max_wheel_speed,
                 ticks_per_turn,
+                dynamics: self.dynamics,
             },
         })
     }
@@ -385,6 +399,15 @@ impl<'f> Reader<'f> {
         if says_all(body, &self.spec.footprint, self.spec.height) {
             body.colliders.clear();
         }
+    }
+
+    fn place_mast(&mut self) -> Result<(), FormatError> {
+        let Some((mast, at)) = self.mast else { return Ok(()) };
+        self.spec.mast = Some(mast);
+        let wrong = |error: crate::world::SpecError| {
+            FormatError::new(self.notes.file, at, error.to_string(), "a mast that stands on the robot")
+        };
+        self.spec.validate_mast().map_err(wrong)
     }
 }
 

@@ -29,7 +29,8 @@ fn a_whole_description() {
                 collider box 95 74 65 0 46 -50\r\ncollider box 95 40 30 0 30 60\r\n\
                 camera 62 0 60 0 0 482 162\r\nfisheye 120\r\nlidar 180 181 -5\r\n";
     let parsed = parse(text, "x.robi").unwrap();
-    assert_eq!(parsed.warnings, []);
+    let warnings: Vec<String> = parsed.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(warnings, ["x.robi:4:1: `model`: cameras see the robot's outline instead"]);
     let spec = parsed.value;
     assert_eq!((spec.name.as_str(), spec.mass), ("My Bot", 2.5));
     assert_eq!(spec.model, Some(r"..\m\bot.obj".into()));
@@ -138,7 +139,8 @@ fn other_drives_and_old_keywords_are_read_with_warnings() {
 
 #[test]
 fn built_in_robots_survive() {
-    for spec in [RobotSpec::s4(), RobotSpec::labbot()] {
+    let named = RobotSpec::PREDEFINED.map(|name| RobotSpec::predefined(name).unwrap());
+    for spec in named.into_iter().chain([RobotSpec::race_car()]) {
         assert_eq!(robot(&print(&spec)), spec);
     }
 }
@@ -186,7 +188,7 @@ prop_compose! {
         match kind {
             0 => DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn },
             1 => DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn },
-            _ => DriveSpec::Ackermann { wheel_diameter, track, wheelbase, max_steering, max_wheel_speed, ticks_per_turn },
+            _ => DriveSpec::Ackermann { wheel_diameter, track, wheelbase, max_steering, max_wheel_speed, ticks_per_turn, dynamics: None },
         }
     }
 }
@@ -257,7 +259,7 @@ prop_compose! {
         let footprint = if disc { Footprint::Disc { radius: outline.0 } } else { Footprint::Rectangle(rectangle) };
         let motor = MotorSpec { time_constant: motor.0, max_acceleration: motor.1 };
         let model = Some(r"m\a b.obj".into());
-        RobotSpec { name, drive, motor, footprint, height, mass, psds, lidar, camera, model, body }
+        RobotSpec { name, drive, motor, footprint, height, mast: None, mass, psds, lidar, camera, model, body }
     }
 }
 

@@ -4,7 +4,8 @@ use super::super::esobj::model_place;
 use super::super::lexer::{self, quote};
 use super::super::number::{self, degrees, millimetres, undo_shift};
 use super::read::DEFAULT_STEERING;
-use crate::world::{CameraSpec, Collider, DriveSpec, Footprint, MotorSpec, PsdSpec, RobotSpec};
+use crate::geometry::Aabb;
+use crate::world::{CameraSpec, CarDynamics, Collider, DriveSpec, Footprint, MotorSpec, PsdSpec, RobotSpec};
 
 /// Writes a robot, so that [`parse`](super::parse) gives it back.
 ///
@@ -25,6 +26,7 @@ fn write_spec(text: &mut String, spec: &RobotSpec) -> Result {
     writeln!(text, "mass {} {}", number::print(spec.mass, 0), model_place(spec.body.mass_centre))?;
     write_drive(text, spec)?;
     write_solid(text, spec)?;
+    write_mast(text, spec)?;
     write_motor(text, spec)?;
     spec.psds.iter().try_for_each(|psd| write_psd(text, psd, spec.body.axle[0]))?;
     write_lidar(text, spec)?;
@@ -64,17 +66,25 @@ fn write_drive(text: &mut String, spec: &RobotSpec) -> Result {
             max_steering,
             max_wheel_speed,
             ticks_per_turn,
+            dynamics,
         } => {
             axles(text, wheelbase)?;
             write_wheel(text, "drive ", [wheel_diameter, max_wheel_speed, ticks_per_turn, track])?;
             write_wheel(text, "turn ", [wheel_diameter, max_wheel_speed, ticks_per_turn, track])?;
-            if max_steering == DEFAULT_STEERING {
-                Ok(())
-            } else {
-                writeln!(text, "steering {}", degrees(max_steering))
+            if max_steering != DEFAULT_STEERING {
+                writeln!(text, "steering {}", degrees(max_steering))?;
             }
+            dynamics.iter().try_for_each(|dynamics| write_dynamics(text, dynamics))
         }
     }
+}
+
+fn write_dynamics(text: &mut String, dynamics: &CarDynamics) -> Result {
+    let [mass_centre, gyration, grip, brake] =
+        [dynamics.mass_centre, dynamics.gyration, dynamics.grip, dynamics.brake].map(millimetres);
+    let [stiffness, balance] = [dynamics.stiffness, dynamics.balance].map(|share| number::print(share, 0));
+    let rate = degrees(dynamics.steering_rate);
+    writeln!(text, "dynamics {mass_centre} {gyration} {grip} {stiffness} {balance} {brake} {rate}")
 }
 
 fn write_wheel(text: &mut String, which: &str, [diameter, speed, ticks, track]: [f64; 4]) -> Result {
@@ -98,11 +108,18 @@ fn write_solid(text: &mut String, spec: &RobotSpec) -> Result {
     let height = millimetres(spec.height);
     match &spec.footprint {
         Footprint::Disc { radius } => writeln!(text, "outline disc {} {height}", millimetres(*radius)),
-        Footprint::Rectangle(b) => {
-            let sides = [b.min.x, b.min.y, b.max.x, b.max.y].map(millimetres).join(" ");
-            writeln!(text, "outline rectangle {sides} {height}")
-        }
+        Footprint::Rectangle(b) => writeln!(text, "outline rectangle {} {height}", sides(b)),
     }
+}
+
+fn write_mast(text: &mut String, spec: &RobotSpec) -> Result {
+    let Some(mast) = &spec.mast else { return Ok(()) };
+    writeln!(text, "mast {} {}", sides(&mast.outline), millimetres(mast.top))
+}
+
+fn sides(rectangle: &Aabb) -> String {
+    let (low, high) = (rectangle.min, rectangle.max);
+    [low.x, low.y, high.x, high.y].map(millimetres).join(" ")
 }
 
 fn write_collider(text: &mut String, collider: &Collider) -> Result {

@@ -11,9 +11,11 @@
 //! | `OBJECT X Y [Z] PHI` | places an object |
 //! | `marker X Y [R G B [A]]` | a mark on the floor |
 //!
-//! `S4` and `LabBot`, `can`, `soccer`, `golf` and `crate` are always known; the two robots' names are reserved. Names
-//! are those that the files state or the files' own names, in any case. Lines of EyeSim 6 and lines that begin with
-//! an unknown word are skipped with a warning.
+//! The robots of [`RobotSpec::PREDEFINED`](crate::world::RobotSpec::PREDEFINED) and the objects of
+//! [`ObjectKind::PREDEFINED`](crate::world::ObjectKind::PREDEFINED) are always known, and stand in for files of their names
+//! that do not exist, as the worlds of [`World::PREDEFINED`](crate::world::World::PREDEFINED) do; the names `S4`, `LabBot`
+//! and `Omni` are reserved. Names are those that the files state or the files' own names, in any case. Lines of EyeSim 6
+//! and lines that begin with an unknown word are skipped with a warning.
 //!
 //! A robot at a letter without PHI heads where the letter says (see [`maz`](super::maz)). Letters that say nothing
 //! mean a random heading: it is drawn from a stream of random numbers with a fixed seed, so that it is the same each
@@ -24,6 +26,7 @@
 //! [`SimFile`] is the script as written; [`Scene`](crate::world::Scene) is what it describes, with the files that it
 //! names.
 
+mod definitions;
 mod document;
 mod read;
 mod resolve;
@@ -33,5 +36,6 @@ mod write;
 
 pub use document::{Position, SimFile, Statement};
 pub use read::parse_document;
+pub(super) use resolve::parse_with;
 pub use resolve::{HEADING_SEED, parse, parse_tolerantly};
 pub use write::print;

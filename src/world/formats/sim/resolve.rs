@@ -1,19 +1,17 @@
 use std::collections::BTreeMap;
-use std::io::{self, ErrorKind};
 use std::sync::Arc;
 
 use super::super::error::{FormatError, Location, Notes, Parsed};
 use super::super::lexer::{self, shown};
-use super::super::limits::{MAX_DEFINITIONS, MAX_PLACED, MAX_TEXT_BYTES};
-use super::super::source::stem;
-use super::super::source::{FileSource, SourceFile, decode, unreadable};
+use super::super::limits::MAX_PLACED;
+use super::super::source::{FileSource, Files};
 use super::super::world_file::read_world;
-use super::super::{esobj, robi};
+use super::definitions::Definitions;
 use super::document::{Position, SimFile, Statement};
 use super::read::{SKIPPED, read};
 use crate::geometry::{Point, Pose, units};
 use crate::random::Stream;
-use crate::world::{Object, ObjectKind, Place, RobotPlacement, RobotSpec, Scene, World};
+use crate::world::{Object, Place, RobotPlacement, RobotSpec, Scene, World};
 
 /// The seed of random headings unless another is given.
 pub const HEADING_SEED: u64 = 0;
@@ -23,11 +21,12 @@ const DEFAULT_WORLD: f64 = 2.0;
 
 /// Reads a script and all files that it names.
 pub fn parse(text: &str, file: &str, files: &mut dyn FileSource) -> Result<Parsed<Scene>, FormatError> {
-    parse_as(text, file, files, false)
+    parse_with(text, file, &mut Files::new(files, false))
 }
 
 /// Reads a script as a simulator does that has nobody to ask, and warns of what it gets over: lines that make no sense,
-/// and whose files cannot be read, are skipped; in the place of a world that cannot be read stands a box of 2000 by
+/// and whose files cannot be read, are skipped; in the place of a robot or an object whose file is missing stands another
+/// one, under the name by which the script places it; in the place of a world that cannot be read stands a box of 2000 by
 /// 2000 mm, or of what all that is placed needs; a robot at a letter that the world lacks stands at some place of its
 /// own. Fails for a text that is too long alone.
 pub fn parse_tolerantly(
@@ -35,17 +34,16 @@ pub fn parse_tolerantly(
     file: &str,
     files: &mut dyn FileSource,
 ) -> Result<Parsed<Scene>, FormatError> {
-    parse_as(text, file, files, true)
+    parse_with(text, file, &mut Files::new(files, true))
 }
 
-fn parse_as(
+pub(in crate::world::formats) fn parse_with(
     text: &str,
     file: &str,
-    files: &mut dyn FileSource,
-    tolerant: bool,
+    files: &mut Files<'_>,
 ) -> Result<Parsed<Scene>, FormatError> {
-    let document = read(text, file, tolerant)?;
-    let scene = document.value.resolve_as(file, files, HEADING_SEED, tolerant)?;
+    let document = read(text, file, files.tolerant)?;
+    let scene = document.value.resolve_with(file, files, HEADING_SEED)?;
     let mut notes = Notes::new(file);
     notes.extend(document.warnings);
     notes.extend(scene.warnings);
@@ -61,31 +59,23 @@ impl SimFile {
         files: &mut dyn FileSource,
         seed: u64,
     ) -> Result<Parsed<Scene>, FormatError> {
-        self.resolve_as(file, files, seed, false)
+        self.resolve_with(file, &mut Files::new(files, false), seed)
     }
 
-    fn resolve_as(
+    fn resolve_with(
         &self,
         file: &str,
-        files: &mut dyn FileSource,
+        files: &mut Files<'_>,
         seed: u64,
-        tolerant: bool,
     ) -> Result<Parsed<Scene>, FormatError> {
         let mut resolver = Resolver {
             script: self,
             notes: Notes::new(file),
-            built_in_robots: ["S4", "LabBot", "Omni"]
-                .into_iter()
-                .filter_map(RobotSpec::predefined)
-                .map(Arc::new)
-                .collect(),
-            built_in_objects: built_in_objects(),
-            robots: Vec::new(),
-            objects: Vec::new(),
+            definitions: Definitions::default(),
             letters: BTreeMap::new(),
             scene: Scene::new(World::walled(DEFAULT_WORLD, DEFAULT_WORLD)),
             headings: Stream::new(seed).child("heading", 0),
-            strays: tolerant.then_some(0),
+            strays: files.tolerant.then_some(0),
         };
         let world = resolver.read_world(files);
         let is_missing = world.is_err();
@@ -115,16 +105,10 @@ fn stray_place(number: u32) -> Point {
     Point::new(STRAY_DISTANCE * f64::from(column + 1), STRAY_DISTANCE * f64::from(row + 1))
 }
 
-/// Something that a file makes known: the file's name without folder and ending, and what it describes.
-type Definition<T> = (String, Arc<T>);
-
 struct Resolver<'a> {
     script: &'a SimFile,
     notes: Notes<'a>,
-    built_in_robots: Vec<Arc<RobotSpec>>,
-    built_in_objects: Vec<Arc<ObjectKind>>,
-    robots: Vec<Definition<RobotSpec>>,
-    objects: Vec<Definition<ObjectKind>>,
+    definitions: Definitions,
     /// The places of each letter, in lower case, in the order of the maze.
     letters: BTreeMap<char, Vec<Place>>,
     scene: Scene,
@@ -157,7 +141,7 @@ impl Resolver<'_> {
     }
 
     /// Letters may be used before the line that names the maze.
-    fn read_world(&mut self, files: &mut dyn FileSource) -> Result<(), FormatError> {
+    fn read_world(&mut self, files: &mut Files<'_>) -> Result<(), FormatError> {
         let worlds =
             self.script.statements.iter().enumerate().filter_map(|(index, statement)| match statement {
                 Statement::World(file) => Some((index, file)),
@@ -171,7 +155,7 @@ impl Resolver<'_> {
                 "another `world` line follows, which counts; this one is skipped",
             );
         }
-        let world = read_world(file, self.notes.file, self.script.location(last), files)?;
+        let world = read_world(file, (self.notes.file, self.script.location(last)), files)?;
         self.notes.extend(world.warnings);
         self.scene.world = world.value;
         for place in &self.scene.world.places {
@@ -184,7 +168,7 @@ impl Resolver<'_> {
         &mut self,
         index: usize,
         statement: &Statement,
-        files: &mut dyn FileSource,
+        files: &mut Files<'_>,
     ) -> Result<(), FormatError> {
         let at = self.script.location(index);
         match statement {
@@ -193,8 +177,8 @@ impl Resolver<'_> {
                 self.scene.settings.show_sensors |= settings.show_sensors;
                 self.scene.settings.show_traces |= settings.show_traces;
             }
-            Statement::Robot(file) => self.define_robot(file, at, files)?,
-            Statement::Object(file) => self.define_object(file, at, files)?,
+            Statement::Robot(file) => self.definitions.robot_in(file, at, files, &mut self.notes)?,
+            Statement::Object(file) => self.definitions.object_in(file, at, files, &mut self.notes)?,
             Statement::Place { name, at: position, program } => {
                 self.place(name, *position, program.as_deref(), at)?;
             }
@@ -202,7 +186,7 @@ impl Resolver<'_> {
             Statement::Unknown(text) => {
                 let line = lexer::line(self.notes.file, at.line, text)?;
                 let name = line.as_ref().map_or("", |line| line.words[0].text);
-                if self.robot(name).is_some() || self.object(name).is_some() {
+                if self.definitions.knows(name) {
                     let broken = self.script.broken.iter().find(|(i, _)| *i == index);
                     let error = broken.map(|(_, error)| error.clone());
                     return Err(
@@ -215,73 +199,6 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    fn define_robot(
-        &mut self,
-        file: &str,
-        at: Location,
-        files: &mut dyn FileSource,
-    ) -> Result<(), FormatError> {
-        self.check_definitions(at)?;
-        let source = match files.read(file, self.notes.file, MAX_TEXT_BYTES) {
-            Err(error) if error.kind() == ErrorKind::NotFound && self.built_in(&stem(file)).is_some() => {
-                let message = format!("{} does not exist; the built-in robot is used", shown(file));
-                self.notes.warn(at, message);
-                return Ok(());
-            }
-            source => source,
-        };
-        let (name, text) = self.text(source, file, at)?;
-        let parsed = robi::parse(&text, &name)?;
-        self.notes.extend(parsed.warnings);
-        if RobotSpec::predefined(&parsed.value.name).is_some() {
-            let message =
-                format!("the name {} is reserved; the built-in robot is used", shown(&parsed.value.name));
-            self.notes.warn(at, message);
-        }
-        self.robots.push((stem(file), Arc::new(parsed.value)));
-        Ok(())
-    }
-
-    fn define_object(
-        &mut self,
-        file: &str,
-        at: Location,
-        files: &mut dyn FileSource,
-    ) -> Result<(), FormatError> {
-        self.check_definitions(at)?;
-        let source = files.read(file, self.notes.file, MAX_TEXT_BYTES);
-        let (name, text) = self.text(source, file, at)?;
-        let parsed = esobj::parse(&text, &name)?;
-        self.notes.extend(parsed.warnings);
-        self.objects.push((stem(file), Arc::new(parsed.value)));
-        Ok(())
-    }
-
-    /// The name and the text of a file that was looked up.
-    fn text(
-        &mut self,
-        source: io::Result<SourceFile>,
-        file: &str,
-        at: Location,
-    ) -> Result<(String, String), FormatError> {
-        let source = source.map_err(|error| unreadable(&error, file, self.notes.file, at, MAX_TEXT_BYTES))?;
-        let mut notes = Notes::new(&source.name);
-        let text = decode(source.bytes, &mut notes)?;
-        self.notes.extend(notes.finish(()).warnings);
-        Ok((source.name, text))
-    }
-
-    fn check_definitions(&self, at: Location) -> Result<(), FormatError> {
-        if self.robots.len() + self.objects.len() < MAX_DEFINITIONS {
-            return Ok(());
-        }
-        Err(self.error(
-            at,
-            "one more file".into(),
-            &format!("at most {MAX_DEFINITIONS} files of robots and objects"),
-        ))
-    }
-
     fn place(
         &mut self,
         name: &str,
@@ -289,10 +206,13 @@ impl Resolver<'_> {
         program: Option<&str>,
         at: Location,
     ) -> Result<(), FormatError> {
-        if let Some(spec) = self.robot(name) {
+        if !self.definitions.knows(name) {
+            self.definitions.stand_in_for(name, at, &mut self.notes);
+        }
+        if let Some(spec) = self.definitions.robot(name) {
             return self.place_robot(&spec, position, program, at);
         }
-        let Some(kind) = self.object(name) else {
+        let Some(kind) = self.definitions.object(name) else {
             self.warn_unknown(name, at);
             return Ok(());
         };
@@ -371,20 +291,6 @@ impl Resolver<'_> {
         Err(self.error(at, "one more robot or object".into(), &format!("at most {MAX_PLACED} of them")))
     }
 
-    fn robot(&self, name: &str) -> Option<Arc<RobotSpec>> {
-        self.built_in(name).or_else(|| find(&self.robots, name, |spec| &spec.name))
-    }
-
-    fn built_in(&self, name: &str) -> Option<Arc<RobotSpec>> {
-        self.built_in_robots.iter().find(|spec| spec.name.eq_ignore_ascii_case(name)).cloned()
-    }
-
-    fn object(&self, name: &str) -> Option<Arc<ObjectKind>> {
-        let built_in =
-            || self.built_in_objects.iter().find(|kind| kind.name.eq_ignore_ascii_case(name)).cloned();
-        find(&self.objects, name, |kind| &kind.name).or_else(built_in)
-    }
-
     fn warn_unknown(&mut self, name: &str, at: Location) {
         let message =
             format!("{} is neither a keyword nor a known robot or object; the line is skipped", shown(name));
@@ -394,16 +300,4 @@ impl Resolver<'_> {
     fn error(&self, at: Location, found: String, expected: &str) -> FormatError {
         FormatError::new(self.notes.file, at, found, expected)
     }
-}
-
-fn built_in_objects() -> Vec<Arc<ObjectKind>> {
-    ["can", "soccer", "golf", "crate"].into_iter().filter_map(ObjectKind::predefined).map(Arc::new).collect()
-}
-
-/// The last definition that states a name, or else the last whose file is called so.
-fn find<T>(definitions: &[Definition<T>], name: &str, stated: impl Fn(&T) -> &str) -> Option<Arc<T>> {
-    let by_name = definitions.iter().rev().find(|(_, value)| stated(value).eq_ignore_ascii_case(name));
-    let found =
-        by_name.or_else(|| definitions.iter().rev().find(|(file, _)| file.eq_ignore_ascii_case(name)));
-    found.map(|(_, value)| Arc::clone(value))
 }

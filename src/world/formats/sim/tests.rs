@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use proptest::prelude::*;
 
 use super::super::{FormatError, MemoryFiles, Parsed};
@@ -109,13 +111,13 @@ fn absent_files_of_built_in_robots_are_made_up_for() {
         warnings(text),
         [r"test.sim:1:7: `robots\\labbot.robi` does not exist; the built-in robot is used"]
     );
-    assert!(failure("robot cubot.robi").contains("does not exist"));
+    assert!(failure("robot rover.robi").contains("does not exist"));
 }
 
 #[test]
 fn old_and_unknown_lines_are_skipped_with_their_place() {
     let text = "maze old.maz\nrobi S5.robi drive.dll 400 400 0\nobject 1 2 3 0.5 ball.ob\nworld w.wld\n\
-                Cubot 1 2 3\nfrobnicate\nsettings VIS FAST\ncan 1 2 3 extra\nS4 1 2 3 a.x b.x";
+                Rover 1 2 3\nfrobnicate\nsettings VIS FAST\ncan 1 2 3 extra\nS4 1 2 3 a.x b.x";
     assert_eq!(
         warnings(text),
         [
@@ -124,7 +126,7 @@ fn old_and_unknown_lines_are_skipped_with_their_place() {
             "test.sim:3:1: a line of EyeSim 6, skipped; expected `object FILE` and `NAME X Y PHI`",
             "test.sim:7:14: unknown setting `FAST`; ignored",
             "test.sim:9:14: `b.x` is more than belongs in this line; ignored",
-            "test.sim:5:1: `Cubot` is neither a keyword nor a known robot or object; the line is skipped",
+            "test.sim:5:1: `Rover` is neither a keyword nor a known robot or object; the line is skipped",
             "test.sim:6:1: `frobnicate` is neither a keyword nor a known robot or object; the line is skipped",
             "test.sim:8:1: `extra` is more than belongs in the line of an object; ignored",
         ]
@@ -170,8 +172,85 @@ fn a_tolerant_reader_goes_on_behind_errors() {
     let scene = parsed.value;
     assert_eq!((scene.world.floor.max, scene.world.walls.len()), (Point::new(2.0, 4.0), 4));
     let robots: Vec<_> = scene.robots.iter().map(|r| (r.program.as_deref(), r.pose.x, r.pose.y)).collect();
-    assert_eq!(robots, [(Some("a.py"), 0.5, 0.5), (Some("b.py"), 1.0, 0.5), (Some("c.py"), 0.4, 2.5)]);
-    assert_eq!((scene.robot_numbers(), scene.object_numbers()), (vec![2, 3, 4], vec![1]));
+    assert_eq!(
+        robots,
+        [(None, 0.001, 0.002), (Some("a.py"), 0.5, 0.5), (Some("b.py"), 1.0, 0.5), (Some("c.py"), 0.4, 2.5)]
+    );
+    assert_eq!((scene.robot_numbers(), scene.object_numbers()), (vec![1, 3, 4, 5], vec![2]));
+}
+
+#[test]
+fn what_eyesim_brings_along_is_known_without_its_files() {
+    let text = "settings VIS\nworld ../../worlds/small/Soccer1998.wld\nrobot \"../../robots/Ackermann/SAE.robi\"\n\
+                object \"../../objects/ConeOrange/coneorange.esObj\"\nSAE 500 500 90\nCone-O 600 600 0\n\
+                Cone-O 900 600 0\nStopSign 1000 600 0\nSoccerBot 200 200 0\ncubot-R 300 200 0";
+    let scene = scene(text);
+    assert_eq!(scene.world.walls.len(), World::predefined("soccer1998").unwrap().walls.len());
+    let robots: Vec<_> = scene.robots.iter().map(|robot| robot.spec.name.as_str()).collect();
+    assert_eq!(robots, ["SAE", "SoccerBot", "Cubot-r"]);
+    let objects: Vec<_> = scene.world.objects.iter().map(|object| object.kind.name.as_str()).collect();
+    assert_eq!(objects, ["Cone-O", "Cone-O", "StopSign"]);
+    assert!(
+        Arc::ptr_eq(&scene.world.objects[0].kind, &scene.world.objects[1].kind),
+        "one kind for all cones"
+    );
+    assert_eq!(
+        warnings(text),
+        [
+            "test.sim:2:7: `../../worlds/small/Soccer1998.wld` does not exist; the built-in world is used",
+            "test.sim:3:7: `../../robots/Ackermann/SAE.robi` does not exist; the built-in robot is used",
+            "test.sim:4:8: `../../objects/ConeOrange/coneorange.esOb…` does not exist; the built-in object is used",
+        ]
+    );
+}
+
+#[test]
+fn a_stand_in_has_the_name_that_the_script_gives_it() {
+    let text = "robot a/Ackermann/x5.robi\nobject oaktree.esObj\nobject \"b/lamp.esObj\"\n\
+                Oak-Tree 100 200 0\nOak-Tree 300 200 0\nLamp 500 500 0\nRacer 1 2 3 go.py\nNobody 1 2 3";
+    let parsed = parse_tolerantly(text, "test.sim", &mut files()).unwrap();
+    let objects: Vec<_> = parsed.value.world.objects.iter().map(|object| object.kind.name.as_str()).collect();
+    assert_eq!(objects, ["Oak-Tree", "Oak-Tree", "Lamp"]);
+    assert_eq!((parsed.value.robots.len(), parsed.value.robots[0].spec.name.as_str()), (1, "Racer"));
+    assert!(matches!(parsed.value.robots[0].spec.drive, crate::world::DriveSpec::Ackermann { .. }));
+    let last = parsed.warnings.last().unwrap().to_string();
+    assert!(last.contains("`Nobody` is neither"), "{last}");
+    assert!(failure(text).contains("x5.robi"));
+}
+
+#[test]
+fn images_and_models_are_looked_up_from_the_files_that_name_them() {
+    let mut memory = files();
+    let mut add = |name: &str, text: &str| memory.0.insert(name.into(), text.as_bytes().to_vec());
+    add("carpet.wld", "floor 1000 1000\nfloor_texture carpet.jpg\nterrain 1000 1000 50 hills.png\n");
+    add("flag.esObj", "obj flag.obj\nbox 0 50 0 100 100 20\n");
+    let text = "world carpet.wld\nobject flag.esObj\nflag 100 100 0\n";
+    let missing = |memory: &mut MemoryFiles| parse(text, "test.sim", memory).unwrap_err().to_string();
+    assert!(missing(&mut memory).starts_with("carpet.wld:2:15: found `carpet.jpg`, which does not exist"));
+    memory.0.insert("carpet.jpg".into(), b"P6 1 1 255 abc".to_vec());
+    assert!(missing(&mut memory).starts_with("carpet.wld:3:22: found `hills.png`"));
+    memory.0.insert("hills.png".into(), b"broken".to_vec());
+    assert!(missing(&mut memory).starts_with("hills.png:1:1: found a broken image"));
+    memory.0.insert("hills.png".into(), b"P5 1 1 255 a".to_vec());
+    assert!(missing(&mut memory).starts_with("flag.esObj:1:5: found `flag.obj`"));
+    memory.0.insert("flag.obj".into(), b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec());
+    let scene = parse(text, "test.sim", &mut memory).unwrap().value;
+    assert!(scene.world.floor_texture.unwrap().image.is_some());
+    assert!(scene.world.terrain.unwrap().image.image.is_some());
+    assert_eq!(scene.world.objects[0].kind.mesh.as_ref().unwrap().faces.len(), 1);
+}
+
+#[test]
+fn a_tolerant_reader_has_a_gray_floor_for_a_missing_one() {
+    let mut memory = files();
+    memory.0.insert("carpet.wld".into(), b"floor 1000 1000\nfloor_texture carpet.jpg\n".to_vec());
+    let parsed = parse_tolerantly("world carpet.wld\n", "test.sim", &mut memory).unwrap();
+    assert_eq!(
+        (parsed.value.world.floor.max, parsed.value.world.floor_texture),
+        (Point::new(1.0, 1.0), None)
+    );
+    let warning = parsed.warnings[0].to_string();
+    assert!(warning.starts_with("carpet.wld:2:15:") && warning.ends_with("the floor is gray"), "{warning}");
 }
 
 #[test]

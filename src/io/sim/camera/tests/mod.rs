@@ -1,5 +1,7 @@
 //! Scenes whose pictures are known by geometry.
 
+mod surfaces;
+
 use std::f64::consts::FRAC_PI_3;
 use std::sync::Arc;
 
@@ -8,7 +10,7 @@ use proptest::prelude::*;
 
 use crate::geometry::{Point, Pose, math, units};
 use crate::io::sim::{Fleet, SimOptions, Simulation};
-use crate::io::{Camera, Clock, Error, ErrorKind, Resolution, Servos};
+use crate::io::{Camera, Clock, Drive, Error, ErrorKind, Resolution, Servos};
 use crate::world::{
     Billboard, Colour, Marker, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Shape, Wall, World,
 };
@@ -230,6 +232,39 @@ fn a_billboard_shows_its_picture_upright_and_unmirrored() {
 }
 
 #[test]
+fn between_frames_the_image_stays() {
+    let scene = scene();
+    let options = SimOptions::with_noise(1.0, 5);
+    let mut robot = Simulation::new(&scene, options).unwrap().robot(0).unwrap();
+    robot.set_speed(crate::geometry::Twist::new(0.0, 1.0)).unwrap();
+    let mut images = Vec::new();
+    // 300 ms in steps of a tick: nine frames.
+    for _ in 0..30 {
+        images.push(robot.image().unwrap());
+        robot.wait(0.01).unwrap();
+    }
+    images.dedup();
+    assert!((9..=10).contains(&images.len()), "{}", images.len());
+    robot.set_resolution(Resolution::Qvga).unwrap();
+    assert_eq!(robot.image().unwrap().dimensions(), (320, 240), "another size is another image");
+}
+
+#[test]
+fn a_mast_is_seen_above_a_robot() {
+    let mut scene = scene();
+    scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::labbot()), Pose::new(5.0, 4.0, 0.0)));
+    let mut short = scene.clone();
+    short.robots[1].spec = Arc::new(RobotSpec { mast: None, ..RobotSpec::labbot() });
+    let (with, without) = (picture(&scene), picture(&short));
+    let changed = with.enumerate_pixels().filter(|&(x, y, p)| p != without.get_pixel(x, y));
+    let (columns, rows): (Vec<u32>, Vec<u32>) = changed.map(|(x, y, _)| (x, y)).unzip();
+    // 110 mm wide at 0.88 m, up to 0.6 m.
+    let width = columns.iter().max().unwrap() - columns.iter().min().unwrap() + 1;
+    assert!(width.abs_diff((focal() * 0.11 / 0.878) as u32) <= 2, "{width}");
+    assert!(rows.iter().all(|&y| y < 120 - (focal() * 0.05 / 0.9) as u32));
+}
+
+#[test]
 fn light_scales_the_brightness() {
     let scene = scene();
     let mean = |light| {
@@ -285,9 +320,9 @@ fn what_cannot_be_drawn_is_an_error_with_its_name() {
     let start = Pose::new(1.0, 1.0, 0.0);
     let error = image(&Scene::with_robot(World::empty(2.0, 2.0), blind, start));
     assert_eq!(error.to_string(), "the robot has no camera");
-    let mut fisheye = RobotSpec::s4();
-    fisheye.camera.as_mut().unwrap().field_of_view = units::from_deg(180.0);
-    let error = image(&Scene::with_robot(World::empty(2.0, 2.0), fisheye, start));
+    let mut wide = RobotSpec::s4();
+    wide.camera.as_mut().unwrap().field_of_view = units::from_deg(180.0);
+    let error = image(&Scene::with_robot(World::empty(2.0, 2.0), wide, start));
     assert!(error.to_string().contains("180 degrees"), "{error}");
     let mut carpet = scene();
     carpet.world.floor_texture = Some("no/such/carpet.png".into());

@@ -1,0 +1,116 @@
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use super::canvas::Canvas;
+use super::scenery::Scenery;
+use super::view::{Place, View};
+use crate::geometry::math;
+use crate::io::Result;
+use crate::world::space::Space;
+
+/// An equidistant lens: a place in the picture is as far from the middle as its angle from the line of sight says.
+///
+/// Straight lines become curves in its picture, so what is to be seen is drawn on the sides of an upright cube about the
+/// camera, flat as they are, and looked at through the lens from there.
+#[derive(Debug)]
+pub(super) struct Fisheye {
+    /// Width and height of the picture, the angle across it, and the tilt, for which the sides were worked out.
+    of: (usize, usize, f64, f64),
+    /// Pixels along each edge of the cube.
+    edge: usize,
+    /// For each side of the cube, the picture's pixels that show it, and those of the side that they show.
+    sides: [Vec<(u32, u32)>; SIDES.len()],
+}
+
+/// The sides of the cube: how far to the left of the camera's heading each is, and how far up.
+const SIDES: [(f64, f64); 6] =
+    [(0.0, 0.0), (FRAC_PI_2, 0.0), (PI, 0.0), (-FRAC_PI_2, 0.0), (0.0, FRAC_PI_2), (0.0, -FRAC_PI_2)];
+/// Pixels of a side for each of the picture's that it spans in its middle, and the most along an edge.
+const FINENESS: f64 = 1.25;
+const LONGEST_EDGE: f64 = 2048.0;
+
+/// Where a camera with such a lens is and looks.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Gaze {
+    pub(super) eye: Place,
+    pub(super) heading: f64,
+    pub(super) tilt: f64,
+    /// Radians from the picture's left edge to its right one.
+    pub(super) field_of_view: f64,
+    pub(super) dimensions: (u32, u32),
+}
+
+impl Fisheye {
+    pub(super) fn new() -> Self {
+        Self { of: (0, 0, 0.0, 0.0), edge: 0, sides: [const { Vec::new() }; SIDES.len()] }
+    }
+
+    /// Draws what the camera on a robot sees. `side` is memory.
+    pub(super) fn draw(
+        &mut self,
+        (picture, side): (&mut Canvas, &mut Canvas),
+        scenery: &mut Scenery,
+        gaze: &Gaze,
+        space: &Space,
+        me: usize,
+    ) -> Result<()> {
+        let (width, height) = (gaze.dimensions.0 as usize, gaze.dimensions.1 as usize);
+        let of = (width, height, gaze.field_of_view, gaze.tilt);
+        if self.of != of {
+            self.work_out(of);
+        }
+        picture.reset(width, height);
+        // Behind the camera there is nothing but the lens.
+        picture.colours.fill(0);
+        for (pixels, (left, up)) in self.sides.iter().zip(SIDES) {
+            if pixels.is_empty() {
+                continue;
+            }
+            let dimensions = (self.edge as u32, self.edge as u32);
+            let view = View::new(gaze.eye, gaze.heading + left, up, FRAC_PI_2, dimensions);
+            scenery.draw(side, &view, space, me)?;
+            for &(shown, from) in pixels {
+                picture.colours[shown as usize] = side.colours[from as usize];
+            }
+        }
+        Ok(())
+    }
+
+    /// Finds which pixel of which side each pixel of the picture shows.
+    fn work_out(&mut self, of: (usize, usize, f64, f64)) {
+        let (width, height, field_of_view, tilt) = of;
+        let focal = width as f64 / field_of_view;
+        let edge = (2.0 * FINENESS * focal).ceil().clamp(2.0, LONGEST_EDGE);
+        (self.of, self.edge) = (of, edge as usize);
+        self.sides.iter_mut().for_each(Vec::clear);
+        let dimensions = (edge as u32, edge as u32);
+        let views = SIDES.map(|(left, up)| View::new([0.0; 3], left, up, FRAC_PI_2, dimensions));
+        let last = edge - 1.0;
+        for row in 0..height {
+            for column in 0..width {
+                let right = (column as f64 + 0.5 - 0.5 * width as f64) / focal;
+                let down = (row as f64 + 0.5 - 0.5 * height as f64) / focal;
+                let Some(ray) = ray(right, down, tilt) else { continue };
+                let seen = views.map(|view| view.turned(ray));
+                let nearest =
+                    (0..SIDES.len()).fold(0, |best, i| if seen[i].z > seen[best].z { i } else { best });
+                let (x, y) = views[nearest].project(seen[nearest]);
+                let from = y.clamp(0.0, last) as usize * self.edge + x.clamp(0.0, last) as usize;
+                self.sides[nearest].push(((row * width + column) as u32, from as u32));
+            }
+        }
+    }
+}
+
+/// The direction, ahead, to the left and up, of a place so many radians to the right and down in the picture of a camera that
+/// looks up by `tilt`; `None` beyond straight behind it.
+fn ray(right: f64, down: f64, tilt: f64) -> Option<Place> {
+    let angle = math::hypot(right, down);
+    if angle > PI {
+        return None;
+    }
+    let (sin, ahead) = math::sin_cos(angle);
+    let share = if angle > 0.0 { sin / angle } else { 1.0 };
+    let (aside, up) = (share * right, -share * down);
+    let (sin, cos) = math::sin_cos(tilt);
+    Some([cos * ahead - sin * up, -aside, sin * ahead + cos * up])
+}

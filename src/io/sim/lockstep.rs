@@ -1,0 +1,403 @@
+//! Programs that share one world in virtual time, however their threads are scheduled.
+
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, ThreadId};
+use std::time::Duration;
+
+use super::LONGEST;
+use crate::io::{Error, ErrorKind, Result};
+
+/// A world that advances tick by tick.
+pub(super) trait Ticking {
+    /// Ticks since the start.
+    fn time(&self) -> u64;
+
+    /// Advances by one tick.
+    fn tick(&mut self);
+}
+
+/// A world that several programs share in lockstep.
+///
+/// The world stands at tick `n` until every program that still runs has asked for something at tick `n + 1` or
+/// later; then whoever asked last advances it. What a program reads at a tick therefore depends on ticks alone, never
+/// on how threads are scheduled.
+#[derive(Debug)]
+pub(super) struct Lockstep<W> {
+    state: Mutex<State<W>>,
+    advanced: Condvar,
+    /// Nanoseconds in a tick.
+    tick: u64,
+}
+
+#[derive(Debug)]
+pub(super) struct State<W> {
+    pub(super) world: W,
+    seats: Vec<Seat>,
+}
+
+/// A program as the clockwork sees it.
+#[derive(Debug, Clone, Default)]
+struct Seat {
+    phase: Phase,
+    /// The tick up to which the program lets the world advance.
+    tick: u64,
+    /// The thread that used the robot last; none has since it was taken.
+    thread: Option<ThreadId>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Phase {
+    /// Nobody drives the robot; the world does not wait for it.
+    #[default]
+    Unclaimed,
+    Running,
+    Ended,
+}
+
+impl<W: Ticking> State<W> {
+    /// Advances the world as far as every running program allows.
+    fn advance(&mut self) {
+        let running =
+            self.seats.iter().filter(|seat| seat.phase == Phase::Running).map(|seat| seat.tick).min();
+        let target = running.unwrap_or_else(|| self.seats.iter().map(|seat| seat.tick).max().unwrap_or(0));
+        while self.world.time() < target {
+            self.world.tick();
+        }
+    }
+
+    /// A robot that holds the world back and may have been left behind: this thread was the last one to use
+    /// it, or none has used it.
+    fn held_back_by(&self, index: usize) -> Option<usize> {
+        let me = thread::current().id();
+        let tick = self.world.time();
+        self.seats.iter().enumerate().position(|(other, seat)| {
+            other != index
+                && seat.phase == Phase::Running
+                && seat.tick == tick
+                && seat.thread.is_none_or(|thread| thread == me)
+        })
+    }
+}
+
+/// The real time in which another thread must have begun to use a robot that holds the world back.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+fn held_back(index: usize, other: usize) -> Error {
+    let message = format!(
+        "robot {index} waits for robot {other}, which no other thread has used for {} s of real time; \
+         give each robot a thread of its own, or use a fleet",
+        PATIENCE.as_secs()
+    );
+    Error::new(ErrorKind::Other, message)
+}
+
+impl<W: Ticking> Lockstep<W> {
+    /// A world with ticks of some seconds, for so many programs.
+    pub(super) fn new(world: W, tick: f64, programs: usize) -> Self {
+        let seats = vec![Seat::default(); programs];
+        let tick = nanoseconds(tick).max(1);
+        Self { state: Mutex::new(State { world, seats }), advanced: Condvar::new(), tick }
+    }
+
+    /// The world as it stands.
+    pub(super) fn lock(&self) -> MutexGuard<'_, State<W>> {
+        // A panic in a program leaves the world between two calls, which is a consistent state.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Makes a program one that the world waits for. Returns the present tick.
+    fn claim(&self, index: usize) -> Result<u64> {
+        let mut state = self.lock();
+        let programs = state.seats.len();
+        let tick = state.world.time();
+        let seat = state.seats.get_mut(index).ok_or_else(|| no_robot(index, programs))?;
+        if seat.phase == Phase::Running {
+            return Err(Error::new(
+                ErrorKind::InvalidInput,
+                format!("robot {index} is already being driven"),
+            ));
+        }
+        *seat = Seat { phase: Phase::Running, tick, thread: None };
+        Ok(tick)
+    }
+
+    /// Waits until the world stands at `tick`, and returns it.
+    fn reach(&self, index: usize, tick: u64) -> Result<MutexGuard<'_, State<W>>> {
+        let mut state = self.lock();
+        let alone = state.seats.len() == 1;
+        if !alone {
+            state.seats[index].thread = Some(thread::current().id());
+        }
+        if state.world.time() == tick {
+            return Ok(state);
+        }
+        state.seats[index].tick = tick;
+        let before = state.world.time();
+        state.advance();
+        if !alone && state.world.time() != before {
+            self.advanced.notify_all();
+        }
+        while state.world.time() < tick {
+            let Some(other) = state.held_back_by(index) else {
+                state = self.advanced.wait(state).unwrap_or_else(PoisonError::into_inner);
+                continue;
+            };
+            let before = state.world.time();
+            let (woken, waited) =
+                self.advanced.wait_timeout(state, PATIENCE).unwrap_or_else(PoisonError::into_inner);
+            state = woken;
+            let still = state.world.time() == before && state.held_back_by(index) == Some(other);
+            if waited.timed_out() && still {
+                return Err(held_back(index, other));
+            }
+        }
+        Ok(state)
+    }
+
+    /// Notes that a program has ended at `tick`; the world goes on without it.
+    fn release(&self, index: usize, tick: u64) {
+        let mut state = self.lock();
+        state.seats[index].phase = Phase::Ended;
+        state.seats[index].tick = tick;
+        state.advance();
+        self.advanced.notify_all();
+    }
+}
+
+/// A program in a world that it may share: its own clock, and its way to the world.
+#[derive(Debug)]
+pub(super) struct Program<W: Ticking> {
+    shared: Arc<Lockstep<W>>,
+    index: usize,
+    /// The program's own clock, in nanoseconds, what a call takes by it, and when its time is over.
+    clock: u64,
+    call: u64,
+    limit: u64,
+}
+
+const NANOSECONDS: f64 = 1e9;
+
+fn nanoseconds(seconds: f64) -> u64 {
+    (seconds * NANOSECONDS).round() as u64
+}
+
+impl<W: Ticking> Program<W> {
+    /// Takes the place of an index. Each call takes some seconds; after a limit, if there is one, calls fail.
+    pub(super) fn claim(
+        shared: &Arc<Lockstep<W>>,
+        index: usize,
+        call: f64,
+        limit: Option<f64>,
+    ) -> Result<Self> {
+        let clock = shared.claim(index)? * shared.tick;
+        let (call, limit) = (nanoseconds(call), limit.map_or(u64::MAX, nanoseconds));
+        Ok(Self { shared: Arc::clone(shared), index, clock, call, limit })
+    }
+
+    /// Asks the world for something at this program's time.
+    pub(super) fn look<T>(&self, ask: impl FnOnce(&mut W, usize) -> Result<T>) -> Result<T> {
+        if self.clock >= self.limit {
+            // The world still advances to the limit, so that what is true then can be looked at.
+            drop(self.shared.reach(self.index, self.limit / self.shared.tick)?);
+            return Err(time_is_over());
+        }
+        let mut state = self.shared.reach(self.index, self.clock / self.shared.tick)?;
+        ask(&mut state.world, self.index)
+    }
+
+    /// Asks the world for something at this program's time, and charges the call.
+    pub(super) fn call<T>(&mut self, ask: impl FnOnce(&mut W, usize) -> Result<T>) -> Result<T> {
+        let over = self.clock >= self.limit;
+        let answer = self.look(ask);
+        if !over {
+            self.clock = self.clock.saturating_add(self.call);
+        }
+        answer
+    }
+
+    /// Lets the program's own clock advance by the time of a call.
+    pub(super) fn charge(&mut self) {
+        self.clock = self.clock.saturating_add(self.call);
+    }
+
+    /// Lets the program's own clock advance. Fails for a time that no program waits.
+    pub(super) fn pass(&mut self, seconds: f64) -> Result<()> {
+        check_duration("waiting time", seconds)?;
+        self.clock = self.clock.saturating_add(nanoseconds(seconds.max(0.0)));
+        Ok(())
+    }
+
+    /// Asks at every tick until there is an answer.
+    pub(super) fn poll<T>(&mut self, mut ask: impl FnMut(&mut W, usize) -> Result<Option<T>>) -> Result<T> {
+        loop {
+            if let Some(answer) = self.call(&mut ask)? {
+                return Ok(answer);
+            }
+            self.clock = (self.clock / self.shared.tick + 1) * self.shared.tick;
+        }
+    }
+
+    /// The program's own clock, in seconds.
+    pub(super) fn time(&self) -> f64 {
+        self.clock as f64 / NANOSECONDS
+    }
+
+    /// The world, whatever the program's own time.
+    pub(super) fn shared(&self) -> &Lockstep<W> {
+        &self.shared
+    }
+}
+
+impl<W: Ticking> Drop for Program<W> {
+    fn drop(&mut self) {
+        self.shared.release(self.index, self.clock.min(self.limit) / self.shared.tick);
+    }
+}
+
+pub(super) fn time_is_over() -> Error {
+    Error::new(ErrorKind::TimedOut, "the time limit of the simulation is over")
+}
+
+pub(super) fn no_robot(index: usize, robots: usize) -> Error {
+    Error::invalid_input("robot", index, &format!("an index below {robots}, the number of robots"))
+}
+
+/// Fails unless a program may let so many seconds pass at once.
+pub(super) fn check_duration(name: &str, seconds: f64) -> Result<()> {
+    if seconds.is_finite() && seconds <= LONGEST {
+        return Ok(());
+    }
+    Err(Error::invalid_input(name, seconds, &format!("a finite number of at most {LONGEST} s")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Stream;
+    use proptest::prelude::*;
+
+    /// A world whose state is the history of what programs have told it, tick by tick.
+    #[derive(Debug, Clone, Default)]
+    struct Ledger {
+        time: u64,
+        told: Vec<u64>,
+        history: u64,
+    }
+
+    impl Ticking for Ledger {
+        fn time(&self) -> u64 {
+            self.time
+        }
+
+        fn tick(&mut self) {
+            self.time += 1;
+            let fold = |sum: u64, told: &u64| sum.rotate_left(7).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ told;
+            self.history = self.told.iter().fold(self.history, fold);
+        }
+    }
+
+    /// What a program does: it waits some milliseconds, tells a number and reads the history.
+    type Script = Vec<(u16, u64)>;
+
+    const TICK: f64 = 0.010;
+    const CALL: f64 = 0.0003;
+
+    /// What each program reads, each in a thread of its own that `delays` hold up, started in some order.
+    fn in_threads(scripts: &[Script], backwards: bool, delays: u64) -> Vec<Vec<(u64, u64)>> {
+        let ledger = Ledger { told: vec![0; scripts.len()], ..Ledger::default() };
+        let shared = Arc::new(Lockstep::new(ledger, TICK, scripts.len()));
+        let programs: Vec<_> =
+            (0..scripts.len()).map(|index| Program::claim(&shared, index, CALL, None).unwrap()).collect();
+        thread::scope(|scope| {
+            let mut work: Vec<_> = programs.into_iter().zip(scripts).enumerate().collect();
+            if backwards {
+                work.reverse();
+            }
+            let threads: Vec<_> = work
+                .into_iter()
+                .map(|(index, (mut program, script))| {
+                    let mut random = Stream::new(delays).child("delay", index as u64);
+                    let read = move || {
+                        let act = |&(wait, number): &(u16, u64)| {
+                            for _ in 0..random.below(4) {
+                                thread::yield_now();
+                            }
+                            program.pass(f64::from(wait) / 1000.0).unwrap();
+                            let mut tell = |world: &mut Ledger, me: usize| {
+                                world.told[me] = number;
+                                Ok((world.time, world.history))
+                            };
+                            program.call(&mut tell).unwrap()
+                        };
+                        script.iter().map(act).collect::<Vec<_>>()
+                    };
+                    (index, scope.spawn(read))
+                })
+                .collect();
+            let mut seen = vec![Vec::new(); scripts.len()];
+            for (index, thread) in threads {
+                seen[index] = thread.join().unwrap();
+            }
+            seen
+        })
+    }
+
+    /// The same in one thread: whatever is due at a tick happens before the next one.
+    fn one_by_one(scripts: &[Script]) -> Vec<Vec<(u64, u64)>> {
+        let mut world = Ledger { told: vec![0; scripts.len()], ..Ledger::default() };
+        let mut calls = Vec::new();
+        for (index, script) in scripts.iter().enumerate() {
+            let mut clock = 0;
+            for &(wait, number) in script {
+                clock += u64::from(wait) * 1_000_000;
+                calls.push((clock / nanoseconds(TICK), index, number));
+                clock += nanoseconds(CALL);
+            }
+        }
+        calls.sort_by_key(|&(tick, index, _)| (tick, index));
+        let mut seen = vec![Vec::new(); scripts.len()];
+        for (tick, index, number) in calls {
+            while world.time < tick {
+                world.tick();
+            }
+            world.told[index] = number;
+            seen[index].push((world.time, world.history));
+        }
+        seen
+    }
+
+    proptest! {
+        #![proptest_config(crate::testing::cases(64))]
+        #[test]
+        fn threads_order_and_load_change_nothing(
+            scripts in prop::collection::vec(prop::collection::vec((0..40_u16, any::<u64>()), 0..30), 1..5),
+            backwards: bool, delays: u64,
+        ) {
+            prop_assert_eq!(in_threads(&scripts, backwards, delays), one_by_one(&scripts));
+        }
+    }
+
+    #[test]
+    fn a_program_that_has_ended_holds_nobody_back() {
+        let scripts = [vec![(5, 1)], vec![(2000, 7), (2000, 9)]];
+        let seen = in_threads(&scripts, false, 1);
+        assert_eq!(seen[1].last().unwrap().0, 400);
+    }
+
+    #[test]
+    fn clocks_of_programs_that_wait_as_long_agree() {
+        let shared = Arc::new(Lockstep::new(Ledger { told: vec![0; 2], ..Ledger::default() }, TICK, 2));
+        let programs = [0, 1].map(|index| Program::claim(&shared, index, CALL, None).unwrap());
+        let times = thread::scope(|scope| {
+            programs
+                .map(|mut program| {
+                    scope.spawn(move || {
+                        program.pass(5.0).unwrap();
+                        program.look(|world, _| Ok(world.time)).unwrap()
+                    })
+                })
+                .map(|thread| thread.join().unwrap())
+        });
+        assert_eq!(times, [500, 500]);
+    }
+}

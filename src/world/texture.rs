@@ -1,0 +1,35 @@
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use image::RgbaImage;
+
+/// An image that a file of a world names: the picture on a floor, the heights of hills.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Texture {
+    /// The image's file as the world's file names it.
+    pub file: PathBuf,
+    /// Its pixels, once a [`FileSource`](super::formats::FileSource) has found it: reading a whole scene does so, reading
+    /// the text of a world alone does not.
+    pub image: Option<Arc<RgbaImage>>,
+}
+
+impl Texture {
+    /// An image with its pixels.
+    pub fn new(file: impl Into<PathBuf>, image: RgbaImage) -> Self {
+        Self { file: file.into(), image: Some(Arc::new(image)) }
+    }
+}
+
+/// An image that nobody has looked up.
+impl From<PathBuf> for Texture {
+    fn from(file: PathBuf) -> Self {
+        Self { file, image: None }
+    }
+}
+
+/// An image that nobody has looked up.
+impl From<&str> for Texture {
+    fn from(file: &str) -> Self {
+        PathBuf::from(file).into()
+    }
+}
