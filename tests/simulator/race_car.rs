@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
-use roverlab::geometry::{Point, Pose, Twist, angle_difference};
+use roverlab::geometry::{Point, Pose, Twist, angle_difference, math};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::wrappers::Traced;
 use roverlab::io::{Camera, Clock, Drive, Encoders, ErrorKind, Lidar, Motors, Radio, Resolution, RobotIo};

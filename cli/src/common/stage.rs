@@ -364,7 +364,8 @@ impl Stage {
         let model = *models.get(index).or(models.first()).ok_or_else(|| Failure::input("no robot"))?;
         let who = if guard.apart { 0 } else { index };
         let model = (model, guard.fault.filter(|_| index == 0));
-        Ok(Claimed { robot, guard: Some((self.truth(index)?, who, model, guard.stops.clone())) })
+        let (truth, stops) = (self.truth(index)?, guard.stops.clone());
+        Ok(Claimed { robot, guard: Some(Watch { truth, who, model, stops }) })
     }
 
     /// A simulated robot with the faults of the first one.
@@ -419,14 +420,22 @@ impl Stage {
 /// A robot that the world waits for, and the safety system that it gets.
 pub(crate) struct Claimed {
     robot: Driven,
-    guard: Option<(StageTruth, usize, (StoppingModel, Option<f64>), Stops)>,
+    guard: Option<Watch>,
+}
+
+/// What a safety system is made of.
+struct Watch {
+    truth: StageTruth,
+    who: usize,
+    model: (StoppingModel, Option<f64>),
+    stops: Stops,
 }
 
 impl Claimed {
     /// The robot, armed and started if a safety system guards it.
     pub(crate) fn ready(self) -> Result<Driven, Failure> {
         let Self { robot, guard } = self;
-        let Some((truth, who, model, stops)) = guard else { return Ok(robot) };
+        let Some(Watch { truth, who, model, stops }) = guard else { return Ok(robot) };
         guarded(robot, truth, who, model, stops).map_err(Failure::run)
     }
 }
