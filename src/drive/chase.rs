@@ -5,8 +5,8 @@ use super::a_to_b::dog_twist;
 use super::{FollowerParameters, Hermite, Method};
 use crate::geometry::{Pose, Twist};
 use crate::io::control::{Behaviour, Decision, SensedBy, Senses, halts};
-use crate::io::error::require_positive;
 use crate::io::{Drive, Error, Result};
+use crate::parameter::require_positive;
 
 /// What [`Chase`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -47,8 +47,8 @@ mod parts;
 
 use std::ops::ControlFlow;
 
-use super::error::require_positive;
 use super::{Clock, Result};
+use crate::parameter::require_positive;
 pub(crate) use clock::Stopwatch;
 pub use parts::{LidarObservation, Manoeuvre, SensedBy};
 

@@ -1,4 +1,6 @@
+use crate::ParameterError;
 use crate::geometry::{Point, Pose};
+use crate::parameter::{require, require_positive};
 
 /// What a lane is looked for with. All numbers are greater than 0 and finite, and it looks no farther ahead
 /// than 1000 m.
@@ -41,14 +43,24 @@ impl Default for LaneParameters {
 const FARTHEST: f64 = 1000.0;
 
 impl LaneParameters {
-    /// Whether all numbers are within their ranges.
-    pub(super) fn is_usable(&self) -> bool {
-        let p = self;
-        let [least, most] = p.half_width;
-        let numbers =
-            [p.ahead, p.curvature, p.clearance, least, most, p.usual, p.loose, p.spacing, p.sharpest];
-        let are_good = numbers.iter().all(|number| *number > 0.0 && number.is_finite());
-        are_good && least <= most && p.ahead <= FARTHEST
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        let [least, most] = self.half_width;
+        for (name, value) in [
+            ("ahead", self.ahead),
+            ("curvature", self.curvature),
+            ("clearance", self.clearance),
+            ("half width", least),
+            ("half width", most),
+            ("usual half width", self.usual),
+            ("loose", self.loose),
+            ("spacing", self.spacing),
+            ("sharpest", self.sharpest),
+        ] {
+            require_positive(name, value)?;
+        }
+        require("half width", least, least <= most, "the least before the greatest")?;
+        require("ahead", self.ahead, self.ahead <= FARTHEST, "at most 1000 m")
     }
 }
 

@@ -79,8 +79,8 @@ impl Other {
         Ok(Self {
             car: stage.robot(1)?,
             scan: LidarScan::default(),
-            map: ConeMap::new(parameters.map),
-            lane: LaneFinder::new(parameters.lane),
+            map: ConeMap::new(parameters.map)?,
+            lane: LaneFinder::new(parameters.lane)?,
             judge,
         })
     }
@@ -284,7 +284,7 @@ fn drive<R: RobotIo + ?Sized>(
     mut see: impl FnMut(&Racer),
 ) -> io::Result<Ending> {
     let parameters = course.parameters(settings.laps);
-    let mut racer = Racer::new(parameters);
+    let mut racer = Racer::new(parameters)?;
     let mut eyes = Eyes::new(settings.sensors);
     if settings.sensors != Sensors::Lidar {
         car.set_resolution(course.resolution())?;

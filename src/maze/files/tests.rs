@@ -326,7 +326,7 @@ fn what_is_no_maze_is_an_error() {
     }
     let wide = format!("o{0}\n|{1}\no{0}\n", "---o".repeat(257), "   |".repeat(257));
     let error = parse(wide.as_bytes(), "wide").unwrap_err().to_string();
-    assert_eq!(error, "wide:1:1: found a maze of 257 by 1 cells; expected 1 to 256 cells either way");
+    assert_eq!(error, "wide:1:1: found a width of 257 cells; expected 1 to 256 cells");
     assert!(load("/nowhere/at/all.maze").unwrap_err().to_string().contains("no such file"));
 }
 

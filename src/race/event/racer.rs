@@ -1,7 +1,9 @@
 use super::layout::{EventLayout, EventShape};
 use super::line;
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::LidarScan;
+use crate::parameter::{require_not_negative, require_positive};
 use crate::race::cone::{Cone, ConeColour};
 use crate::race::error::PlanError;
 use crate::race::hold::Hold;
@@ -57,6 +59,21 @@ impl Default for EventParameters {
             patience: [3.0, 0.6],
             period,
         }
+    }
+}
+
+impl EventParameters {
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        self.limits.validate().map_err(|error| error.of("limits"))?;
+        self.outline.validate().map_err(|error| error.of("outline"))?;
+        self.map.validate().map_err(|error| error.of("map"))?;
+        self.tracker.validate().map_err(|error| error.of("tracker"))?;
+        require_positive("strip", self.strip)?;
+        self.stop.into_iter().try_for_each(|metres| require_not_negative("stop", metres))?;
+        require_positive("entry", self.entry)?;
+        self.patience.into_iter().try_for_each(|seconds| require_positive("patience", seconds))?;
+        require_positive("control period", self.period)
     }
 }
 
@@ -120,20 +137,21 @@ const END: f64 = 2.0;
 
 impl EventRacer {
     /// A car before the start of an acceleration.
-    pub fn acceleration(parameters: EventParameters) -> Self {
+    pub fn acceleration(parameters: EventParameters) -> Result<Self, ParameterError> {
         Self::new(EventShape::STRIP, &parameters)
     }
 
     /// A car before the start of a skidpad.
-    pub fn skidpad(parameters: EventParameters) -> Self {
+    pub fn skidpad(parameters: EventParameters) -> Result<Self, ParameterError> {
         Self::new(EventShape::EIGHT, &parameters)
     }
 
-    fn new(event: EventShape, parameters: &EventParameters) -> Self {
-        Self {
+    fn new(event: EventShape, parameters: &EventParameters) -> Result<Self, ParameterError> {
+        parameters.validate()?;
+        Ok(Self {
             parameters: *parameters,
             event,
-            map: ConeMap::new(parameters.map),
+            map: ConeMap::new(parameters.map)?,
             reckoning: Reckoning::default(),
             layout: None,
             phase: EventPhase::Looking,
@@ -142,7 +160,7 @@ impl EventRacer {
             time: 0.0,
             way: 0.0,
             blind: 0.0,
-        }
+        })
     }
 
     /// What it does now.
@@ -221,12 +239,12 @@ impl EventRacer {
     fn look(&mut self, fresh: &[Cone]) -> Twist {
         if let Some(layout) = self.layout {
             self.planned = layout.shape;
-            if let Ok((points, profile)) = self.plan(layout.shape) {
-                self.line = Some(LineTracker::new(points, profile, false, self.parameters.tracker));
-                self.phase = EventPhase::Driving;
-            } else {
-                self.phase = EventPhase::Lost;
-            }
+            let tracker = self.parameters.tracker;
+            self.line = self
+                .plan(layout.shape)
+                .ok()
+                .and_then(|(points, profile)| LineTracker::new(points, profile, false, tracker).ok());
+            self.phase = if self.line.is_some() { EventPhase::Driving } else { EventPhase::Lost };
             return Twist::default();
         }
         if self.blind >= self.parameters.patience[0] || self.way >= CREEPS {
