@@ -72,6 +72,11 @@ pub(crate) fn require_positive(name: &'static str, value: f64) -> Result<(), Par
     require(name, value, value.is_finite() && value > 0.0, "a positive, finite number")
 }
 
+/// Fails unless a parameter is above zero, and at most `most`.
+pub(crate) fn require_up_to(name: &'static str, value: f64, most: f64) -> Result<(), ParameterError> {
+    require(name, value, value > 0.0 && value <= most, format!("more than 0 and at most {most}"))
+}
+
 /// Fails unless a parameter is a finite number of at least zero.
 pub(crate) fn require_not_negative(name: &'static str, value: f64) -> Result<(), ParameterError> {
     require(name, value, value.is_finite() && value >= 0.0, "a finite number of at least 0")

@@ -5,7 +5,7 @@ use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::Manoeuvre;
 use crate::io::{Error, Result};
-use crate::parameter::require_positive;
+use crate::parameter::{require_positive, require_up_to};
 
 /// A way from A to B (book, sections 3.3 to 3.6).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -97,7 +97,7 @@ impl AToBParameters {
         self.follower.validate()?;
         require_positive("turn speed", self.turn_speed)?;
         require_positive("creep speed", self.creep_speed)?;
-        require_positive("spline scale", self.spline_scale)?;
+        require_up_to("spline scale", self.spline_scale, 100.0)?;
         require_positive("tolerance", self.tolerance)?;
         require_positive("heading tolerance", self.heading_tolerance)?;
         require_positive("control period", self.period)

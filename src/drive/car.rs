@@ -6,7 +6,7 @@ use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Command, Decision, Senses, halts};
 use crate::io::{Drive, Error, Motors, Result, Servos};
 use crate::kinematics::{Ackermann, CarState};
-use crate::parameter::{require, require_positive};
+use crate::parameter::{require, require_positive, require_up_to};
 
 /// Speed and steering of a car as commands of its motor and its servo (book, program 7.1).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -162,7 +162,7 @@ impl CarToB {
         goal.check()?;
         parameters.follower.validate()?;
         require_positive("full speed", driver.full_speed)?;
-        require_positive("spline scale", parameters.spline_scale)?;
+        require_up_to("spline scale", parameters.spline_scale, 100.0)?;
         require_positive("tolerance", parameters.tolerance)?;
         require_positive("heading tolerance", parameters.heading_tolerance)?;
         require_positive("steering time", parameters.steering_time)?;

@@ -433,7 +433,7 @@ mod tests {
     fn nonsense_is_refused() {
         let world = World::walled(1.0, 1.0);
         let error = Reachability::new(&world, -0.1, 0.005).unwrap_err();
-        assert_eq!(error.to_string(), "robot radius is -0.1 m; expected a positive, finite number");
+        assert_eq!(error.to_string(), "robot radius is -0.1; expected a positive, finite number");
         assert!(Reachability::new(&world, f64::NAN, 0.005).is_err());
         assert!(Reachability::new(&world, 0.06, 0.0).is_err());
     }

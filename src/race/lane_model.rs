@@ -1,9 +1,8 @@
 use crate::ParameterError;
 use crate::geometry::{Point, Pose};
-use crate::parameter::{require, require_positive};
+use crate::parameter::{require, require_up_to};
 
-/// What a lane is looked for with. All numbers are greater than 0 and finite, and it looks no farther ahead
-/// than 1000 m.
+/// What a lane is looked for with. All numbers are greater than 0, and at most 1000.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaneParameters {
     /// Metres ahead of the car.
@@ -39,7 +38,7 @@ impl Default for LaneParameters {
     }
 }
 
-/// Metres that are looked ahead at most.
+/// The greatest number, in metres: whoever looks farther makes points without end.
 const FARTHEST: f64 = 1000.0;
 
 impl LaneParameters {
@@ -57,10 +56,9 @@ impl LaneParameters {
             ("spacing", self.spacing),
             ("sharpest", self.sharpest),
         ] {
-            require_positive(name, value)?;
+            require_up_to(name, value, FARTHEST)?;
         }
-        require("half width", least, least <= most, "the least before the greatest")?;
-        require("ahead", self.ahead, self.ahead <= FARTHEST, "at most 1000 m")
+        require("half width", least, least <= most, "the least before the greatest")
     }
 }
 

@@ -279,7 +279,7 @@ mod tests {
         assert!(slow.speeds[39] < 6.5 && free.speeds[39] > 10.0, "{} {}", slow.speeds[39], free.speeds[39]);
         assert!((slow.speeds[65] / free.speeds[65] - 1.0).abs() < 0.02);
         let error = SpeedProfile::closed(&points, &CarLimits { turning: f64::NAN, ..LIMITS }).unwrap_err();
-        assert_eq!(error.to_string(), "change of curvature is NaN; expected a positive number");
+        assert_eq!(error.to_string(), "turning is NaN; expected a positive number");
     }
 
     #[test]

@@ -2,7 +2,7 @@ use super::profile::SpeedProfile;
 use super::tyres::{SLIPS, Tyres};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference, cross, math};
-use crate::parameter::{require_finite, require_not_negative, require_positive};
+use crate::parameter::{require, require_positive, require_up_to};
 
 /// How a car is kept on a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,8 +71,8 @@ impl TrackerParameters {
 impl TrackerParameters {
     /// Fails with the name of the parameter that is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
-        require_finite("ahead", self.ahead)?;
-        require_positive("length", self.length)?;
+        require("ahead", self.ahead, self.ahead.abs() <= MOST, "-1000 to 1000 m")?;
+        require_up_to("length", self.length, MOST)?;
         for (name, value) in [
             ("length by speed", self.length_by_speed),
             ("steering lag", self.steering_lag),
@@ -82,7 +82,7 @@ impl TrackerParameters {
             ("yaw", self.yaw),
             ("swing", self.swing),
         ] {
-            require_not_negative(name, value)?;
+            require(name, value, (0.0..=MOST).contains(&value), "0 to 1000")?;
         }
         require_positive("greatest curvature", self.curvature)?;
         self.tyres.validate().map_err(|error| error.of("tyres"))
@@ -102,6 +102,8 @@ pub struct LineTracker {
     reached: bool,
 }
 
+/// Metres and seconds that a parameter is at most: what lies farther along a line takes as long to find.
+const MOST: f64 = 1000.0;
 /// What no car's place, in metres, speed or rate of turn comes to.
 const BEYOND_ALL: f64 = 1e6;
 /// Metres from a line within which a car is on it, and metres per second at which it comes to it if it stands.

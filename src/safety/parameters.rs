@@ -95,10 +95,9 @@ impl SupervisorParameters {
         ] {
             require_positive(name, value)?;
         }
-        for (name, value) in [
-            ("relative error of the speed", self.speed_error.share),
-            ("error of the speed", self.speed_error.offset),
-        ] {
+        for (name, value) in
+            [("speed error: share", self.speed_error.share), ("speed error: offset", self.speed_error.offset)]
+        {
             require_not_negative(name, value)?;
         }
         if matches!(self.fence.len(), 1 | 2) {

@@ -53,7 +53,7 @@ impl Hog {
         for (parameter, found, range, expected) in [
             ("cell of the histograms", cell, 2..=64, "2 to 64"),
             ("block of the histograms", block, 1..=8, "1 to 8"),
-            ("number of directions", bins, 2..=36, "2 to 36"),
+            ("bins", bins, 2..=36, "2 to 36"),
         ] {
             require(parameter, found as f64, range.contains(&found), expected)?;
         }

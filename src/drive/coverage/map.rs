@@ -1,7 +1,7 @@
 use crate::ParameterError;
 use crate::geometry::Point;
 use crate::io::{Error, ErrorKind, Result};
-use crate::parameter::{require, require_positive};
+use crate::parameter::{require, require_positive, require_up_to};
 use crate::world::{Clearance, Raster, World};
 
 /// What a robot covers, and how near it may come to things.
@@ -27,8 +27,8 @@ impl Default for CoverageParameters {
 impl CoverageParameters {
     /// Fails with the name of the parameter that is out of range.
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
-        require_positive("radius", self.radius)?;
-        require_positive("margin", self.margin)?;
+        require_up_to("radius", self.radius, 1000.0)?;
+        require_up_to("margin", self.margin, 1000.0)?;
         require_positive("resolution", self.resolution)?;
         let good = self.resolution <= 0.5 * self.radius;
         require("resolution", self.resolution, good, "at most half of the robot's radius")?;

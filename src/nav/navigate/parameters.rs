@@ -52,12 +52,12 @@ impl NavigateParameters {
         require_positive("cruise speed", self.cruise_speed)?;
         require_positive("turn rate", self.turn_rate)?;
         require_positive("control period", self.period)?;
-        let good = self.clearance >= self.least_clearance && self.clearance.is_finite();
+        let good = self.clearance >= self.least_clearance && self.clearance <= 1000.0;
         require(
             "clearance",
             self.clearance,
             good,
-            format!("at least the least clearance, {}", self.least_clearance),
+            format!("at least the least clearance, {}, and at most 1000 m", self.least_clearance),
         )
     }
 

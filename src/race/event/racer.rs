@@ -3,7 +3,7 @@ use super::line;
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::LidarScan;
-use crate::parameter::{require_not_negative, require_positive};
+use crate::parameter::{require, require_positive, require_up_to};
 use crate::race::cone::{Cone, ConeColour};
 use crate::race::error::PlanError;
 use crate::race::hold::Hold;
@@ -69,8 +69,10 @@ impl EventParameters {
         self.outline.validate().map_err(|error| error.of("outline"))?;
         self.map.validate().map_err(|error| error.of("map"))?;
         self.tracker.validate().map_err(|error| error.of("tracker"))?;
-        require_positive("strip", self.strip)?;
-        self.stop.into_iter().try_for_each(|metres| require_not_negative("stop", metres))?;
+        require_up_to("strip", self.strip, LONGEST)?;
+        for metres in self.stop {
+            require("stop", metres, (0.0..=LONGEST).contains(&metres), "0 to 1000 m")?;
+        }
         require_positive("entry", self.entry)?;
         self.patience.into_iter().try_for_each(|seconds| require_positive("patience", seconds))?;
         require_positive("control period", self.period)
@@ -112,6 +114,8 @@ pub struct EventRacer {
     blind: f64,
 }
 
+/// Metres of a strip and behind it at most.
+const LONGEST: f64 = 1000.0;
 /// Seconds that it looks before it moves.
 const LOOKS: f64 = 0.3;
 /// Metres per second at which it looks for the layout from nearer, and metres that it goes so.

@@ -1,5 +1,5 @@
 use crate::ParameterError;
-use crate::parameter::{require, require_positive};
+use crate::parameter::{require, require_up_to};
 
 /// What [`super::obstacle_course`] draws.
 ///
@@ -48,7 +48,7 @@ impl CourseOptions {
     /// Checks that every number makes sense, and that the field holds more than the robot.
     pub fn validate(&self) -> Result<(), ParameterError> {
         let radius = self.robot_radius;
-        require_positive("robot radius", radius)?;
+        require_up_to("robot radius", radius, 10.0)?;
         let corridor = self.min_corridor;
         require(
             "minimal corridor",
@@ -58,13 +58,13 @@ impl CourseOptions {
         )?;
         let (least, greatest) = self.size;
         require(
-            "least side",
+            "size (least)",
             least,
             least >= 15.0 * corridor && least <= 500.0 * radius,
             "at least 15 minimal corridors and at most 250 robot widths",
         )?;
         require(
-            "greatest side",
+            "size (greatest)",
             greatest,
             greatest >= least && greatest <= 500.0 * radius,
             "no less than the least side and at most 250 robot widths",

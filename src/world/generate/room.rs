@@ -42,8 +42,13 @@ impl RoomOptions {
         require("least reach", least, least >= 4.0 * distance, "at least four distances")?;
         require("greatest reach", most, most >= least && most <= 100.0, "the least reach to 100 m")?;
         let (sharpest, widest) = self.corners;
-        require("least corner", sharpest, (0.5..FRAC_PI_2).contains(&sharpest), "0.5 to 1.57 rad")?;
-        require("greatest corner", widest, (3.0 * FRAC_PI_2..5.8).contains(&widest), "4.71 to 5.8 rad")?;
+        require("least of the corners", sharpest, (0.5..FRAC_PI_2).contains(&sharpest), "0.5 to 1.57 rad")?;
+        require(
+            "greatest of the corners",
+            widest,
+            (3.0 * FRAC_PI_2..5.8).contains(&widest),
+            "4.71 to 5.8 rad",
+        )?;
         let radius = self.least_radius;
         require("least radius", radius, radius >= 1.5 * distance && radius <= 10.0, "1.5 distances to 10 m")
     }
