@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let red = hue([200, 30, 30], HueScale::Robios, ColourFinder::LIMITS);
     let camera = spec.camera.as_ref().ok_or("the robot has no camera")?;
     let finder = ColourFinder::new(red, 12, FindMethod::Blob, camera.into())?;
-    let mut tracker = ColourTracker::new(finder, TrackerParameters::default());
+    let mut tracker = ColourTracker::new(finder, TrackerParameters::default())?;
     let (mut time, mut phase, mut first) = (0.0, ColourPhase::Searching, None);
     let outcome = run(&mut simulation.robot(0)?, &mut tracker, 120.0, |_, tracker, _| {
         time = simulation.truth().time();

@@ -25,7 +25,7 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     let mut referee = Referee::new(generated.corridor.clone(), wheels);
     // As the book sets it: 180 beams over 180 degrees.
     car.configure_lidar(LidarSettings { field_of_view: std::f64::consts::PI, tilt: 0.0, points: 180 })?;
-    let mut driver = GapDriver::with_speed(3.0 / RobotSpec::race_car().drive.top_speed());
+    let mut driver = GapDriver::with_speed(3.0 / RobotSpec::race_car().drive.top_speed())?;
     let mut path = Vec::new();
     // Ten times a second the driver decides and the referee looks.
     run(&mut car, &mut driver, 200.0, |_, _, _| {

@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The referee looks at the wheels, in the car's frame from the middle of the rear axle.
     let wheels = [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y));
     let mut referee = Referee::new(generated.corridor.clone(), wheels);
-    let mut racer = Racer::new(RacerParameters { laps: 2, period: 0.08, ..RacerParameters::default() });
+    let mut racer = Racer::new(RacerParameters { laps: 2, period: 0.08, ..RacerParameters::default() })?;
     let (mut path, mut first) = (Vec::new(), 0);
     let outcome = run(&mut simulation.robot(0)?, &mut racer, 300.0, |_, racer, step| {
         let truth = race.robot(0)?;

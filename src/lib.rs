@@ -57,7 +57,7 @@
 //! | 14 Formula SAE | tracks of cones, the way between them, racing lines, referee; racing cars | [`race`], [`io::sim`] |
 //! | 14 Formula SAE | the safety system's state machine, monitors, stopping distance | [`safety`] |
 //!
-//! Beside the chapters: [`geometry`] has poses, angles and units; [`random`] seeded random streams; [`world`] what a
+//! Beside the chapters: [`ParameterError`] is how constructors refuse; [`geometry`] has poses, angles and units; [`random`] seeded random streams; [`world`] what a
 //! world and a robot are, with random courses in [`world::generate`]; [`picture`] draws worlds and runs.
 //!
 //! # Conventions
@@ -91,6 +91,7 @@ pub mod kinematics;
 pub mod maze;
 #[cfg(feature = "nav")]
 pub mod nav;
+mod parameter;
 #[cfg(feature = "picture")]
 pub mod picture;
 #[cfg(feature = "race")]
@@ -106,6 +107,8 @@ pub mod testing;
 pub mod vision;
 #[cfg(feature = "io")]
 pub mod world;
+
+pub use parameter::ParameterError;
 
 /// The programs in the README run as tests.
 #[cfg(doctest)]

@@ -118,11 +118,11 @@ const CASES: [Case; 24] = [
         driven(robot, &mut navigator, limit, stop)
     }),
     ("colour", RobotSpec::s4, |robot, limit, stop| {
-        let mut tracker = ColourTracker::new(finder(), TrackerParameters::default());
+        let mut tracker = ColourTracker::new(finder(), TrackerParameters::default())?;
         driven(robot, &mut tracker, limit, stop)
     }),
     ("home", RobotSpec::s4, |robot, limit, stop| {
-        let mut push = PushHome::new(finder(), Point::origin(), HomeParameters::default());
+        let mut push = PushHome::new(finder(), Point::origin(), HomeParameters::default())?;
         driven(robot, &mut push, limit, stop)
     }),
     ("motion", RobotSpec::s4, |robot, limit, stop| {
@@ -134,11 +134,11 @@ const CASES: [Case; 24] = [
     }),
     ("gap", RobotSpec::car, |robot, limit, stop| driven(robot, &mut GapDriver::default(), limit, stop)),
     ("racer", RobotSpec::s4, |robot, limit, stop| {
-        driven(robot, &mut Racer::new(RacerParameters::default()), limit, stop)
+        driven(robot, &mut Racer::new(RacerParameters::default())?, limit, stop)
     }),
     ("event", RobotSpec::s4, |robot, limit, stop| {
         let parameters = EventParameters { patience: [99.0; 2], ..EventParameters::default() };
-        driven(robot, &mut EventRacer::acceleration(parameters), limit, stop)
+        driven(robot, &mut EventRacer::acceleration(parameters)?, limit, stop)
     }),
 ];
 
@@ -269,7 +269,8 @@ fn a_racing_car_with_a_broken_clock_stops() {
         let race = Simulation::new(&scene, SimOptions::default()).unwrap();
         let faults = if fault.is_empty() { Vec::new() } else { vec![fault.parse().unwrap()] };
         let mut car = Faulty::new(race.robot(0).unwrap(), faults);
-        let ended = run(&mut car, &mut Racer::new(RacerParameters::default()), 4.0, |_, _, _| {});
+        let mut racer = Racer::new(RacerParameters::default()).unwrap();
+        let ended = run(&mut car, &mut racer, 4.0, |_, _, _| {});
         match ended {
             Err(error) => assert!(!fault.is_empty() && error.to_string().contains(expected), "{error}"),
             Ok(outcome) => assert_eq!((outcome, fault), (RaceOutcome::TimedOut, "")),

@@ -1,10 +1,11 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::{FollowerParameters, Path, PathFollower, Waypoint};
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::Manoeuvre;
-use crate::io::error::require_positive;
 use crate::io::{Error, Result};
+use crate::parameter::{require_positive, require_up_to};
 
 /// A way from A to B (book, sections 3.3 to 3.6).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,11 +93,11 @@ impl Default for AToBParameters {
 }
 
 impl AToBParameters {
-    fn validate(&self) -> Result<()> {
+    fn validate(&self) -> std::result::Result<(), ParameterError> {
         self.follower.validate()?;
         require_positive("turn speed", self.turn_speed)?;
         require_positive("creep speed", self.creep_speed)?;
-        require_positive("spline scale", self.spline_scale)?;
+        require_up_to("spline scale", self.spline_scale, 100.0)?;
         require_positive("tolerance", self.tolerance)?;
         require_positive("heading tolerance", self.heading_tolerance)?;
         require_positive("control period", self.period)

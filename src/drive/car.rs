@@ -4,9 +4,9 @@ use super::a_to_b::dog_twist;
 use super::{FollowerParameters, Goal, Method, Path, PathFollower, Steering};
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Command, Decision, Senses, halts};
-use crate::io::error::require_positive;
 use crate::io::{Drive, Error, Motors, Result, Servos};
 use crate::kinematics::{Ackermann, CarState};
+use crate::parameter::{require, require_positive, require_up_to};
 
 /// Speed and steering of a car as commands of its motor and its servo (book, program 7.1).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -162,18 +162,13 @@ impl CarToB {
         goal.check()?;
         parameters.follower.validate()?;
         require_positive("full speed", driver.full_speed)?;
-        require_positive("spline scale", parameters.spline_scale)?;
+        require_up_to("spline scale", parameters.spline_scale, 100.0)?;
         require_positive("tolerance", parameters.tolerance)?;
         require_positive("heading tolerance", parameters.heading_tolerance)?;
         require_positive("steering time", parameters.steering_time)?;
         require_positive("control period", parameters.period)?;
-        if !(parameters.margin >= 1.0 && parameters.margin.is_finite()) {
-            return Err(Error::invalid_input(
-                "margin of the turning radius",
-                parameters.margin,
-                "at least 1",
-            ));
-        }
+        let good = parameters.margin >= 1.0 && parameters.margin.is_finite();
+        require("margin of the turning radius", parameters.margin, good, "at least 1")?;
         Ok(Self { method, goal, driver, parameters, phase: Phase::Begin, corrections: 0, next: Vec::new() })
     }
 

@@ -5,8 +5,8 @@ use super::a_to_b::dog_twist;
 use super::{FollowerParameters, Hermite, Method};
 use crate::geometry::{Pose, Twist};
 use crate::io::control::{Behaviour, Decision, SensedBy, Senses, halts};
-use crate::io::error::require_positive;
 use crate::io::{Drive, Error, Result};
+use crate::parameter::{require_positive, require_up_to};
 
 /// What [`Chase`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,7 +84,7 @@ impl Chase {
     pub fn new(method: Method, parameters: ChaseParameters) -> Result<Self> {
         parameters.follower.validate()?;
         require_positive("distance", parameters.distance)?;
-        require_positive("spline scale", parameters.spline_scale)?;
+        require_up_to("spline scale", parameters.spline_scale, 100.0)?;
         require_positive("turn threshold", parameters.turn_threshold)?;
         require_positive("control period", parameters.period)?;
         Ok(Self { method, parameters, turning: true })

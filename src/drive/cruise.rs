@@ -1,7 +1,7 @@
 use super::way::Way;
 use crate::geometry::{Point, Pose, Twist, math};
-use crate::io::error::require_positive;
 use crate::io::{Error, Result};
+use crate::parameter::require_positive;
 
 /// What [`Cruise`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]

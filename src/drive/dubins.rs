@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use super::Path;
 use crate::geometry::{Pose, math};
 use crate::io::Result;
-use crate::io::error::require_positive;
+use crate::parameter::require_positive;
 
 /// A turn to the left, a line, or a turn to the right.
 type Word = [f64; 3];

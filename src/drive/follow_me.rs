@@ -1,9 +1,10 @@
 use std::f64::consts::PI;
 
 use super::way::Way;
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, Vector, math, normalize_angle};
-use crate::io::error::require_positive;
 use crate::io::{Error, LidarScan, Result};
+use crate::parameter::{require, require_positive};
 
 /// What [`Follower`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +45,7 @@ impl Default for FollowMeParameters {
 
 impl FollowMeParameters {
     /// Fails with the name of the parameter that is out of range.
-    pub fn validate(&self) -> Result<()> {
+    pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("speed", self.speed)?;
         require_positive("turn rate", self.turn_rate)?;
         require_positive("radius", self.radius)?;
@@ -53,10 +54,8 @@ impl FollowMeParameters {
         require_positive("patience", self.patience)?;
         require_positive("control period", self.period)?;
         let least = self.radius + self.leader_radius + 2.0 * self.margin;
-        if self.gap >= least && self.gap.is_finite() {
-            return Ok(());
-        }
-        Err(Error::invalid_input("gap", self.gap, &format!("at least {least:.3} m, for both robots")))
+        let good = self.gap >= least && self.gap.is_finite();
+        require("gap", self.gap, good, format!("at least {least:.3} m, for both robots"))
     }
 }
 

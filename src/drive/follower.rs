@@ -1,7 +1,8 @@
 use super::Path;
+use crate::ParameterError;
 use crate::geometry::{Pose, Twist, angle_difference, math, normalize_angle};
 use crate::io::Result;
-use crate::io::error::require_positive;
+use crate::parameter::require_positive;
 
 /// How a [`PathFollower`] steers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +56,7 @@ impl Default for FollowerParameters {
 
 impl FollowerParameters {
     /// Fails with the name of the parameter that is out of range.
-    pub fn validate(&self) -> Result<()> {
+    pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("speed", self.speed)?;
         require_positive("turn rate", self.turn_rate)?;
         require_positive("deceleration", self.deceleration)?;

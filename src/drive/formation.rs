@@ -1,7 +1,8 @@
 use super::way::Way;
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, math};
-use crate::io::error::require_positive;
 use crate::io::{Error, Result};
+use crate::parameter::{require, require_positive};
 
 /// A place in a formation that is kept by radio: the leader sends where it is, and each follower keeps to its place beside or
 /// behind it (book, section 5.3, the first of its three ways).
@@ -34,15 +35,14 @@ impl Formation {
     }
 
     /// Fails with the name of what is out of range.
-    pub fn validate(&self) -> Result<()> {
+    pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("speed", self.speed)?;
         require_positive("turn rate", self.turn_rate)?;
         require_positive("radius", self.radius)?;
         require_positive("margin", self.margin)?;
-        if self.offset.coords.norm() >= 2.0 * self.radius {
-            return Ok(());
-        }
-        Err(Error::invalid_input("offset", format!("{:?}", self.offset), "a place beside the leader"))
+        let away = self.offset.coords.norm();
+        let good = away >= 2.0 * self.radius && away.is_finite();
+        require("length of the offset", away, good, "a place beside the leader")
     }
 
     /// What the leader sends: its pose, in a frame that all share, and its speed.

@@ -2,9 +2,9 @@ use std::ops::ControlFlow;
 
 use crate::geometry::{Point, Pose, Vector, angle_difference, direction, normalize_angle};
 use crate::io::control::{Behaviour, Command, Decision, Senses, halts};
-use crate::io::error::require_positive;
 use crate::io::{Drive, Error, Motors, Result};
 use crate::kinematics::{Omni, PlanarTwist};
+use crate::parameter::{require_finite, require_positive};
 
 /// Velocities of a robot on four wheels with rollers as commands of its motors (book, section 7.4: an interface from a
 /// driving angle to wheel speeds).
@@ -123,8 +123,10 @@ impl OmniTracker {
         ] {
             require_positive(name, value)?;
         }
-        let finite = start.is_finite() && parameters.spin.is_finite();
-        if !finite || !route.iter().all(|point| point.coords.iter().all(|metres| metres.is_finite())) {
+        require_finite("spin", parameters.spin)?;
+        if !start.is_finite()
+            || !route.iter().all(|point| point.coords.iter().all(|metres| metres.is_finite()))
+        {
             return Err(Error::invalid_input("route", "not finite", "finite numbers"));
         }
         let mut legs: Vec<Leg> = Vec::with_capacity(route.len());

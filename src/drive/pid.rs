@@ -1,5 +1,5 @@
-use crate::io::error::{require_finite, require_positive};
 use crate::io::{Error, Result};
+use crate::parameter::{require_finite, require_not_negative, require_positive};
 
 /// The gains and limits of a [`Pid`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,10 +63,7 @@ impl Pid {
         require_finite("proportional gain", parameters.proportional)?;
         require_finite("integral gain", parameters.integral)?;
         require_finite("derivative gain", parameters.derivative)?;
-        let filter = parameters.derivative_filter;
-        if !(filter >= 0.0 && filter.is_finite()) {
-            return Err(Error::invalid_input("derivative filter", filter, "a finite time of at least 0"));
-        }
+        require_not_negative("derivative filter", parameters.derivative_filter)?;
         let [least, most] = parameters.limits;
         if least.is_nan() || most.is_nan() || least >= most {
             let found = format!("{least} to {most}");

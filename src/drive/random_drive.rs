@@ -2,10 +2,11 @@ use std::f64::consts::{FRAC_PI_4, PI};
 use std::ops::ControlFlow;
 
 use super::way::Way;
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference, normalize_angle};
 use crate::io::control::{Behaviour, Decision, Halt, Senses};
-use crate::io::error::require_positive;
 use crate::io::{DistanceSensors, Drive, Error, ErrorKind, Lidar, LidarScan, Psd, Result};
+use crate::parameter::require_positive;
 use crate::random::Stream;
 
 /// What [`RandomDrive`] goes by.
@@ -36,7 +37,7 @@ impl Default for RandomDriveParameters {
 
 impl RandomDriveParameters {
     /// Fails with the name of the parameter that is out of range.
-    pub fn validate(&self) -> Result<()> {
+    pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("speed", self.speed)?;
         require_positive("turn rate", self.turn_rate)?;
         require_positive("safe distance", self.safe)?;

@@ -1,8 +1,8 @@
 use std::f64::consts::PI;
 
 use super::PidParameters;
-use crate::io::error::{require_finite, require_positive};
-use crate::io::{Error, Result};
+use crate::io::Result;
+use crate::parameter::{require_finite, require_not_negative, require_positive};
 
 /// Finds a PID controller's gains: a relay in the controller's place makes the process swing, and the swing's height and
 /// period say how the process answers (K. J. Åström and T. Hägglund, "Automatic tuning of simple regulators with
@@ -59,9 +59,7 @@ impl RelayTuner {
     /// 0: choose it above the noise of the measurement.
     pub fn new(amplitude: f64, hysteresis: f64) -> Result<Self> {
         require_positive("amplitude", amplitude)?;
-        if !(hysteresis >= 0.0 && hysteresis.is_finite()) {
-            return Err(Error::invalid_input("hysteresis", hysteresis, "a finite number of at least 0"));
-        }
+        require_not_negative("hysteresis", hysteresis)?;
         Ok(Self {
             amplitude,
             hysteresis,

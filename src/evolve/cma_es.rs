@@ -3,8 +3,8 @@ use super::evaluator::Evaluator;
 use super::evolution::Evolution;
 use super::population::Population;
 use crate::geometry::math;
-use crate::io::error::require_positive;
 use crate::io::{Error, Result};
+use crate::parameter::require_positive;
 use crate::random::Stream;
 
 /// The normal distribution that [`CmaEs`] adapts.

@@ -1,8 +1,8 @@
 use std::ops::ControlFlow;
 
 use crate::io::control::{Behaviour, Command, Decision, Halt, Senses, run};
-use crate::io::error::require_positive;
 use crate::io::{Clock, Error, Result, Servos};
+use crate::parameter::require_positive;
 use crate::random::Stream;
 
 /// A way of moving servos that repeats (book, section 12.2): control points one after the other, each held for the

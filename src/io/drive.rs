@@ -53,8 +53,8 @@ pub trait Drive {
 
 /// Length and heading change of the arc from the origin, heading along x, to a point.
 fn arc_to(forward: f64, left: f64) -> Result<(f64, f64)> {
-    super::error::require_finite("forward distance", forward)?;
-    super::error::require_finite("distance to the left", left)?;
+    crate::parameter::require_finite("forward distance", forward)?;
+    crate::parameter::require_finite("distance to the left", left)?;
     let chord = math::hypot(forward, left);
     if chord == 0.0 {
         return Ok((0.0, 0.0));

@@ -1,5 +1,7 @@
 use std::fmt;
 
+use crate::ParameterError;
+
 /// The result of asking a robot for something.
 pub type Result<T> = std::result::Result<T, Error>;
 
@@ -72,6 +74,12 @@ impl Error {
     }
 }
 
+impl From<ParameterError> for Error {
+    fn from(error: ParameterError) -> Self {
+        Self::new(ErrorKind::InvalidInput, error.to_string()).with_source(error)
+    }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)
@@ -81,19 +89,5 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         self.source.as_ref().map(|source| source.as_ref() as _)
-    }
-}
-
-/// Fails unless `value` is a finite number.
-pub(crate) fn require_finite(name: &str, value: f64) -> Result<()> {
-    if value.is_finite() { Ok(()) } else { Err(Error::invalid_input(name, value, "a finite number")) }
-}
-
-/// Fails unless `value` is a finite number above zero.
-pub(crate) fn require_positive(name: &str, value: f64) -> Result<()> {
-    if value.is_finite() && value > 0.0 {
-        Ok(())
-    } else {
-        Err(Error::invalid_input(name, value, "a positive, finite number"))
     }
 }

@@ -1,7 +1,9 @@
 use std::f64::consts::TAU;
 
-use super::{Error, Result};
+use super::Result;
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, direction};
+use crate::parameter::require;
 
 /// One turn of a laser scanner, laid out as ROS's `LaserScan`: counter-clockwise, in the robot's frame, no return is
 /// +infinity (REP 117).
@@ -79,22 +81,14 @@ impl LidarSettings {
     }
 
     /// Fails with the name of the setting that is out of range.
-    pub fn validate(&self) -> Result<()> {
+    pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         let fov = self.field_of_view;
-        if !(fov > 0.0 && fov <= TAU * (1.0 + 1e-9)) {
-            return Err(Error::invalid_input(
-                "lidar field of view",
-                fov,
-                "more than 0 and at most a full turn",
-            ));
-        }
-        if self.tilt.is_nan() || self.tilt.abs() > TAU / 4.0 {
-            return Err(Error::invalid_input("lidar tilt", self.tilt, "at most a quarter turn up or down"));
-        }
-        if !(1..=Self::MAX_POINTS).contains(&self.points) {
-            return Err(Error::invalid_input("lidar points", self.points, "1 to 100000"));
-        }
-        Ok(())
+        let good = fov > 0.0 && fov <= TAU * (1.0 + 1e-9);
+        require("lidar field of view", fov, good, "more than 0 and at most a full turn")?;
+        let good = self.tilt.abs() <= TAU / 4.0;
+        require("lidar tilt", self.tilt, good, "at most a quarter turn up or down")?;
+        let good = (1..=Self::MAX_POINTS).contains(&self.points);
+        require("lidar points", self.points as f64, good, "1 to 100000")
     }
 }
 

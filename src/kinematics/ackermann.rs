@@ -1,8 +1,9 @@
 use std::f64::consts::FRAC_PI_2;
 
-use super::error::{positive, require};
-use super::{Differential, Displacement, GeometryError, WheelSpeeds};
+use super::{Differential, Displacement, WheelSpeeds};
+use crate::ParameterError;
 use crate::geometry::{Twist, math};
+use crate::parameter::{require, require_positive};
 
 /// The geometry of a car: driven rear wheels on a differential gear, steered front wheels (book, section 7.1).
 ///
@@ -39,9 +40,9 @@ impl Ackermann {
     /// angle, which is less than a right angle.
     ///
     /// Fails if a length is not positive, or if the turn would be so tight that its centre lies between the wheels.
-    pub fn new(wheelbase: f64, track: f64, max_steering: f64) -> Result<Self, GeometryError> {
-        positive("wheelbase", wheelbase)?;
-        positive("track", track)?;
+    pub fn new(wheelbase: f64, track: f64, max_steering: f64) -> Result<Self, ParameterError> {
+        require_positive("wheelbase", wheelbase)?;
+        require_positive("track", track)?;
         let good = max_steering > 0.0 && max_steering < FRAC_PI_2;
         require("maximal steering", max_steering, good, "more than 0 and less than a right angle")?;
         let car = Self { wheelbase, track, max_steering };

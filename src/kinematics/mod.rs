@@ -7,7 +7,6 @@
 
 mod ackermann;
 mod differential;
-mod error;
 mod integrate;
 mod omni;
 mod planar;
@@ -15,7 +14,6 @@ mod uncertainty;
 
 pub use ackermann::{Ackermann, CarState, CarWheels};
 pub use differential::{Differential, WheelSpeeds};
-pub use error::GeometryError;
 pub use integrate::{Displacement, advance};
 pub use omni::{Omni, RollerWheel};
 pub use planar::{PlanarMotion, PlanarTwist, advance_planar};

@@ -2,9 +2,10 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-use super::error::{positive, require};
-use super::{GeometryError, PlanarMotion, PlanarTwist};
+use super::{PlanarMotion, PlanarTwist};
+use crate::ParameterError;
 use crate::geometry::{Point, cross, direction};
+use crate::parameter::{require, require_positive};
 
 /// A wheel with free rollers on its rim.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,9 +44,9 @@ impl Omni<4> {
     /// front left and back right, at 45 degrees front right and back left.
     ///
     /// Takes the metres between left and right wheels, and between front and back wheels.
-    pub fn mecanum(track: f64, wheelbase: f64) -> Result<Self, GeometryError> {
-        positive("track", track)?;
-        positive("wheelbase", wheelbase)?;
+    pub fn mecanum(track: f64, wheelbase: f64) -> Result<Self, ParameterError> {
+        require_positive("track", track)?;
+        require_positive("wheelbase", wheelbase)?;
         let wheel = |front: f64, left: f64| RollerWheel {
             position: Point::new(0.5 * wheelbase * front, 0.5 * track * left),
             heading: 0.0,
@@ -58,8 +59,8 @@ impl Omni<4> {
 impl Omni<3> {
     /// Three omni-wheels on a circle, 120 degrees apart, each rolling along it counter-clockwise: one at the left front,
     /// one at the back, one at the right front.
-    pub fn three_wheels(radius: f64) -> Result<Self, GeometryError> {
-        positive("radius", radius)?;
+    pub fn three_wheels(radius: f64) -> Result<Self, ParameterError> {
+        require_positive("radius", radius)?;
         Self::new([1.0, 3.0, 5.0].map(|sixths| {
             let angle = TAU / 6.0 * sixths;
             let heading = angle + FRAC_PI_2;
@@ -69,8 +70,8 @@ impl Omni<3> {
 
     /// Three Mecanum wheels on a circle, as [`three_wheels`](Omni::three_wheels), their rollers at 45 degrees to the
     /// rolling direction.
-    pub fn three_mecanum_wheels(radius: f64) -> Result<Self, GeometryError> {
-        positive("radius", radius)?;
+    pub fn three_mecanum_wheels(radius: f64) -> Result<Self, ParameterError> {
+        require_positive("radius", radius)?;
         Self::new([1.0, 3.0, 5.0].map(|sixths| {
             let angle = TAU / 6.0 * sixths;
             let heading = angle + FRAC_PI_2;
@@ -85,7 +86,7 @@ impl<const N: usize> Omni<N> {
     ///
     /// Fails if a wheel's rollers roll where the wheel does, or if the wheels together leave a direction free: fewer
     /// than three, or all holding the floor along lines that meet in a point or are parallel.
-    pub fn new(wheels: [RollerWheel; N]) -> Result<Self, GeometryError> {
+    pub fn new(wheels: [RollerWheel; N]) -> Result<Self, ParameterError> {
         let mut inverse = SMatrix::<f64, N, 3>::zeros();
         for (row, wheel) in wheels.iter().enumerate() {
             let grip = direction(wheel.roller_axis);

@@ -1,5 +1,7 @@
 use super::bits::BitGrid;
 use super::{Cell, Direction};
+use crate::ParameterError;
+use crate::parameter::require;
 
 /// What is known about a place where a wall may stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -21,14 +23,6 @@ pub enum Unknown {
     Closed,
 }
 
-/// What is wrong with the size of a maze.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("a maze of {width} by {height} cells; expected 1 to {max} cells either way", max = Maze::MAX_SIDE)]
-pub struct SizeError {
-    width: usize,
-    height: usize,
-}
-
 /// A rectangle of cells with walls between them, a start and a goal.
 ///
 /// Every wall is present, absent or unknown, and so are those around the whole. One bit tells each of the two things, and
@@ -40,7 +34,7 @@ pub struct SizeError {
 /// let mut maze = Maze::open(3, 2)?;
 /// maze.set_wall(Cell::new(0, 0), Direction::East, Wall::Present);
 /// assert_eq!(maze.wall(Cell::new(1, 0), Direction::West), Wall::Present);
-/// # Ok::<(), roverlab::maze::SizeError>(())
+/// # Ok::<(), roverlab::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Maze {
@@ -96,20 +90,19 @@ impl Maze {
 
     /// A maze with walls all round in which nothing else is known, as a robot finds it. The start is the lower left cell,
     /// facing north, and the goal is the centre.
-    pub fn unexplored(width: usize, height: usize) -> Result<Self, SizeError> {
+    pub fn unexplored(width: usize, height: usize) -> Result<Self, ParameterError> {
         Self::filled(width, height, Wall::Unknown)
     }
 
     /// A maze with walls all round and none within.
-    pub fn open(width: usize, height: usize) -> Result<Self, SizeError> {
+    pub fn open(width: usize, height: usize) -> Result<Self, ParameterError> {
         Self::filled(width, height, Wall::Absent)
     }
 
     /// A maze of walls all round, and of one state within.
-    pub fn filled(width: usize, height: usize, within: Wall) -> Result<Self, SizeError> {
-        let sides = 1..=Self::MAX_SIDE;
-        if !(sides.contains(&width) && sides.contains(&height)) {
-            return Err(SizeError { width, height });
+    pub fn filled(width: usize, height: usize, within: Wall) -> Result<Self, ParameterError> {
+        for (name, side) in [("width", width), ("height", height)] {
+            require(name, side as f64, (1..=Self::MAX_SIDE).contains(&side), "1 to 256 cells")?;
         }
         let mut maze = Self {
             width: width as u16,
@@ -311,10 +304,11 @@ mod tests {
     #[test]
     fn sizes_are_checked() {
         assert!(Maze::open(256, 1).is_ok());
-        for (width, height) in [(0, 1), (1, 0), (257, 4), (4, 257)] {
+        for (width, height, wrong) in
+            [(0, 1, "width is 0"), (1, 0, "height is 0"), (257, 4, "width is 257"), (4, 257, "height is 257")]
+        {
             let error = Maze::open(width, height).unwrap_err();
-            let text = format!("a maze of {width} by {height} cells; expected 1 to 256 cells either way");
-            assert_eq!(error.to_string(), text);
+            assert_eq!(error.to_string(), format!("{wrong}; expected 1 to 256 cells"));
         }
     }
 

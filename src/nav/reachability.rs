@@ -1,9 +1,11 @@
+use crate::ParameterError;
+use crate::parameter::require_positive;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::f64::consts::SQRT_2;
 
 use crate::geometry::Point;
-use crate::world::{Clearance, Raster, RasterError, World};
+use crate::world::{Clearance, Raster, World};
 
 /// The places that the middle of a disc-shaped robot can take in a world, and the ways between them.
 ///
@@ -25,7 +27,7 @@ use crate::world::{Clearance, Raster, RasterError, World};
 /// world.walls.push(Wall::new(Point::new(1.0, 0.0), Point::new(1.0, 1.0)));
 /// let way = Reachability::new(&world, 0.06, Reachability::DEFAULT_RESOLUTION)?;
 /// assert!(way.is_free(right) && !way.connected(left, right));
-/// # Ok::<(), roverlab::world::RasterError>(())
+/// # Ok::<(), roverlab::ParameterError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Reachability {
@@ -53,10 +55,8 @@ impl Reachability {
     /// Divides a world into cells of `resolution` metres for a robot of `radius` metres.
     ///
     /// Takes time and memory in proportion to the cells.
-    pub fn new(world: &World, radius: f64, resolution: f64) -> Result<Self, RasterError> {
-        if !(radius.is_finite() && radius > 0.0) {
-            return Err(RasterError::Length { parameter: "robot radius", value: radius });
-        }
+    pub fn new(world: &World, radius: f64, resolution: f64) -> Result<Self, ParameterError> {
+        require_positive("robot radius", radius)?;
         let clearance = Clearance::new(world, resolution, radius.next_up())?;
         Ok(Self::from_clearance(&clearance, radius))
     }
@@ -433,7 +433,7 @@ mod tests {
     fn nonsense_is_refused() {
         let world = World::walled(1.0, 1.0);
         let error = Reachability::new(&world, -0.1, 0.005).unwrap_err();
-        assert_eq!(error.to_string(), "robot radius is -0.1 m; expected a positive, finite number");
+        assert_eq!(error.to_string(), "robot radius is -0.1; expected a positive, finite number");
         assert!(Reachability::new(&world, f64::NAN, 0.005).is_err());
         assert!(Reachability::new(&world, 0.06, 0.0).is_err());
     }

@@ -6,6 +6,7 @@ use super::mesh::Mesh;
 use super::pair::{CentreLineParameters, Pair, Way};
 use super::sides::sides;
 use super::walk::Walker;
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, Segment, Vector, cross, math};
 
 #[cfg(test)]
@@ -59,6 +60,7 @@ impl CentreLine {
         driven: &[Point],
         parameters: &CentreLineParameters,
     ) -> Result<Self, PlanError> {
+        parameters.validate()?;
         let mut kept = cones.to_vec();
         let (mut mesh, mut beside) = (Mesh::new(cones)?, sides(cones, driven));
         let mut way = walk(cones, &mesh, &beside, car, parameters).ok_or(PlanError::NoWay)?;
@@ -137,17 +139,13 @@ fn check_gaps(pairs: &[Opposite], closed: bool) -> Result<(), PlanError> {
         let gap = (middle(k + 1) - middle(k)).norm();
         if gap > FARTHEST {
             let expected = "at most 50 m";
-            return Err(PlanError::Parameter {
-                name: "gap from cones to the next ones",
-                value: gap.round(),
-                expected,
-            });
+            return Err(ParameterError::new("gap from cones to the next ones", gap.round(), expected).into());
         }
         length += gap;
     }
     if length > LONGEST {
         let value = length.round();
-        return Err(PlanError::Parameter { name: "length of the way", value, expected: "at most 50000 m" });
+        return Err(ParameterError::new("length of the way", value, "at most 50000 m").into());
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
-use super::error::{PlanError, positive};
+use super::error::PlanError;
 use crate::geometry::{Point, Segment, Vector};
+use crate::parameter::{require_not_negative, require_positive};
 
 /// A place on the centre line, and how far the track reaches to both sides of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,8 +49,8 @@ impl Corridor {
         let at = |i: usize| points[i % n].0;
         let mut stations = Vec::with_capacity(n);
         for (index, &(position, left, right)) in points.iter().enumerate() {
-            positive("width to the left", left)?;
-            positive("width to the right", right)?;
+            require_positive("width to the left", left)?;
+            require_positive("width to the right", right)?;
             let (before, after) = if closed {
                 (at(index + n - 1), at(index + 1))
             } else {
@@ -109,13 +110,7 @@ impl Corridor {
     ///
     /// Fails where nothing is left between them. O(n) as long as stations are not much closer than the margin.
     pub fn free(&self, margin: f64) -> Result<Vec<[f64; 2]>, PlanError> {
-        if !(margin >= 0.0 && margin.is_finite()) {
-            return Err(PlanError::Parameter {
-                name: "margin",
-                value: margin,
-                expected: "0 or more, finite",
-            });
-        }
+        require_not_negative("margin", margin)?;
         let margins = vec![[margin; 2]; self.stations.len()];
         let ranges = self.ranges(&margins);
         let narrow = ranges.iter().position(|[low, high]| high <= low);
@@ -186,7 +181,7 @@ impl Corridor {
     /// The same corridor with stations about every `step` metres: on a spline through the present ones where it is a loop, on
     /// its chords where it is open.
     pub fn resampled(&self, step: f64) -> Result<Self, PlanError> {
-        positive("step", step)?;
+        require_positive("step", step)?;
         let n = self.stations.len();
         if !self.closed {
             let mut points = Vec::new();

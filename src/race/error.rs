@@ -1,3 +1,5 @@
+use crate::ParameterError;
+
 /// Why no line could be planned.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -30,21 +32,6 @@ pub enum PlanError {
     #[error("no way between cones leads on from the car")]
     NoWay,
     /// A parameter is out of range.
-    #[error("{name} is {value}; expected {expected}")]
-    Parameter {
-        /// Its name.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// What is accepted.
-        expected: &'static str,
-    },
-}
-
-/// Fails unless the value is a finite number above zero.
-pub(super) fn positive(name: &'static str, value: f64) -> Result<(), PlanError> {
-    if value.is_finite() && value > 0.0 {
-        return Ok(());
-    }
-    Err(PlanError::Parameter { name, value, expected: "a positive, finite number" })
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
 }

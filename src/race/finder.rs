@@ -1,6 +1,7 @@
 use super::cone::Cone;
 use super::lane::lane;
 use super::lane_model::{Lane, LaneParameters};
+use crate::ParameterError;
 use crate::geometry::Pose;
 
 /// Finds the lane ahead from moment to moment, by the cones that a car knows there, whoever has found them.
@@ -19,9 +20,10 @@ const STEP: f64 = 2.0;
 const PLACES: usize = 4;
 
 impl LaneFinder {
-    /// One that knows nothing yet.
-    pub fn new(parameters: LaneParameters) -> Self {
-        Self { parameters, trail: Vec::new(), lane: Lane::unknown(parameters.usual) }
+    /// One that knows nothing yet. Fails with the name of the parameter that is out of range.
+    pub fn new(parameters: LaneParameters) -> Result<Self, ParameterError> {
+        parameters.validate()?;
+        Ok(Self { parameters, trail: Vec::new(), lane: Lane::unknown(parameters.usual) })
     }
 
     /// The lane ahead of a car, whose pose is that of the point of it that is to be in the middle; see [`lane`]. The cones of

@@ -1,8 +1,10 @@
 use std::ops::ControlFlow;
 
+use crate::ParameterError;
 use crate::geometry::units;
 use crate::io::control::{Behaviour, Command, Decision, Halt, Senses};
 use crate::io::{Lidar, LidarScan, Motors, Result, Servos};
+use crate::parameter::require;
 
 /// The book's cone track driver (section 14.5): it steers for the middle between the two cones nearest to the middle of the
 /// scan, left and right of it.
@@ -26,9 +28,10 @@ impl Default for GapDriver {
 }
 
 impl GapDriver {
-    /// The book's driver at a share of the full speed.
-    pub fn with_speed(speed: f64) -> Self {
-        Self { speed, ..Self::default() }
+    /// The book's driver at a share of the full speed, 1 at most.
+    pub fn with_speed(speed: f64) -> std::result::Result<Self, ParameterError> {
+        require("speed", speed, speed > 0.0 && speed <= 1.0, "more than 0 and at most 1")?;
+        Ok(Self { speed, ..Self::default() })
     }
 
     /// The position of the steering servo, -1 for full left to 1 for full right, from a scan of 180 degrees. `None` without a

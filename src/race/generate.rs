@@ -4,7 +4,9 @@ use super::corridor::Corridor;
 use super::error::PlanError;
 use super::racing_line::curvature;
 use super::{ClosedSpline, Cone, ConeColour, ConeTrack};
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, Vector, cross, direction, math};
+use crate::parameter::require;
 use crate::random::Stream;
 
 #[cfg(test)]
@@ -48,10 +50,11 @@ impl TrackOptions {
         }
     }
 
-    fn check(&self) -> Result<(), PlanError> {
-        let range = |name, [low, high]: [f64; 2], least: f64, most: f64, expected| {
-            let good = least <= low && low <= high && high <= most;
-            if good { Ok(()) } else { Err(PlanError::Parameter { name, value: low, expected }) }
+    /// Fails with the name of the option that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        let range = |name, [low, high]: [f64; 2], least: f64, most: f64, expected: &'static str| {
+            let wrong = if (least..=most).contains(&low) { high } else { low };
+            require(name, wrong, least <= low && low <= high && high <= most, expected)
         };
         range("length", self.length, 100.0, 5000.0, "100 to 5000 m, least before most")?;
         range("width", self.width, 2.0, 20.0, "2 to 20 m, least before most")?;
@@ -63,11 +66,7 @@ impl TrackOptions {
             100.0,
             "more than half the width, up to 100 m",
         )?;
-        if self.hairpins > MOST_HAIRPINS {
-            let value = self.hairpins as f64;
-            return Err(PlanError::Parameter { name: "hairpins", value, expected: "at most 20" });
-        }
-        Ok(())
+        require("hairpins", self.hairpins as f64, self.hairpins <= MOST_HAIRPINS, "at most 20")
     }
 }
 
@@ -99,7 +98,7 @@ const APART: f64 = 2.5;
 /// # Ok::<(), roverlab::race::PlanError>(())
 /// ```
 pub fn generate(seed: u64, options: &TrackOptions) -> Result<GeneratedTrack, PlanError> {
-    options.check()?;
+    options.validate()?;
     for attempt in 0..400 {
         let mut random = Stream::new(seed).child("track", attempt);
         // What does not work out is tried with fewer hairpins.
@@ -108,11 +107,7 @@ pub fn generate(seed: u64, options: &TrackOptions) -> Result<GeneratedTrack, Pla
             return Ok(track);
         }
     }
-    Err(PlanError::Parameter {
-        name: "radius",
-        value: options.radius,
-        expected: "options that a track can meet",
-    })
+    Err(ParameterError::new("radius", options.radius, "options that a track can meet").into())
 }
 
 /// Puts cones along both edges of a closed corridor, at most so many metres apart; none where one part of the course crosses
@@ -137,10 +132,10 @@ pub fn lined(corridor: &Corridor, spacing: f64) -> Result<GeneratedTrack, PlanEr
     let length = corridor.length();
     if !(corridor.is_closed() && (SHORTEST..=LONGEST).contains(&length)) {
         let expected = "a closed corridor of 30 to 50000 m";
-        return Err(PlanError::Parameter { name: "length of the corridor", value: length, expected });
+        return Err(ParameterError::new("length of the corridor", length, expected).into());
     }
     if !(0.5..=20.0).contains(&spacing) {
-        return Err(PlanError::Parameter { name: "spacing", value: spacing, expected: "0.5 to 20 m" });
+        return Err(ParameterError::new("spacing", spacing, "0.5 to 20 m").into());
     }
     let options = TrackOptions { spacing: [0.6 * spacing, spacing], ..TrackOptions::default() };
     let corridor = corridor.resampled(1.0)?;

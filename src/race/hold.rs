@@ -1,5 +1,6 @@
-use super::error::{PlanError, positive};
 use super::tyres::Tyres;
+use crate::ParameterError;
+use crate::parameter::{require, require_positive};
 
 /// What the tyres of a car give at most.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,22 +19,14 @@ pub enum Hold {
 }
 
 impl Hold {
-    pub(super) fn check(&self) -> Result<(), PlanError> {
+    pub(super) fn validate(&self) -> Result<(), ParameterError> {
         match *self {
             Self::Ellipse { across, turned, along } => {
-                positive("grip across", across)?;
-                positive("grip along", along)?;
-                if (0.0..=1.0).contains(&turned) {
-                    return Ok(());
-                }
-                let expected = "0 to 1";
-                Err(PlanError::Parameter { name: "grip lost by turned wheels", value: turned, expected })
+                require_positive("grip across", across)?;
+                require_positive("grip along", along)?;
+                require("grip lost by turned wheels", turned, (0.0..=1.0).contains(&turned), "0 to 1")
             }
-            Self::Balance(tyres) => {
-                positive("grip", tyres.grip)?;
-                positive("grip of the front tyres", tyres.front)?;
-                if tyres.stiffness > 0.0 { Ok(()) } else { positive("stiffness", tyres.stiffness) }
-            }
+            Self::Balance(tyres) => tyres.validate(),
         }
     }
 
@@ -148,7 +141,7 @@ mod tests {
 
     #[test]
     fn what_is_no_hold() {
-        let told = |hold: Hold| hold.check().unwrap_err().to_string();
+        let told = |hold: Hold| hold.validate().unwrap_err().to_string();
         assert_eq!(
             told(Hold::Ellipse { across: 9.0, turned: 2.0, along: 9.0 }),
             "grip lost by turned wheels is 2; expected 0 to 1"

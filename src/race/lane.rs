@@ -50,7 +50,7 @@ pub(super) fn lane_where(
     before: &Lane,
     parameters: &LaneParameters,
 ) -> Option<Lane> {
-    if !parameters.is_usable() || before.half_width <= 0.0 {
+    if parameters.validate().is_err() || before.half_width <= 0.0 {
         return None;
     }
     let car = way.car;

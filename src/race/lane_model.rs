@@ -1,7 +1,8 @@
+use crate::ParameterError;
 use crate::geometry::{Point, Pose};
+use crate::parameter::{require, require_up_to};
 
-/// What a lane is looked for with. All numbers are greater than 0 and finite, and it looks no farther ahead
-/// than 1000 m.
+/// What a lane is looked for with. All numbers are greater than 0, and at most 1000.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaneParameters {
     /// Metres ahead of the car.
@@ -37,18 +38,27 @@ impl Default for LaneParameters {
     }
 }
 
-/// Metres that are looked ahead at most.
+/// The greatest number, in metres: whoever looks farther makes points without end.
 const FARTHEST: f64 = 1000.0;
 
 impl LaneParameters {
-    /// Whether all numbers are within their ranges.
-    pub(super) fn is_usable(&self) -> bool {
-        let p = self;
-        let [least, most] = p.half_width;
-        let numbers =
-            [p.ahead, p.curvature, p.clearance, least, most, p.usual, p.loose, p.spacing, p.sharpest];
-        let are_good = numbers.iter().all(|number| *number > 0.0 && number.is_finite());
-        are_good && least <= most && p.ahead <= FARTHEST
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        let [least, most] = self.half_width;
+        for (name, value) in [
+            ("ahead", self.ahead),
+            ("curvature", self.curvature),
+            ("clearance", self.clearance),
+            ("half width", least),
+            ("half width", most),
+            ("usual half width", self.usual),
+            ("loose", self.loose),
+            ("spacing", self.spacing),
+            ("sharpest", self.sharpest),
+        ] {
+            require_up_to(name, value, FARTHEST)?;
+        }
+        require("half width", least, least <= most, "the least before the greatest")
     }
 }
 

@@ -4,7 +4,9 @@ use super::cone::{Cone, ConeColour};
 use super::landmark::Landmark;
 use super::registration::{Expected, register, spread};
 use super::sight::Sighting;
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, Vector, cross, math, normalize_angle};
+use crate::parameter::{require_finite, require_not_negative, require_positive};
 
 /// How a map of cones is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,6 +26,18 @@ pub struct ConeMapParameters {
 impl Default for ConeMapParameters {
     fn default() -> Self {
         Self { gate: 0.9, farthest: 20.0, confirmed: 4, sensor: 2.15, drift: [0.03, 0.006] }
+    }
+}
+
+impl ConeMapParameters {
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        require_positive("gate", self.gate)?;
+        require_positive("farthest", self.farthest)?;
+        require_finite("sensor", self.sensor)?;
+        let [metres, radians] = self.drift;
+        require_not_negative("drift", metres)?;
+        require_not_negative("drift in radians", radians)
     }
 }
 
@@ -84,8 +98,9 @@ const WRONG: (f64, f64, f64) = (4.0, 0.02, 0.4);
 
 impl ConeMap {
     /// An empty map; the car is at its origin.
-    pub fn new(parameters: ConeMapParameters) -> Self {
-        Self {
+    pub fn new(parameters: ConeMapParameters) -> Result<Self, ParameterError> {
+        parameters.validate()?;
+        Ok(Self {
             parameters,
             landmarks: Vec::new(),
             pose: Pose::default(),
@@ -96,7 +111,7 @@ impl ConeMap {
             closed: false,
             known: f64::INFINITY,
             fits: None,
-        }
+        })
     }
 
     /// The car's pose in the map.

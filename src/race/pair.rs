@@ -1,3 +1,7 @@
+use super::generate::LONGEST;
+use crate::ParameterError;
+use crate::parameter::{require, require_up_to};
+
 /// What the way between cones is expected to look like.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CentreLineParameters {
@@ -19,6 +23,22 @@ pub struct CentreLineParameters {
 impl Default for CentreLineParameters {
     fn default() -> Self {
         Self { width: [2.5, 6.5], spacing: 5.6, step: 1.0, colour: 4.0, shortest_loop: 15.0, horizon: 40.0 }
+    }
+}
+
+impl CentreLineParameters {
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        let [least, most] = self.width;
+        require_up_to("width", least, LONGEST)?;
+        require_up_to("width", most, LONGEST)?;
+        require("width", least, least <= most, "the least before the greatest")?;
+        require_up_to("spacing", self.spacing, LONGEST)?;
+        require("step", self.step, (0.01..=1e3).contains(&self.step), "0.01 to 1000 m")?;
+        require("colour", self.colour, self.colour >= 0.0, "a number of at least 0, or infinity")?;
+        let shortest = self.shortest_loop;
+        require("shortest loop", shortest, shortest >= 0.0, "a number of at least 0, or infinity")?;
+        require_up_to("horizon", self.horizon, LONGEST)
     }
 }
 

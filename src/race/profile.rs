@@ -1,8 +1,10 @@
-use super::error::{PlanError, positive};
+use super::error::PlanError;
 use super::hold::Hold;
 use super::racing_line::curvature;
 use super::tyres::Tyres;
+use crate::ParameterError;
 use crate::geometry::Point;
+use crate::parameter::{require, require_positive};
 use crate::world::{DriveSpec, RobotSpec};
 
 const GRAVITY: f64 = 9.81;
@@ -56,18 +58,13 @@ impl CarLimits {
         })
     }
 
-    fn check(&self) -> Result<(), PlanError> {
-        self.hold.check()?;
-        if self.turning.is_nan() || self.turning <= 0.0 {
-            return Err(PlanError::Parameter {
-                name: "change of curvature",
-                value: self.turning,
-                expected: "a positive number",
-            });
-        }
-        positive("drive", self.drive)?;
-        positive("brake", self.brake)?;
-        positive("top speed", self.top_speed)
+    /// Fails with the name of the limit that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        self.hold.validate()?;
+        require("turning", self.turning, self.turning > 0.0, "a positive number")?;
+        require_positive("drive", self.drive)?;
+        require_positive("brake", self.brake)?;
+        require_positive("top speed", self.top_speed)
     }
 }
 
@@ -134,7 +131,7 @@ impl SpeedProfile {
         limits: &CarLimits,
         closed: bool,
     ) -> Result<Self, PlanError> {
-        limits.check()?;
+        limits.validate()?;
         let n = points.len();
         let lengths: Vec<f64> = (0..n).map(|i| (points[(i + 1) % n] - points[i]).norm()).collect();
         let lengths_used = if closed { &lengths[..] } else { &lengths[..n - 1] };
@@ -282,7 +279,7 @@ mod tests {
         assert!(slow.speeds[39] < 6.5 && free.speeds[39] > 10.0, "{} {}", slow.speeds[39], free.speeds[39]);
         assert!((slow.speeds[65] / free.speeds[65] - 1.0).abs() < 0.02);
         let error = SpeedProfile::closed(&points, &CarLimits { turning: f64::NAN, ..LIMITS }).unwrap_err();
-        assert_eq!(error.to_string(), "change of curvature is NaN; expected a positive number");
+        assert_eq!(error.to_string(), "turning is NaN; expected a positive number");
     }
 
     #[test]

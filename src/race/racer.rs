@@ -15,8 +15,10 @@ use super::reckoning::Reckoning;
 use super::sight::{Sighting, sightings};
 use super::tracker::{LineTracker, TrackerParameters};
 use super::tyres::Tyres;
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::LidarScan;
+use crate::parameter::require_positive;
 
 #[cfg(test)]
 mod tests;
@@ -72,6 +74,18 @@ impl Default for RacerParameters {
 }
 
 impl RacerParameters {
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        self.limits.validate().map_err(|error| error.of("limits"))?;
+        self.first_lap.validate().map_err(|error| error.of("first lap"))?;
+        self.outline.validate().map_err(|error| error.of("outline"))?;
+        self.centre_line.validate().map_err(|error| error.of("centre line"))?;
+        self.map.validate().map_err(|error| error.of("map"))?;
+        self.lane.validate().map_err(|error| error.of("lane"))?;
+        self.tracker.validate().map_err(|error| error.of("tracker"))?;
+        require_positive("control period", self.period)
+    }
+
     /// For a car whose tyres do not slip.
     pub fn rolling() -> Self {
         Self { tracker: TrackerParameters::rolling(), ..Self::default() }
@@ -166,10 +180,11 @@ const DOUBT: f64 = 0.7;
 const STILL: f64 = 0.05;
 
 impl Racer {
-    /// A racer at the start.
-    pub fn new(parameters: RacerParameters) -> Self {
-        Self {
-            map: ConeMap::new(parameters.map),
+    /// A racer at the start. Fails with the name of the parameter that is out of range.
+    pub fn new(parameters: RacerParameters) -> Result<Self, ParameterError> {
+        parameters.validate()?;
+        Ok(Self {
+            map: ConeMap::new(parameters.map)?,
             parameters,
             phase: RacePhase::Mapping,
             laps: 0,
@@ -189,7 +204,7 @@ impl Racer {
             driven: 0.0,
             led: 0.0,
             doubt: 0.0,
-        }
+        })
     }
 
     /// What it does now.
@@ -430,7 +445,7 @@ impl Racer {
         let limits = self.parameters.first_lap;
         let profile = SpeedProfile::open(&found.points, &limits, limits.top_speed, 2.0)?;
         self.lane = found;
-        Ok(LineTracker::new(self.lane.points.clone(), profile, false, self.parameters.tracker))
+        Ok(LineTracker::new(self.lane.points.clone(), profile, false, self.parameters.tracker)?)
     }
 
     fn whole_track(&mut self) -> Result<LineTracker, PlanError> {
@@ -458,7 +473,7 @@ impl Racer {
         if profile.curvatures.iter().any(|bend| bend.abs() > p.tracker.curvature) {
             return Err(PlanError::NoWay);
         }
-        Ok(LineTracker::new(points, profile, true, p.tracker))
+        Ok(LineTracker::new(points, profile, true, p.tracker)?)
     }
 }
 

@@ -29,7 +29,7 @@ fn race_on(track: &ConeTrack, corridor: Corridor, seed: u64, laps: usize) -> Rac
     let (mut car, world) = (simulation.robot(0).unwrap(), simulation.truth());
     let wheels = [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y));
     let mut referee = Referee::new(corridor, wheels);
-    let mut racer = Racer::new(RacerParameters { laps, ..RacerParameters::default() });
+    let mut racer = Racer::new(RacerParameters { laps, ..RacerParameters::default() }).unwrap();
     let mut scan = LidarScan::default();
     let mut first = 0;
     while world.time() < 150.0 * laps as f64 {
@@ -62,7 +62,7 @@ fn a_line_that_moves_aside_is_come_to_without_weaving() {
     let straight = |y: f64| -> Vec<Point> { (0..1000).map(|k| Point::new(f64::from(k), y)).collect() };
     let profile = SpeedProfile::open(&straight(0.0), &RacerParameters::default().limits, 30.0, 0.0).unwrap();
     let tracker =
-        |y: f64| LineTracker::new(straight(y), profile.clone(), false, TrackerParameters::default());
+        |y: f64| LineTracker::new(straight(y), profile.clone(), false, TrackerParameters::default()).unwrap();
     let scene = ConeTrack::default().scene(&[Pose::default()]);
     let world = Simulation::new(&scene, SimOptions::ideal()).unwrap();
     let mut car = world.robot(0).unwrap();
@@ -161,7 +161,7 @@ fn on_a_strip(pairs: u32) -> (RaceOutcome, f64, f64) {
     let cones = (0..pairs).map(|k| 4.0 * f64::from(k)).flat_map(strip).collect();
     let scene = ConeTrack { cones, ..ConeTrack::default() }.scene(&[Pose::new(-2.0, 0.0, 0.0)]);
     let world = Simulation::new(&scene, SimOptions::default()).unwrap();
-    let mut racer = Racer::new(RacerParameters::default());
+    let mut racer = Racer::new(RacerParameters::default()).unwrap();
     let outcome = run(&mut world.robot(0).unwrap(), &mut racer, 120.0, |_, _, _| {}).unwrap();
     (outcome, world.truth().pose(0).unwrap().x, world.truth().time())
 }
@@ -181,7 +181,7 @@ fn a_car_that_is_not_where_its_map_says_stops() {
     let world = Simulation::new(&track.scene(&[track.start.unwrap()]), SimOptions::default()).unwrap();
     let mut car = world.robot(0).unwrap();
     let metres = || world.truth().robot(0).unwrap().path_length;
-    let mut racer = Racer::new(RacerParameters::default());
+    let mut racer = Racer::new(RacerParameters::default()).unwrap();
     let mut scan = LidarScan::default();
     // Where the car believes to be leaps by some metres in the third lap, as after a bad correction of its odometry.
     let leap = |racer: &Racer| if racer.laps() < 2 { Pose::default() } else { Pose::new(4.0, 3.0, 0.4) };
@@ -214,7 +214,7 @@ fn the_same_seed_gives_the_same_race() {
 
 #[test]
 fn odometry_that_is_no_number_stops_a_racer_and_nothing_else() {
-    let mut racer = Racer::new(RacerParameters::default());
+    let mut racer = Racer::new(RacerParameters::default()).unwrap();
     let before = racer.decide(Pose::default(), Twist::new(2.0, 0.0), &[]);
     for wrong in [f64::NAN, f64::INFINITY] {
         assert_eq!(racer.decide(Pose::new(wrong, 0.0, 0.0), Twist::new(2.0, 0.0), &[]), Twist::STOP);

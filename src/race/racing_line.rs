@@ -2,7 +2,9 @@ use super::banded::CyclicBand;
 use super::box_qp::BoxSolver;
 use super::corridor::{Corridor, Station};
 use super::error::PlanError;
+use crate::ParameterError;
 use crate::geometry::{Point, cross};
+use crate::parameter::{require_finite, require_not_negative, require_positive};
 
 /// How a racing line is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +20,14 @@ pub struct RacingLineParameters {
 impl Default for RacingLineParameters {
     fn default() -> Self {
         Self { margin: 1.0, iterations: 30, tolerance: 0.01 }
+    }
+}
+
+impl RacingLineParameters {
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        require_not_negative("margin", self.margin)?;
+        require_positive("tolerance", self.tolerance)
     }
 }
 
@@ -75,6 +85,7 @@ impl LineSolver {
         corridor: &Corridor,
         parameters: &RacingLineParameters,
     ) -> Result<RacingLine, PlanError> {
+        parameters.validate()?;
         check(corridor)?;
         Ok(self.solve_within(corridor, &corridor.free(parameters.margin)?, parameters))
     }
@@ -190,6 +201,14 @@ pub struct CarOutline {
 }
 
 impl CarOutline {
+    /// Fails with the name of the number that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        require_positive("half width", self.half_width)?;
+        require_finite("nose", self.nose)?;
+        require_finite("ahead", self.ahead)?;
+        require_not_negative("room", self.room)
+    }
+
     /// Metres that it needs to the right and to the left of its line, for a curvature of that.
     ///
     /// Its rear axle rolls on a smaller circle than the point ahead of it, its nose on a larger one.

@@ -266,7 +266,7 @@ fn a_lane_is_found_in_each_frame_of_a_real_drive() {
     let logs = files("ft-fsd", "json").into_iter().filter(|path| name(path).starts_with("fsg"));
     for path in logs {
         let TrackFile::Log(frames) = read(&path) else { panic!("{path:?}") };
-        let mut finder = LaneFinder::new(LaneParameters::default());
+        let mut finder = LaneFinder::new(LaneParameters::default()).unwrap();
         let mut wrong = 0;
         for (k, frame) in frames.iter().enumerate() {
             let blind: Vec<Cone> = frame.cones.iter().map(|cone| Cone::unknown(cone.position)).collect();

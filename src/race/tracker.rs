@@ -1,6 +1,8 @@
 use super::profile::SpeedProfile;
 use super::tyres::{SLIPS, Tyres};
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference, cross, math};
+use crate::parameter::{require, require_positive, require_up_to};
 
 /// How a car is kept on a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,6 +68,27 @@ impl TrackerParameters {
     }
 }
 
+impl TrackerParameters {
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        require("ahead", self.ahead, self.ahead.abs() <= MOST, "-1000 to 1000 m")?;
+        require_up_to("length", self.length, MOST)?;
+        for (name, value) in [
+            ("length by speed", self.length_by_speed),
+            ("steering lag", self.steering_lag),
+            ("speed lag", self.speed_lag),
+            ("speed time", self.speed_time),
+            ("drag time", self.drag_time),
+            ("yaw", self.yaw),
+            ("swing", self.swing),
+        ] {
+            require(name, value, (0.0..=MOST).contains(&value), "0 to 1000")?;
+        }
+        require_positive("greatest curvature", self.curvature)?;
+        self.tyres.validate().map_err(|error| error.of("tyres"))
+    }
+}
+
 /// A line with its speeds, and how far along it the car is.
 #[derive(Debug, Clone)]
 pub struct LineTracker {
@@ -79,6 +102,8 @@ pub struct LineTracker {
     reached: bool,
 }
 
+/// Metres and seconds that a parameter is at most: what lies farther along a line takes as long to find.
+const MOST: f64 = 1000.0;
 /// What no car's place, in metres, speed or rate of turn comes to.
 const BEYOND_ALL: f64 = 1e6;
 /// Metres from a line within which a car is on it, and metres per second at which it comes to it if it stands.
@@ -99,8 +124,9 @@ impl LineTracker {
         profile: SpeedProfile,
         closed: bool,
         parameters: TrackerParameters,
-    ) -> Self {
-        Self { parameters, points, profile, closed, nearest: 0, started: false, reached: !closed }
+    ) -> Result<Self, ParameterError> {
+        parameters.validate()?;
+        Ok(Self { parameters, points, profile, closed, nearest: 0, started: false, reached: !closed })
     }
 
     /// Takes another line of as many points, which is a little beside the first one, and goes on at the same point of it.
@@ -288,7 +314,7 @@ mod tests {
         let points: Vec<Point> = (0..40).map(|k| Point::new(0.5 * f64::from(k), 0.0)).collect();
         let limits = CarLimits::circle(5.0, 3.0, 5.0, 10.0);
         let profile = SpeedProfile::open(&points, &limits, 5.0, 2.0).unwrap();
-        let mut tracker = LineTracker::new(points, profile, false, TrackerParameters::rolling());
+        let mut tracker = LineTracker::new(points, profile, false, TrackerParameters::rolling()).unwrap();
         for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300] {
             assert_eq!(tracker.step(Pose::new(1.0, wrong, 0.0), Twist::new(3.0, 0.0)), None);
             assert_eq!(tracker.step(Pose::new(1.0, 0.0, 0.0), Twist::new(wrong, 0.0)), None);
@@ -301,7 +327,7 @@ mod tests {
         let points: Vec<Point> = (0..400).map(|k| Point::new(0.5 * f64::from(k), 0.0)).collect();
         let limits = CarLimits::circle(5.0, 3.0, 5.0, 10.0);
         let profile = SpeedProfile::open(&points, &limits, 10.0, 2.0).unwrap();
-        let mut tracker = LineTracker::new(points, profile, false, TrackerParameters::rolling());
+        let mut tracker = LineTracker::new(points, profile, false, TrackerParameters::rolling()).unwrap();
         let (mut rear, mut moving) = (Pose::new(0.0, 5.0, 0.0), Twist::new(8.0, 0.0));
         let mut steepest = 0.0_f64;
         while rear.x < 100.0 {

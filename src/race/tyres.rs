@@ -1,4 +1,8 @@
+use std::f64::consts::FRAC_PI_2;
+
+use crate::ParameterError;
 use crate::geometry::math;
+use crate::parameter::{require, require_positive};
 
 /// How the tyres of a car slip: the bicycle model in balance, whose axles carry what the levers give them and drive in proportion.
 ///
@@ -26,6 +30,16 @@ impl Default for Tyres {
 }
 
 impl Tyres {
+    /// Fails with the name of the number that is out of range. Tyres that roll have an infinite stiffness.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        require_positive("grip", self.grip)?;
+        require("stiffness", self.stiffness, self.stiffness > 0.0, "a positive number")?;
+        require_positive("grip of the front tyres", self.front)?;
+        require_positive("wheelbase", self.wheelbase)?;
+        let good = self.lock > 0.0 && self.lock < FRAC_PI_2;
+        require("lock", self.lock, good, "more than 0 and less than a right angle")
+    }
+
     /// Tyres that roll and do not slip, as those of slow cars as good as do.
     pub const ROLLING: Self =
         Self { grip: 12.0, stiffness: f64::INFINITY, front: 1.0, wheelbase: 1.55, lock: 0.6 };

@@ -1,7 +1,8 @@
 use super::health::HealthLimits;
 use super::{SafetyState, SpeedError, StoppingModel};
+use crate::ParameterError;
 use crate::geometry::Point;
-use crate::io::{Error, Result};
+use crate::parameter::{require, require_finite, require_not_negative, require_positive};
 
 /// What a vehicle is supervised by.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,7 +73,7 @@ impl SupervisorParameters {
         }
     }
 
-    pub(super) fn validate(&self) -> Result<()> {
+    pub(super) fn validate(&self) -> std::result::Result<(), ParameterError> {
         for (name, value) in [
             ("control period", self.period),
             ("heartbeat", self.heartbeat),
@@ -80,11 +81,9 @@ impl SupervisorParameters {
             ("threshold of the override", self.override_threshold),
             ("gentle deceleration", self.gentle),
         ] {
-            crate::io::error::require_positive(name, value)?;
+            require_positive(name, value)?;
         }
-        if self.period < SHORTEST {
-            return Err(Error::invalid_input("control period", self.period, "at least 0.0001 s"));
-        }
+        require("control period", self.period, self.period >= SHORTEST, "at least 0.0001 s")?;
         let [linear, angular] = self.standing;
         for (name, value) in [
             ("speed of standing", linear),
@@ -92,28 +91,20 @@ impl SupervisorParameters {
             ("greatest acceleration", self.health.acceleration),
             ("step of the speed", self.health.speed_step),
             ("age of readings", self.health.age),
-            ("equal readings in a row", f64::from(self.health.repeats)),
+            ("repeats: equal readings in a row", f64::from(self.health.repeats)),
         ] {
-            crate::io::error::require_positive(name, value)?;
+            require_positive(name, value)?;
         }
-        for (name, value) in [
-            ("relative error of the speed", self.speed_error.share),
-            ("error of the speed", self.speed_error.offset),
-        ] {
-            if !(value >= 0.0 && value.is_finite()) {
-                return Err(Error::invalid_input(name, value, "0 or more, and finite"));
-            }
+        for (name, value) in
+            [("speed error: share", self.speed_error.share), ("speed error: offset", self.speed_error.offset)]
+        {
+            require_not_negative(name, value)?;
         }
         if matches!(self.fence.len(), 1 | 2) {
-            return Err(Error::invalid_input(
-                "corners of the fence",
-                self.fence.len(),
-                "none, or at least 3",
-            ));
+            let corners = self.fence.len() as f64;
+            return Err(ParameterError::new("corners of the fence", corners, "none, or at least 3"));
         }
-        if self.fence.iter().any(|corner| !(corner.x.is_finite() && corner.y.is_finite())) {
-            return Err(Error::invalid_input("corner of the fence", "no number", "finite coordinates"));
-        }
-        Ok(())
+        let mut coordinates = self.fence.iter().flat_map(|corner| [corner.x, corner.y]);
+        coordinates.try_for_each(|metres| require_finite("corner of the fence", metres))
     }
 }

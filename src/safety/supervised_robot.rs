@@ -60,7 +60,7 @@ impl<R: Clock + Drive, S: Station> Clock for Supervised<R, S> {
 
     fn wait(&mut self, seconds: f64) -> Result<()> {
         self.alive();
-        crate::io::error::require_finite("seconds", seconds)?;
+        crate::parameter::require_finite("seconds", seconds)?;
         if seconds > LONGEST {
             return Err(Error::invalid_input("seconds", seconds, "at most a day, 86400"));
         }

@@ -1,9 +1,9 @@
 use nalgebra::{Matrix2, Matrix2x6, Matrix3, Matrix6, Vector2, Vector6};
 
 use crate::geometry::{Point, Pose, Vector, angle_difference, cross, math, normalize_angle};
-use crate::io::error::require_positive;
 use crate::io::{LidarScan, Result};
 use crate::kinematics::{Differential, Displacement, OdometryErrors, OdometryStep, arc_between};
+use crate::parameter::require_positive;
 
 /// A round pole, a can, say, whose place is known.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,8 @@
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, direction, math};
 use crate::io::LidarScan;
-use crate::world::{GridError, OccupancyGrid};
+use crate::parameter::require;
+use crate::world::OccupancyGrid;
 
 /// How much a single beam says about the cells that it crosses and hits.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,25 +19,6 @@ impl Default for LogOddsParameters {
     fn default() -> Self {
         Self { hit: 0.7, miss: 0.4, most: 0.97 }
     }
-}
-
-/// Why there is no map.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum LogOddsError {
-    /// The numbers make no grid.
-    #[error(transparent)]
-    Grid(#[from] GridError),
-    /// A probability is out of range.
-    #[error("{parameter} is {value}; expected {expected}")]
-    Parameter {
-        /// Which one.
-        parameter: &'static str,
-        /// What it is.
-        value: f64,
-        /// What is accepted.
-        expected: &'static str,
-    },
 }
 
 /// An occupancy grid that lidar scans are entered into (book, section 10.3; H. Moravec, A. Elfes, *High Resolution Maps
@@ -78,14 +61,10 @@ impl LogOddsMap {
         resolution: f64,
         origin: Pose,
         parameters: LogOddsParameters,
-    ) -> Result<Self, LogOddsError> {
-        let checked = |parameter, value: f64, low: f64, high: f64, expected| {
-            let fits = value > low && value < high;
-            fits.then(|| math::ln(value / (1.0 - value))).ok_or(LogOddsError::Parameter {
-                parameter,
-                value,
-                expected,
-            })
+    ) -> Result<Self, ParameterError> {
+        let checked = |parameter, value: f64, low: f64, high: f64, expected: &'static str| {
+            require(parameter, value, value > low && value < high, expected)
+                .map(|()| math::ln(value / (1.0 - value)))
         };
         let hit = checked("hit", parameters.hit, 0.5, 1.0, "more than 0.5 and less than 1")?;
         let miss = checked("miss", parameters.miss, 0.0, 0.5, "more than 0 and less than 0.5")?;

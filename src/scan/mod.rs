@@ -24,5 +24,5 @@ pub use lidar::{
     extract_features, local_extrema, plot_scan,
 };
 pub use localisation::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
-pub use log_odds::{LogOddsError, LogOddsMap, LogOddsParameters};
+pub use log_odds::{LogOddsMap, LogOddsParameters};
 pub use matcher::ScanMatcher;

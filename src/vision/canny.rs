@@ -1,6 +1,7 @@
 use super::blocks::in_blocks;
 use super::dispatch::vectorised;
 use super::{Error, GrayView, GrayViewMut};
+use crate::ParameterError;
 
 /// The gradients that make edges of Canny's detector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -74,7 +75,7 @@ impl Canny {
         let CannyThresholds { low, high } = thresholds;
         if low > high {
             let expected = "at most the high threshold";
-            return Err(Error::Parameter { parameter: "low threshold", found: f64::from(low), expected });
+            return Err(ParameterError::new("low threshold", f64::from(low), expected).into());
         }
         self.make_room(input.width(), input.height());
         mark(input, &mut self.rows, &mut self.marks, thresholds);

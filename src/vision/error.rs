@@ -1,5 +1,7 @@
 use std::convert::Infallible;
 
+use crate::ParameterError;
+
 /// What is wrong with an image or a parameter.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -47,15 +49,8 @@ pub enum Error {
         size: (usize, usize),
     },
     /// A parameter out of its range.
-    #[error("{parameter} is {found}; expected {expected}")]
-    Parameter {
-        /// Its name.
-        parameter: &'static str,
-        /// Its value.
-        found: f64,
-        /// The range.
-        expected: &'static str,
-    },
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
 }
 
 /// What takes an image takes a view of one too, which always is one.

@@ -2,6 +2,7 @@ use super::blocks::in_blocks;
 use super::border::{Border, mirrored, stencil};
 use super::dispatch::{vectorised, vectorised_filter};
 use super::{Error, GrayView, GrayViewMut};
+use crate::ParameterError;
 use crate::geometry::math;
 
 /// A bell-shaped, symmetric filter of 3, 5 or 7 pixels a side.
@@ -28,11 +29,11 @@ impl GaussianKernel {
     pub fn new(size: usize, sigma: f64) -> Result<Self, Error> {
         if ![3, 5, 7].contains(&size) {
             let found = size as f64;
-            return Err(Error::Parameter { parameter: "Gaussian size", found, expected: "3, 5 or 7" });
+            return Err(ParameterError::new("Gaussian size", found, "3, 5 or 7").into());
         }
         if !(sigma.is_finite() && sigma > 0.0) {
             let expected = "a positive, finite number";
-            return Err(Error::Parameter { parameter: "Gaussian sigma", found: sigma, expected });
+            return Err(ParameterError::new("Gaussian sigma", sigma, expected).into());
         }
         let radius = size / 2;
         let bell = |i: usize| math::exp(-((i * i) as f64) / (2.0 * sigma * sigma));

@@ -1,3 +1,4 @@
+use crate::parameter::require;
 use std::f64::consts::PI;
 
 use super::dispatch::vectorised;
@@ -52,11 +53,9 @@ impl Hog {
         for (parameter, found, range, expected) in [
             ("cell of the histograms", cell, 2..=64, "2 to 64"),
             ("block of the histograms", block, 1..=8, "1 to 8"),
-            ("number of directions", bins, 2..=36, "2 to 36"),
+            ("bins", bins, 2..=36, "2 to 36"),
         ] {
-            if !range.contains(&found) {
-                return Err(Error::Parameter { parameter, found: found as f64, expected });
-            }
+            require(parameter, found as f64, range.contains(&found), expected)?;
         }
         let border = |bin: usize| {
             let (sin, cos) = math::sin_cos(bin as f64 * PI / bins as f64);

@@ -1,3 +1,4 @@
+use crate::ParameterError;
 use std::f64::consts::PI;
 
 use super::dispatch::vectorised;
@@ -39,11 +40,11 @@ impl HoughLines {
     pub fn new(rho_step: f64, angles: usize) -> Result<Self, Error> {
         if !(rho_step >= 0.1 && rho_step.is_finite()) {
             let expected = "at least 0.1 and finite";
-            return Err(Error::Parameter { parameter: "step of rho", found: rho_step, expected });
+            return Err(ParameterError::new("step of rho", rho_step, expected).into());
         }
         if !(1..=3600).contains(&angles) {
             let found = angles as f64;
-            return Err(Error::Parameter { parameter: "angles", found, expected: "1 to 3600" });
+            return Err(ParameterError::new("angles", found, "1 to 3600").into());
         }
         // Angles in single precision, each the one before and a step, and so the step's inverse: those are the votes of OpenCV.
         let step = (PI / angles as f64) as f32;

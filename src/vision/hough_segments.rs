@@ -1,3 +1,4 @@
+use crate::ParameterError;
 use std::f64::consts::PI;
 
 use super::dispatch::vectorised;
@@ -67,7 +68,7 @@ impl HoughSegments {
     pub fn new(angles: usize) -> Result<Self, Error> {
         if !(1..=3600).contains(&angles) {
             let found = angles as f64;
-            return Err(Error::Parameter { parameter: "angles", found, expected: "1 to 3600" });
+            return Err(ParameterError::new("angles", found, "1 to 3600").into());
         }
         // Multiples of a step in single precision: those are the votes of OpenCV.
         let step = f64::from((PI / angles as f64) as f32);

@@ -2,6 +2,7 @@ use super::dispatch::vectorised_filter;
 use super::hue::hue;
 use super::view::flatten;
 use super::{Error, GrayView, GrayViewMut, HueLimits, HueScale, NO_HUE, RgbView, planes};
+use crate::ParameterError;
 
 /// Hues from one to another, both included, wrapping round the end of the circle if the first is larger.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -29,7 +30,7 @@ impl HueRange {
         let circle = circle(scale);
         let (middle, reach) = (i32::from(hue), i32::from(threshold) - 1);
         if reach < 0 {
-            return Err(Error::Parameter { parameter: "hue threshold", found: 0.0, expected: "at least 1" });
+            return Err(ParameterError::new("hue threshold", 0.0, "at least 1").into());
         }
         if 2 * reach + 1 >= circle {
             return Ok(Self { low: 0, high: (circle - 1) as u8 });
@@ -58,11 +59,7 @@ fn require_hue(parameter: &'static str, hue: u8, scale: HueScale) -> Result<(), 
     if i32::from(hue) < circle(scale) {
         return Ok(());
     }
-    Err(Error::Parameter {
-        parameter,
-        found: f64::from(hue),
-        expected: "below 255, or 180 on OpenCV's scale",
-    })
+    Err(ParameterError::new(parameter, f64::from(hue), "below 255, or 180 on OpenCV's scale").into())
 }
 
 /// 255 where a pixel's hue belongs to the range, 0 elsewhere (book, section 11.4), straight from the colours.

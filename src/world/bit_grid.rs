@@ -1,4 +1,5 @@
 use super::{Cell, OccupancyGrid};
+use crate::ParameterError;
 use crate::geometry::{Point, Pose};
 
 /// The place of a cell in a grid: its column and row, both from 0.
@@ -127,7 +128,7 @@ impl BitGrid {
 
     /// The same as an occupancy grid, with cells of `resolution` metres and the outer corner of the first one at
     /// `origin`.
-    pub fn to_occupancy(&self, resolution: f64, origin: Pose) -> Result<OccupancyGrid, super::GridError> {
+    pub fn to_occupancy(&self, resolution: f64, origin: Pose) -> Result<OccupancyGrid, ParameterError> {
         let mut grid = OccupancyGrid::unknown(self.width, self.height, resolution, origin)?;
         for row in 0..self.height {
             for column in 0..self.width {

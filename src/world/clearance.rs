@@ -1,39 +1,9 @@
 //! How far every place on the floor is from the nearest solid.
 
 use super::{Object, Shape, Wall, World};
+use crate::ParameterError;
 use crate::geometry::{Aabb, Point, Segment, Vector, direction, math};
-
-/// What keeps a [`Raster`] from being laid over a world.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RasterError {
-    /// A length is not what it must be.
-    #[error("{parameter} is {value} m; expected a positive, finite number")]
-    Length {
-        /// Which length.
-        parameter: &'static str,
-        /// What it is, in metres.
-        value: f64,
-    },
-    /// A wall or an object lies at no finite place.
-    #[error("the world's extent is {width} m x {height} m; expected finite numbers")]
-    Extent {
-        /// Metres along x.
-        width: f64,
-        /// Metres along y.
-        height: f64,
-    },
-    /// The cells would not fit into memory.
-    #[error("cells of {resolution} m would be {cells} in number; expected at most {most}")]
-    TooManyCells {
-        /// Metres along a cell's edge.
-        resolution: f64,
-        /// The number of cells.
-        cells: f64,
-        /// The largest number accepted.
-        most: f64,
-    },
-}
+use crate::parameter::require_positive;
 
 /// Square cells in rows over a part of the floor. The index of a cell counts along x first, then along y.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,20 +19,18 @@ impl Raster {
     pub const MAX_CELLS: f64 = 5e7;
 
     /// Cells of `resolution` metres over a box, which the last column and row may overlap.
-    pub fn over(bounds: Aabb, resolution: f64) -> Result<Self, RasterError> {
-        positive("resolution", resolution)?;
+    pub fn over(bounds: Aabb, resolution: f64) -> Result<Self, ParameterError> {
+        require_positive("resolution", resolution)?;
         let size = bounds.size();
         if !(size.x.is_finite() && size.y.is_finite()) {
-            return Err(RasterError::Extent { width: size.x, height: size.y });
+            let value = if size.x.is_finite() { size.y } else { size.x };
+            return Err(ParameterError::new("extent of the world", value, "a finite number of metres"));
         }
         let cells_along = |length: f64| (length / resolution).ceil().max(1.0);
         let (columns, rows) = (cells_along(size.x), cells_along(size.y));
         if columns * rows > Self::MAX_CELLS {
-            return Err(RasterError::TooManyCells {
-                resolution,
-                cells: columns * rows,
-                most: Self::MAX_CELLS,
-            });
+            let expected = format!("at most {}; raise the resolution of {resolution} m", Self::MAX_CELLS);
+            return Err(ParameterError::new("number of cells", columns * rows, expected));
         }
         Ok(Self { corner: bounds.min, resolution, columns: columns as usize, rows: rows as usize })
     }
@@ -152,10 +120,6 @@ impl Raster {
     }
 }
 
-fn positive(parameter: &'static str, value: f64) -> Result<(), RasterError> {
-    if value.is_finite() && value > 0.0 { Ok(()) } else { Err(RasterError::Length { parameter, value }) }
-}
-
 /// The distance from the middle of every cell to the nearest wall or object, where that is less than a limit.
 ///
 /// Walls are rectangles of their thickness with square ends, objects their outlines seen from above, whatever
@@ -167,7 +131,7 @@ fn positive(parameter: &'static str, value: f64) -> Result<(), RasterError> {
 /// let field = Clearance::new(&World::walled(2.0, 1.0), 0.01, 0.3)?;
 /// // 200 mm from the middle line of a wall that is 10 mm thick, give or take half a cell.
 /// assert!((field.at_point(Point::new(1.0, 0.2)).unwrap() - 0.195).abs() < 0.0051);
-/// # Ok::<(), roverlab::world::RasterError>(())
+/// # Ok::<(), roverlab::ParameterError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Clearance {
@@ -181,8 +145,8 @@ impl Clearance {
     /// there is a way around a world without a border.
     ///
     /// Takes time in proportion to the cells, plus those within the limit of each solid.
-    pub fn new(world: &World, resolution: f64, limit: f64) -> Result<Self, RasterError> {
-        positive("clearance limit", limit)?;
+    pub fn new(world: &World, resolution: f64, limit: f64) -> Result<Self, ParameterError> {
+        require_positive("clearance limit", limit)?;
         let thickest = world.walls.iter().map(|wall| 0.5 * wall.thickness).fold(0.0, f64::max);
         let bounds = world.bounds().inflated(limit + thickest + 2.0 * resolution);
         let raster = Raster::over(bounds, resolution)?;
@@ -395,11 +359,14 @@ mod tests {
     #[test]
     fn nonsense_is_refused() {
         let world = World::walled(1.0, 1.0);
-        assert!(matches!(Clearance::new(&world, 0.0, 0.1), Err(RasterError::Length { .. })));
-        assert!(matches!(Clearance::new(&world, 0.01, f64::NAN), Err(RasterError::Length { .. })));
-        assert!(matches!(Clearance::new(&world, 1e-6, 0.1), Err(RasterError::TooManyCells { .. })));
+        let refused = |world: &World, resolution, limit| {
+            Clearance::new(world, resolution, limit).unwrap_err().name().to_string()
+        };
+        assert_eq!(refused(&world, 0.0, 0.1), "resolution");
+        assert_eq!(refused(&world, 0.01, f64::NAN), "clearance limit");
+        assert_eq!(refused(&world, 1e-6, 0.1), "number of cells");
         let mut endless = world;
         endless.walls.push(Wall::new(Point::origin(), Point::new(f64::INFINITY, 0.0)));
-        assert!(matches!(Clearance::new(&endless, 0.01, 0.1), Err(RasterError::Extent { .. })));
+        assert_eq!(refused(&endless, 0.01, 0.1), "extent of the world");
     }
 }

@@ -1,3 +1,4 @@
+use crate::ParameterError;
 use std::sync::Arc;
 
 use crate::geometry::{Aabb, Point, Pose, Segment};
@@ -27,24 +28,22 @@ pub struct OccupancyGrid {
     values: Vec<i8>,
 }
 
-/// Why numbers make no grid.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("occupancy grid: {parameter} is {value}; expected {expected}")]
-pub struct GridError {
-    parameter: &'static str,
-    value: f64,
-    expected: &'static str,
-}
-
 impl OccupancyGrid {
     /// The most cells that a grid may have.
     pub const MAX_CELLS: usize = 1 << 25;
 
     /// A grid of unknown cells: `width` by `height` of them, `resolution` metres wide, the lower left corner of the
     /// lowest left cell at `origin`.
-    pub fn unknown(width: usize, height: usize, resolution: f64, origin: Pose) -> Result<Self, GridError> {
+    pub fn unknown(
+        width: usize,
+        height: usize,
+        resolution: f64,
+        origin: Pose,
+    ) -> Result<Self, ParameterError> {
         let cells = width.saturating_mul(height);
-        let error = |parameter, value, expected| Err(GridError { parameter, value, expected });
+        let error = |parameter: &'static str, value, expected: &'static str| {
+            Err(ParameterError::new(parameter, value, expected))
+        };
         if cells > Self::MAX_CELLS {
             return error("number of cells", cells as f64, "at most 33554432");
         }

@@ -21,14 +21,13 @@ mod wall;
 
 pub use bit_grid::{BitGrid, BitGridError, GridCell};
 pub use body::{Axis, Body, Collider, Place3};
-pub use clearance::{Clearance, Raster, RasterError};
+pub use clearance::{Clearance, Raster};
 pub use colour::Colour;
-pub use grid::{Cell, GridError, OccupancyGrid};
+pub use grid::{Cell, OccupancyGrid};
 pub use mesh::{Face, Material, Mesh};
 pub use object::{Billboard, Marker, Object, ObjectKind, Shape};
 pub use robot::{
     CameraSpec, CarDynamics, DriveSpec, Footprint, LidarSpec, Mast, MotorSpec, Mount, PsdSpec, RobotSpec,
-    SpecError,
 };
 pub use scene::{Place, RobotPlacement, Scene, Settings, Terrain, World};
 pub use texture::Texture;

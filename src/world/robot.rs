@@ -1,7 +1,9 @@
 use std::path::PathBuf;
 
 use super::Body;
+use crate::ParameterError;
 use crate::geometry::Aabb;
+use crate::parameter::{require, require_finite, require_not_negative, require_positive};
 
 /// A description of a robot: its drive, outline and sensors. EyeSim's `.robi`.
 #[derive(Debug, Clone, PartialEq)]
@@ -215,6 +217,17 @@ pub struct Mount {
     pub yaw: f64,
 }
 
+impl Mount {
+    fn validate(&self) -> Result<(), ParameterError> {
+        for (name, value) in
+            [("mount x", self.x), ("mount y", self.y), ("mount z", self.z), ("mount yaw", self.yaw)]
+        {
+            require_finite(name, value)?;
+        }
+        Ok(())
+    }
+}
+
 /// A position-sensitive device: a distance sensor of one ray.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PsdSpec {
@@ -283,33 +296,28 @@ pub struct CameraSpec {
 impl CameraSpec {
     /// The horizontal field of view of a camera that states none, in radians: 60 degrees.
     pub const DEFAULT_FIELD_OF_VIEW: f64 = std::f64::consts::FRAC_PI_3;
-}
 
-/// What is wrong with a robot's description.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("robot {robot}: {parameter} is {value}; expected {expected}")]
-pub struct SpecError {
-    robot: String,
-    parameter: &'static str,
-    value: f64,
-    expected: &'static str,
+    fn validate(&self) -> Result<(), ParameterError> {
+        self.mount.validate()?;
+        require_finite("camera tilt", self.tilt)?;
+        require_not_negative("camera max pan", self.max_pan)?;
+        require_not_negative("camera max tilt", self.max_tilt)?;
+        let (view, full_turn) = (self.field_of_view, std::f64::consts::TAU * (1.0 + 1e-9));
+        let good = view > 0.0 && view <= full_turn;
+        require("camera field of view", view, good, "more than 0 and at most a full turn")
+    }
 }
 
 impl RobotSpec {
     /// Checks that a mast stands on the robot.
-    pub(super) fn validate_mast(&self) -> Result<(), SpecError> {
+    pub(super) fn validate_mast(&self) -> Result<(), ParameterError> {
         let Some(Mast { outline, top }) = self.mast else { return Ok(()) };
-        let wrong = |parameter, value, expected| {
-            Err(SpecError { robot: self.name.clone(), parameter, value, expected })
-        };
-        if !(top.is_finite() && top > self.height) {
-            return wrong("the mast's top", top, "a finite number above the robot's height");
-        }
-        if !self.footprint.holds(&outline) {
-            let reach = Footprint::Rectangle(outline).bounding_radius();
-            return wrong("the mast's reach", reach, "a mast within the robot's outline");
-        }
-        Ok(())
+        let good = top.is_finite() && top > self.height;
+        let reach = Footprint::Rectangle(outline).bounding_radius();
+        let holds = self.footprint.holds(&outline);
+        require("the mast's top", top, good, "a finite number above the robot's height")
+            .and_then(|()| require("the mast's reach", reach, holds, "a mast within the robot's outline"))
+            .map_err(|error| error.of(&format!("robot {}", self.name)))
     }
 
     /// How fast it can brake, in metres per second squared.
@@ -318,23 +326,18 @@ impl RobotSpec {
     }
 
     /// Checks that every length, speed and count makes sense.
-    pub fn validate(&self) -> Result<(), SpecError> {
-        let check = |parameter, value: f64, good: bool, expected| {
-            if good {
-                Ok(())
-            } else {
-                Err(SpecError { robot: self.name.clone(), parameter, value, expected })
-            }
-        };
-        let positive = |parameter, value: f64| {
-            check(parameter, value, value.is_finite() && value > 0.0, "a positive, finite number")
-        };
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        self.validate_parts().map_err(|error| error.of(&format!("robot {}", self.name)))?;
+        self.validate_mast()
+    }
+
+    fn validate_parts(&self) -> Result<(), ParameterError> {
         match self.drive {
             DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn } => {
-                positive("wheel diameter", wheel_diameter)?;
-                positive("track", track)?;
-                positive("maximal wheel speed", max_wheel_speed)?;
-                positive("ticks per turn", ticks_per_turn)?;
+                require_positive("wheel diameter", wheel_diameter)?;
+                require_positive("track", track)?;
+                require_positive("maximal wheel speed", max_wheel_speed)?;
+                require_positive("ticks per turn", ticks_per_turn)?;
             }
             DriveSpec::Ackermann {
                 wheel_diameter,
@@ -345,15 +348,15 @@ impl RobotSpec {
                 max_steering,
                 dynamics,
             } => {
-                positive("wheel diameter", wheel_diameter)?;
-                positive("track", track)?;
-                positive("wheelbase", wheelbase)?;
-                positive("maximal steering", max_steering)?;
-                positive("maximal wheel speed", max_wheel_speed)?;
-                positive("ticks per turn", ticks_per_turn)?;
+                require_positive("wheel diameter", wheel_diameter)?;
+                require_positive("track", track)?;
+                require_positive("wheelbase", wheelbase)?;
+                require_positive("maximal steering", max_steering)?;
+                require_positive("maximal wheel speed", max_wheel_speed)?;
+                require_positive("ticks per turn", ticks_per_turn)?;
                 if let Some(dynamics) = dynamics {
-                    let within = |parameter, value: f64, most: f64, expected| {
-                        check(parameter, value, value > 0.0 && value < most, expected)
+                    let within = |parameter, value: f64, most: f64, expected: &'static str| {
+                        require(parameter, value, value > 0.0 && value < most, expected)
                     };
                     within("mass centre", dynamics.mass_centre, wheelbase, "a place between the axles")?;
                     // The integration is stable for cars that are not stiffer or lighter than these.
@@ -366,34 +369,37 @@ impl RobotSpec {
                 }
             }
             DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn } => {
-                positive("wheel diameter", wheel_diameter)?;
-                positive("track", track)?;
-                positive("wheelbase", wheelbase)?;
-                positive("maximal wheel speed", max_wheel_speed)?;
-                positive("ticks per turn", ticks_per_turn)?;
+                require_positive("wheel diameter", wheel_diameter)?;
+                require_positive("track", track)?;
+                require_positive("wheelbase", wheelbase)?;
+                require_positive("maximal wheel speed", max_wheel_speed)?;
+                require_positive("ticks per turn", ticks_per_turn)?;
             }
         }
         let lag = self.motor.time_constant;
-        check("motor time constant", lag, lag.is_finite() && lag >= 0.0, "a finite number of at least 0")?;
-        positive("maximal acceleration", self.motor.max_acceleration)?;
-        positive("footprint radius", self.footprint.bounding_radius())?;
-        positive("height", self.height)?;
-        self.validate_mast()?;
+        require("motor time constant", lag, lag.is_finite() && lag >= 0.0, "a finite number of at least 0")?;
+        require_positive("maximal acceleration", self.motor.max_acceleration)?;
+        require_positive("footprint radius", self.footprint.bounding_radius())?;
+        require_positive("height", self.height)?;
+        require_not_negative("mass", self.mass)?;
         for psd in &self.psds {
-            positive("PSD maximal range", psd.max_range)?;
+            require_positive("PSD maximal range", psd.max_range)?;
+            psd.mount.validate()?;
         }
         if let Some(lidar) = &self.lidar {
             let (fov, points) = (lidar.field_of_view, lidar.points as f64);
             let full_turn = std::f64::consts::TAU * (1.0 + 1e-9);
-            check(
+            require(
                 "lidar field of view",
                 fov,
                 fov > 0.0 && fov <= full_turn,
                 "more than 0 and at most a full turn",
             )?;
-            check("lidar points", points, (1.0..=100_000.0).contains(&points), "1 to 100000")?;
-            positive("lidar maximal range", lidar.max_range)?;
+            require("lidar points", points, (1.0..=100_000.0).contains(&points), "1 to 100000")?;
+            require_positive("lidar maximal range", lidar.max_range)?;
+            require_finite("lidar tilt", lidar.tilt)?;
+            lidar.mount.validate()?;
         }
-        Ok(())
+        self.camera.as_ref().map_or(Ok(()), CameraSpec::validate)
     }
 }

@@ -1,5 +1,6 @@
+use roverlab::ParameterError;
 use roverlab::geometry::{Point, Segment, cross};
-use roverlab::world::{Clearance, RasterError, World};
+use roverlab::world::{Clearance, World};
 
 /// The closed lines along which a robot's middle follows obstacles: where the clearance has one value.
 ///
@@ -29,7 +30,7 @@ const NONE: usize = usize::MAX;
 
 impl Boundaries {
     /// The lines of one clearance, in metres.
-    pub(crate) fn new(world: &World, clearance: f64) -> Result<Self, RasterError> {
+    pub(crate) fn new(world: &World, clearance: f64) -> Result<Self, ParameterError> {
         let field = Clearance::new(world, RESOLUTION, clearance + 2.0 * RESOLUTION)?;
         let mut tracer = Tracer::new(&field, clearance);
         tracer.join_all();

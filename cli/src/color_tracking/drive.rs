@@ -56,7 +56,7 @@ pub(crate) fn drive<R: Camera + Clock + Display + Drive + Lidar + ?Sized>(
     match options.job {
         Job::Reach => {
             let parameters = TrackerParameters { radius: options.radius, ..TrackerParameters::default() };
-            let mut tracker = ColourTracker::new(finder, parameters);
+            let mut tracker = ColourTracker::new(finder, parameters)?;
             let outcome = run(robot, &mut tracker, options.time_limit, |robot, tracker, step| {
                 watch();
                 show(robot, &step.seen.image, tracker.sighting())
@@ -71,7 +71,7 @@ pub(crate) fn drive<R: Camera + Clock + Display + Drive + Lidar + ?Sized>(
             let defaults = HomeParameters::default();
             let tracker = TrackerParameters { radius: options.radius, ..defaults.tracker };
             let home = robot.pose()?.position();
-            let mut push = PushHome::new(finder, home, HomeParameters { tracker, ..defaults });
+            let mut push = PushHome::new(finder, home, HomeParameters { tracker, ..defaults })?;
             let outcome = run(robot, &mut push, options.time_limit, |_, _, _| watch())?;
             Ok(match outcome {
                 PushOutcome::Home => Ended::Home,

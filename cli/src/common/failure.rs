@@ -42,7 +42,17 @@ impl From<roverlab::io::Error> for Failure {
     /// The error and those that caused it, in one line.
     fn from(error: roverlab::io::Error) -> Self {
         let causes = std::iter::successors(error.source(), |error| (*error).source());
-        Self::run(causes.fold(error.to_string(), |text, cause| format!("{text}: {cause}")))
+        let causes = causes.map(ToString::to_string);
+        Self::run(causes.fold(error.to_string(), |text, cause| {
+            // What became an error of a robot's program as it was says the same.
+            if text.ends_with(&cause) { text } else { format!("{text}: {cause}") }
+        }))
+    }
+}
+
+impl From<roverlab::ParameterError> for Failure {
+    fn from(error: roverlab::ParameterError) -> Self {
+        Self::input(error)
     }
 }
 

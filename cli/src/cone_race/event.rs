@@ -22,8 +22,8 @@ pub(crate) fn race(
     let mut judge = Judge::new(course, stage.truth(0)?, 0).map_err(Failure::run)?;
     let mut car = stage.robot(0)?;
     let mut racer = match event.layout().shape {
-        EventShape::Strip { .. } => EventRacer::acceleration(EventParameters::default()),
-        EventShape::Eight { .. } => EventRacer::skidpad(EventParameters::default()),
+        EventShape::Strip { .. } => EventRacer::acceleration(EventParameters::default())?,
+        EventShape::Eight { .. } => EventRacer::skidpad(EventParameters::default())?,
     };
     let driven = drive(settings, car.as_mut(), &mut judge, &mut racer);
     drop(car);

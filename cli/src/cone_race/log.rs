@@ -28,7 +28,7 @@ struct Found {
 /// Looks for the lane in every frame.
 pub(crate) fn follow(args: &Args, frames: &[ConeFrame]) -> Result<Report, Failure> {
     check(args)?;
-    let mut finder = LaneFinder::new(LaneParameters::default());
+    let mut finder = LaneFinder::new(LaneParameters::default())?;
     let mut found = Found::default();
     for (k, frame) in frames.iter().enumerate() {
         let cones = beheld(frame, args.sensors);

@@ -42,7 +42,7 @@ pub(crate) fn check(args: &Args) -> Result<(), Failure> {
 /// An error of a kernel, with the option that it comes from.
 pub(crate) fn refused(error: &Error) -> Failure {
     let option = match error {
-        Error::Parameter { parameter, .. } => option_of(parameter),
+        Error::Parameter(error) => option_of(error.name()),
         Error::Size { what: "second image", .. } => Some("--second"),
         _ => None,
     };

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use roverlab::ParameterError;
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::wrappers::{Fault, FaultKind};
 use roverlab::io::{Clock, Drive, Lidar, LidarScan};
@@ -103,7 +104,7 @@ pub(crate) fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Drive
     let crew = Crew::new(events, well(&args.common.faults()?));
     let base = Base::new(crew, stage.truth(0)?, parameters.heartbeat);
     let mut car = Supervised::new(stage.robot(0)?, base, parameters.clone()).map_err(Failure::run)?;
-    let done = program(&mut car, &mut judge, limit);
+    let done = program(&mut car, &mut judge, limit)?;
     let base = car.station_mut();
     let bounded = |seen: &SeenStop| Stopped { bound: bound(&parameters, seen), seen: seen.clone() };
     let stops: Vec<Stopped> = base.stops.iter().map(bounded).collect();
@@ -145,8 +146,8 @@ fn fence(half: Option<f64>) -> Vec<Point> {
 }
 
 /// The program that drives, until everything has happened. Whether it has, within some seconds.
-fn program(car: &mut Supervised<Robot, Base>, judge: &mut Judge, limit: f64) -> bool {
-    let mut racer = Racer::new(RacerParameters { laps: 100, ..RacerParameters::rolling() });
+fn program(car: &mut Supervised<Robot, Base>, judge: &mut Judge, limit: f64) -> Result<bool, ParameterError> {
+    let mut racer = Racer::new(RacerParameters { laps: 100, ..RacerParameters::rolling() })?;
     let mut scan = LidarScan::default();
     while judge.time() < limit && !car.station_mut().crew.is_done() {
         // A sensor that fails stops the car; the program goes on with what it has.
@@ -167,5 +168,5 @@ fn program(car: &mut Supervised<Robot, Base>, judge: &mut Judge, limit: f64) -> 
             break;
         }
     }
-    car.station_mut().crew.is_done()
+    Ok(car.station_mut().crew.is_done())
 }

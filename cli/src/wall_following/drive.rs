@@ -84,7 +84,7 @@ pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
         }
         Controller::Book => {
             let safe = distance - sensors.left.y.abs();
-            let mut follower = TwoLevelWallFollower::new(safe, speed);
+            let mut follower = TwoLevelWallFollower::new(safe, speed)?;
             let outcome = walk(robot, &mut follower, time_limit, watch)?;
             Ok(Walk { outcome, side: Some(WallSide::Left) })
         }

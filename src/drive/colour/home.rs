@@ -6,9 +6,11 @@ use super::scan_memory::ScanMemory;
 use super::steering::{Exempt, Steering, directions, nearest, obstacles};
 use super::tracker::OBJECT;
 use super::{ColourTracker, TrackerParameters};
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, Vector, angle_difference, direction, math, normalize_angle};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{self, Camera, Drive, Lidar, Resolution};
+use crate::parameter::{require_finite, require_not_negative, require_positive};
 use crate::scan::ScanMatcher;
 use crate::vision::ColourFinder;
 
@@ -44,6 +46,19 @@ impl Default for HomeParameters {
             clearance: 0.05,
             foresight: 0.5,
         }
+    }
+}
+
+impl HomeParameters {
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        self.tracker.validate().map_err(|error| error.of("tracker"))?;
+        require_positive("round", self.round)?;
+        require_positive("push speed", self.push_speed)?;
+        require_positive("correction", self.correction)?;
+        require_positive("near", self.near)?;
+        require_not_negative("clearance", self.clearance)?;
+        require_not_negative("foresight", self.foresight)
     }
 }
 
@@ -101,10 +116,16 @@ pub struct PushHome {
 
 impl PushHome {
     /// A behaviour that brings what `finder` finds to a place in odometry's frame.
-    pub fn new(finder: ColourFinder, home: Point, parameters: HomeParameters) -> Self {
-        Self {
+    pub fn new(
+        finder: ColourFinder,
+        home: Point,
+        parameters: HomeParameters,
+    ) -> Result<Self, ParameterError> {
+        parameters.validate()?;
+        home.coords.iter().try_for_each(|&metres| require_finite("home", metres))?;
+        Ok(Self {
             parameters,
-            tracker: ColourTracker::new(finder, parameters.tracker),
+            tracker: ColourTracker::new(finder, parameters.tracker)?,
             home,
             phase: HomePhase::Finding,
             object: home,
@@ -113,7 +134,7 @@ impl PushHome {
             memory: ScanMemory::default(),
             matcher: ScanMatcher::new(),
             points: Vec::new(),
-        }
+        })
     }
 
     /// What it is doing.

@@ -3,9 +3,11 @@ use std::ops::ControlFlow;
 
 use super::observation::{ColourObservation, Sight};
 use super::steering::{Exempt, Steering, nearest, obstacles};
+use crate::ParameterError;
 use crate::geometry::{Point, Twist, angle_difference, math};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{self, Camera, Drive, Lidar, LidarScan, Resolution};
+use crate::parameter::{require_not_negative, require_positive};
 use crate::vision::{ColourFinder, Sighting};
 
 /// How a [`ColourTracker`] drives.
@@ -41,6 +43,20 @@ impl Default for TrackerParameters {
             leg: 0.8,
             period: 0.1,
         }
+    }
+}
+
+impl TrackerParameters {
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        require_positive("speed", self.speed)?;
+        require_positive("turn speed", self.turn_speed)?;
+        require_positive("radius", self.radius)?;
+        require_not_negative("margin", self.margin)?;
+        require_not_negative("gap", self.gap)?;
+        require_not_negative("memory", self.memory)?;
+        require_positive("leg", self.leg)?;
+        require_positive("control period", self.period)
     }
 }
 
@@ -95,8 +111,13 @@ pub struct ColourTracker {
 pub(super) const OBJECT: f64 = 0.09;
 
 impl ColourTracker {
-    /// A tracker that begins with a search.
-    pub fn new(finder: ColourFinder, parameters: TrackerParameters) -> Self {
+    /// A tracker that begins with a search. Fails with the name of the parameter that is out of range.
+    pub fn new(finder: ColourFinder, parameters: TrackerParameters) -> Result<Self, ParameterError> {
+        parameters.validate()?;
+        Ok(Self::searching(finder, parameters))
+    }
+
+    fn searching(finder: ColourFinder, parameters: TrackerParameters) -> Self {
         Self {
             finder,
             parameters,
@@ -115,7 +136,7 @@ impl ColourTracker {
     /// The same tracker before its first search.
     #[must_use]
     pub(super) fn anew(&self) -> Self {
-        Self::new(self.finder.clone(), self.parameters)
+        Self::searching(self.finder.clone(), self.parameters)
     }
 
     /// What it is doing.

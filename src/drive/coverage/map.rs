@@ -1,6 +1,7 @@
+use crate::ParameterError;
 use crate::geometry::Point;
-use crate::io::error::require_positive;
 use crate::io::{Error, ErrorKind, Result};
+use crate::parameter::{require, require_positive, require_up_to};
 use crate::world::{Clearance, Raster, World};
 
 /// What a robot covers, and how near it may come to things.
@@ -25,21 +26,14 @@ impl Default for CoverageParameters {
 
 impl CoverageParameters {
     /// Fails with the name of the parameter that is out of range.
-    pub fn validate(&self) -> Result<()> {
-        require_positive("radius", self.radius)?;
-        require_positive("margin", self.margin)?;
+    pub fn validate(&self) -> std::result::Result<(), ParameterError> {
+        require_up_to("radius", self.radius, 1000.0)?;
+        require_up_to("margin", self.margin, 1000.0)?;
         require_positive("resolution", self.resolution)?;
-        if self.resolution > 0.5 * self.radius {
-            return Err(Error::invalid_input(
-                "resolution",
-                self.resolution,
-                "at most half of the robot's radius",
-            ));
-        }
-        if (0.0..self.radius).contains(&self.overlap) {
-            return Ok(());
-        }
-        Err(Error::invalid_input("overlap", self.overlap, "0 to the robot's radius"))
+        let good = self.resolution <= 0.5 * self.radius;
+        require("resolution", self.resolution, good, "at most half of the robot's radius")?;
+        let good = (0.0..self.radius).contains(&self.overlap);
+        require("overlap", self.overlap, good, "0 to the robot's radius")
     }
 }
 

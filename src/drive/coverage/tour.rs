@@ -2,8 +2,8 @@ use std::ops::ControlFlow;
 
 use crate::geometry::{Point, Pose, Twist, angle_difference, math};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
-use crate::io::error::require_positive;
 use crate::io::{Drive, Error, Result};
+use crate::parameter::require_positive;
 
 /// What [`Tour`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]

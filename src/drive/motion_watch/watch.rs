@@ -5,6 +5,7 @@ use image::GrayImage;
 use crate::geometry::{Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Decision, Halt, Senses};
 use crate::io::{self, Camera, Drive, Resolution};
+use crate::parameter::{require_not_negative, require_positive};
 use crate::vision::motion::{Motion, MotionDetector, MotionParameters, TurnCompensator};
 use crate::vision::{Error, GrayView};
 
@@ -63,6 +64,10 @@ pub struct MotionWatch {
 impl MotionWatch {
     /// A watch that has seen nothing yet.
     pub fn new(parameters: WatchParameters) -> Result<Self, Error> {
+        require_positive("turn speed", parameters.turn_speed)?;
+        require_positive("control period", parameters.period)?;
+        require_not_negative("parallax", parameters.parallax)?;
+        require_not_negative("patience", parameters.patience)?;
         Ok(Self {
             standing: MotionDetector::new(parameters.standing)?,
             turning: MotionDetector::new(parameters.turning)?,

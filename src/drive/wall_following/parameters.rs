@@ -1,8 +1,9 @@
 use std::f64::consts::FRAC_PI_2;
 
+use crate::ParameterError;
 use crate::geometry::{Pose, normalize_angle};
-use crate::io::error::require_positive;
 use crate::io::{Error, Result};
+use crate::parameter::{require, require_positive};
 use crate::world::RobotSpec;
 
 /// On which side of the robot the followed wall is.
@@ -117,7 +118,7 @@ impl Default for WallFollowerParameters {
 
 impl WallFollowerParameters {
     /// Fails with the name of the parameter that is out of range.
-    pub fn validate(&self) -> Result<()> {
+    pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("speed", self.speed)?;
         require_positive("turn rate", self.turn_rate)?;
         require_positive("reach", self.reach)?;
@@ -125,18 +126,10 @@ impl WallFollowerParameters {
         require_positive("radius", self.radius)?;
         require_positive("control period", self.period)?;
         let least = 1.5 * self.radius;
-        if !(self.distance >= least && self.distance <= 5.0) {
-            return Err(Error::invalid_input(
-                "distance",
-                self.distance,
-                &format!("{least} m, one and a half of the robot's radius, to 5 m"),
-            ));
-        }
-        let error = self.range_error;
-        if !(0.0..0.5 * self.distance).contains(&error) {
-            return Err(Error::invalid_input("range error", error, "0 to half the distance"));
-        }
-        Ok(())
+        let expected = format!("{least} m, one and a half of the robot's radius, to 5 m");
+        require("distance", self.distance, (least..=5.0).contains(&self.distance), expected)?;
+        let good = (0.0..0.5 * self.distance).contains(&self.range_error);
+        require("range error", self.range_error, good, "0 to half the distance")
     }
 }
 

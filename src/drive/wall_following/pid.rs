@@ -2,8 +2,8 @@ use super::memory::Median;
 use super::{FollowsWalls, WallObservation, WallSensors, WallSide};
 use crate::drive::{Pid, PidParameters};
 use crate::geometry::Twist;
-use crate::io::error::require_positive;
-use crate::io::{Error, Result};
+use crate::io::Result;
+use crate::parameter::{require, require_positive};
 
 /// What [`PidWallFollower`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,13 +71,9 @@ impl PidWallFollower {
         require_positive("turn rate", parameters.turn_rate)?;
         require_positive("control period", parameters.period)?;
         let least = parameters.sensors.left.y.abs();
-        if !(parameters.distance > least && parameters.distance.is_finite()) {
-            return Err(Error::invalid_input(
-                "distance",
-                parameters.distance,
-                &format!("more than {least} m, where the sensor sits"),
-            ));
-        }
+        let good = parameters.distance > least && parameters.distance.is_finite();
+        let expected = format!("more than {least} m, where the sensor sits");
+        require("distance", parameters.distance, good, expected)?;
         let pid = Pid::new(parameters.gains)?;
         Ok(Self { parameters, pid, front: Median::new(), turning: false, met: false })
     }

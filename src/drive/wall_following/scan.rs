@@ -2,8 +2,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{FollowsWalls, WallSide};
 use crate::geometry::{FittedLine, Point, Twist, math};
-use crate::io::error::require_positive;
 use crate::io::{Error, LidarScan, Result};
+use crate::parameter::require_positive;
 
 /// What [`LidarWallFollower`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]

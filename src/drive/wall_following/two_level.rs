@@ -1,6 +1,8 @@
 use super::{FollowsWalls, WallObservation, WallSide};
+use crate::ParameterError;
 use crate::geometry::{Twist, units};
 use crate::io::Result;
+use crate::parameter::require_positive;
 
 /// The book's own wall follower (program 6.1): along a wall to the left it steers a little to the one side or the other,
 /// by whether the left range is below a limit, and turns right on the spot where the range ahead gets below it.
@@ -40,8 +42,10 @@ impl Default for TwoLevelWallFollower {
 
 impl TwoLevelWallFollower {
     /// The book's program for a limit in metres and a speed in m/s of its own.
-    pub fn new(safe: f64, speed: f64) -> Self {
-        Self { safe, speed, ..Self::default() }
+    pub fn new(safe: f64, speed: f64) -> std::result::Result<Self, ParameterError> {
+        require_positive("safe distance", safe)?;
+        require_positive("speed", speed)?;
+        Ok(Self { safe, speed, ..Self::default() })
     }
 
     /// The next speed.

@@ -2,8 +2,8 @@ use std::ops::ControlFlow;
 
 use super::behaviour::{Behaviour, Command, Decision, Halt, Senses, Verdict};
 use super::clock::Stopwatch;
-use crate::io::error::require_positive;
 use crate::io::{Clock, Result};
+use crate::parameter::require_positive;
 
 /// A step as who watches a run sees it.
 #[derive(Debug)]

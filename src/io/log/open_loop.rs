@@ -282,7 +282,7 @@ impl Clock for OpenLoop {
     }
 
     fn wait(&mut self, seconds: f64) -> Result<()> {
-        crate::io::error::require_finite("waiting time", seconds)?;
+        crate::parameter::require_finite("waiting time", seconds)?;
         self.pass("wait")?;
         self.time = self.time.saturating_add(nanoseconds(seconds.max(0.0)));
         Ok(())

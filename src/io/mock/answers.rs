@@ -4,13 +4,13 @@ use super::call::Call;
 use super::ideal::IdealDrive;
 use super::robot::{MockRobot, take_due, unscripted};
 use crate::geometry::{Pose, Twist};
-use crate::io::error::require_finite;
 use crate::io::{
     Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
     Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution,
     Result, Servos, Viewport,
 };
 use crate::kinematics::Displacement;
+use crate::parameter::require_finite;
 use crate::world::Colour;
 
 impl Clock for MockRobot {
@@ -48,7 +48,7 @@ impl Lidar for MockRobot {
 
     fn configure_lidar(&mut self, settings: LidarSettings) -> Result<()> {
         self.command(Call::ConfigureLidar(settings));
-        settings.validate()
+        Ok(settings.validate()?)
     }
 }
 

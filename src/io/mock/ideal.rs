@@ -1,7 +1,7 @@
 use crate::geometry::{Pose, Twist};
 use crate::io::Result;
-use crate::io::error::{require_finite, require_positive};
 use crate::kinematics::{Displacement, advance};
+use crate::parameter::{require_finite, require_positive};
 
 /// A drive that does exactly what it is told, at once.
 #[derive(Debug, Clone, Default)]

@@ -8,9 +8,9 @@ use super::lockstep::{check_duration, no_robot, time_is_over};
 use super::options::ticks_in;
 use super::truth::robot_truth;
 use crate::geometry::Pose;
-use crate::io::error::require_positive;
 use crate::io::troop;
 use crate::io::{Error, ErrorKind, Key, Result, RobotTruth, Troop};
+use crate::parameter::require_positive;
 use crate::world::Scene;
 
 /// Any number of robots whose behaviours are stepped in one thread.

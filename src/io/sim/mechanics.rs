@@ -31,7 +31,7 @@ impl Powertrain {
         ideal_encoders: bool,
         stream: Stream,
     ) -> Result<Self> {
-        let invalid = |error: crate::kinematics::GeometryError| {
+        let invalid = |error: crate::ParameterError| {
             Error::new(ErrorKind::InvalidInput, format!("robot {}: {error}", spec.name)).with_source(error)
         };
         let wheels = wheel_spec(&spec.drive);

@@ -1,4 +1,5 @@
-use crate::io::{Error, Result};
+use crate::ParameterError;
+use crate::parameter::require;
 
 /// How far a simulated robot is from an ideal one, as standard deviations.
 ///
@@ -79,7 +80,7 @@ impl NoiseModel {
     }
 
     /// Fails with the name of the error that is out of range.
-    pub(super) fn validate(&self) -> Result<()> {
+    pub(super) fn validate(&self) -> std::result::Result<(), ParameterError> {
         for (name, value, limit) in [
             ("wheel scale error", self.wheel_scale, 1.0),
             ("wheel mismatch", self.wheel_mismatch, 1.0),
@@ -91,9 +92,7 @@ impl NoiseModel {
             ("exposure error", self.exposure, 1.0),
             ("blur", self.blur, 10.0),
         ] {
-            if !(0.0..=limit).contains(&value) {
-                return Err(Error::invalid_input(name, value, &format!("0 to {limit}")));
-            }
+            require(name, value, (0.0..=limit).contains(&value), format!("0 to {limit}"))?;
         }
         Ok(())
     }

@@ -1,5 +1,6 @@
 use super::{NoiseModel, TICK, TICKS_PER_SECOND};
-use crate::io::{Error, Result};
+use crate::ParameterError;
+use crate::parameter::{require, require_not_negative};
 
 /// How a simulation runs.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,22 +57,19 @@ impl SimOptions {
     }
 
     /// Fails with the name of the option that is out of range.
-    pub(super) fn validate(&self) -> Result<()> {
+    pub(super) fn validate(&self) -> Result<(), ParameterError> {
         self.noise.validate()?;
-        if !(self.light.is_finite() && (0.0..=100.0).contains(&self.light)) {
-            return Err(Error::invalid_input("light", self.light, "0 to 100"));
-        }
+        require("light", self.light, (0.0..=100.0).contains(&self.light), "0 to 100")?;
         let limit = self.time_limit.unwrap_or(0.0);
-        if !(limit.is_finite() && limit >= 0.0) {
-            return Err(Error::invalid_input("time limit", limit, "a finite number of at least 0"));
-        }
+        require_not_negative("time limit", limit)?;
         let interval = self.trail_interval.unwrap_or(TICK);
-        if !(interval.is_finite() && interval >= TICK) {
-            return Err(Error::invalid_input("trail interval", interval, "at least one tick of 10 ms"));
-        }
-        if !(1e-6..=1.0).contains(&self.call_duration) {
-            return Err(Error::invalid_input("call duration", self.call_duration, "1 µs to 1 s"));
-        }
-        Ok(())
+        let good = interval.is_finite() && interval >= TICK;
+        require("trail interval", interval, good, "at least one tick of 10 ms")?;
+        require(
+            "call duration",
+            self.call_duration,
+            (1e-6..=1.0).contains(&self.call_duration),
+            "1 µs to 1 s",
+        )
     }
 }

@@ -43,7 +43,7 @@ impl<R> Deadman<R> {
     ///
     /// Fails if the number is not positive.
     pub fn new(inner: R, seconds: f64) -> Result<Self> {
-        crate::io::error::require_positive("seconds", seconds)?;
+        crate::parameter::require_positive("seconds", seconds)?;
         Ok(Self { inner, limit: seconds, quiet: 0.0 })
     }
 

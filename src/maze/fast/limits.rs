@@ -1,7 +1,9 @@
 use super::profile;
-use super::shape::{Shape, ShapeError};
+use super::shape::{CELL, Shape};
 use super::turn::TurnKind;
+use crate::ParameterError;
 use crate::maze::Scale;
+use crate::parameter::require;
 
 /// What a robot can do on a fast run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,7 +43,7 @@ impl RunLimits {
         angular_acceleration: 8.0,
     };
 
-    fn checked(&self) -> Result<(), LimitsError> {
+    fn checked(&self) -> Result<(), ParameterError> {
         for (parameter, value) in [
             ("speed", self.speed),
             ("diagonal speed", self.diagonal_speed),
@@ -50,25 +52,9 @@ impl RunLimits {
             ("pivot speed", self.pivot_speed),
             ("angular acceleration", self.angular_acceleration),
         ] {
-            if !(1e-3..=1e4).contains(&value) {
-                return Err(LimitsError { parameter, value });
-            }
+            require(parameter, value, (1e-3..=1e4).contains(&value), "0.001 to 10000")?;
         }
         Ok(())
-    }
-}
-
-/// A limit of a fast run that makes no sense.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("{parameter} is {value}; expected 0.001 to 10000")]
-pub struct LimitsError {
-    parameter: &'static str,
-    value: f64,
-}
-
-impl From<ShapeError> for LimitsError {
-    fn from(error: ShapeError) -> Self {
-        Self { parameter: "size of a cell", value: error.size }
     }
 }
 
@@ -91,12 +77,10 @@ pub(super) struct Repertoire {
 }
 
 impl Repertoire {
-    pub(super) fn new(scale: Scale, limits: RunLimits) -> Result<Self, LimitsError> {
+    pub(super) fn new(scale: Scale, limits: RunLimits) -> Result<Self, ParameterError> {
         limits.checked()?;
-        if !(1e-3..=1e3).contains(&scale.cell) {
-            return Err(LimitsError { parameter: "size of a cell", value: scale.cell });
-        }
-        let turns: Result<Vec<DrivenTurn>, ShapeError> =
+        require(CELL, scale.cell, (1e-3..=1e3).contains(&scale.cell), "0.001 to 1000 m")?;
+        let turns: Result<Vec<DrivenTurn>, ParameterError> =
             TurnKind::ALL.iter().map(|&kind| driven(kind, scale.cell, &limits)).collect();
         Ok(Self { limits, cell: scale.cell, turns: turns? })
     }
@@ -141,7 +125,7 @@ impl Repertoire {
     }
 }
 
-fn driven(kind: TurnKind, cell: f64, limits: &RunLimits) -> Result<DrivenTurn, ShapeError> {
+fn driven(kind: TurnKind, cell: f64, limits: &RunLimits) -> Result<DrivenTurn, ParameterError> {
     let tangent = kind.tangent() * cell;
     let shape = match kind {
         TurnKind::UTurn => Shape::u_turn(cell)?,

@@ -13,7 +13,7 @@ mod tests;
 mod trajectory;
 mod turn;
 
-pub use limits::{LimitsError, RunLimits};
+pub use limits::RunLimits;
 pub use plan::{FastPlan, Piece};
 pub use planner::FastPlanner;
 pub use trajectory::{Trajectory, TrajectoryPoint};

@@ -1,9 +1,10 @@
 use super::bound::Bounds;
 use super::builder::Builder;
-use super::limits::{LimitsError, Repertoire, RunLimits};
+use super::limits::{Repertoire, RunLimits};
 use super::plan::FastPlan;
 use super::search::{Grid, Node, Tables};
 use super::turn::TurnKind;
+use crate::ParameterError;
 use crate::maze::{Cell, Direction, FloodFill, Maze, Passages, Scale, Unknown};
 
 /// Plans time-optimal runs.
@@ -27,7 +28,7 @@ use crate::maze::{Cell, Direction, FloodFill, Maze, Passages, Scale, Unknown};
 /// let maze = Maze::open(16, 16).expect("a size within limits");
 /// let plan = planner.plan(&maze, Unknown::Closed).expect("a way to the goal");
 /// assert!(plan.time < 2.5 && plan.route.steps() >= 14);
-/// # Ok::<(), roverlab::maze::LimitsError>(())
+/// # Ok::<(), roverlab::ParameterError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct FastPlanner {
@@ -76,7 +77,7 @@ struct Arrival {
 
 impl FastPlanner {
     /// A planner for one robot in mazes of one scale.
-    pub fn new(scale: Scale, limits: RunLimits) -> Result<Self, LimitsError> {
+    pub fn new(scale: Scale, limits: RunLimits) -> Result<Self, ParameterError> {
         let repertoire = Repertoire::new(scale, limits)?;
         let tables = Tables::new(&repertoire);
         let memory = Memory::new(&tables);

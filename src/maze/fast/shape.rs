@@ -1,3 +1,5 @@
+use crate::ParameterError;
+use crate::parameter::require;
 use std::f64::consts::PI;
 
 use crate::geometry::{Pose, math};
@@ -16,11 +18,8 @@ pub(super) struct Shape {
     poses: Vec<Pose>,
 }
 
-/// A turn of no size.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ShapeError {
-    pub(super) size: f64,
-}
+/// What turns take their size from.
+pub(super) const CELL: &str = "size of a cell";
 
 /// The part of the angle that is turned in the ramps.
 const RAMPS: f64 = 0.5;
@@ -29,22 +28,20 @@ const INTERVALS: usize = 256;
 
 impl Shape {
     /// A turn by an angle below a half turn, between two lines that meet `tangent` metres from either end.
-    pub(super) fn turn(angle: f64, tangent: f64) -> Result<Self, ShapeError> {
+    pub(super) fn turn(angle: f64, tangent: f64) -> Result<Self, ParameterError> {
         let unit = Self::with_peak(angle, 1.0);
         Self::scaled(angle, tangent, unit.end().y / math::sin(angle))
     }
 
     /// A half turn that ends `width` metres aside.
-    pub(super) fn u_turn(width: f64) -> Result<Self, ShapeError> {
+    pub(super) fn u_turn(width: f64) -> Result<Self, ParameterError> {
         let unit = Self::with_peak(PI, 1.0);
         Self::scaled(PI, width, unit.end().y)
     }
 
-    fn scaled(angle: f64, size: f64, unit_size: f64) -> Result<Self, ShapeError> {
+    fn scaled(angle: f64, size: f64, unit_size: f64) -> Result<Self, ParameterError> {
         let scale = size / unit_size;
-        if !(scale.is_finite() && scale > 0.0) {
-            return Err(ShapeError { size });
-        }
+        require(CELL, size, scale.is_finite() && scale > 0.0, "a size that turns can have")?;
         Ok(Self::with_peak(angle, 1.0 / scale))
     }
 

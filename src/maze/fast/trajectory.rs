@@ -1,7 +1,8 @@
-use super::limits::{LimitsError, Repertoire, RunLimits};
+use super::limits::{Repertoire, RunLimits};
 use super::plan::{FastPlan, Piece};
 use super::profile;
 use super::shape::Shape;
+use crate::ParameterError;
 use crate::geometry::{Pose, Twist};
 use crate::maze::Scale;
 
@@ -64,7 +65,7 @@ impl Motion {
 
 impl Trajectory {
     /// The motion of a plan. Scale and limits must be those that it was made with.
-    pub fn new(plan: &FastPlan, scale: Scale, limits: RunLimits) -> Result<Self, LimitsError> {
+    pub fn new(plan: &FastPlan, scale: Scale, limits: RunLimits) -> Result<Self, ParameterError> {
         let repertoire = Repertoire::new(scale, limits)?;
         let mut trajectory = Self { segments: Vec::new(), end: plan.start };
         for piece in &plan.pieces {

@@ -11,7 +11,7 @@ pub(super) fn read(text: &str, file: &str) -> Result<MazeFile, FormatError> {
     let mut defects: Vec<Defect> =
         warnings.map(|warning| Defect::at(warning.line, warning.message)).collect();
     let grid = parsed.value;
-    let mut maze = Maze::open(grid.columns(), grid.rows()).map_err(|error| size_error(error, file, 1))?;
+    let mut maze = Maze::open(grid.columns(), grid.rows()).map_err(|error| size_error(&error, file, 1))?;
     enter_walls(&grid, &mut maze);
     match starts(&grid, &maze).as_slice() {
         [(cell, heading), rest @ ..] => {

@@ -12,9 +12,10 @@ mod picture;
 #[cfg(test)]
 mod tests;
 
+use crate::ParameterError;
 use std::path::Path;
 
-use super::{Defect, Maze, SizeError, defects};
+use super::{Defect, Maze, defects};
 use crate::world::formats::{FormatError, Location};
 
 /// A maze as read from a file.
@@ -124,8 +125,7 @@ pub fn print(maze: &Maze, format: MazeFormat) -> Result<String, FormatError> {
 }
 
 /// The error for a maze of impossible size, at a line.
-fn size_error(error: SizeError, file: &str, line: usize) -> FormatError {
-    let text = error.to_string();
-    let (found, expected) = text.split_once("; expected ").unwrap_or((&text, "a smaller maze"));
-    FormatError::new(file, Location { line, column: 1 }, found, expected)
+fn size_error(error: &ParameterError, file: &str, line: usize) -> FormatError {
+    let found = format!("a {} of {} cells", error.name(), error.value());
+    FormatError::new(file, Location { line, column: 1 }, found, error.expected())
 }

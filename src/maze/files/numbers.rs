@@ -32,7 +32,7 @@ pub(super) fn read(lines: &[&str], file: &str) -> Result<MazeFile, FormatError> 
     let entries = entries(lines, file, &mut defects)?;
     let width = entries.keys().map(|cell| usize::from(cell.x) + 1).max().unwrap_or(0);
     let height = entries.keys().map(|cell| usize::from(cell.y) + 1).max().unwrap_or(0);
-    let mut maze = Maze::filled(width, height, Wall::Unknown).map_err(|error| size_error(error, file, 1))?;
+    let mut maze = Maze::filled(width, height, Wall::Unknown).map_err(|error| size_error(&error, file, 1))?;
     let missing: Vec<Cell> = maze.cells().filter(|cell| !entries.contains_key(cell)).collect();
     if let Some(first) = missing.first() {
         let message =

@@ -37,7 +37,7 @@ pub(super) fn read(layout: Layout<'_>, file: &str) -> Result<MazeFile, FormatErr
         let found = format!("a picture of {} lines among {remarks} of text", lines.len());
         return error(&found, "a file that is a maze");
     }
-    let mut maze = Maze::open(width, height).map_err(|error| size_error(error, file, top))?;
+    let mut maze = Maze::open(width, height).map_err(|error| size_error(&error, file, top))?;
     let mut picture = Picture { lines, width, defects };
     let (mut starts, mut goals) = (Vec::new(), Vec::new());
     for index in 0..picture.lines.len() {

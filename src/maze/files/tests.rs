@@ -326,7 +326,7 @@ fn what_is_no_maze_is_an_error() {
     }
     let wide = format!("o{0}\n|{1}\no{0}\n", "---o".repeat(257), "   |".repeat(257));
     let error = parse(wide.as_bytes(), "wide").unwrap_err().to_string();
-    assert_eq!(error, "wide:1:1: found a maze of 257 by 1 cells; expected 1 to 256 cells either way");
+    assert_eq!(error, "wide:1:1: found a width of 257 cells; expected 1 to 256 cells");
     assert!(load("/nowhere/at/all.maze").unwrap_err().to_string().contains("no such file"));
 }
 
@@ -352,7 +352,7 @@ fn what_may_be_seen_otherwise_is_named() {
 #[test]
 fn long_texts_are_read_or_refused_at_once() {
     let posts = "+---+\n|   |\n".repeat(150_000);
-    assert!(parse(posts.as_bytes(), "posts").unwrap_err().to_string().contains("1 by 150000 cells"));
+    assert!(parse(posts.as_bytes(), "posts").unwrap_err().to_string().contains("a height of 150000 cells"));
     let long = vec![b' '; (LONGEST + 1) as usize];
     assert!(parse(&long, "long").unwrap_err().to_string().contains("at most 4 MiB"));
 }

@@ -75,7 +75,7 @@ impl Distances {
 /// let mut flood = FloodFill::default();
 /// let steps = flood.run(&passages, [Cell::new(1, 0)]);
 /// assert_eq!(steps.get(Cell::new(1, 1)), Some(3));
-/// # Ok::<(), roverlab::maze::SizeError>(())
+/// # Ok::<(), roverlab::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct FloodFill {

@@ -1,11 +1,12 @@
 use std::ops::Range;
 
 use super::place::PlaceInCell;
+use crate::ParameterError;
 use crate::drive::{Pid, PidParameters};
 use crate::geometry::{Pose, Twist};
-use crate::io::error::{require_finite, require_positive};
 use crate::io::{DistanceSensors, Psd, Result};
 use crate::maze::{Rig, Scale};
+use crate::parameter::{require_finite, require_positive};
 
 /// What [`CellDrive`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,14 +68,14 @@ impl CellDriveParameters {
         Self { reading_error: Some(rig.range_error.max(2e-3)), steering, ..book }
     }
 
-    fn validate(&self) -> Result<()> {
+    fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("cell", self.cell)?;
         require_positive("speed", self.speed)?;
         require_positive("distance aside", self.aside)?;
         require_positive("distance ahead", self.ahead)?;
         require_finite("wall", self.wall)?;
         require_finite("coast", self.coast)?;
-        require_finite("place of the sensors", self.sensors_ahead)?;
+        require_finite("sensors ahead", self.sensors_ahead)?;
         self.reading_error.map_or(Ok(()), |error| require_positive("reading error", error))
     }
 }

@@ -4,9 +4,9 @@ use std::ops::ControlFlow;
 use super::cell_drive::{CellDrive, CellDriveParameters, read};
 use crate::geometry::{Pose, Twist};
 use crate::io::control::{Behaviour, Decision, Manoeuvre, Senses, halts};
-use crate::io::error::require_positive;
 use crate::io::{DistanceSensors, Drive, Result};
 use crate::maze::Direction;
+use crate::parameter::require_positive;
 
 /// How a robot drives from one cell to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]

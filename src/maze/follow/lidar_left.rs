@@ -3,8 +3,8 @@ use std::ops::ControlFlow;
 
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::control::{Behaviour, Decision, Halt, Senses};
-use crate::io::error::{require_finite, require_positive};
 use crate::io::{Drive, Lidar, LidarScan, Result};
+use crate::parameter::{require_finite, require_positive};
 
 /// What [`LidarLeft`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]

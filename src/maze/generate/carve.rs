@@ -1,9 +1,10 @@
-use crate::maze::{Cell, Direction, Maze, SizeError, Wall};
+use crate::ParameterError;
+use crate::maze::{Cell, Direction, Maze, Wall};
 use crate::random::Stream;
 
 /// A maze in which exactly one way leads from every cell to every other: a depth-first walk that takes walls down where
 /// it comes to new cells.
-pub fn perfect(width: usize, height: usize, seed: u64) -> Result<Maze, SizeError> {
+pub fn perfect(width: usize, height: usize, seed: u64) -> Result<Maze, ParameterError> {
     let mut maze = Maze::filled(width, height, Wall::Present)?;
     let mut stream = Stream::new(seed).child("perfect maze", 0);
     let mut met = vec![false; maze.cell_count()];
@@ -13,7 +14,7 @@ pub fn perfect(width: usize, height: usize, seed: u64) -> Result<Maze, SizeError
 
 /// A perfect maze of which a part of the inner walls, 0 to 1, has been taken down at random, so that many ways lead to
 /// most cells. A part outside of 0 to 1 counts as the nearer of the two.
-pub fn braided(width: usize, height: usize, part: f64, seed: u64) -> Result<Maze, SizeError> {
+pub fn braided(width: usize, height: usize, part: f64, seed: u64) -> Result<Maze, ParameterError> {
     let mut maze = perfect(width, height, seed)?;
     let mut stream = Stream::new(seed).child("braided maze", 0);
     let mut walls = inner_walls(&maze);

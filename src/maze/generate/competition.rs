@@ -1,5 +1,6 @@
 use super::carve::{carve, inner_walls};
-use crate::maze::{Cell, Direction, Maze, SizeError, Wall};
+use crate::ParameterError;
+use crate::maze::{Cell, Direction, Maze, Wall};
 use crate::random::Stream;
 
 /// A maze by the rules of micromouse competitions: a start in the lower left corner with walls on three sides, a goal of
@@ -7,7 +8,7 @@ use crate::random::Stream;
 /// cells.
 ///
 /// Both sides have so many cells, rounded up to an even number of at least 6.
-pub fn competition(side: usize, seed: u64) -> Result<Maze, SizeError> {
+pub fn competition(side: usize, seed: u64) -> Result<Maze, ParameterError> {
     let side = side.max(6).next_multiple_of(2);
     let mut maze = Maze::filled(side, side, Wall::Present)?;
     let mut stream = Stream::new(seed).child("competition maze", 0);

@@ -15,7 +15,7 @@
 //!     answer = referee.answer(&line);
 //! }
 //! assert!(referee.score().solved);
-//! # Ok::<(), roverlab::maze::SizeError>(())
+//! # Ok::<(), roverlab::ParameterError>(())
 //! ```
 
 mod mouse;

@@ -72,7 +72,7 @@ impl Rig {
         let sensor = |id: Psd| {
             let psd = spec.psds.iter().find(|psd| psd.id == id.0);
             let psd = psd.ok_or_else(|| Error::unsupported(format!("robot {}: {id}", spec.name)))?;
-            Ok(Sensor { id, mount: psd.mount, max_range: psd.max_range })
+            Ok::<_, Error>(Sensor { id, mount: psd.mount, max_range: psd.max_range })
         };
         let sensors = [sensor(Psd::FRONT)?, sensor(Psd::LEFT)?, sensor(Psd::RIGHT)?];
         Ok(Self { track, lag: spec.motor.time_constant, sensors, errors, range_error })

@@ -9,6 +9,7 @@ use crate::maze::{
     Cell, Direction, Explorer, FastPlan, FastPlanner, Maze, RunLimits, Scale, Step, Trajectory, Unknown,
     Verdict, Wall,
 };
+use crate::parameter::require;
 
 /// How a robot drives through mazes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,11 +103,10 @@ impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
         time_limit: f64,
     ) -> Result<Self> {
         Stopwatch::check_limit(time_limit)?;
-        let invalid = |error: crate::maze::LimitsError| {
-            Error::new(ErrorKind::InvalidInput, error.to_string()).with_source(error)
-        };
-        let explorer = FastPlanner::new(scale, parameters.exploring).map_err(invalid)?;
-        let racer = FastPlanner::new(scale, parameters.racing).map_err(invalid)?;
+        parameters.tracker.validate().map_err(|error| error.of("tracker"))?;
+        require("readings", parameters.readings as f64, parameters.readings > 0, "at least 1")?;
+        let explorer = FastPlanner::new(scale, parameters.exploring)?;
+        let racer = FastPlanner::new(scale, parameters.racing)?;
         let at = (maze.start(), maze.heading());
         let odometry = robot.pose()?;
         let localiser = MazeLocaliser::new(rig.clone(), scale, scale.pose(at.0, at.1), odometry);
@@ -336,7 +336,7 @@ impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
     }
 
     fn follow_to_end(&mut self, trajectory: Trajectory, watch: &mut dyn FnMut(Pose)) -> Result<f64> {
-        let tracker = Tracker::new(trajectory, self.parameters.tracker, self.rig.lag);
+        let tracker = Tracker::new(trajectory, self.parameters.tracker, self.rig.lag)?;
         let limit = 2.0 * tracker.trajectory().duration() + 5.0;
         self.wait_for_tick()?;
         // Steps are counted from the tick at which the motors first obey.

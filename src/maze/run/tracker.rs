@@ -1,5 +1,7 @@
+use crate::ParameterError;
 use crate::geometry::{Pose, Twist, angle_difference, math};
 use crate::maze::Trajectory;
+use crate::parameter::{require_not_negative, require_positive};
 
 /// The gains with which a robot is kept on a trajectory.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,6 +22,14 @@ impl TrackerParameters {
 
     /// For an EyeBot in the book's larger maze.
     pub const EYEBOT: Self = Self { along: 3.0, reach: 0.12, heading: 6.0, period: 0.010 };
+
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        require_not_negative("along", self.along)?;
+        require_positive("reach", self.reach)?;
+        require_positive("heading", self.heading)?;
+        require_positive("control period", self.period)
+    }
 }
 
 /// Keeps a robot on a trajectory: the speeds that it asks for, corrected for where the robot is, and commanded so that lagging
@@ -34,9 +44,15 @@ pub struct Tracker {
 
 impl Tracker {
     /// A tracker for motors that lag by a time constant, in seconds.
-    pub fn new(trajectory: Trajectory, parameters: TrackerParameters, lag: f64) -> Self {
+    pub fn new(
+        trajectory: Trajectory,
+        parameters: TrackerParameters,
+        lag: f64,
+    ) -> Result<Self, ParameterError> {
+        parameters.validate()?;
+        require_not_negative("lag", lag)?;
         let decay = if lag > 0.0 { math::exp(-parameters.period / lag) } else { 0.0 };
-        Self { trajectory, parameters, decay }
+        Ok(Self { trajectory, parameters, decay })
     }
 
     /// The trajectory.

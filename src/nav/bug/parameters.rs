@@ -1,6 +1,6 @@
-use crate::io::error::require_positive;
-use crate::io::{Error, Result};
+use crate::ParameterError;
 use crate::nav::boundary::{FollowDistances, WallSide};
+use crate::parameter::{require, require_positive};
 
 /// What the bugs go by. Lengths in metres, speeds in metres per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,7 +48,7 @@ impl BugParameters {
     }
 
     /// Fails with the name of the parameter that is out of range.
-    pub fn validate(&self) -> Result<()> {
+    pub fn validate(&self) -> Result<(), ParameterError> {
         require_positive("robot radius", self.robot_radius)?;
         require_positive("least clearance", self.least_clearance)?;
         require_positive("STEP", self.step)?;
@@ -57,11 +57,13 @@ impl BugParameters {
         require_positive("follow speed", self.follow_speed)?;
         require_positive("lag", self.lag)?;
         require_positive("control period", self.period)?;
-        if !(self.clearance >= self.least_clearance && self.clearance.is_finite()) {
-            let expected = format!("at least the least clearance, {}", self.least_clearance);
-            return Err(Error::invalid_input("clearance", self.clearance, &expected));
-        }
-        Ok(())
+        let good = self.clearance >= self.least_clearance && self.clearance.is_finite();
+        require(
+            "clearance",
+            self.clearance,
+            good,
+            format!("at least the least clearance, {}", self.least_clearance),
+        )
     }
 
     pub(super) fn follow_distances(&self) -> FollowDistances {

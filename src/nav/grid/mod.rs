@@ -38,7 +38,5 @@ pub use dstar_lite::DStarLite;
 pub use inflate::inflated;
 pub use jump::{JumpPointSearch, PreparedJumps};
 pub use path::{End, GridPath, GridPlanner, PlanError, SearchStatistics};
-pub use quadtree::{
-    Edges, Leaf, LeafGraph, LeafLink, Quadtree, QuadtreeError, QuadtreePlanner, segment_meets_box,
-};
+pub use quadtree::{Edges, Leaf, LeafGraph, LeafLink, Quadtree, QuadtreePlanner, segment_meets_box};
 pub use steps::{GridSearch, GridStep};

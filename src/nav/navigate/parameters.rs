@@ -1,5 +1,5 @@
-use crate::io::error::require_positive;
-use crate::io::{Error, Result};
+use crate::ParameterError;
+use crate::parameter::{require, require_positive};
 use crate::world::Footprint;
 
 /// What a [`Navigator`](super::Navigator) goes by. Lengths in metres, speeds in metres per second.
@@ -44,19 +44,21 @@ impl NavigateParameters {
     }
 
     /// Fails with the name of the parameter that is out of range.
-    pub fn validate(&self) -> Result<()> {
-        require_positive("robot radius", self.radius())?;
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        require_positive("radius of the footprint", self.radius())?;
         require_positive("least clearance", self.least_clearance)?;
         require_positive("resolution", self.resolution)?;
         require_positive("goal tolerance", self.goal_tolerance)?;
         require_positive("cruise speed", self.cruise_speed)?;
         require_positive("turn rate", self.turn_rate)?;
         require_positive("control period", self.period)?;
-        if !(self.clearance >= self.least_clearance && self.clearance.is_finite()) {
-            let expected = format!("at least the least clearance, {}", self.least_clearance);
-            return Err(Error::invalid_input("clearance", self.clearance, &expected));
-        }
-        Ok(())
+        let good = self.clearance >= self.least_clearance && self.clearance <= 1000.0;
+        require(
+            "clearance",
+            self.clearance,
+            good,
+            format!("at least the least clearance, {}, and at most 1000 m", self.least_clearance),
+        )
     }
 
     /// The radius of the circle that holds the outline: with it the robot can turn everywhere.

@@ -1,7 +1,9 @@
 use super::layout::{EventLayout, EventShape};
 use super::line;
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::LidarScan;
+use crate::parameter::{require, require_positive, require_up_to};
 use crate::race::cone::{Cone, ConeColour};
 use crate::race::error::PlanError;
 use crate::race::hold::Hold;
@@ -60,6 +62,23 @@ impl Default for EventParameters {
     }
 }
 
+impl EventParameters {
+    /// Fails with the name of the parameter that is out of range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        self.limits.validate().map_err(|error| error.of("limits"))?;
+        self.outline.validate().map_err(|error| error.of("outline"))?;
+        self.map.validate().map_err(|error| error.of("map"))?;
+        self.tracker.validate().map_err(|error| error.of("tracker"))?;
+        require_up_to("strip", self.strip, LONGEST)?;
+        for metres in self.stop {
+            require("stop", metres, (0.0..=LONGEST).contains(&metres), "0 to 1000 m")?;
+        }
+        require_positive("entry", self.entry)?;
+        self.patience.into_iter().try_for_each(|seconds| require_positive("patience", seconds))?;
+        require_positive("control period", self.period)
+    }
+}
+
 /// What a car at an event does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum EventPhase {
@@ -95,6 +114,8 @@ pub struct EventRacer {
     blind: f64,
 }
 
+/// Metres of a strip and behind it at most.
+const LONGEST: f64 = 1000.0;
 /// Seconds that it looks before it moves.
 const LOOKS: f64 = 0.3;
 /// Metres per second at which it looks for the layout from nearer, and metres that it goes so.
@@ -120,20 +141,21 @@ const END: f64 = 2.0;
 
 impl EventRacer {
     /// A car before the start of an acceleration.
-    pub fn acceleration(parameters: EventParameters) -> Self {
+    pub fn acceleration(parameters: EventParameters) -> Result<Self, ParameterError> {
         Self::new(EventShape::STRIP, &parameters)
     }
 
     /// A car before the start of a skidpad.
-    pub fn skidpad(parameters: EventParameters) -> Self {
+    pub fn skidpad(parameters: EventParameters) -> Result<Self, ParameterError> {
         Self::new(EventShape::EIGHT, &parameters)
     }
 
-    fn new(event: EventShape, parameters: &EventParameters) -> Self {
-        Self {
+    fn new(event: EventShape, parameters: &EventParameters) -> Result<Self, ParameterError> {
+        parameters.validate()?;
+        Ok(Self {
             parameters: *parameters,
             event,
-            map: ConeMap::new(parameters.map),
+            map: ConeMap::new(parameters.map)?,
             reckoning: Reckoning::default(),
             layout: None,
             phase: EventPhase::Looking,
@@ -142,7 +164,7 @@ impl EventRacer {
             time: 0.0,
             way: 0.0,
             blind: 0.0,
-        }
+        })
     }
 
     /// What it does now.
@@ -221,12 +243,12 @@ impl EventRacer {
     fn look(&mut self, fresh: &[Cone]) -> Twist {
         if let Some(layout) = self.layout {
             self.planned = layout.shape;
-            if let Ok((points, profile)) = self.plan(layout.shape) {
-                self.line = Some(LineTracker::new(points, profile, false, self.parameters.tracker));
-                self.phase = EventPhase::Driving;
-            } else {
-                self.phase = EventPhase::Lost;
-            }
+            let tracker = self.parameters.tracker;
+            self.line = self
+                .plan(layout.shape)
+                .ok()
+                .and_then(|(points, profile)| LineTracker::new(points, profile, false, tracker).ok());
+            self.phase = if self.line.is_some() { EventPhase::Driving } else { EventPhase::Lost };
             return Twist::default();
         }
         if self.blind >= self.parameters.patience[0] || self.way >= CREEPS {

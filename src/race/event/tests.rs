@@ -64,8 +64,8 @@ fn skidpad(apart: f64, inner: f64, outer: f64) -> ConeTrack {
 
 fn racer_for(course: &EventCourse) -> EventRacer {
     match course.event() {
-        Event::Acceleration => EventRacer::acceleration(EventParameters::default()),
-        _ => EventRacer::skidpad(EventParameters::default()),
+        Event::Acceleration => EventRacer::acceleration(EventParameters::default()).unwrap(),
+        _ => EventRacer::skidpad(EventParameters::default()).unwrap(),
     }
 }
 
@@ -167,8 +167,8 @@ fn the_course_is_measured_out_among_the_cones() {
 #[test]
 fn without_cones_it_stops_and_says_so() {
     for mut racer in [
-        EventRacer::acceleration(EventParameters::default()),
-        EventRacer::skidpad(EventParameters::default()),
+        EventRacer::acceleration(EventParameters::default()).unwrap(),
+        EventRacer::skidpad(EventParameters::default()).unwrap(),
     ] {
         let world = world(&ConeTrack { start: Some(Pose::default()), ..ConeTrack::default() }, 1);
         let outcome = control::run(&mut world.robot(0).unwrap(), &mut racer, 20.0, |_, _, _| {}).unwrap();

@@ -16,7 +16,7 @@ fn seen(map: &mut ConeMap, from: Pose, looks: usize, places: &[(f64, f64)]) {
 
 #[test]
 fn two_things_in_one_scan_are_two_cones() {
-    let mut map = ConeMap::new(ConeMapParameters::default());
+    let mut map = ConeMap::new(ConeMapParameters::default()).unwrap();
     seen(&mut map, Pose::default(), 10, &[(6.0, 1.5), (6.6, 1.5), (6.0, -1.5), (6.0, -1.3)]);
     // The last one is too near the one before it to be another one.
     assert_eq!(map.cones().count(), 3);
@@ -27,7 +27,7 @@ fn what_has_no_colour_among_cones_that_have_one_is_none_of_them() {
     let pale = |x, y| Sighting { confidence: 0.0, ..sighting(x, y) };
     let blue = |x, y| Sighting { colour: ConeColour::Blue, ..sighting(x, y) };
     let after = |looks: usize, sightings: &[Sighting]| {
-        let mut map = ConeMap::new(ConeMapParameters::default());
+        let mut map = ConeMap::new(ConeMapParameters::default()).unwrap();
         (0..looks).for_each(|_| map.update(Pose::default(), sightings));
         let places: Vec<f64> = map.cones().map(|cone| cone.position.x).collect();
         assert_eq!(places.len(), map.fresh_cones().count());
@@ -44,7 +44,7 @@ fn what_has_no_colour_among_cones_that_have_one_is_none_of_them() {
 fn what_has_no_colour_is_not_driven_into_and_a_known_cone_keeps_its_colour() {
     let painted = |x| Sighting { colour: ConeColour::Blue, ..sighting(x, 1.5) };
     let pale = |seen: Sighting| Sighting { confidence: 0.0, colour: ConeColour::Unknown, ..seen };
-    let mut map = ConeMap::new(ConeMapParameters::default());
+    let mut map = ConeMap::new(ConeMapParameters::default()).unwrap();
     let row = [painted(5.0), painted(6.5), painted(8.0), painted(9.5)];
     let seen = [&row[..], &[pale(sighting(6.0, 3.0))]].concat();
     (0..20).for_each(|_| map.update(Pose::default(), &seen));
@@ -59,7 +59,7 @@ fn what_has_no_colour_is_not_driven_into_and_a_known_cone_keeps_its_colour() {
 #[test]
 fn what_is_hidden_is_not_forgotten() {
     for (hidden, left) in [(true, 2), (false, 1)] {
-        let mut map = ConeMap::new(ConeMapParameters::default());
+        let mut map = ConeMap::new(ConeMapParameters::default()).unwrap();
         seen(&mut map, Pose::default(), 10, &[(5.0, 1.0), (8.0, 1.9)]);
         // From there, the second one is behind the first one, or not.
         let before = if hidden { (5.0, 1.0) } else { (5.0, -1.0) };
@@ -71,7 +71,7 @@ fn what_is_hidden_is_not_forgotten() {
 
 #[test]
 fn what_a_car_hides_is_not_forgotten() {
-    let mut map = ConeMap::new(ConeMapParameters::default());
+    let mut map = ConeMap::new(ConeMapParameters::default()).unwrap();
     seen(&mut map, Pose::default(), 10, &[(5.0, 1.9), (8.0, -0.6)]);
     // The second one is behind the right end of its rear.
     let car = Sighting { size: 1.4, ..sighting(6.0, 0.0) };
@@ -84,7 +84,7 @@ fn what_a_car_hides_is_not_forgotten() {
 
 #[test]
 fn cones_that_were_passed_before_tell_their_edge() {
-    let mut map = ConeMap::new(ConeMapParameters::default());
+    let mut map = ConeMap::new(ConeMapParameters::default()).unwrap();
     seen(&mut map, Pose::default(), 10, &[(6.0, -1.5)]);
     let place = map.cones().next().unwrap().position;
     (0..SURE).for_each(|_| map.vote_side([place].into_iter(), -1));
@@ -103,7 +103,7 @@ fn cones_that_were_passed_before_tell_their_edge() {
 
 #[test]
 fn a_short_lap_closes_of_itself() {
-    let mut map = ConeMap::new(ConeMapParameters::default());
+    let mut map = ConeMap::new(ConeMapParameters::default()).unwrap();
     seen(&mut map, Pose::default(), 10, &[(6.0, 1.5), (6.0, -1.5)]);
     assert!(map.close() && map.is_closed() && map.cones().count() == 2);
 }
@@ -111,7 +111,7 @@ fn a_short_lap_closes_of_itself() {
 #[test]
 fn of_a_short_lap_that_was_driven_again_one_is_left() {
     for laps in [1.3, 1.7, 2.4] {
-        let mut map = ConeMap::new(ConeMapParameters::default());
+        let mut map = ConeMap::new(ConeMapParameters::default()).unwrap();
         let at = |angle: f64| Pose::new(3.0 * math::sin(angle), 3.0 - 3.0 * math::cos(angle), angle);
         let cone = Point::new(0.0, 7.7);
         for step in 0..=(laps * 80.0) as u32 {
@@ -156,7 +156,7 @@ fn a_lap_that_begins_later_closes_as_well() {
         .collect();
     // On the far half of the first bend, of the second one, and of the first one a lap later.
     for past in [80.0, 260.0, 440.0] {
-        let mut map = ConeMap::new(ConeMapParameters::default());
+        let mut map = ConeMap::new(ConeMapParameters::default()).unwrap();
         let mut along = 0.0;
         while along < lap + past {
             let car = on_stadium(along);

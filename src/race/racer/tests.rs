@@ -14,8 +14,8 @@ fn a_car_that_measures_its_speed_too_high_stops_all_the_same() {
     // A loop: no lane is looked for then, and for want of cones lost.
     let points: Vec<Point> = (0..200).map(|k| at(TAU * RADIUS * f64::from(k) / 200.0).position()).collect();
     let profile = SpeedProfile::closed(&points, &parameters.limits).unwrap();
-    let mut racer = Racer::new(parameters);
-    racer.tracker = Some(LineTracker::new(points, profile, true, parameters.tracker));
+    let mut racer = Racer::new(parameters).unwrap();
+    racer.tracker = Some(LineTracker::new(points, profile, true, parameters.tracker).unwrap());
     (racer.phase, racer.looks) = (RacePhase::Finished, 0);
     let (mut place, mut speed) = (0.0, 20.0);
     for _ in 0..200 {

@@ -1,5 +1,5 @@
-use crate::io::error::require_positive;
-use crate::io::{Error, Result};
+use crate::ParameterError;
+use crate::parameter::{require, require_not_negative, require_positive};
 
 /// What [`extract_features`](super::extract_features) goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,21 +25,12 @@ impl Default for ExtractionParameters {
 
 impl ExtractionParameters {
     /// Fails with the name of the parameter that is out of range.
-    pub fn validate(&self) -> Result<()> {
-        require_positive("shortest wall", self.least_wall)?;
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        require_positive("least wall", self.least_wall)?;
         require_positive("largest object", self.largest_object)?;
         require_positive("corner gap", self.corner_gap)?;
-        if !(self.range_error >= 0.0 && self.range_error.is_finite()) {
-            return Err(Error::invalid_input(
-                "range error",
-                self.range_error,
-                "a finite number of at least 0",
-            ));
-        }
-        if self.least_points < 3 {
-            return Err(Error::invalid_input("fewest points of a wall", self.least_points, "at least 3"));
-        }
-        Ok(())
+        require_not_negative("range error", self.range_error)?;
+        require("least points", self.least_points as f64, self.least_points >= 3, "at least 3")
     }
 
     /// How far a point may lie off its wall, in metres.

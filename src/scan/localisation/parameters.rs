@@ -1,5 +1,5 @@
-use crate::io::error::require_positive;
-use crate::io::{Error, Result};
+use crate::ParameterError;
+use crate::parameter::{require, require_not_negative, require_positive};
 
 /// What a [`Localiser`](super::Localiser) goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,28 +37,17 @@ impl Default for LocaliserParameters {
 
 impl LocaliserParameters {
     /// Fails with the name of the parameter that is out of range.
-    pub fn validate(&self) -> Result<()> {
+    pub fn validate(&self) -> Result<(), ParameterError> {
         require_positive("radius", self.radius)?;
         require_positive("grid", self.grid.0)?;
         require_positive("grid of headings", self.grid.1)?;
-        require_positive("distance between views", self.view.0)?;
-        require_positive("turn between views", self.view.1)?;
-        require_positive("error of distances", self.odometry_error.0)?;
-        require_positive("error of turns", self.odometry_error.1)?;
+        require_positive("view (distance)", self.view.0)?;
+        require_positive("view (turn)", self.view.1)?;
+        require_positive("odometry error of distances", self.odometry_error.0)?;
+        require_positive("odometry error of turns", self.odometry_error.1)?;
         let share = self.least_probability;
-        if !(share > 0.0 && share < 0.1) {
-            return Err(Error::invalid_input("least probability", share, "above 0 and below 0.1"));
-        }
-        if self.candidates == 0 {
-            return Err(Error::invalid_input("candidates", 0, "at least 1"));
-        }
-        if !(self.range_error >= 0.0 && self.range_error.is_finite()) {
-            return Err(Error::invalid_input(
-                "range error",
-                self.range_error,
-                "a finite number of at least 0",
-            ));
-        }
-        Ok(())
+        require("least probability", share, share > 0.0 && share < 0.1, "above 0 and below 0.1")?;
+        require("candidates", self.candidates as f64, self.candidates > 0, "at least 1")?;
+        require_not_negative("range error", self.range_error)
     }
 }

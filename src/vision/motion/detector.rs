@@ -1,3 +1,4 @@
+use crate::parameter::{require, require_not_negative, require_positive};
 use crate::vision::{Error, GrayView, mean_difference, view::require_size};
 
 use super::range::Ranges;
@@ -126,16 +127,9 @@ impl MotionDetector {
     /// noise one above 0.
     pub fn new(parameters: MotionParameters) -> Result<Self, Error> {
         let MotionParameters { block, threshold, least_noise } = parameters;
-        let fail = |parameter, found, expected| Err(Error::Parameter { parameter, found, expected });
-        if !(2..=256).contains(&block) {
-            return fail("motion block", block as f64, "2 to 256");
-        }
-        if !(threshold.is_finite() && threshold >= 0.0) {
-            return fail("motion threshold", threshold, "a finite number of at least 0");
-        }
-        if !(least_noise.is_finite() && least_noise > 0.0) {
-            return fail("motion noise", least_noise, "a finite number above 0");
-        }
+        require("motion block", block as f64, (2..=256).contains(&block), "2 to 256")?;
+        require_not_negative("motion threshold", threshold)?;
+        require_positive("least noise", least_noise)?;
         Ok(Self {
             parameters,
             blocks: Vec::new(),

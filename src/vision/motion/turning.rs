@@ -1,3 +1,4 @@
+use crate::ParameterError;
 use crate::geometry::math;
 use crate::vision::{Error, GrayView, GrayViewMut};
 
@@ -40,7 +41,7 @@ impl TurnCompensator {
     pub fn new(field_of_view: f64) -> Result<Self, Error> {
         if !(field_of_view > 0.0 && field_of_view < 3.0) {
             let expected = "more than 0 and below 3 radians";
-            return Err(Error::Parameter { parameter: "field of view", found: field_of_view, expected });
+            return Err(ParameterError::new("field of view", field_of_view, expected).into());
         }
         Ok(Self { field_of_view, turned: Vec::new() })
     }

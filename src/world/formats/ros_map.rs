@@ -28,8 +28,9 @@ use super::limits::{MAX_IMAGE_BYTES, MAX_METRES, MAX_TEXT_BYTES, MAX_WALLS};
 use super::number;
 use super::source::{DiskFiles, FileSource, check_length, decode, read_limited, unreadable};
 use super::yaml::{self, Scalar, Value};
+use crate::ParameterError;
 use crate::geometry::Pose;
-use crate::world::{GridError, OccupancyGrid, World};
+use crate::world::{OccupancyGrid, World};
 
 /// How pixels become occupancies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -141,7 +142,7 @@ pub(super) fn grid_to_world(grid: &OccupancyGrid, file: &str) -> Result<World, F
     Err(FormatError::new(file, Location::START, found, expected))
 }
 
-fn too_large(error: &GridError, file: &str, at: Location) -> FormatError {
+fn too_large(error: &ParameterError, file: &str, at: Location) -> FormatError {
     FormatError::new(file, at, error.to_string(), "a map of a size that fits")
 }
 

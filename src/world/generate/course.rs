@@ -1,8 +1,9 @@
+use crate::ParameterError;
 use std::f64::consts::PI;
 
 use super::layout::Layout;
 use super::survey::{Margins, Survey};
-use super::{CourseOptions, CourseOptionsError, ObstacleKind};
+use super::{CourseOptions, ObstacleKind};
 use crate::geometry::{Point, Pose, Vector};
 use crate::random::Stream;
 use crate::world::World;
@@ -47,13 +48,13 @@ pub struct Course {
 /// let options = CourseOptions { unreachable_share: 0.0, ..CourseOptions::default() };
 /// let course = obstacle_course(&mut Stream::new(1), &options)?;
 /// assert!(course.reachable && !course.obstacles.is_empty());
-/// # Ok::<(), roverlab::world::generate::CourseOptionsError>(())
+/// # Ok::<(), roverlab::ParameterError>(())
 /// ```
 ///
 /// # Errors
 ///
 /// If the options do not pass [`CourseOptions::validate`].
-pub fn obstacle_course(stream: &mut Stream, options: &CourseOptions) -> Result<Course, CourseOptionsError> {
+pub fn obstacle_course(stream: &mut Stream, options: &CourseOptions) -> Result<Course, ParameterError> {
     draw(stream, options, &ObstacleKind::DRAWN)
 }
 
@@ -62,7 +63,7 @@ pub(super) fn draw(
     stream: &mut Stream,
     options: &CourseOptions,
     kinds: &[ObstacleKind],
-) -> Result<Course, CourseOptionsError> {
+) -> Result<Course, ParameterError> {
     options.validate()?;
     let margins = Margins::new(options);
     let (fewest, most) = options.obstacles;

@@ -1,8 +1,9 @@
+use crate::ParameterError;
 use std::fmt;
 use std::str::FromStr;
 
 use super::course::{Course, draw};
-use super::{CourseOptions, CourseOptionsError, ObstacleKind};
+use super::{CourseOptions, ObstacleKind};
 use crate::random::Stream;
 
 /// Families of courses that are hard in one way each, to compare algorithms that go to a goal by sensors.
@@ -57,7 +58,7 @@ impl CourseFamily {
     /// # Errors
     ///
     /// None with the options as they are.
-    pub fn course(self, stream: &mut Stream) -> Result<Course, CourseOptionsError> {
+    pub fn course(self, stream: &mut Stream) -> Result<Course, ParameterError> {
         draw(stream, &self.options(), self.kinds())
     }
 

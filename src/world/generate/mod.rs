@@ -29,6 +29,6 @@ mod survey;
 
 pub use course::{Course, obstacle_course};
 pub use family::{CourseFamily, UnknownFamily};
-pub use options::{CourseOptions, CourseOptionsError};
+pub use options::CourseOptions;
 pub use repertoire::ObstacleKind;
-pub use room::{Room, RoomFeature, RoomOptions, RoomOptionsError, room};
+pub use room::{Room, RoomFeature, RoomOptions, room};

@@ -1,3 +1,6 @@
+use crate::ParameterError;
+use crate::parameter::{require, require_up_to};
+
 /// What [`super::obstacle_course`] draws.
 ///
 /// ```
@@ -38,70 +41,58 @@ impl Default for CourseOptions {
     }
 }
 
-/// What is wrong with the options of a course.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("course options: {parameter} is {value}; expected {expected}")]
-pub struct CourseOptionsError {
-    parameter: &'static str,
-    value: f64,
-    expected: &'static str,
-}
-
 impl CourseOptions {
     /// The most obstacles, and the most objects, that may be asked for.
     pub const MAX_COUNT: usize = 100;
 
     /// Checks that every number makes sense, and that the field holds more than the robot.
-    pub fn validate(&self) -> Result<(), CourseOptionsError> {
-        let check = |parameter, value: f64, good: bool, expected| {
-            if good { Ok(()) } else { Err(CourseOptionsError { parameter, value, expected }) }
-        };
+    pub fn validate(&self) -> Result<(), ParameterError> {
         let radius = self.robot_radius;
-        check("robot radius", radius, radius.is_finite() && radius > 0.0, "a positive, finite number")?;
+        require_up_to("robot radius", radius, 10.0)?;
         let corridor = self.min_corridor;
-        check(
+        require(
             "minimal corridor",
             corridor,
             (2.2 * radius..=6.0 * radius).contains(&corridor),
             "1.1 to 3 times the robot's width",
         )?;
         let (least, greatest) = self.size;
-        check(
-            "least side",
+        require(
+            "size (least)",
             least,
             least >= 15.0 * corridor && least <= 500.0 * radius,
             "at least 15 minimal corridors and at most 250 robot widths",
         )?;
-        check(
-            "greatest side",
+        require(
+            "size (greatest)",
             greatest,
             greatest >= least && greatest <= 500.0 * radius,
             "no less than the least side and at most 250 robot widths",
         )?;
         let (fewest, most) = self.obstacles;
-        check("least number of obstacles", fewest as f64, fewest <= Self::MAX_COUNT, "at most 100")?;
-        check(
+        require("least number of obstacles", fewest as f64, fewest <= Self::MAX_COUNT, "at most 100")?;
+        require(
             "greatest number of obstacles",
             most as f64,
             (fewest..=Self::MAX_COUNT).contains(&most),
             "no less than the least number and at most 100",
         )?;
-        check("number of objects", self.objects as f64, self.objects <= Self::MAX_COUNT, "at most 100")?;
+        require("number of objects", self.objects as f64, self.objects <= Self::MAX_COUNT, "at most 100")?;
         let share = self.unreachable_share;
-        check("share of unreachable goals", share, (0.0..=1.0).contains(&share), "0 to 1")
+        require("share of unreachable goals", share, (0.0..=1.0).contains(&share), "0 to 1")
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::CourseOptions;
 
     #[test]
     fn the_message_names_parameter_value_and_range() {
         let options = CourseOptions { min_corridor: 0.1, ..CourseOptions::default() };
         assert_eq!(
             options.validate().unwrap_err().to_string(),
-            "course options: minimal corridor is 0.1; expected 1.1 to 3 times the robot's width"
+            "minimal corridor is 0.1; expected 1.1 to 3 times the robot's width"
         );
     }
 

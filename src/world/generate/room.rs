@@ -1,3 +1,5 @@
+use crate::ParameterError;
+use crate::parameter::require;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::contour::Contour;
@@ -31,31 +33,24 @@ impl Default for RoomOptions {
     }
 }
 
-/// What is wrong with the options of a room.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("room options: {parameter} is {value}; expected {expected}")]
-pub struct RoomOptionsError {
-    parameter: &'static str,
-    value: f64,
-    expected: &'static str,
-}
-
 impl RoomOptions {
     /// Fails with the name of the option that is out of range.
-    pub fn validate(&self) -> Result<(), RoomOptionsError> {
-        let check = |parameter, value: f64, good: bool, expected| {
-            if good { Ok(()) } else { Err(RoomOptionsError { parameter, value, expected }) }
-        };
+    pub fn validate(&self) -> Result<(), ParameterError> {
         let distance = self.distance;
-        check("distance", distance, (0.05..=1.0).contains(&distance), "0.05 to 1 m")?;
+        require("distance", distance, (0.05..=1.0).contains(&distance), "0.05 to 1 m")?;
         let (least, most) = self.reach;
-        check("least reach", least, least >= 4.0 * distance, "at least four distances")?;
-        check("greatest reach", most, most >= least && most <= 100.0, "the least reach to 100 m")?;
+        require("least reach", least, least >= 4.0 * distance, "at least four distances")?;
+        require("greatest reach", most, most >= least && most <= 100.0, "the least reach to 100 m")?;
         let (sharpest, widest) = self.corners;
-        check("least corner", sharpest, (0.5..FRAC_PI_2).contains(&sharpest), "0.5 to 1.57 rad")?;
-        check("greatest corner", widest, (3.0 * FRAC_PI_2..5.8).contains(&widest), "4.71 to 5.8 rad")?;
+        require("least of the corners", sharpest, (0.5..FRAC_PI_2).contains(&sharpest), "0.5 to 1.57 rad")?;
+        require(
+            "greatest of the corners",
+            widest,
+            (3.0 * FRAC_PI_2..5.8).contains(&widest),
+            "4.71 to 5.8 rad",
+        )?;
         let radius = self.least_radius;
-        check("least radius", radius, radius >= 1.5 * distance && radius <= 10.0, "1.5 distances to 10 m")
+        require("least radius", radius, radius >= 1.5 * distance && radius <= 10.0, "1.5 distances to 10 m")
     }
 }
 
@@ -100,13 +95,13 @@ pub struct Room {
 /// use roverlab::world::generate::{RoomOptions, room};
 /// let room = room(&mut Stream::new(1), &RoomOptions::default())?;
 /// assert!(room.corners.len() >= 3 && room.world.start == Some(room.start));
-/// # Ok::<(), roverlab::world::generate::RoomOptionsError>(())
+/// # Ok::<(), roverlab::ParameterError>(())
 /// ```
 ///
 /// # Errors
 ///
 /// If the options do not pass [`RoomOptions::validate`].
-pub fn room(stream: &mut Stream, options: &RoomOptions) -> Result<Room, RoomOptionsError> {
+pub fn room(stream: &mut Stream, options: &RoomOptions) -> Result<Room, ParameterError> {
     const TRIES: usize = 5000;
     options.validate()?;
     for _ in 0..TRIES {

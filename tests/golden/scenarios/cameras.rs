@@ -107,7 +107,7 @@ fn tracking() -> Result<String> {
         log += &ride(&scene, noise(1.0, 122), |robot| {
             let image = robot.image()?;
             note(&mut seen, "taught", &teach_hue(&image, ColourFinder::LIMITS).map_err(other)?);
-            let mut tracker = ColourTracker::new(finder(method, geometry)?, TrackerParameters::default());
+            let mut tracker = ColourTracker::new(finder(method, geometry)?, TrackerParameters::default())?;
             let outcome = run(robot, &mut tracker, 25.0, |_, tracker, _| {
                 note(&mut seen, "seen", &(tracker.phase(), tracker.sighting(), tracker.target()));
             })?;
@@ -124,7 +124,7 @@ fn push_home() -> Result<String> {
     let mut seen = String::new();
     let log = ride(&scene, SimOptions { pushing: true, ..noise(0.5, 123) }, |robot| {
         let home = robot.pose()?.position();
-        let mut push = PushHome::new(finder(FindMethod::Blob, geometry)?, home, HomeParameters::default());
+        let mut push = PushHome::new(finder(FindMethod::Blob, geometry)?, home, HomeParameters::default())?;
         let outcome = run(robot, &mut push, 40.0, |_, push, _| {
             note(&mut seen, "seen", &(push.phase(), push.object()));
         })?;

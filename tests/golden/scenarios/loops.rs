@@ -106,11 +106,11 @@ const LOOPS: [Loop; 20] = [
         said(run(robot, &mut navigator, LIMIT, |_, _, _| {})?)
     }),
     ("colour", RobotSpec::s4, |robot| {
-        let mut tracker = ColourTracker::new(finder()?, TrackerParameters::default());
+        let mut tracker = ColourTracker::new(finder()?, TrackerParameters::default())?;
         said(run(robot, &mut tracker, LIMIT, |_, _, _| {})?)
     }),
     ("home", RobotSpec::s4, |robot| {
-        let mut push = PushHome::new(finder()?, Point::origin(), HomeParameters::default());
+        let mut push = PushHome::new(finder()?, Point::origin(), HomeParameters::default())?;
         said(run(robot, &mut push, LIMIT, |_, _, _| {})?)
     }),
     ("motion", RobotSpec::s4, |robot| {
@@ -122,9 +122,9 @@ const LOOPS: [Loop; 20] = [
         gait.settle(robot)?;
         said(gait.walk(robot, LIMIT)?)
     }),
-    ("gap", RobotSpec::car, |robot| said(run(robot, &mut GapDriver::with_speed(0.2), LIMIT, |_, _, _| {})?)),
+    ("gap", RobotSpec::car, |robot| said(run(robot, &mut GapDriver::with_speed(0.2)?, LIMIT, |_, _, _| {})?)),
     ("racer", RobotSpec::s4, |robot| {
-        said(run(robot, &mut Racer::new(RacerParameters::default()), LIMIT, |_, _, _| {})?)
+        said(run(robot, &mut Racer::new(RacerParameters::default())?, LIMIT, |_, _, _| {})?)
     }),
 ];
 
@@ -193,14 +193,14 @@ fn cars() -> Result<String> {
         let (mut watched, limit) = (0, 6.0);
         let outcome = match index {
             0 => {
-                let mut racer = Racer::new(RacerParameters::default());
+                let mut racer = Racer::new(RacerParameters::default())?;
                 said(run(&mut car, &mut racer, limit, |_, _, _| watched += 1)?)
             }
             1 => {
-                let mut racer = EventRacer::acceleration(EventParameters::default());
+                let mut racer = EventRacer::acceleration(EventParameters::default())?;
                 said(run(&mut car, &mut racer, limit, |_, _, _| watched += 1)?)
             }
-            _ => said(run(&mut car, &mut GapDriver::with_speed(0.2), limit, |_, _, _| watched += 1)?),
+            _ => said(run(&mut car, &mut GapDriver::with_speed(0.2)?, limit, |_, _, _| watched += 1)?),
         };
         log += &text(car)?;
         note(&mut log, "outcome", &(outcome?, watched));

@@ -99,7 +99,7 @@ fn laps() -> Result<String> {
     let (mut robot, truth) = (race.robot(0)?, race.truth());
     let mut referee = Referee::new(corridor, WHEELS);
     let parameters = RacerParameters { laps: 2, ..RacerParameters::default() };
-    let (mut racer, mut scan) = (Racer::new(parameters), LidarScan::default());
+    let (mut racer, mut scan) = (Racer::new(parameters)?, LidarScan::default());
     let mut log = String::new();
     let mut noted = None;
     while truth.time() < 200.0 {
@@ -131,7 +131,7 @@ fn camera() -> Result<String> {
     for both in [false, true] {
         let race = world(&track, &[track.start_pose().unwrap_or_default()], 62)?;
         let (mut car, truth) = (race.robot(0)?, race.truth());
-        let mut racer = Racer::new(RacerParameters::default());
+        let mut racer = Racer::new(RacerParameters::default())?;
         let mut sight = CameraSight::new(CameraMount::default());
         car.set_resolution(Resolution::Vga)?;
         for _ in 0..40 {
@@ -158,7 +158,7 @@ fn two_cars() -> Result<String> {
     let start = track.start_pose().unwrap_or_default();
     let scene = track.scene(&[start, start.compose(&Pose::new(6.0, 0.0, 0.0))]);
     let parameters = RacerParameters::default();
-    let (mut racer, mut seen) = (Racer::new(parameters), LidarScan::default());
+    let (mut racer, mut seen) = (Racer::new(parameters)?, LidarScan::default());
     let log = RefCell::new(String::new());
     {
         let mut fleet = Fleet::new(&scene, SimOptions { seed: 63, ..SimOptions::default() })?;
@@ -168,7 +168,7 @@ fn two_cars() -> Result<String> {
             car.set_speed(racer.step(pose, speed, &seen))?;
             Ok(ControlFlow::Continue(()))
         })?;
-        let (mut map, mut finder) = (ConeMap::new(parameters.map), LaneFinder::new(parameters.lane));
+        let (mut map, mut finder) = (ConeMap::new(parameters.map)?, LaneFinder::new(parameters.lane)?);
         let mut scan = LidarScan::default();
         let log = &log;
         fleet.control(1, parameters.period, move |car| {
@@ -290,9 +290,9 @@ fn event(track: &ConeTrack, mut racer: EventRacer, seed: u64) -> Result<String> 
 }
 
 fn acceleration() -> Result<String> {
-    event(&strip(), EventRacer::acceleration(EventParameters::default()), 65)
+    event(&strip(), EventRacer::acceleration(EventParameters::default())?, 65)
 }
 
 fn figure_of_eight() -> Result<String> {
-    event(&skidpad(), EventRacer::skidpad(EventParameters::default()), 66)
+    event(&skidpad(), EventRacer::skidpad(EventParameters::default())?, 66)
 }

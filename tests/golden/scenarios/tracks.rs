@@ -157,7 +157,7 @@ fn lane_finder() -> Result<String> {
         .map(|(k, cone)| if k % 3 == 0 { *cone } else { Cone::unknown(cone.position) })
         .collect();
     let stations = generated.corridor.stations();
-    let mut finder = LaneFinder::new(LaneParameters::default());
+    let mut finder = LaneFinder::new(LaneParameters::default())?;
     let mut log = String::new();
     for pair in stations.windows(2).take(60) {
         let ahead = pair[1].position - pair[0].position;
@@ -190,7 +190,7 @@ fn line_tracker() -> Result<String> {
     let profile = SpeedProfile::closed(&line.points, &limits).map_err(other)?;
     let mut log = String::new();
     for parameters in [TrackerParameters::default(), TrackerParameters::rolling()] {
-        let mut tracker = LineTracker::new(line.points.clone(), profile.clone(), true, parameters);
+        let mut tracker = LineTracker::new(line.points.clone(), profile.clone(), true, parameters)?;
         let ahead = line.points[1] - line.points[0];
         let heading = roverlab::geometry::math::atan2(ahead.y, ahead.x);
         let mut pose =

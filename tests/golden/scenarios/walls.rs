@@ -57,5 +57,5 @@ fn lidar() -> Result<String> {
 }
 
 fn two_levels() -> Result<String> {
-    follow(35, TwoLevelWallFollower::new(0.12, 0.15))
+    follow(35, TwoLevelWallFollower::new(0.12, 0.15)?)
 }

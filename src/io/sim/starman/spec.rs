@@ -1,7 +1,6 @@
+use crate::ParameterError;
+use crate::parameter::{require, require_positive};
 use std::f64::consts::PI;
-
-use crate::io::error::require_positive;
-use crate::io::{Error, Result};
 
 /// What a Starman is made of. Lengths in metres, masses in kilograms, angles in radians.
 ///
@@ -57,7 +56,7 @@ impl StarmanSpec {
     }
 
     /// Fails with the name of what is out of range.
-    pub fn validate(&self) -> Result<()> {
+    pub fn validate(&self) -> Result<(), ParameterError> {
         let all = [
             ("body radius", self.body_radius),
             ("body mass", self.body_mass),
@@ -72,13 +71,8 @@ impl StarmanSpec {
         ];
         all.into_iter().try_for_each(|(name, value)| require_positive(name, value))?;
         // Further, and neighbours would cross; coarser, and the solver cannot hold the hinges.
-        if self.servo_range > PI / 5.0 {
-            return Err(Error::invalid_input("servo range", self.servo_range, "at most a tenth of a turn"));
-        }
-        if self.time_step > 0.02 {
-            return Err(Error::invalid_input("time step", self.time_step, "at most 0.02 s"));
-        }
-        Ok(())
+        require("servo range", self.servo_range, self.servo_range <= PI / 5.0, "at most a tenth of a turn")?;
+        require("time step", self.time_step, self.time_step <= 0.02, "at most 0.02 s")
     }
 }
 

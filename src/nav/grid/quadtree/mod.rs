@@ -12,4 +12,4 @@ mod tree;
 pub use boxes::{Edges, segment_meets_box};
 pub use graph::{LeafGraph, LeafLink};
 pub use planner::QuadtreePlanner;
-pub use tree::{Leaf, Quadtree, QuadtreeError};
+pub use tree::{Leaf, Quadtree};

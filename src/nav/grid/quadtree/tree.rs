@@ -1,3 +1,5 @@
+use crate::ParameterError;
+use crate::parameter::require;
 use crate::world::{BitGrid, GridCell};
 
 /// The decomposition of a grid into squares that are free or blocked, by quarters.
@@ -57,11 +59,6 @@ impl Leaf {
     }
 }
 
-/// Why there is no quadtree.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("the minimum leaf is {0} cells wide; expected a power of two up to 1048576")]
-pub struct QuadtreeError(usize);
-
 impl Quadtree {
     /// Divides a grid down to its cells.
     pub fn new(grid: &BitGrid) -> Self {
@@ -70,10 +67,9 @@ impl Quadtree {
 
     /// Divides a grid, but not into squares smaller than `minimum` cells, a power of two. At the far borders of maps whose
     /// size is no multiple of it, squares may still be smaller.
-    pub fn with_minimum_leaf(grid: &BitGrid, minimum: usize) -> Result<Self, QuadtreeError> {
-        if !minimum.is_power_of_two() || minimum > 1 << 20 {
-            return Err(QuadtreeError(minimum));
-        }
+    pub fn with_minimum_leaf(grid: &BitGrid, minimum: usize) -> Result<Self, ParameterError> {
+        let good = minimum.is_power_of_two() && minimum <= 1 << 20;
+        require("minimum leaf", minimum as f64, good, "a power of two up to 1048576 cells")?;
         Ok(Self::build(grid, minimum.trailing_zeros() as usize))
     }
 

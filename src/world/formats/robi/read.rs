@@ -404,7 +404,7 @@ impl<'f> Reader<'f> {
     fn place_mast(&mut self) -> Result<(), FormatError> {
         let Some((mast, at)) = self.mast else { return Ok(()) };
         self.spec.mast = Some(mast);
-        let wrong = |error: crate::world::SpecError| {
+        let wrong = |error: crate::ParameterError| {
             FormatError::new(self.notes.file, at, error.to_string(), "a mast that stands on the robot")
         };
         self.spec.validate_mast().map_err(wrong)

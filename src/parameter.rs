@@ -1,0 +1,83 @@
+use std::borrow::Cow;
+
+/// A parameter that is not what it must be: its name, its value and what is accepted.
+///
+/// All constructors refuse by it, or by an error of theirs that it turns into, as it does into
+#[cfg_attr(feature = "io", doc = "[`io::Error`](crate::io::Error).")]
+#[cfg_attr(not(feature = "io"), doc = "an error of robots.")]
+///
+/// ```
+/// use roverlab::kinematics::Ackermann;
+/// let error = Ackermann::new(f64::NAN, 0.4, 0.5).unwrap_err();
+/// assert_eq!(error.name(), "wheelbase");
+/// assert_eq!(error.to_string(), "wheelbase is NaN; expected a positive, finite number");
+/// ```
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{name} is {value}; expected {expected}")]
+pub struct ParameterError {
+    name: Cow<'static, str>,
+    value: f64,
+    expected: Cow<'static, str>,
+}
+
+impl ParameterError {
+    /// From its name, its value and what is accepted instead.
+    pub fn new(
+        name: impl Into<Cow<'static, str>>,
+        value: f64,
+        expected: impl Into<Cow<'static, str>>,
+    ) -> Self {
+        Self { name: name.into(), value, expected: expected.into() }
+    }
+
+    /// What the parameter is called.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What it is; a whole number is converted.
+    pub fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// What is accepted.
+    pub fn expected(&self) -> &str {
+        &self.expected
+    }
+
+    /// The same of a part of something: `robot S4: track`.
+    #[must_use]
+    pub(crate) fn of(self, whole: &str) -> Self {
+        Self { name: format!("{whole}: {}", self.name).into(), ..self }
+    }
+}
+
+/// Fails unless a parameter is good.
+pub(crate) fn require(
+    name: &'static str,
+    value: f64,
+    good: bool,
+    expected: impl Into<Cow<'static, str>>,
+) -> Result<(), ParameterError> {
+    if good { Ok(()) } else { Err(ParameterError::new(name, value, expected)) }
+}
+
+/// Fails unless a parameter is a finite number.
+pub(crate) fn require_finite(name: &'static str, value: f64) -> Result<(), ParameterError> {
+    require(name, value, value.is_finite(), "a finite number")
+}
+
+/// Fails unless a parameter is a finite number above zero.
+pub(crate) fn require_positive(name: &'static str, value: f64) -> Result<(), ParameterError> {
+    require(name, value, value.is_finite() && value > 0.0, "a positive, finite number")
+}
+
+/// Fails unless a parameter is above zero, and at most `most`.
+pub(crate) fn require_up_to(name: &'static str, value: f64, most: f64) -> Result<(), ParameterError> {
+    require(name, value, value > 0.0 && value <= most, format!("more than 0 and at most {most}"))
+}
+
+/// Fails unless a parameter is a finite number of at least zero.
+pub(crate) fn require_not_negative(name: &'static str, value: f64) -> Result<(), ParameterError> {
+    require(name, value, value.is_finite() && value >= 0.0, "a finite number of at least 0")
+}

@@ -1,0 +1,105 @@
+use roverlab::drive::colour::{ColourTracker, HomeParameters, PushHome, TrackerParameters};
+use roverlab::drive::motion_watch::{MotionWatch, WatchParameters};
+use roverlab::drive::{
+    AToB, AToBParameters, AlongWall, CarDriver, CarParameters, CarToB, Chase, ChaseParameters, CoverageMap,
+    CoverageParameters, Cruise, CruiseParameters, FollowMeParameters, Follower, FollowerParameters,
+    Formation, Goal, LidarWallFollower, LidarWallParameters, Method, OmniParameters, OmniTracker, Path,
+    PathFollower, Pid, PidParameters, PidWallFollower, PidWallParameters, RandomDrive, RandomDriveParameters,
+    Tour, TourParameters, TwoLevelWallFollower, WallFollower, WallFollowerParameters,
+};
+use roverlab::geometry::{Point, Pose};
+use roverlab::kinematics::Ackermann;
+use roverlab::random::Stream;
+use roverlab::vision::motion::MotionParameters;
+use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
+use roverlab::world::{RobotSpec, World};
+
+use crate::check::{check, ends};
+
+const GOAL: Point = Point::new(2.0, 1.5);
+
+fn finder() -> ColourFinder {
+    let camera = RobotSpec::s4().camera.expect("a camera");
+    ColourFinder::new(42, 10, FindMethod::Blob, CameraGeometry::from(&camera)).expect("a finder")
+}
+
+#[test]
+fn colours_and_motion() {
+    check!(TrackerParameters = TrackerParameters::default(),
+        |p| ends(RobotSpec::s4(), ColourTracker::new(finder(), p)?),
+        { Positive: speed, turn_speed, radius, leg, period; NotNegative: margin, gap, memory; });
+    let home = HomeParameters::default;
+    check!(TrackerParameters = home().tracker,
+        |p| PushHome::new(finder(), GOAL, HomeParameters { tracker: p, ..home() })?,
+        { Positive: speed, turn_speed, radius, leg, period; NotNegative: margin, gap, memory; });
+    check!(HomeParameters = home(), |p| ends(RobotSpec::s4(), PushHome::new(finder(), GOAL, p)?),
+        { Positive: round, push_speed, correction, near; NotNegative: clearance, foresight; } but tracker);
+    check!(WatchParameters = WatchParameters::new(1.0), |p| ends(RobotSpec::s4(), MotionWatch::new(p)?),
+        { Bounded: field_of_view; Positive: turn_speed, period; NotNegative: parallax, patience; }
+        but standing, turning);
+    check!(MotionParameters = MotionParameters::default(),
+        |p| ends(RobotSpec::s4(), MotionWatch::new(WatchParameters { turning: p, ..WatchParameters::new(1.0) })?),
+        { Bounded: block; NotNegative: threshold; Positive: least_noise; });
+}
+
+#[test]
+fn from_a_to_b() {
+    check!(FollowerParameters = FollowerParameters::default(), |p| {
+            let path = Path::straight(Point::origin(), GOAL)?;
+            let mut follower = PathFollower::new(path, p)?;
+            let _ = follower.step(Pose::default());
+        },
+        { Positive: speed, turn_rate, deceleration, approach_rate, lag; } but steering);
+    check!(AToBParameters = AToBParameters::default(),
+        |p| ends(RobotSpec::s4(), AToB::new(Method::Spline, Goal::point(GOAL), p)?),
+        { Positive: turn_speed, creep_speed, tolerance, heading_tolerance, period; Bounded: spline_scale;
+          AnyCount: corrections; } but follower);
+    check!(ChaseParameters = ChaseParameters::default(), |p| Chase::new(Method::Dog, p)?.step(Pose::new(1.0, 0.5, 0.0))?,
+        { Positive: distance, turn_threshold, period; Bounded: spline_scale; } but follower);
+    let driver = CarDriver { kinematics: Ackermann::new(0.12, 0.1, 0.5).unwrap(), full_speed: 0.5 };
+    check!(CarParameters = CarParameters::default(),
+        |p| ends(RobotSpec::car(), CarToB::new(Method::Arc, Goal::point(GOAL), driver, p)?),
+        { Positive: tolerance, heading_tolerance, steering_time, period, margin; Bounded: spline_scale;
+          AnyCount: corrections; } but follower);
+    check!(OmniParameters = OmniParameters::default(), |p| OmniTracker::new(Pose::default(), &[GOAL], p)?,
+        { Positive: speed, acceleration, position_gain, heading_gain, lag, tolerance, heading_tolerance, period;
+          Finite: spin; });
+    check!(PidParameters = PidParameters::default(), |p| Pid::new(p)?.step(1.0, 0.0, 0.1)?,
+        { Finite: proportional, integral, derivative; NotNegative: derivative_filter; } but limits);
+}
+
+#[test]
+fn floors_and_swarms() {
+    check!(CoverageParameters = CoverageParameters::default(),
+        |p| CoverageMap::new(&World::walled(1.0, 1.0), Point::new(0.5, 0.5), p)?,
+        { Bounded: radius, margin, resolution; BoundedFromZero: overlap; });
+    check!(TourParameters = TourParameters::default(), |p| ends(RobotSpec::s4(), Tour::new(&[Point::origin(), GOAL], p)?),
+        { Positive: speed, turn_rate, arrival, reach, lag, period; });
+    check!(CruiseParameters = CruiseParameters::default(),
+        |p| Cruise::new(vec![GOAL], p)?.step(Pose::default(), &[Point::new(0.3, 0.0)])?,
+        { Positive: speed, turn_rate, radius, margin, ahead, arrival; });
+    check!(FollowMeParameters = FollowMeParameters::default(), |p| Follower::new(p)?,
+        { Positive: speed, turn_rate, patience, period, gap; Bounded: radius, margin, leader_radius; });
+    check!(Formation = Formation::at(Point::new(-0.3, 0.2)), |p| p.validate()?,
+        { Positive: speed, turn_rate, margin; Bounded: radius; } but offset);
+    check!(RandomDriveParameters = RandomDriveParameters::default(),
+        |p| ends(RobotSpec::s4(), RandomDrive::new(p, Stream::new(1))?),
+        { Positive: speed, turn_rate, safe, radius, margin, lag, period; });
+}
+
+#[test]
+fn walls() {
+    check!(WallFollowerParameters = WallFollowerParameters::default(),
+        |p| ends(RobotSpec::s4(), AlongWall::new(WallFollower::new(p)?)),
+        { Positive: speed, turn_rate, reach, lag, period; Bounded: distance, radius; BoundedFromZero: range_error; }
+        but side, sensors);
+    check!(PidWallParameters = PidWallParameters::default(),
+        |p| ends(RobotSpec::s4(), AlongWall::new(PidWallFollower::new(p)?)),
+        { Positive: distance, speed, turn_rate, period; } but side, gains, sensors);
+    check!(LidarWallParameters = LidarWallParameters::default(),
+        |p| ends(RobotSpec::s4(), AlongWall::new(LidarWallFollower::new(p)?)),
+        { Positive: distance, speed, turn_rate, reach, lag, period; } but side);
+    for (safe, speed) in [(f64::NAN, 0.2), (0.0, 0.2), (0.3, -1.0), (0.3, f64::INFINITY)] {
+        assert!(TwoLevelWallFollower::new(safe, speed).is_err(), "{safe} {speed}");
+    }
+}
