@@ -13,26 +13,27 @@ use std::path::Path;
 use source::Source;
 
 /// What each wing may use. All of it stands further up, so arrows between wings point down and in no circle.
-const WINGS: [(&str, &str); 18] = [
+const WINGS: [(&str, &str); 19] = [
+    ("parameter", ""),
     ("geometry", ""),
-    ("random", "geometry"),
-    ("kinematics", "geometry random"),
-    ("world", "geometry random"),
-    ("vision", "geometry random"),
-    ("picture", "geometry world"),
-    ("io", "geometry random kinematics world"),
-    ("io::sim", "geometry random kinematics world io"),
+    ("random", "parameter geometry"),
+    ("kinematics", "parameter geometry random"),
+    ("world", "parameter geometry random"),
+    ("vision", "parameter geometry random"),
+    ("picture", "parameter geometry world"),
+    ("io", "parameter geometry random kinematics world"),
+    ("io::sim", "parameter geometry random kinematics world io"),
     // It simulates to check that a program does the same again.
-    ("io::log", "geometry random world io io::sim"),
-    ("io::robios", "geometry world io"),
-    ("scan", "geometry random kinematics world io"),
-    ("drive", "geometry random kinematics world vision io scan"),
-    ("maze", "geometry random kinematics world io drive"),
-    ("nav", "geometry random kinematics world io scan"),
-    ("race", "geometry random kinematics world vision io"),
-    ("safety", "geometry random kinematics world io"),
-    ("evolve", "geometry random kinematics world picture io"),
-    ("testing", "geometry random world maze nav race"),
+    ("io::log", "parameter geometry random world io io::sim"),
+    ("io::robios", "parameter geometry world io"),
+    ("scan", "parameter geometry random kinematics world io"),
+    ("drive", "parameter geometry random kinematics world vision io scan"),
+    ("maze", "parameter geometry random kinematics world io drive"),
+    ("nav", "parameter geometry random kinematics world io scan"),
+    ("race", "parameter geometry random kinematics world vision io"),
+    ("safety", "parameter geometry random kinematics world io"),
+    ("evolve", "parameter geometry random kinematics world picture io"),
+    ("testing", "parameter geometry random world maze nav race"),
 ];
 
 /// Files that use each other. Each line is one thing in several files, and no line may be added without need.

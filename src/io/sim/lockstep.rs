@@ -216,6 +216,7 @@ impl<W: Ticking> Program<W> {
     }
 
     /// Lets the program's own clock advance by the time of a call.
+    #[cfg(feature = "physics")]
     pub(super) fn charge(&mut self) {
         self.clock = self.clock.saturating_add(self.call);
     }
@@ -243,6 +244,7 @@ impl<W: Ticking> Program<W> {
     }
 
     /// The world, whatever the program's own time.
+    #[cfg(feature = "physics")]
     pub(super) fn shared(&self) -> &Lockstep<W> {
         &self.shared
     }
