@@ -113,7 +113,7 @@ impl CameraSight {
                     continue;
                 }
                 let column = 0.5 * (blob.min.0 + blob.max.0 + 1) as f64;
-                let row = foot(image, blob.min.1, [(blob.min.0 + blob.max.0) / 2, blob.max.1]);
+                let row = foot(image, blob.min.1, [usize::midpoint(blob.min.0, blob.max.0), blob.max.1]);
                 found.extend(self.mount.place(column, row, width as f64, height as f64).map(
                     |(position, range, error)| {
                         let size = (blob.max.0 - blob.min.0) as f64 * range / self.mount.focal(width as f64);

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
-use roverlab::geometry::{Point, Pose, Twist, angle_difference};
+use roverlab::geometry::{Point, Pose, Twist, angle_difference, math};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::wrappers::Traced;
 use roverlab::io::{Camera, Clock, Drive, Encoders, ErrorKind, Lidar, Motors, Radio, Resolution, RobotIo};
@@ -152,7 +152,8 @@ fn cones_fall_and_are_gone() {
     let (mut car, truth) = (race.robot(0).unwrap(), race.truth());
     let first = |scan: roverlab::io::LidarScan| scan.ranges.into_iter().fold(f64::INFINITY, f64::min);
     // From the nose to what the lidar sees of the cone at its own height.
-    assert!((first(car.scan().unwrap()) - (10.0_f64 - 2.15).hypot(0.5) + 0.065).abs() < 0.01);
+    let reach = math::hypot(10.0 - 2.15, 0.5);
+    assert!((first(car.scan().unwrap()) - reach + 0.065).abs() < 0.01);
     car.set_speed(Twist::new(4.0, 0.0)).unwrap();
     car.wait(4.0).unwrap();
     let now = truth.robot(0).unwrap();

@@ -92,7 +92,7 @@ pub(crate) use origin::Origin;
 pub(crate) use outputs::is_same_file;
 pub(crate) use report::{Outcome, Report, millimetres, point_in_mm, rounded};
 pub(crate) use run::{Printed, parser, refused, run, run_plain, run_printing, written};
-pub(crate) use stage::{Driven, Stage, StageTruth};
+pub(crate) use stage::{Claimed, Driven, Stage, StageTruth};
 pub(crate) use supervision::DEADMAN;
 pub(crate) use trip::{StandIn, Trip};
 #[cfg(test)]

@@ -337,8 +337,13 @@ impl Stage {
         Self { deadman: true, ..self }
     }
 
-    /// A robot, by its index in the scene. Take all robots that drive at once before the first one does.
+    /// A robot, by its index in the scene. Where several drive at once, [claim](Self::claim) them all first.
     pub(crate) fn robot(&self, index: usize) -> Result<Driven, Failure> {
+        self.claim(index)?.ready()
+    }
+
+    /// A robot that waits to be made ready, which may take its time: each of several in a thread of its own.
+    pub(crate) fn claim(&self, index: usize) -> Result<Claimed, Failure> {
         let simulated = |simulation: &Simulation, index| simulation.robot(index).map_err(Failure::input);
         let robot = match &self.play {
             Play::Simulation(simulation) if self.quantised => {
@@ -354,12 +359,13 @@ impl Stage {
                 self.recording.recorder(player.robot(index).map_err(|error| foreign(&error))?, index)
             }
         };
-        let Some(guard) = &self.guard else { return Ok(robot) };
+        let Some(guard) = &self.guard else { return Ok(Claimed { robot, guard: None }) };
         let models = &guard.models;
         let model = *models.get(index).or(models.first()).ok_or_else(|| Failure::input("no robot"))?;
         let who = if guard.apart { 0 } else { index };
         let model = (model, guard.fault.filter(|_| index == 0));
-        guarded(robot, self.truth(index)?, who, model, guard.stops.clone()).map_err(Failure::run)
+        let (truth, stops) = (self.truth(index)?, guard.stops.clone());
+        Ok(Claimed { robot, guard: Some(Watch { truth, who, model, stops }) })
     }
 
     /// A simulated robot with the faults of the first one.
@@ -408,6 +414,29 @@ impl Stage {
             // Whoever stands beside a real robot presses its keys.
             Play::Recording(_) | Play::Library(..) => Ok(()),
         }
+    }
+}
+
+/// A robot that the world waits for, and the safety system that it gets.
+pub(crate) struct Claimed {
+    robot: Driven,
+    guard: Option<Watch>,
+}
+
+/// What a safety system is made of.
+struct Watch {
+    truth: StageTruth,
+    who: usize,
+    model: (StoppingModel, Option<f64>),
+    stops: Stops,
+}
+
+impl Claimed {
+    /// The robot, armed and started if a safety system guards it.
+    pub(crate) fn ready(self) -> Result<Driven, Failure> {
+        let Self { robot, guard } = self;
+        let Some(Watch { truth, who, model, stops }) = guard else { return Ok(robot) };
+        guarded(robot, truth, who, model, stops).map_err(Failure::run)
     }
 }
 

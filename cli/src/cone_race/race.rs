@@ -14,7 +14,7 @@ use roverlab::world::{RobotSpec, Scene};
 
 use super::Sensors;
 use super::event;
-use crate::common::{Driven, Failure, Stage};
+use crate::common::{Claimed, Failure, Stage};
 use crate::cones::{Course, Judge, pass};
 
 /// What a race is made of, beside its course.
@@ -59,11 +59,16 @@ const MIDDLE: f64 = 0.775;
 
 /// The second car, which drives in the middle of the lane that it sees, whatever it was like a lap ago.
 struct Other {
-    car: Driven,
+    car: Claimed,
+    pilot: Pilot,
+    judge: Judge,
+}
+
+/// What the second car knows.
+struct Pilot {
     scan: LidarScan,
     map: ConeMap,
     lane: LaneFinder,
-    judge: Judge,
 }
 
 /// Seconds between two decisions of a second car.
@@ -76,28 +81,28 @@ impl Other {
     fn new(course: &Course, stage: &Stage) -> Result<Self, Failure> {
         let judge = Judge::new(course, stage.truth(1)?, 1).map_err(Failure::run)?;
         let parameters = course.parameters(1);
-        Ok(Self {
-            car: stage.robot(1)?,
-            scan: LidarScan::default(),
-            map: ConeMap::new(parameters.map)?,
-            lane: LaneFinder::new(parameters.lane)?,
-            judge,
-        })
+        let map = ConeMap::new(parameters.map)?;
+        let pilot = Pilot { scan: LidarScan::default(), map, lane: LaneFinder::new(parameters.lane)? };
+        Ok(Self { car: stage.claim(1)?, pilot, judge })
     }
 
     /// Drives until it hears that the race is over, or time is.
-    fn drive(mut self, limit: f64) -> io::Result<Second> {
-        while self.judge.time() < limit && self.car.receive()?.is_none() {
-            let command = self.decide()?;
-            self.car.set_speed(command)?;
-            pass(self.car.as_mut(), &mut self.judge, OTHER_PERIOD)?;
+    fn drive(self, limit: f64) -> Result<Second, Failure> {
+        let Self { car, mut pilot, mut judge } = self;
+        let mut car = car.ready()?;
+        while judge.time() < limit && car.receive()?.is_none() {
+            let command = pilot.decide(car.as_mut())?;
+            car.set_speed(command)?;
+            pass(car.as_mut(), &mut judge, OTHER_PERIOD)?;
         }
-        Ok(Second { cones_hit: self.judge.verdict().cones_hit, trail: self.judge.trail().to_vec() })
+        Ok(Second { cones_hit: judge.verdict().cones_hit, trail: judge.trail().to_vec() })
     }
+}
 
-    fn decide(&mut self) -> io::Result<Twist> {
-        self.car.scan_into(&mut self.scan)?;
-        self.map.update(self.car.pose()?, &sightings(&self.scan));
+impl Pilot {
+    fn decide(&mut self, car: &mut dyn RobotIo) -> io::Result<Twist> {
+        car.scan_into(&mut self.scan)?;
+        self.map.update(car.pose()?, &sightings(&self.scan));
         let pose = self.map.pose();
         let near: Vec<Cone> =
             self.map.fresh_cones().filter(|cone| (cone.position - pose.position()).norm() < SIGHT).collect();
@@ -243,24 +248,21 @@ pub(crate) fn race(course: &Course, settings: &Settings, stage: &Stage) -> Resul
         return event::race(course, event, settings, stage);
     }
     let mut judge = Judge::new(course, stage.truth(0)?, 0).map_err(Failure::run)?;
-    let mut car = stage.robot(0)?;
+    let car = stage.claim(0)?;
     let other = settings.other.then(|| Other::new(course, stage)).transpose()?;
     let mut plans = Plans::default();
     let limits = limits()?;
     let (driven, other) = thread::scope(|scope| {
         let limit = settings.limit(course);
         let other = other.map(|other| scope.spawn(move || other.drive(limit)));
+        let mut car = car.ready()?;
         let driven = drive(course, settings, car.as_mut(), &mut judge, |racer| plans.see(racer, &limits));
         // A car that does not hear it drives until time is over.
         let told = if other.is_some() { car.send(OTHER, OVER) } else { Ok(()) };
         drop(car);
         let other = other.map(|other| other.join().expect("the second car's thread does not panic"));
-        (driven.and_then(|ending| told.map(|()| ending)), other.transpose())
-    });
-    let (driven, other) = match other {
-        Ok(other) => (driven, other),
-        Err(error) => (driven.and(Err(error)), None),
-    };
+        Ok::<_, Failure>((driven.and_then(|ending| told.map(|()| ending)), other.transpose()?))
+    })?;
     let line = plans.first.iter().map(|point| course.start.to_world(*point)).collect();
     Ok(Outcome {
         over_optimum: plans.over_optimum(&judge.verdict().lap_times),

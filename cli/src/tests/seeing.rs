@@ -50,8 +50,6 @@ fn every_kernel_works_on_a_file() {
             let options = [
                 "--input",
                 text(&input),
-                "--second",
-                text(&second),
                 "--kernel",
                 &name,
                 "--definition",
@@ -61,7 +59,9 @@ fn every_kernel_works_on_a_file() {
                 "--repeat",
                 "1",
             ];
-            let ended = run("edges", &options);
+            let two = ["--second", text(&second)];
+            let of_two = ["difference", "overlay"].contains(&name.as_str());
+            let ended = run("edges", &[&options[..], if of_two { &two } else { &[] }].concat());
             assert_outcome(&ended, "filtered");
             assert_eq!((ended.1["width"].as_u64(), ended.1["height"].as_u64()), (Some(96), Some(64)));
             let written = image::open(&output).unwrap();

@@ -7,7 +7,7 @@
 //! sockets, and for semaphores and mutexes with a time limit.
 
 use std::ffi::{c_int, c_long, c_uint, c_ulong, c_void};
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use libc::{clockid_t, pthread_attr_t, pthread_t, time_t, timespec, timeval};
 
@@ -16,21 +16,19 @@ use super::real_time::{BILLION, real_seconds, real_time};
 use super::runtime::enter;
 use super::sleep::{let_others_run, sleep_for};
 use super::threads::{is_alive, is_ours, is_the_programs, note_thread};
-use crate::plan::names;
 use crate::robios::EPOCH;
 
-/// Whether the runner has started this process: 0 not looked yet, 1 no, 2 yes.
-static STARTED_BY_RUNNER: AtomicU8 = AtomicU8::new(0);
+/// Whether the runner has started this process.
+static STARTED_BY_RUNNER: AtomicBool = AtomicBool::new(false);
+
+/// Notes that it has. Until then, whoever asks for the time while the library is loaded gets the system's: an allocator
+/// may, which cannot be called again.
+pub(super) fn note_runner() {
+    STARTED_BY_RUNNER.store(true, Ordering::Relaxed);
+}
 
 fn started_by_runner() -> bool {
-    match STARTED_BY_RUNNER.load(Ordering::Relaxed) {
-        0 => {
-            let yes = std::env::var_os(names::MEMORY).is_some();
-            STARTED_BY_RUNNER.store(if yes { 2 } else { 1 }, Ordering::Relaxed);
-            yes
-        }
-        state => state == 2,
-    }
+    STARTED_BY_RUNNER.load(Ordering::Relaxed)
 }
 
 pub(super) fn is_virtual() -> bool {

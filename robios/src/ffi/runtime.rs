@@ -199,7 +199,10 @@ fn memory() -> Option<&'static Arc<Memory>> {
 /// Runs when the library is loaded: from then on, nothing that the program closes is needed.
 #[unsafe(no_mangle)]
 extern "C" fn eyesim_begin() {
-    memory();
+    if memory().is_some() {
+        #[cfg(target_os = "linux")]
+        super::clock::note_runner();
+    }
 }
 
 fn refuse() {

@@ -82,9 +82,8 @@ impl Sleeper {
     fn forget_others(&self) {
         if self.waits.is_multiple_of(SOME_WAITS) {
             let lost = self.waits >= MOST_WAITS;
-            at_ends(|ends| {
-                ends.retain(|&number, &mut (_, thread)| number == self.number || !lost && is_there(thread))
-            });
+            let remembers = |number, thread| number == self.number || (!lost && is_there(thread));
+            at_ends(|ends| ends.retain(|&number, &mut (_, thread)| remembers(number, thread)));
         }
     }
 

@@ -117,6 +117,7 @@ impl Robios {
     /// Asks the world out of turn.
     pub(super) fn ask_now(&mut self, request: &Request) -> Result<Reply> {
         self.deliver()?;
+        let begin = self.clock();
         let lasts = self.lasts(request);
         let known = if lasts { self.recall(request) } else { None };
         let reply = if let Some(reply) = known {
@@ -125,8 +126,8 @@ impl Robios {
             let debt = std::mem::take(&mut self.debt);
             self.ask_link(debt, request)
         };
-        if !self.has_frames() {
-            // A call that fails takes its time too.
+        if !self.has_frames() && self.clock() > begin {
+            // A call that fails takes its time too, if it has come to the robot; where this one is, it need not be asked.
             self.debt += FREE_CALL - self.call_in_world();
         }
         let reply = reply?;
@@ -184,9 +185,7 @@ impl Robios {
             | Request::IsStalled
             | Request::Distance(_)
             | Request::Scan
-            | Request::Encoder(_)
-            | Request::RobotAt(_)
-            | Request::ObjectAt(_) => self.identity.exact,
+            | Request::Encoder(_) => self.identity.exact,
             _ => false,
         }
     }

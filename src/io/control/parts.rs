@@ -1,4 +1,4 @@
-use super::{Behaviour, Command, Decision, Halt, Senses};
+use super::behaviour::{Behaviour, Command, Decision, Halt, Senses};
 use crate::geometry::{Pose, Twist};
 use crate::io::{Drive, Lidar, LidarScan, Result};
 

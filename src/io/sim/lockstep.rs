@@ -323,11 +323,11 @@ mod tests {
                                 thread::yield_now();
                             }
                             program.pass(f64::from(wait) / 1000.0).unwrap();
-                            let mut tell = |world: &mut Ledger, me: usize| {
+                            let tell = |world: &mut Ledger, me: usize| {
                                 world.told[me] = number;
                                 Ok((world.time, world.history))
                             };
-                            program.call(&mut tell).unwrap()
+                            program.call(tell).unwrap()
                         };
                         script.iter().map(act).collect::<Vec<_>>()
                     };

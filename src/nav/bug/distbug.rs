@@ -55,10 +55,14 @@ impl Default for DistRule {
 
 impl Strategy for DistRule {
     /// It turns the nearer way, which leads past.
-    const SLOW_TO_PASS: bool = false;
+    fn slows_to_pass(&self) -> bool {
+        false
+    }
 
     /// By its free ranges it knows the last piece of a boundary beforehand.
-    const LAPS: LapRule = LapRule { lost_turns: 2.0, to_the_end: false };
+    fn laps(&self) -> LapRule {
+        LapRule { lost_turns: 2.0, to_the_end: false }
+    }
 
     /// Takes in how near to the goal the boundary of a new obstacle begins. If the last leave has not brought the
     /// robot as much nearer as it promised, free ranges are relied upon less from now on; so the robot cannot go back

@@ -41,11 +41,25 @@ const IN_LINE: f64 = 0.5;
 
 impl<S: Strategy> Engine<S> {
     pub(super) fn new(goal: Point, parameters: BugParameters, strategy: S) -> Result<Self> {
-        Ok(Self { body: Body::new(goal, parameters, S::SLOW_TO_PASS)?, strategy, following: None })
+        Ok(Self { body: Body::new(goal, parameters, strategy.slows_to_pass())?, strategy, following: None })
     }
 
     /// What the robot shall do until the next step, or how its run has ended.
     pub(super) fn decide(&mut self, seen: &LidarObservation) -> Result<ControlFlow<BugOutcome, Twist>> {
+        let Self { body, strategy, following } = self;
+        Decider { body, strategy, following }.decide(seen)
+    }
+}
+
+/// An engine whatever its strategy, so that the code below is there once.
+struct Decider<'e> {
+    body: &'e mut Body,
+    strategy: &'e mut dyn Strategy,
+    following: &'e mut Option<Following>,
+}
+
+impl Decider<'_> {
+    fn decide(&mut self, seen: &LidarObservation) -> Result<ControlFlow<BugOutcome, Twist>> {
         let twist = self.steer(seen)?;
         Ok(match self.body.phase {
             BugPhase::Ended(outcome) => ControlFlow::Break(outcome),
@@ -73,7 +87,7 @@ impl<S: Strategy> Engine<S> {
     /// Drives at the goal; the heading to take.
     fn head_for_goal(&mut self) -> Option<f64> {
         let view = self.body.look_at_goal();
-        if let Some(heading) = self.strategy.detour(&self.body, &view) {
+        if let Some(heading) = self.strategy.detour(self.body, &view) {
             return Some(heading);
         }
         match view.obstacle {
@@ -84,16 +98,16 @@ impl<S: Strategy> Engine<S> {
 
     /// Starts to follow what is in the way.
     fn hit(&mut self, view: &GoalView, obstacle: Point) -> Option<f64> {
-        let body = &mut self.body;
+        let body = &mut *self.body;
         let own = self.strategy.side(body, view);
         let side = own.unwrap_or_else(|| body.usual_side(view, obstacle));
         let (pose, point) = (body.pose, body.pose.position());
         let anchor = pose.to_world(obstacle);
-        self.following = Some(Following {
+        *self.following = Some(Following {
             side,
             boundary: BoundaryFollower::new(side, body.parameters.follow_distances(), anchor),
             nearest: view.distance,
-            progress: LoopProgress::new(pose, side, S::LAPS),
+            progress: LoopProgress::new(pose, side, self.strategy.laps()),
             travelled: 0.0,
             last: point,
             in_line: false,
@@ -109,7 +123,7 @@ impl<S: Strategy> Engine<S> {
 
     /// What the strategy decides by.
     fn sight(&self, view: &GoalView) -> Option<Sight> {
-        let (body, following) = (&self.body, self.following.as_ref()?);
+        let (body, following) = (&*self.body, self.following.as_ref()?);
         let distances = body.parameters.follow_distances();
         let sense = following.side.sense();
         let wall = normalize_angle(body.pose.heading - sense * FRAC_PI_2);
@@ -136,7 +150,7 @@ impl<S: Strategy> Engine<S> {
         following.travelled += (position - following.last).norm();
         following.last = position;
         let sight = self.sight(&view)?;
-        let decision = self.strategy.consider(&self.body, &sight);
+        let decision = self.strategy.consider(self.body, &sight);
         if let Some(heading) = self.obey(decision, &view)? {
             return Some(heading);
         }
@@ -174,7 +188,7 @@ impl<S: Strategy> Engine<S> {
             }
             Decision::BeginLap => {
                 let following = self.following.as_mut()?;
-                following.progress = LoopProgress::new(self.body.pose, following.side, S::LAPS);
+                following.progress = LoopProgress::new(self.body.pose, following.side, self.strategy.laps());
                 Some(None)
             }
             Decision::GiveUp => {
@@ -186,7 +200,7 @@ impl<S: Strategy> Engine<S> {
 
     /// The heading along the boundary, and what has been seen of it.
     fn along_boundary(&mut self) -> Option<(Option<f64>, Lap)> {
-        let body = &mut self.body;
+        let body = &mut *self.body;
         let following = self.following.as_mut()?;
         let heading = following.boundary.heading(&body.pose, &mut body.surroundings);
         let lap = following.progress.update(body.pose, heading, body.parameters.robot_radius);
@@ -211,7 +225,7 @@ impl<S: Strategy> Engine<S> {
         let (pose, side) = (self.body.pose, following.side.other());
         following.side = side;
         following.boundary.turn_back();
-        following.progress = LoopProgress::new(pose, side, S::LAPS);
+        following.progress = LoopProgress::new(pose, side, self.strategy.laps());
         following.in_line = false;
         self.body.phase = BugPhase::Following(side);
         self.body.events.push(BugEvent::Reverse { point: pose.position(), side });
@@ -219,7 +233,7 @@ impl<S: Strategy> Engine<S> {
     }
 
     fn leave(&mut self, view: &GoalView) {
-        self.following = None;
+        *self.following = None;
         self.body.phase = BugPhase::ToGoal;
         let point = self.body.pose.position();
         self.body.events.push(BugEvent::Leave { point, free: view.free.min(view.distance) });

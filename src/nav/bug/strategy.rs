@@ -1,5 +1,3 @@
-use std::fmt::Debug;
-
 use super::body::{Body, GoalView};
 use super::progress::LapRule;
 use crate::geometry::{Point, angle_difference};
@@ -8,14 +6,18 @@ use crate::nav::boundary::WallSide;
 /// What makes one bug differ from another: when it leaves an obstacle, when it turns back, and when it gives up.
 ///
 /// The engine drives the body by it. All lengths are in metres.
-pub(super) trait Strategy: Debug + Clone {
+pub(super) trait Strategy {
     /// Whether the robot slows down on its way to the goal for what it would pass with less than the least clearance.
     /// Whoever may turn either way then must, since a robot rolls on while it turns.
-    const SLOW_TO_PASS: bool = true;
+    fn slows_to_pass(&self) -> bool {
+        true
+    }
 
     /// When a boundary counts as gone round. Along a spiral the robot turns several times before it unwinds, and the
     /// place to leave may lie right before the end.
-    const LAPS: LapRule = LapRule { lost_turns: 4.0, to_the_end: true };
+    fn laps(&self) -> LapRule {
+        LapRule { lost_turns: 4.0, to_the_end: true }
+    }
 
     /// While the goal is driven at: another heading than straight to it, if the algorithm has one.
     fn detour(&mut self, _body: &Body, _view: &GoalView) -> Option<f64> {

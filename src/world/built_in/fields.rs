@@ -56,7 +56,7 @@ fn maze(text: &str) -> World {
 }
 
 /// A picture on a floor of so many metres, each pixel 5 mm wide: the colour at metres from the near left corner.
-fn painted(name: &str, (width, height): (f64, f64), colour: impl Fn(f64, f64) -> Colour) -> Option<Texture> {
+fn painted(name: &str, (width, height): (f64, f64), colour: impl Fn(f64, f64) -> Colour) -> Texture {
     const PIXEL: f64 = 0.005;
     let pixels = |metres: f64| (metres / PIXEL).round() as u32;
     let (columns, rows) = (pixels(width), pixels(height));
@@ -65,7 +65,7 @@ fn painted(name: &str, (width, height): (f64, f64), colour: impl Fn(f64, f64) ->
         let Colour { red, green, blue } = colour(PIXEL * x, PIXEL * y);
         Rgba([red, green, blue, 255])
     });
-    Some(Texture::new(name, image))
+    Texture::new(name, image)
 }
 
 fn wall(a: [f64; 2], b: [f64; 2], colour: Colour) -> Wall {
@@ -89,7 +89,7 @@ fn soccer() -> World {
     for y in [0.0, width] {
         world.walls.push(wall([0.0, y], [length, y], WHITE));
     }
-    world.floor_texture = painted("Soccer1998.png", (length, width), |x, y| {
+    let grass = painted("Soccer1998.png", (length, width), |x, y| {
         let from_middle = math::hypot(x - 0.5 * length, y - 0.5 * width);
         let near = |distance: f64| distance.abs() < 0.006;
         let area = {
@@ -98,6 +98,7 @@ fn soccer() -> World {
         };
         if near(x - 0.5 * length) || near(from_middle - 0.125) || area { WHITE } else { GRASS }
     });
+    world.floor_texture = Some(grass);
     world
 }
 
@@ -113,10 +114,11 @@ fn chess() -> World {
     const SQUARE: f64 = 0.3;
     let side = 8.0 * SQUARE;
     let mut world = World::walled(side, side);
-    world.floor_texture = painted("Chess.png", (side, side), |x, y| {
+    let board = painted("Chess.png", (side, side), |x, y| {
         let dark = ((x / SQUARE) as u32 + (y / SQUARE) as u32).is_multiple_of(2);
         if dark { Colour::from_hex(0x40_30_28) } else { Colour::from_hex(0xe8_dc_c0) }
     });
+    world.floor_texture = Some(board);
     world
 }
 

@@ -95,7 +95,7 @@ fn cone(name: &str, colour: Colour, scale: f64) -> ObjectKind {
     mesh.turned(&[ring(0.42), ring(0.7)], band);
     mesh.turned(&[ring(0.7), ring(1.0), [0.0, height]], body);
     ObjectKind {
-        mass: 0.45 * scale.powi(3),
+        mass: 0.45 * scale * scale * scale,
         falls: true,
         mesh: Some(Arc::new(mesh)),
         ..ObjectKind::new(name, shape, colour)

@@ -130,44 +130,6 @@ impl RobotSpec {
         }
     }
 
-    /// The racing car of chapter 14, of the size of a Formula SAE car, driven slowly: at full motor 5 m/s. Its lidar sits low
-    /// at the front, below the height of cones.
-    pub fn sae() -> Self {
-        let (wheelbase, half_width, back, front) = (1.550, 0.700, -0.600, 2.250);
-        let car = Self::car();
-        let camera = car.camera.map(|camera| CameraSpec {
-            mount: Mount { x: 1.0, y: 0.0, z: 0.900, yaw: 0.0 },
-            tilt: units::from_deg(-5.0),
-            ..camera
-        });
-        Self {
-            name: "SAE".into(),
-            drive: DriveSpec::Ackermann {
-                wheel_diameter: 0.520,
-                track: 1.200,
-                wheelbase,
-                max_steering: units::from_deg(25.0),
-                max_wheel_speed: units::from_deg(1100.0),
-                ticks_per_turn: 1024.0,
-                dynamics: Some(CarDynamics::default()),
-            },
-            motor: MotorSpec { max_acceleration: 4.0, ..MotorSpec::default() },
-            footprint: Footprint::Rectangle(Aabb::new(
-                Point::new(back, -half_width),
-                Point::new(front, half_width),
-            )),
-            height: 1.050,
-            mass: 250.0,
-            psds: front_and_back(front, back, 0.300),
-            lidar: Some(LidarSpec {
-                mount: Mount { x: front, z: 0.150, ..Mount::default() },
-                ..LidarSpec::default()
-            }),
-            camera,
-            ..car
-        }
-    }
-
     /// A student's Formula car (book, section 14.5), with a motor at each wheel, a low lidar at its nose and a camera
     /// above the driver's head.
     pub fn race_car() -> Self {
@@ -209,6 +171,35 @@ impl RobotSpec {
             }),
             ..Self::s4()
         }
+    }
+
+    /// The racing car as EyeSim's programs drive it (section 14.5): at full motor it does 5 m/s, and its lidar scans all round.
+    pub fn sae() -> Self {
+        let car = Self::race_car();
+        let DriveSpec::Ackermann {
+            wheel_diameter,
+            track,
+            wheelbase,
+            max_steering,
+            ticks_per_turn,
+            dynamics,
+            ..
+        } = car.drive
+        else {
+            return car;
+        };
+        let max_wheel_speed = 20.0;
+        let drive = DriveSpec::Ackermann {
+            wheel_diameter,
+            track,
+            wheelbase,
+            max_steering,
+            max_wheel_speed,
+            ticks_per_turn,
+            dynamics,
+        };
+        let lidar = car.lidar.map(|lidar| LidarSpec { mount: lidar.mount, ..LidarSpec::default() });
+        Self { name: "SAE".into(), drive, lidar, ..car }
     }
 
     /// The follower of section 5.3: an S4 whose tilted lidar looks over robots of its kind (Program 5.8), with four more

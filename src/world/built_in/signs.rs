@@ -39,22 +39,12 @@ impl Sign {
     /// What is on it; transparent beside it.
     pub(super) fn picture(self) -> RgbaImage {
         let words = ["STOP", "P", "30"].map(Word::new);
-        self.drawn(|x, y| self.colour(x, y, &words))
+        drawn(|x, y| self.colour(x, y, &words))
     }
 
     /// Its outline in white, to be coloured as its back.
     pub(super) fn picture_from_behind(self) -> RgbaImage {
-        self.drawn(|x, y| (self.edge(-x, y) <= 1.0).then_some(Colour::WHITE))
-    }
-
-    /// An image of what stands at each place from -1 to 1 across and -1 at the top to 1 at the bottom.
-    fn drawn(self, colour: impl Fn(f64, f64) -> Option<Colour>) -> RgbaImage {
-        let place = |pixel: u32| 2.0 * (f64::from(pixel) + 0.5) / f64::from(SIZE) - 1.0;
-        RgbaImage::from_fn(SIZE, SIZE, |column, row| match colour(place(column), place(row)) {
-            Some(Colour { red, green, blue }) => Rgba([red, green, blue, 255]),
-            // The colour of the rim, which filters mix in.
-            None => Rgba([160, 160, 160, 0]),
-        })
+        drawn(|x, y| (self.edge(-x, y) <= 1.0).then_some(Colour::WHITE))
     }
 
     /// How far out a place is: 1 on the sign's edge.
@@ -80,26 +70,32 @@ impl Sign {
         let bar = |half: f64| (x + y).abs() < half;
         Some(match self {
             Self::Stop if stroke(0.88, 0.96) || stop.covers(x / 0.74, y / 0.3) => Colour::WHITE,
-            Self::Stop => RED,
-            Self::GiveWay if edge > 0.55 => RED,
-            Self::GiveWay => Colour::WHITE,
             Self::Parking if letter.covers(x / 0.42, y / 0.62) || stroke(0.9, 0.95) => Colour::WHITE,
-            Self::Parking => BLUE,
-            Self::NoParking if edge > 0.82 || bar(0.16) => RED,
-            Self::NoParking => BLUE,
             Self::Pedestrian if is_walker(x, y) => Colour::BLACK,
             Self::Pedestrian if triangle(x / 0.8, -y / 0.8 + 0.05) <= 1.0 => Colour::WHITE,
-            Self::Pedestrian => BLUE,
-            Self::SpeedLimit if edge > 0.8 => RED,
-            Self::SpeedLimit if speed.covers(x / 0.6, y / 0.42) => Colour::BLACK,
-            Self::SpeedLimit => Colour::WHITE,
+            Self::SpeedLimit if edge <= 0.8 && speed.covers(x / 0.6, y / 0.42) => Colour::BLACK,
             Self::CancelSpeedLimit if edge > 0.94 || (bar(0.28) && (x + y).abs() % 0.14 < 0.08) => {
                 Colour::BLACK
             }
             Self::CancelSpeedLimit if speed.covers(x / 0.6, y / 0.42) => GRAY,
-            Self::CancelSpeedLimit => Colour::WHITE,
+            Self::GiveWay if edge > 0.55 => RED,
+            Self::NoParking if edge > 0.82 || bar(0.16) => RED,
+            Self::SpeedLimit if edge > 0.8 => RED,
+            Self::Stop => RED,
+            Self::Parking | Self::NoParking | Self::Pedestrian => BLUE,
+            Self::GiveWay | Self::SpeedLimit | Self::CancelSpeedLimit => Colour::WHITE,
         })
     }
+}
+
+/// An image of what stands at each place from -1 to 1 across and -1 at the top to 1 at the bottom.
+fn drawn(colour: impl Fn(f64, f64) -> Option<Colour>) -> RgbaImage {
+    let place = |pixel: u32| 2.0 * (f64::from(pixel) + 0.5) / f64::from(SIZE) - 1.0;
+    RgbaImage::from_fn(SIZE, SIZE, |column, row| match colour(place(column), place(row)) {
+        Some(Colour { red, green, blue }) => Rgba([red, green, blue, 255]),
+        // The colour of the rim, which filters mix in.
+        None => Rgba([160, 160, 160, 0]),
+    })
 }
 
 /// How far out a place is of a triangle that stands on its tip: 1 on its edge.

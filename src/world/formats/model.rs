@@ -161,14 +161,13 @@ fn painted(
 fn add(mesh: &mut Mesh, part: &tobj::Mesh, scale: f64) -> Result<(), String> {
     let bare = mesh.materials.len() - 1;
     let material = part.material_id.filter(|&id| id < bare).unwrap_or(bare);
+    let (places, on_image) = (part.positions.as_chunks::<3>().0, part.texcoords.as_chunks::<2>().0);
     let corner = |index: u32| {
-        let at = 3 * index as usize;
-        let [x, y, z] = *part.positions.get(at..at + 3)?.as_array()?;
+        let [x, y, z] = *places.get(index as usize)?;
         Some([z, x, y].map(|length| scale * f64::from(length)))
     };
     let image_corner = |number: usize| {
-        let at = 2 * *part.texcoord_indices.get(number)? as usize;
-        let [u, v] = *part.texcoords.get(at..at + 2)?.as_array()?;
+        let [u, v] = *on_image.get(*part.texcoord_indices.get(number)? as usize)?;
         Some([f64::from(u), 1.0 - f64::from(v)])
     };
     if mesh.faces.len() + part.indices.len() / 3 > MAX_FACES {

@@ -110,12 +110,11 @@ impl CameraDevice {
         }
         let gaze = self.gaze(&pose, moment.tick)?;
         let Studio { scenery, canvas, side, darkroom } = studio;
-        match &mut self.fisheye {
-            Some(lens) => lens.draw((canvas, side), scenery, &gaze, space, index)?,
-            None => {
-                let view = View::new(gaze.eye, gaze.heading, gaze.tilt, gaze.field_of_view, gaze.dimensions);
-                scenery.draw(canvas, &view, space, index)?;
-            }
+        if let Some(lens) = &mut self.fisheye {
+            lens.draw((canvas, side), scenery, &gaze, space, index)?;
+        } else {
+            let view = View::new(gaze.eye, gaze.heading, gaze.tilt, gaze.field_of_view, gaze.dimensions);
+            scenery.draw(canvas, &view, space, index)?;
         }
         let time = moment.tick as f64 / TICKS_PER_SECOND;
         self.film.develop(canvas, time, moment.light, moment.noise, darkroom, image);

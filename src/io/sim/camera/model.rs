@@ -55,7 +55,7 @@ impl Model {
             let light = brightness(corners, view.eye);
             match coat {
                 Coat::Plain(colour) => {
-                    cutter.draw_either_side(canvas, view, &corners, scaled(*colour, light))
+                    cutter.draw_either_side(canvas, view, &corners, scaled(*colour, light));
                 }
                 Coat::Image(texture) => {
                     draw_image(cutter, canvas, view, &corners, &face.image_corners, texture, light);
@@ -114,7 +114,7 @@ fn draw_image(
             let depth = 1.0 / near.at(column, row);
             texels.each_ref().map(|slope| slope.at(column, row) * depth)
         };
-        let (level, halvings) = texture.level(step(place, (from + to) / 2, row));
+        let (level, halvings) = texture.level(step(place, usize::midpoint(from, to), row));
         let scale = 1.0 / f64::from(1_u32 << halvings);
         for column in from..to {
             let at = row * canvas.width + column;
@@ -164,7 +164,8 @@ fn step(place: impl Fn(usize, usize) -> [f64; 2], column: usize, row: usize) -> 
 
 /// A colour in 256ths of the light.
 fn dimmed(colour: Packed, light: u32) -> Packed {
-    (colour & 0xff_00_ff) * light >> 8 & 0xff_00_ff | (colour & 0xff00) * light >> 8 & 0xff00
+    let part = |mask: Packed| (((colour & mask) * light) >> 8) & mask;
+    part(0xff_00_ff) | part(0xff00)
 }
 
 #[cfg(test)]

@@ -115,11 +115,11 @@ impl Scenery {
             self.carpenter.prism(canvas, view, corners, *body);
         }
         for thing in &self.things {
+            let solid = space.solid(thing.solid);
             match thing.model.and_then(|model| self.models.get(model)) {
-                Some(model) => {
-                    let solid = space.solid(thing.solid);
-                    model.draw(&mut self.cutter, canvas, view, (&solid.pose, solid.bottom));
-                }
+                // What has fallen is not seen.
+                _ if solid.top <= solid.bottom => {}
+                Some(model) => model.draw(&mut self.cutter, canvas, view, (&solid.pose, solid.bottom)),
                 None => thing.draw(&mut self.carpenter, canvas, view, space),
             }
         }
@@ -136,10 +136,6 @@ impl Scenery {
 impl Thing {
     fn draw(&self, carpenter: &mut Carpenter, canvas: &mut Canvas, view: &View, space: &Space) {
         let solid = space.solid(self.solid);
-        // What has fallen is not seen.
-        if solid.top <= solid.bottom {
-            return;
-        }
         let whole = Standing { bottom: solid.bottom, top: solid.bottom + self.height, colour: self.colour };
         self.draw_part(carpenter, canvas, view, &solid.pose, whole);
     }
