@@ -11,8 +11,9 @@
 //!
 //! ```
 //! use roverlab::geometry::{Point, Pose};
+//! use roverlab::io::control::run;
 //! use roverlab::io::sim::{SimOptions, Simulation};
-//! use roverlab::nav::{DistBug, DistBugOutcome, DistBugParameters};
+//! use roverlab::nav::{DistBug, BugOutcome, DistBugParameters};
 //! use roverlab::world::{RobotSpec, Scene, Wall, World};
 //!
 //! # fn main() -> roverlab::io::Result<()> {
@@ -25,10 +26,10 @@
 //!
 //! let goal = Point::new(2.5, 1.0);
 //! let mut bug = DistBug::new(start.to_local(goal), DistBugParameters::default())?;
-//! let outcome = bug.run(&mut robot, 120.0, |_, _| {})?;
+//! let outcome = run(&mut robot, &mut bug, 120.0, |_, _, _| {})?;
 //!
 //! let truth = simulation.truth().robot(0)?;
-//! assert_eq!((outcome, truth.contacts), (DistBugOutcome::Reached, 0));
+//! assert_eq!((outcome, truth.contacts), (BugOutcome::Reached, 0));
 //! assert!(truth.pose.distance_to(goal) < 0.1);
 //! # Ok(())
 //! # }

@@ -37,7 +37,7 @@
 //!
 //! # fn main() -> Result<()> {
 //! let mut robot = MockRobot::new().with_ideal_drive().with_distance(Psd::FRONT, vec![1.0, 0.7, 0.4]);
-//! assert_eq!(run(&mut robot, &mut Approach, 2.0, |_, _, _| {})?, Halt::TimedOut);
+//! assert_eq!(run(&mut robot, &mut Approach, 0.3, |_, _, _| {})?, Halt::TimedOut);
 //! # Ok(())
 //! # }
 //! ```

@@ -81,8 +81,8 @@ impl Other {
     fn new(course: &Course, stage: &Stage) -> Result<Self, Failure> {
         let judge = Judge::new(course, stage.truth(1)?, 1).map_err(Failure::run)?;
         let parameters = course.parameters(1);
-        let map = ConeMap::new(parameters.map)?;
-        let pilot = Pilot { scan: LidarScan::default(), map, lane: LaneFinder::new(parameters.lane)? };
+        let (map, lane) = (ConeMap::new(parameters.map)?, LaneFinder::new(parameters.lane)?);
+        let pilot = Pilot { scan: LidarScan::default(), map, lane };
         Ok(Self { car: stage.claim(1)?, pilot, judge })
     }
 
