@@ -4,7 +4,7 @@ use super::way::Way;
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, Vector, math, normalize_angle};
 use crate::io::{Error, LidarScan, Result};
-use crate::parameter::{require, require_positive};
+use crate::parameter::{require, require_positive, require_up_to};
 
 /// What [`Follower`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,9 +48,9 @@ impl FollowMeParameters {
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("speed", self.speed)?;
         require_positive("turn rate", self.turn_rate)?;
-        require_positive("radius", self.radius)?;
-        require_positive("margin", self.margin)?;
-        require_positive("radius of the leader", self.leader_radius)?;
+        require_up_to("radius", self.radius, 1000.0)?;
+        require_up_to("margin", self.margin, 1000.0)?;
+        require_up_to("radius of the leader", self.leader_radius, 1000.0)?;
         require_positive("patience", self.patience)?;
         require_positive("control period", self.period)?;
         let least = self.radius + self.leader_radius + 2.0 * self.margin;

@@ -2,7 +2,7 @@ use super::way::Way;
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, math};
 use crate::io::{Error, Result};
-use crate::parameter::{require, require_positive};
+use crate::parameter::{require, require_positive, require_up_to};
 
 /// A place in a formation that is kept by radio: the leader sends where it is, and each follower keeps to its place beside or
 /// behind it (book, section 5.3, the first of its three ways).
@@ -38,7 +38,7 @@ impl Formation {
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("speed", self.speed)?;
         require_positive("turn rate", self.turn_rate)?;
-        require_positive("radius", self.radius)?;
+        require_up_to("radius", self.radius, 1000.0)?;
         require_positive("margin", self.margin)?;
         let away = self.offset.coords.norm();
         let good = away >= 2.0 * self.radius && away.is_finite();
