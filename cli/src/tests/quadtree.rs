@@ -59,7 +59,7 @@ fn what_is_wrong_is_named() {
     let empty = empty.to_str().unwrap().to_owned();
     for (options, message) in [
         (vec!["--map", "nowhere.png"], "nowhere.png:1:1: found"),
-        (vec!["--minimum", "3"], "the minimum leaf is 3 cells wide"),
+        (vec!["--minimum", "3"], "minimum leaf is 3; expected a power of two"),
         (vec!["--map", &map, "--from", "0,0", "--to", "5,5"], "the goal (5, 5) is blocked"),
         (vec!["--map", &map, "--from", "0,0", "--to", "8,0"], "the goal (8, 0) lies outside"),
         (vec!["--map", &map, "--from", "5,5", "--to", "0,0"], "the start (5, 5) is blocked"),
