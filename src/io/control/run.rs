@@ -61,7 +61,7 @@ pub(crate) fn stopping<R: ?Sized, C: Command<R>, T>(robot: &mut R, result: Resul
     result.and_then(|value| stopped.map(|()| value))
 }
 
-/// A run of a behaviour whose steps someone else paces, such as a [`Fleet`](super::sim::Fleet):
+/// A run of a behaviour whose steps someone else paces, such as a [`Fleet`](crate::io::sim::Fleet):
 ///
 /// ```
 /// use roverlab::drive::{RandomDrive, RandomDriveParameters};

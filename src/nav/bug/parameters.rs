@@ -25,7 +25,7 @@ pub struct BugParameters {
     pub match_scans: bool,
     /// The seconds by which the robot does later what it is told: at a speed `v` it rolls `v * lag` farther before it stands.
     pub lag: f64,
-    /// Seconds from one control step to the next, for [`run_bug`](super::run_bug).
+    /// Seconds from one control step to the next.
     pub period: f64,
 }
 

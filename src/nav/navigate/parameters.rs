@@ -22,7 +22,7 @@ pub struct NavigateParameters {
     pub turn_rate: f64,
     /// Whether odometry is corrected by matching scans with the known world.
     pub match_scans: bool,
-    /// Seconds from one control step to the next, for [`Navigator::run`](super::Navigator::run).
+    /// Seconds from one control step to the next.
     pub period: f64,
 }
 
