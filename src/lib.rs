@@ -77,7 +77,10 @@
 //! `checkpoint` saves evolutions; `physics` adds a walking robot; `robios` drives a real EyeBot.
 
 // Where some wings are off, what they alone would use is left over, and links to them are plain text.
-#![cfg_attr(not(feature = "default"), allow(dead_code, unused_imports, unused_macros, rustdoc::broken_intra_doc_links))]
+#![cfg_attr(
+    not(feature = "default"),
+    allow(dead_code, unused_imports, unused_macros, rustdoc::broken_intra_doc_links)
+)]
 
 #[cfg(feature = "drive")]
 pub mod drive;
