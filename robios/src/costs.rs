@@ -132,10 +132,10 @@ impl Frames {
     /// With what a file says.
     fn changed(mut self, text: &str, file: &str) -> Result<Self, String> {
         for (number, line) in text.lines().enumerate() {
-            let content = line.split('#').next().unwrap_or_default();
+            let content = line.split_once('#').map_or(line, |(content, _)| content);
             let words: Vec<&str> = content.split_whitespace().collect();
             let wrong = |word: &str, expected: &str| {
-                let column = line.find(word).unwrap_or_default() + 1;
+                let column = word.as_ptr().addr() - line.as_ptr().addr() + 1;
                 Err(format!("{file}:{}:{column}: `{word}`; expected {expected}", number + 1))
             };
             let (name, kind, time) = match words[..] {
