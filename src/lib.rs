@@ -57,8 +57,9 @@
 //! | 14 Formula SAE | tracks of cones, the way between them, racing lines, referee; racing cars | [`race`], [`io::sim`] |
 //! | 14 Formula SAE | the safety system's state machine, monitors, stopping distance | [`safety`] |
 //!
-//! Beside the chapters: [`ParameterError`] is how constructors refuse; [`geometry`] has poses, angles and units; [`random`] seeded random streams; [`world`] what a
-//! world and a robot are, with random courses in [`world::generate`]; [`picture`] draws worlds and runs.
+//! Beside the chapters: [`ParameterError`] is how constructors refuse; [`geometry`] has poses, angles and
+//! units; [`random`] seeded random streams; [`world`] what a world and a robot are, with random courses in
+//! [`world::generate`]; [`picture`] draws worlds and runs.
 //!
 //! # Conventions
 //!
@@ -72,9 +73,10 @@
 //! `default-features = false, features = ["vision"]` the kernels of [`vision`] are compiled alone; `image` adds views of
 //! that crate's images.
 //!
-//! Off by default: `log` adds recordings, `png` pictures as PNG; `testing` strategies for property tests and checks for
-//! planners of one's own; `petgraph` searches graphs of that crate; `rayon` runs vision kernels and evaluates populations on several threads;
-//! `checkpoint` saves evolutions; `physics` adds a walking robot; `robios` drives a real EyeBot.
+//! Off by default: `log` adds recordings, `png` pictures as PNG; `testing` strategies for property tests and
+//! checks for planners of one's own; `petgraph` searches graphs of that crate; `rayon` runs vision kernels
+//! and evaluates populations on several threads; `checkpoint` saves evolutions; `physics` adds a walking
+//! robot; `robios` drives a real EyeBot.
 
 // Where some wings are off, what they alone would use is left over, and links to them are plain text.
 #![cfg_attr(

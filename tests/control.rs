@@ -1,5 +1,5 @@
-//! The loop that runs every behaviour: clocks that stop, jump and run backwards, time limits, errors, and the stop
-//! at the end.
+//! The loop that runs every behaviour: clocks that stop, jump and run backwards, time limits, errors, and the
+//! stop at the end.
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -33,7 +33,8 @@ use roverlab::world::{RobotSpec, Scene, World};
 
 type Robot = Faulty<SimRobot>;
 
-/// A behaviour: its name, its robot, and a run within a limit that is stopped at a time. None of them is done in 5 s.
+/// A behaviour: its name, its robot, and a run within a limit that is stopped at a time. None of them is done
+/// in 5 s.
 type Case = (&'static str, fn() -> RobotSpec, fn(&mut Robot, f64, f64) -> Result<String>);
 
 const GOAL: Point = Point::new(3.0, 2.0);

@@ -1,4 +1,5 @@
-//! Walks the tables of `docs/eyesim-files.md`: what is *used* changes what is read, and what is *reported* gives a warning.
+//! Walks the tables of `docs/eyesim-files.md`: what is *used* changes what is read, and what is *reported*
+//! gives a warning.
 
 use roverlab::world::formats::{MemoryFiles, esobj, maz, parse_scene, robi, wld};
 

@@ -72,7 +72,8 @@ pub enum Request {
 }
 
 impl Request {
-    /// Whether it is a reading of few bytes, which changes nothing and nothing of which is known but by the tick.
+    /// Whether it is a reading of few bytes, which changes nothing and nothing of which is known but by the
+    /// tick.
     pub fn is_brief(&self) -> bool {
         matches!(
             self,

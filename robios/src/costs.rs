@@ -1,9 +1,9 @@
 //! What calls take of a program's time.
 //!
-//! EyeSim's simulator reads one request of each robot in a rendered frame. A *query* comes back with the frame that
-//! reads it; a *one-way* call returns at once, but uses a frame up and takes effect with it; *local* calls, those of the
-//! display and the keys, never leave the program. So a loop that reads two sensors and sets two motors takes four
-//! frames. The figures of local calls are estimates.
+//! EyeSim's simulator reads one request of each robot in a rendered frame. A *query* comes back with the
+//! frame that reads it; a *one-way* call returns at once, but uses a frame up and takes effect with it;
+//! *local* calls, those of the display and the keys, never leave the program. So a loop that reads two
+//! sensors and sets two motors takes four frames. The figures of local calls are estimates.
 //!
 //! A file changes them, one call a line:
 //!

@@ -1,18 +1,19 @@
 //! RoBIOS-7 over roverlab's simulator: the shared library `libeyesim` that C and Python programs for EyeBot robots and
 //! for EyeSim are linked against, and what the runner of such programs needs.
 //!
-//! A program's robot lives in virtual time. Calls take of it what they do on EyeSim, whose frames serve one request of
-//! each robot (see [`costs`]), calls that wait take as long as they wait, and nothing takes real time: a program that
-//! drives for a minute is done in milliseconds. The functions of the system that sleep or tell the time are replaced too
-//! (see `ffi::clock`).
+//! A program's robot lives in virtual time. Calls take of it what they do on EyeSim, whose frames serve one
+//! request of each robot (see [`costs`]), calls that wait take as long as they wait, and nothing takes real
+//! time: a program that drives for a minute is done in milliseconds. The functions of the system that sleep
+//! or tell the time are replaced too (see `ffi::clock`).
 //!
 //! # How it is put together
 //!
-//! [`robios`] is the meaning of every function, in safe Rust, for one robot. It asks for what the world has to answer
-//! through a [`link`]: a world in the same process, or, for programs that share a world, one in the runner's process,
-//! with the requests and replies of [`ask`] as bytes ([`wire`]) in a [`memory`] that both share, which also holds the
-//! [`report`]. What was read once is not asked for again before the world moves on. The private module `ffi` is the
-//! thin layer that C calls: it checks pointers, holds the one robot behind a lock, and lets no panic out.
+//! [`robios`] is the meaning of every function, in safe Rust, for one robot. It asks for what the world has
+//! to answer through a [`link`]: a world in the same process, or, for programs that share a world, one in the
+//! runner's process, with the requests and replies of [`ask`] as bytes ([`wire`]) in a [`memory`] that both
+//! share, which also holds the [`report`]. What was read once is not asked for again before the world moves
+//! on. The private module `ffi` is the thin layer that C calls: it checks pointers, holds the one robot
+//! behind a lock, and lets no panic out.
 //!
 //! # What the functions do that a simulated robot has no counterpart for
 //!
@@ -32,14 +33,15 @@
 //!
 //! # Conventions
 //!
-//! Functions return 0 when they succeed and 1 when they fail, unless RoBIOS says otherwise: null pointers, numbers out
-//! of range, sensors that the robot lacks, and calls after a `fork` or from within a signal handler that has
-//! interrupted another call. `SIMGetRobot` and `SIMSetRobot` take headings as world files do: 0 along the x axis,
-//! counter-clockwise; what was read can be set. Robots and objects are numbered from 1 in one row, as they were
-//! placed; a robot has its number for the radio too. A number that is no robot's counts robots alone in
-//! `SIMGetRobot` and `RADIOSend`, and one that is no object's counts objects alone in `SIMGetObject`. What
-//! `SIMSetRobot` and `SIMSetObject` move is there 10 ms after their frame, or after the call where calls are free, and for
-//! all programs at the same time; of several that move one thing at once, the robot that was placed last prevails.
+//! Functions return 0 when they succeed and 1 when they fail, unless RoBIOS says otherwise: null pointers,
+//! numbers out of range, sensors that the robot lacks, and calls after a `fork` or from within a signal
+//! handler that has interrupted another call. `SIMGetRobot` and `SIMSetRobot` take headings as world files
+//! do: 0 along the x axis, counter-clockwise; what was read can be set. Robots and objects are numbered from
+//! 1 in one row, as they were placed; a robot has its number for the radio too. A number that is no robot's
+//! counts robots alone in `SIMGetRobot` and `RADIOSend`, and one that is no object's counts objects alone in
+//! `SIMGetObject`. What `SIMSetRobot` and `SIMSetObject` move is there 10 ms after their frame, or after the
+//! call where calls are free, and for all programs at the same time; of several that move one thing at once,
+//! the robot that was placed last prevails.
 //!
 //! A program's outcome, its time and its `collisions` are those at its end. Its robot drives on until it stands or
 //! its time is over: pose and path are those at that end, and what it touched meanwhile is counted in

@@ -14,8 +14,8 @@ use crate::wire::{Answer, Question};
 
 /// Somebody who answers requests.
 pub trait Link: fmt::Debug + Send {
-    /// Lets `debt` seconds pass that calls without the world have taken, and answers. Some of the readings that are wanted
-    /// at the end may come along, in their order.
+    /// Lets `debt` seconds pass that calls without the world have taken, and answers. Some of the readings
+    /// that are wanted at the end may come along, in their order.
     fn ask(&mut self, debt: f64, wanted: &[Request], request: &Request) -> Result<(Reply, Vec<Reply>)>;
 
     /// The robot's own time at the last answer.

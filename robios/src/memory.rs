@@ -1,5 +1,5 @@
-//! Memory that a program and the runner share. No descriptor of it is left open in the program, so whatever a program
-//! closes, its report and its way to the world stay.
+//! Memory that a program and the runner share. No descriptor of it is left open in the program, so whatever a
+//! program closes, its report and its way to the world stay.
 
 #![allow(unsafe_code)]
 
@@ -41,8 +41,8 @@ const ANSWER: u32 = 2;
 /// The program has no more questions.
 const LEFT: u32 = 3;
 
-/// Looks at a word before the system is asked to wait for it: the other side mostly answers within this time, if it
-/// has a processor of its own.
+/// Looks at a word before the system is asked to wait for it: the other side mostly answers within this time,
+/// if it has a processor of its own.
 const SPINS: u32 = 2000;
 
 /// The memory.
@@ -52,8 +52,8 @@ pub struct Memory {
     spins: u32,
 }
 
-// SAFETY: it is memory of its own, which lives as long as this handle; words are atomic, and whose turn it is decides
-// who touches the bytes behind them.
+// SAFETY: it is memory of its own, which lives as long as this handle; words are atomic, and whose turn it is
+// decides who touches the bytes behind them.
 unsafe impl Send for Memory {}
 // SAFETY: as above.
 unsafe impl Sync for Memory {}
@@ -285,7 +285,8 @@ fn wait(word: &AtomicU32, value: u32, patience: Duration) {
         tv_nsec: libc::c_long::from(patience.subsec_nanos() as i32),
     };
     let nothing = std::ptr::null::<u32>();
-    // SAFETY: the kernel compares a word of memory that is mapped, and reads a time that lives until it returns.
+    // SAFETY: the kernel compares a word of memory that is mapped, and reads a time that lives until it
+    // returns.
     unsafe {
         libc::syscall(libc::SYS_futex, word.as_ptr(), libc::FUTEX_WAIT, value, &raw const time, nothing, 0)
     };

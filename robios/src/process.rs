@@ -10,11 +10,11 @@ use std::sync::Arc;
 
 use crate::memory::Memory;
 
-/// Starts a program in a process group of its own, that ends with this process at the latest. The files stay open in it
-/// under their numbers.
+/// Starts a program in a process group of its own, that ends with this process at the latest. The files stay
+/// open in it under their numbers.
 ///
-/// Its parent is a small process that ends as it does, after noting in the memory how that was: so a program that ends
-/// its parent ends nobody who is needed.
+/// Its parent is a small process that ends as it does, after noting in the memory how that was: so a program
+/// that ends its parent ends nobody who is needed.
 pub fn start(command: &mut Command, files: &[BorrowedFd<'_>], memory: &Arc<Memory>) -> io::Result<Child> {
     let files: Vec<RawFd> = files.iter().map(AsRawFd::as_raw_fd).collect();
     let memory = Arc::clone(memory);
@@ -53,8 +53,8 @@ fn end_with_parent() {
 /// Waits for the program, notes how it ended, and ends in the same way.
 fn stand_by(program: libc::pid_t, memory: &Memory) -> ! {
     let mut status = 0;
-    // SAFETY: closes what this process needs no more, and nobody else uses; waits for its only child, whose status the
-    // kernel writes to a number that lives until it returns; and ends this process.
+    // SAFETY: closes what this process needs no more, and nobody else uses; waits for its only child, whose
+    // status the kernel writes to a number that lives until it returns; and ends this process.
     unsafe {
         let mut most = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
         let limit =

@@ -1,5 +1,5 @@
-//! Starman in the place of a robot on wheels: it walks in an upright plane of its own, which stands in the world where
-//! the robot does, along its heading.
+//! Starman in the place of a robot on wheels: it walks in an upright plane of its own, which stands in the
+//! world where the robot does, along its heading.
 
 use roverlab::geometry::{Pose, math};
 use roverlab::io::sim::starman::{Starman, StarmanSpec};
@@ -25,7 +25,8 @@ pub(crate) struct Walker {
 const LIMBS: usize = roverlab::io::sim::starman::LIMBS;
 /// Seconds that a Starman takes for a call.
 const CALL: f64 = 1e-4;
-/// Degrees that a limb swings to either side. RoBIOS counts them from 128, the middle: one step is one degree.
+/// Degrees that a limb swings to either side. RoBIOS counts them from 128, the middle: one step is one
+/// degree.
 const SWING: f64 = 30.0;
 /// RoBIOS's steps from the middle to the end.
 const STEPS: f64 = 128.0;
@@ -97,8 +98,8 @@ impl Walker {
         self.origin = ahead(pose, -self.travelled());
     }
 
-    /// Puts it somewhere else, upright, as a hand would: it has not moved, and its limbs return to where they were told
-    /// to be.
+    /// Puts it somewhere else, upright, as a hand would: it has not moved, and its limbs return to where they
+    /// were told to be.
     pub(crate) fn place(&mut self, pose: Pose) -> Result<()> {
         let odometry = self.odometry();
         self.starman = Starman::new(&StarmanSpec::default())?;

@@ -1,8 +1,9 @@
 //! Requests and replies as bytes, for programs that share a world with others and live in processes of their own.
 //!
-//! A question is the seconds that the program has spent, the readings that it will want to know too, and the request: a
-//! number for what is asked, and its arguments. An answer is the robot's time, these readings, and the reply: a number,
-//! and what is answered or the error. Numbers are little-endian. Whatever comes in is checked: nonsense is an error.
+//! A question is the seconds that the program has spent, the readings that it will want to know too, and the
+//! request: a number for what is asked, and its arguments. An answer is the robot's time, these readings, and
+//! the reply: a number, and what is answered or the error. Numbers are little-endian. Whatever comes in is
+//! checked: nonsense is an error.
 
 use image::RgbImage;
 use roverlab::geometry::{Pose, Twist};

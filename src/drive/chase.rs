@@ -122,8 +122,8 @@ impl Chase {
         }))
     }
 
-    /// The behaviour after a goal. `goal` says, for a time since the first step, where it is in the frame of the robot's
-    /// odometry, by whatever way the robot learns of it.
+    /// The behaviour after a goal. `goal` says, for a time since the first step, where it is in the frame of
+    /// the robot's odometry, by whatever way the robot learns of it.
     pub fn after<R: Drive + ?Sized>(
         &mut self,
         mut goal: impl FnMut(&mut R, f64) -> Result<Pose>,

@@ -3,8 +3,8 @@ use std::ops::ControlFlow;
 use super::{Error, ErrorKind, Result, RobotIo, RobotTruth};
 use crate::geometry::Pose;
 
-/// What a robot of a [`Troop`] does at each of its steps, until it breaks. A [`Run`](crate::io::control::Run) makes one of a
-/// behaviour.
+/// What a robot of a [`Troop`] does at each of its steps, until it breaks. A [`Run`](crate::io::control::Run)
+/// makes one of a behaviour.
 pub type TroopStep<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<()>> + 'a>;
 
 /// Robots whose behaviours are stepped in one thread: a simulator's [`Fleet`](crate::io::sim::Fleet), one

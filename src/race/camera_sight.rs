@@ -78,8 +78,8 @@ fn chroma(image: &RgbImage, column: usize, row: usize) -> f64 {
     f64::from((most - least).saturating_sub(GROUND_CHROMA))
 }
 
-/// The row at which a cone ends, between whole rows: what is colourful below the cone's inside, as much as that, is the
-/// cone's as well. It is the same for dark and for bright cones, and for a camera that blurs.
+/// The row at which a cone ends, between whole rows: what is colourful below the cone's inside, as much as
+/// that, is the cone's as well. It is the same for dark and for bright cones, and for a camera that blurs.
 fn foot(image: &RgbImage, top: usize, [column, last]: [usize; 2]) -> f64 {
     let inside = last.saturating_sub(2).max(top);
     let whole = chroma(image, column, inside).max(1.0);
@@ -187,7 +187,8 @@ impl CameraMount {
         (depth > 1e-3).then_some([0.5 * width - left * scale, 0.5 * height + below * scale, depth])
     }
 
-    /// The middle of the cone whose foot begins at a pixel, its distance from the camera, and how far a pixel more is.
+    /// The middle of the cone whose foot begins at a pixel, its distance from the camera, and how far a pixel
+    /// more is.
     fn place(&self, column: f64, row: f64, width: f64, height: f64) -> Option<(Point, f64, f64)> {
         let focal = self.focal(width);
         let (sin, cos) = math::sin_cos(self.pitch);

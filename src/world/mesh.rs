@@ -7,8 +7,8 @@ use crate::geometry::math;
 
 /// The surface of a thing as cameras see it: triangles, seen from both sides.
 ///
-/// Places are metres ahead, to the left and upwards of the thing's foot. No robot touches it and no other sensor notices
-/// it: they meet the thing's shape.
+/// Places are metres ahead, to the left and upwards of the thing's foot. No robot touches it and no other
+/// sensor notices it: they meet the thing's shape.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mesh {
     /// What the faces are made of.
@@ -31,8 +31,8 @@ pub struct Material {
 pub struct Face {
     /// Where its corners are.
     pub corners: [[f64; 3]; 3],
-    /// Where they are in the material's image: columns from its left edge and rows from its upper edge, each in parts of
-    /// the image's size. Beyond 0 to 1 the image repeats.
+    /// Where they are in the material's image: columns from its left edge and rows from its upper edge, each
+    /// in parts of the image's size. Beyond 0 to 1 the image repeats.
     pub image_corners: [[f64; 2]; 3],
     /// The index of what it is made of.
     pub material: usize,
@@ -51,8 +51,8 @@ impl Mesh {
         self.materials.len() - 1
     }
 
-    /// Adds a flat quadrangle with the whole of the material's image on it: its upper left, lower left, lower right and
-    /// upper right corner.
+    /// Adds a flat quadrangle with the whole of the material's image on it: its upper left, lower left, lower
+    /// right and upper right corner.
     pub(super) fn quadrangle(&mut self, corners: [[f64; 3]; 4], material: usize) {
         let on_image = [[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]];
         for order in [[0, 1, 2], [0, 2, 3]] {
@@ -65,7 +65,8 @@ impl Mesh {
         }
     }
 
-    /// Adds what turns about the upright axis through the foot: rings of a radius at a height, each joined to the next.
+    /// Adds what turns about the upright axis through the foot: rings of a radius at a height, each joined to
+    /// the next.
     pub(super) fn turned(&mut self, rings: &[[f64; 2]], material: usize) {
         const SIDES: usize = 20;
         let at = |[radius, height]: [f64; 2], side: usize| {

@@ -74,8 +74,8 @@ pub struct ObjectKind {
     pub mass: f64,
     /// Whether it stays where it is when something pushes it.
     pub fixed: bool,
-    /// Whether it falls over when a robot that weighs no less than it does touches it. It lies flat then: nothing
-    /// meets it and no sensor sees it.
+    /// Whether it falls over when a robot that weighs no less than it does touches it. It lies flat then:
+    /// nothing meets it and no sensor sees it.
     pub falls: bool,
     /// Cubic metres of water that it displaces, for things that float.
     pub buoyancy: Option<f64>,

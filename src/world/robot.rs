@@ -63,7 +63,8 @@ pub enum DriveSpec {
         max_wheel_speed: f64,
         /// Encoder ticks in one turn of a wheel.
         ticks_per_turn: f64,
-        /// Its mass and its tyres, for a car so fast that they matter; without it, wheels roll and never slip.
+        /// Its mass and its tyres, for a car so fast that they matter; without it, wheels roll and never
+        /// slip.
         dynamics: Option<CarDynamics>,
     },
     /// Four Mecanum wheels.
@@ -100,10 +101,11 @@ impl DriveSpec {
     }
 }
 
-/// Mass and tyres of a car: the dynamic bicycle model, with an axle's two tyres in one and no transfer of load.
+/// Mass and tyres of a car: the dynamic bicycle model, with an axle's two tyres in one and no transfer of
+/// load.
 ///
-/// The car accelerates as its [`MotorSpec`] says: the time constant is that with which its speed controller closes a
-/// difference, and the acceleration the motors' greatest.
+/// The car accelerates as its [`MotorSpec`] says: the time constant is that with which its speed controller
+/// closes a difference, and the acceleration the motors' greatest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarDynamics {
     /// Metres from the rear axle to the centre of mass.
@@ -114,8 +116,8 @@ pub struct CarDynamics {
     pub grip: f64,
     /// The cornering force of a tyre for its load and its slip angle, in 1/rad.
     pub stiffness: f64,
-    /// Grip and stiffness of the front tyres as a share of those of the rear ones: less than 1, so that the front
-    /// slides first.
+    /// Grip and stiffness of the front tyres as a share of those of the rear ones: less than 1, so that the
+    /// front slides first.
     pub balance: f64,
     /// The greatest deceleration by the brakes, in m/s².
     pub brake: f64,
@@ -194,8 +196,8 @@ impl Footprint {
     }
 }
 
-/// A part of a robot that is higher and narrower than the rest: a handle, a pole. Rays meet it; what drives into the robot
-/// meets its footprint, in which the mast stands.
+/// A part of a robot that is higher and narrower than the rest: a handle, a pole. Rays meet it; what drives
+/// into the robot meets its footprint, in which the mast stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mast {
     /// Its rectangle in the robot's frame.
@@ -288,8 +290,8 @@ pub struct CameraSpec {
     pub max_tilt: f64,
     /// The horizontal field of view, in radians.
     pub field_of_view: f64,
-    /// Whether the lens is equidistant, as fisheyes are: a place in the picture is as far from the middle as its angle from
-    /// the line of sight says, twice as far for twice the angle. Other cameras are pinholes.
+    /// Whether the lens is equidistant, as fisheyes are: a place in the picture is as far from the middle as
+    /// its angle from the line of sight says, twice as far for twice the angle. Other cameras are pinholes.
     pub fisheye: bool,
 }
 

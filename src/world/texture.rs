@@ -8,8 +8,8 @@ use image::RgbaImage;
 pub struct Texture {
     /// The image's file as the world's file names it.
     pub file: PathBuf,
-    /// Its pixels, once a [`FileSource`](super::formats::FileSource) has found it: reading a whole scene does so, reading
-    /// the text of a world alone does not.
+    /// Its pixels, once a [`FileSource`](super::formats::FileSource) has found it: reading a whole scene does
+    /// so, reading the text of a world alone does not.
     pub image: Option<Arc<RgbaImage>>,
 }
 

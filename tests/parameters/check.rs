@@ -123,7 +123,8 @@ pub(crate) fn nonsense() -> impl Iterator<Item = f64> {
     NONSENSE.into_iter()
 }
 
-/// Gives nonsense to every field of a struct, and names all of its fields: one that is added later has to be listed.
+/// Gives nonsense to every field of a struct, and names all of its fields: one that is added later has to be
+/// listed.
 macro_rules! check {
     ($type:ident = $base:expr, |$parameters:ident| $new:expr,
      { $($takes:ident: $($field:ident),+;)+ } $(but $($rest:ident),+)?) => {{

@@ -7,8 +7,9 @@ use super::Failure;
 
 /// When a command does not heed options, and which: their names have underscores.
 ///
-/// `always`; `campaign`: with that option; `!campaign`: without it; `method=turn,arc`: where it has one of these values,
-/// given or by default; `method!=turn`: where it has another one; with `&` between what has to hold together.
+/// `always`; `campaign`: with that option; `!campaign`: without it; `method=turn,arc`: where it has one of
+/// these values, given or by default; `method!=turn`: where it has another one; with `&` between what has to
+/// hold together.
 pub(crate) type Unheeded = (&'static str, &'static [&'static str]);
 
 /// A command line that says what it does not heed.

@@ -168,7 +168,8 @@ impl Course {
         }
     }
 
-    /// Why the car cannot go around it, whatever its program: a gate between a blue and a yellow cone is narrower than the car.
+    /// Why the car cannot go around it, whatever its program: a gate between a blue and a yellow cone is
+    /// narrower than the car.
     pub(crate) fn impassable(&self) -> Option<String> {
         let width = 2.0 * Self::outline().half_width;
         let of = |paint: ConeColour| self.cones.iter().filter(move |cone| cone.colour == paint);

@@ -278,7 +278,8 @@ fn the_driver_is_answered() {
 #[test]
 fn a_sensor_that_stays_late_keeps_the_car_standing() {
     for fault in ["late:lidar=1@6", "late=1@6"] {
-        // On a track on which no cone stands on the way of the stop, which is driven without news of the lane.
+        // On a track on which no cone stands on the way of the stop, which is driven without news of the
+        // lane.
         let options = ["--fault", fault, "--event", "button", "--time-limit", "20", "--seed", "2"];
         let (_, report, _) = run("safety", &options);
         assert_eq!(

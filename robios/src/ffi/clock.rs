@@ -21,8 +21,8 @@ use crate::robios::EPOCH;
 /// Whether the runner has started this process.
 static STARTED_BY_RUNNER: AtomicBool = AtomicBool::new(false);
 
-/// Notes that it has. Until then, whoever asks for the time while the library is loaded gets the system's: an allocator
-/// may, which cannot be called again.
+/// Notes that it has. Until then, whoever asks for the time while the library is loaded gets the system's: an
+/// allocator may, which cannot be called again.
 pub(super) fn note_runner() {
     STARTED_BY_RUNNER.store(true, Ordering::Relaxed);
 }

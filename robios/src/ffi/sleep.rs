@@ -28,7 +28,8 @@ const GRACE: Duration = Duration::from_micros(50);
 /// When the threads that sleep wake up, in seconds since the start, and their numbers.
 static ENDS: Mutex<BTreeMap<u64, (f64, u32)>> = Mutex::new(BTreeMap::new());
 static SLEEPERS: AtomicU64 = AtomicU64::new(0);
-/// Threads that have started another one and let it run: it does not take them long, so nobody wakes up meanwhile.
+/// Threads that have started another one and let it run: it does not take them long, so nobody wakes up
+/// meanwhile.
 static STARTERS: AtomicU64 = AtomicU64::new(0);
 
 /// Looks at them as within a call, so that a signal handler that sleeps meanwhile does not wait for this
@@ -87,8 +88,9 @@ impl Sleeper {
         }
     }
 
-    /// Whether it is this thread's turn to wake up, of all that should have: those who sleep wake in the order of their
-    /// times, and each one when the one before waits again, so that the system does not decide who calls first.
+    /// Whether it is this thread's turn to wake up, of all that should have: those who sleep wake in the
+    /// order of their times, and each one when the one before waits again, so that the system does not decide
+    /// who calls first.
     fn may_wake(&mut self, turn: &mut Turn, end: f64) -> bool {
         let first = at_ends(|ends| {
             let earlier = |(&number, &(other, _)): (&u64, &(f64, u32))| (other, number) < (end, self.number);
@@ -143,7 +145,8 @@ fn sleep_until(end: f64) -> Option<()> {
     }
 }
 
-/// Lets the program's other threads go on until they wait: a thread that has just been started is the first to run.
+/// Lets the program's other threads go on until they wait: a thread that has just been started is the first
+/// to run.
 #[cfg(target_os = "linux")]
 pub(super) fn let_others_run() {
     let mut turn = Turn::default();

@@ -19,17 +19,19 @@ pub(super) struct Turn {
 const SHARE: u64 = 1_000_000;
 /// Nanoseconds that a thread gets to go on until it waits, before another one wakes up.
 const LONG_SHARE: u64 = 5_000_000;
-/// Looks after which time passes whatever the threads do: on a busy machine, one that could run may wait long.
+/// Looks after which time passes whatever the threads do: on a busy machine, one that could run may wait
+/// long.
 const MOST_LOOKS: u32 = 20_000;
 
 impl Turn {
-    /// Whether every other thread waits for something, or has had its share of a processor. Those that sleep by the
-    /// program's clock are known to wait.
+    /// Whether every other thread waits for something, or has had its share of a processor. Those that sleep
+    /// by the program's clock are known to wait.
     pub(super) fn is_over(&mut self, asleep: &[u32]) -> bool {
         self.is_over_after(SHARE, asleep)
     }
 
-    /// As [`is_over`](Turn::is_over), with a share in which a thread that does not wait does most of what it does at a time.
+    /// As [`is_over`](Turn::is_over), with a share in which a thread that does not wait does most of what it
+    /// does at a time.
     pub(super) fn is_long_over(&mut self, asleep: &[u32]) -> bool {
         self.is_over_after(LONG_SHARE, asleep)
     }
@@ -48,7 +50,8 @@ impl Turn {
         still || self.looks > MOST_LOOKS
     }
 
-    /// A thread that was found waiting twice, and has done nothing in between, waits for more than its turn at a lock.
+    /// A thread that was found waiting twice, and has done nothing in between, waits for more than its turn
+    /// at a lock.
     fn is_over_for(&mut self, thread: u32, share: u64) -> bool {
         // A system that does not tell what threads have spent does not tell truly whether they could run.
         let Some(now) = spent(thread) else { return true };
@@ -63,8 +66,8 @@ impl Turn {
     }
 }
 
-/// Whether the program's threads have all been waiting since an earlier look while it has a child process: for that, most
-/// likely, whose time is the real one.
+/// Whether the program's threads have all been waiting since an earlier look while it has a child process:
+/// for that, most likely, whose time is the real one.
 #[derive(Debug, Default)]
 pub(super) struct Stillness(BTreeMap<u32, u64>);
 
@@ -88,8 +91,8 @@ fn has_child() -> bool {
     unsafe { libc::waitid(libc::P_ALL, 0, &raw mut child, look) == 0 }
 }
 
-/// Whether the thread in which the program began has ended, and all others that it has started. To be called by a
-/// thread that is not the program's.
+/// Whether the thread in which the program began has ended, and all others that it has started. To be called
+/// by a thread that is not the program's.
 pub(super) fn have_all_ended() -> bool {
     let first = std::process::id();
     state(first) == Some('Z') && others().into_iter().all(|thread| thread == first)

@@ -33,8 +33,8 @@ const PATIENCE: u32 = 4;
 const DOUBLING: u32 = 20;
 /// Most seconds that pass at a look.
 const MOST: f64 = 0.2;
-/// Looks in which a program has to wait for another process before time passes: what keeps it waiting that long is not
-/// the machine.
+/// Looks in which a program has to wait for another process before time passes: what keeps it waiting that
+/// long is not the machine.
 const WAITING: u32 = 40;
 /// Looks without a call after which time passes for a program without timers: most that compute are done by then.
 const LONG: u32 = 1000;

@@ -43,8 +43,8 @@ impl Robios {
         Ok(self.numbers.clone())
     }
 
-    /// `RADIOReceive`: the oldest message that has not been received; waits for so many seconds at most, and is called
-    /// again until there is one.
+    /// `RADIOReceive`: the oldest message that has not been received; waits for so many seconds at most, and
+    /// is called again until there is one.
     pub fn radio_receive(&mut self, seconds: f64) -> Result<Option<RadioMessage>> {
         let now = self.now();
         self.report.listening_since.get_or_insert(now);

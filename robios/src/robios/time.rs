@@ -1,8 +1,8 @@
 //! What calls take of the robot's time, and when the world hears of them.
 //!
-//! With [`Costs::Frames`], requests wait in a queue of which each frame serves one, in the order of the calls. A query
-//! lets the time until its frame pass. An order that needs no answer is kept until time has come to its frame; as
-//! nothing but this program's own calls lets time pass, that is early enough.
+//! With [`Costs::Frames`], requests wait in a queue of which each frame serves one, in the order of the
+//! calls. A query lets the time until its frame pass. An order that needs no answer is kept until time has
+//! come to its frame; as nothing but this program's own calls lets time pass, that is early enough.
 
 use std::collections::VecDeque;
 
@@ -55,7 +55,8 @@ impl Queue {
     }
 }
 
-/// What was read at the present tick, which reads the same until the next one or until the robot is told something.
+/// What was read at the present tick, which reads the same until the next one or until the robot is told
+/// something.
 #[derive(Debug, Default)]
 pub(super) struct Recent {
     tick: u64,
@@ -127,7 +128,8 @@ impl Robios {
             self.ask_link(debt, request)
         };
         if !self.has_frames() && self.clock() > begin {
-            // A call that fails takes its time too, if it has come to the robot; where this one is, it need not be asked.
+            // A call that fails takes its time too, if it has come to the robot; where this one is, it need
+            // not be asked.
             self.debt += FREE_CALL - self.call_in_world();
         }
         let reply = reply?;

@@ -43,8 +43,9 @@ pub(crate) struct Options {
     #[arg(long, value_name = "S", default_value = "120", value_parser = parse_seconds)]
     pub(crate) time_limit: f64,
 
-    /// What calls take of a program's time: as on EyeSim, where a frame serves one request of each robot (eyesim); a tenth
-    /// of a millisecond each (free); or as a file says, a line for each call that differs from EyeSim: `PSDGet query 2`.
+    /// What calls take of a program's time: as on EyeSim, where a frame serves one request of each robot
+    /// (eyesim); a tenth of a millisecond each (free); or as a file says, a line for each call that differs
+    /// from EyeSim: `PSDGet query 2`.
     #[arg(long, value_name = "eyesim|free|FILE", default_value = "eyesim")]
     pub(crate) call_costs: String,
 

@@ -1,5 +1,5 @@
-//! Limits that hold, and programs that do what they should not: close what is not theirs, leave their first thread, fork,
-//! end their parent, wait for each other.
+//! Limits that hold, and programs that do what they should not: close what is not theirs, leave their first
+//! thread, fork, end their parent, wait for each other.
 
 use std::time::Instant;
 
@@ -10,7 +10,8 @@ use super::{Folder, compiler, report};
 const BUSY: &str = "#include \"eyebot.h\"\nint main() { for (;;) PSDGet(1); }\n";
 const HANG: &str = "#include \"eyebot.h\"\nint main() { LCDPrintf(\"on\"); for (;;) ; }\n";
 
-/// Runs a program alone, and then beside another one that does nothing, and returns what is told of it each time.
+/// Runs a program alone, and then beside another one that does nothing, and returns what is told of it each
+/// time.
 fn alone_and_beside(name: &str, text: &str, options: &[&str]) -> [Value; 2] {
     let folder = Folder::new(&format!("limits-{name}"));
     let file = folder.write(&format!("{name}.c"), text);

@@ -52,8 +52,8 @@ fn an_order_reaches_the_robot_with_its_frame() {
         return;
     }
     let folder = Folder::new("time-orders");
-    // One motor is set a frame after the other, so a robot that is told to go straight turns a little; and a program
-    // that ends at once has still given its orders.
+    // One motor is set a frame after the other, so a robot that is told to go straight turns a little; and a
+    // program that ends at once has still given its orders.
     let file = folder.write(
         "motors.c",
         "#include \"eyebot.h\"\nint main() { int x, y, phi; MOTORDrive(1, 50); MOTORDrive(2, 50); OSWait(1000);\n\

@@ -42,7 +42,8 @@ impl Stopwatch {
         Ok(now)
     }
 
-    /// The same at a new step: fails, too, if no time has passed since the last one. Such a run would not end.
+    /// The same at a new step: fails, too, if no time has passed since the last one. Such a run would not
+    /// end.
     pub(crate) fn step<R: Clock + ?Sized>(&mut self, robot: &mut R) -> Result<f64> {
         let now = self.now(robot)?;
         if now <= self.step {
@@ -62,8 +63,8 @@ impl Stopwatch {
         self.last >= self.end - RESOLUTION
     }
 
-    /// Waits until a time, or until the time is over, if one of these is still to come. Returns when that was due: now, if
-    /// it is late.
+    /// Waits until a time, or until the time is over, if one of these is still to come. Returns when that was
+    /// due: now, if it is late.
     pub(crate) fn wait_until<R: Clock + ?Sized>(&mut self, robot: &mut R, due: f64) -> Result<f64> {
         let now = self.now(robot)?;
         let due = due.max(now);

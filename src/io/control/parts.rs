@@ -61,8 +61,9 @@ impl<R: Drive + ?Sized> Command<R> for Manoeuvre {
     }
 }
 
-/// A behaviour whose observations a function reads, given the robot and the time: by other sensors, or by an estimate that is
-/// better than odometry. The function also [prepares](Senses::prepare) the robot, if that is needed.
+/// A behaviour whose observations a function reads, given the robot and the time: by other sensors, or by an
+/// estimate that is better than odometry. The function also [prepares](Senses::prepare) the robot, if that is
+/// needed.
 #[derive(Debug)]
 pub struct SensedBy<'b, B: ?Sized, F> {
     behaviour: &'b mut B,

@@ -14,14 +14,16 @@ pub struct Step<'a, O> {
     pub seen: &'a O,
 }
 
-/// Runs a behaviour on a robot for at most `time_limit` seconds, infinity for any time. `watch` is called at each step,
-/// before the robot is told what was decided, and at the end; if it breaks or fails, that ends the run.
+/// Runs a behaviour on a robot for at most `time_limit` seconds, infinity for any time. `watch` is called at
+/// each step, before the robot is told what was decided, and at the end; if it breaks or fails, that ends the
+/// run.
 ///
-/// Steps are a period apart. One that is late begins the next one at once, and what was missed is not made up for. At the
-/// end, however it comes, the robot is stopped; an error while it stops does not hide an earlier one.
+/// Steps are a period apart. One that is late begins the next one at once, and what was missed is not made up
+/// for. At the end, however it comes, the robot is stopped; an error while it stops does not hide an earlier
+/// one.
 ///
-/// Fails if the robot does, or if its clock stands still, runs backwards or shows no number. A clock that jumps ahead is time
-/// that has passed.
+/// Fails if the robot does, or if its clock stands still, runs backwards or shows no number. A clock that
+/// jumps ahead is time that has passed.
 pub fn run<R, B, V>(
     robot: &mut R,
     behaviour: &mut B,
@@ -93,8 +95,8 @@ pub struct Run<B: Behaviour + ?Sized> {
 }
 
 impl<B: Behaviour + ?Sized> Run<B> {
-    /// A run that begins at its first step and takes at most `time_limit` seconds. Fails unless both that and the
-    /// behaviour's period make sense.
+    /// A run that begins at its first step and takes at most `time_limit` seconds. Fails unless both that and
+    /// the behaviour's period make sense.
     pub fn new(behaviour: &B, time_limit: f64) -> Result<Self> {
         let period = behaviour.period();
         require_positive("control period", period)?;

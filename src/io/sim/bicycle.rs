@@ -6,7 +6,8 @@ use crate::world::{CarDynamics, MotorSpec};
 
 /// A fast car by the dynamic bicycle model: tyres slip, and their forces stay within the friction circle.
 ///
-/// Its odometry takes the speed from the wheels and the heading from a gyroscope; that the car slides is beyond it.
+/// Its odometry takes the speed from the wheels and the heading from a gyroscope; that the car slides is
+/// beyond it.
 #[derive(Debug, Clone)]
 pub(super) struct Bicycle {
     spec: CarDynamics,
@@ -42,7 +43,8 @@ const SUBSTEPS: u32 = 5;
 const ROLLS: f64 = 2.0;
 const SLIPS: f64 = 4.0;
 const GRAVITY: f64 = 9.81;
-/// The error of a rate gyroscope for noise 1: rad/s that it reads standing, and rad/s from reading to reading.
+/// The error of a rate gyroscope for noise 1: rad/s that it reads standing, and rad/s from reading to
+/// reading.
 const GYRO_BIAS: f64 = 0.001;
 const GYRO_NOISE: f64 = 0.003;
 /// The speed, in m/s, below which a car that shall stand does.
@@ -50,7 +52,8 @@ const STANDING: f64 = 1e-6;
 
 impl Senses {
     fn new(noise: &NoiseModel, mut stream: Stream) -> Self {
-        // Relative errors of the drive are given for robots with small wheels: what is left of them is a tyre's.
+        // Relative errors of the drive are given for robots with small wheels: what is left of them is a
+        // tyre's.
         let size = noise.wheel_mismatch / NoiseModel::real().wheel_mismatch;
         Self {
             scale: 1.0 + noise.wheel_scale * stream.normal(),
@@ -85,8 +88,8 @@ impl Bicycle {
         self.spec.steering_rate
     }
 
-    /// Lets a speed act that is commanded, while the steering angle turns from one to another, and returns how the
-    /// middle of the rear axle moves in a tick if nothing is in the way.
+    /// Lets a speed act that is commanded, while the steering angle turns from one to another, and returns
+    /// how the middle of the rear axle moves in a tick if nothing is in the way.
     pub(super) fn step(&mut self, speed: f64, steering: [f64; 2]) -> PlanarMotion {
         let dt = TICK / f64::from(SUBSTEPS);
         let mut wish = PlanarMotion::default();
@@ -101,7 +104,8 @@ impl Bicycle {
         wish
     }
 
-    /// Goes on with the speeds that the car's true motion in this tick leaves it, and returns what is measured of them.
+    /// Goes on with the speeds that the car's true motion in this tick leaves it, and returns what is
+    /// measured of them.
     pub(super) fn settle(&mut self, moved: PlanarMotion) -> Twist {
         if moved != self.wish {
             self.collide(moved);
@@ -119,8 +123,8 @@ impl Bicycle {
         self.speeds.across - self.spec.mass_centre * self.speeds.yaw_rate
     }
 
-    /// Nothing bounces: what is left of the motion is left of the speeds. What pushes a car out of a wall makes it no
-    /// faster.
+    /// Nothing bounces: what is left of the motion is left of the speeds. What pushes a car out of a wall
+    /// makes it no faster.
     fn collide(&mut self, moved: PlanarMotion) {
         let (length, most) = (moved.length(), self.wish.length());
         let share = if length > most { most / length } else { 1.0 };
@@ -167,7 +171,8 @@ impl Bicycle {
         };
     }
 
-    /// Keeps what has changed since before within what the tyres can hold: wheels that roll do not begin to at once.
+    /// Keeps what has changed since before within what the tyres can hold: wheels that roll do not begin to
+    /// at once.
     fn hold(&mut self, before: &Speeds, dt: f64) {
         let turned = |rate: f64, along: f64, across: f64| {
             let (sin, cos) = math::sin_cos(dt * rate);
@@ -275,7 +280,8 @@ mod tests {
         }
     }
 
-    /// However it moves and whatever it is told, sliding sideways and backwards included, and the sliding comes to an end.
+    /// However it moves and whatever it is told, sliding sideways and backwards included, and the sliding
+    /// comes to an end.
     #[test]
     fn nor_does_any_from_random_driving() {
         let mut random = Stream::new(11);

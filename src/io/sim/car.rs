@@ -13,9 +13,9 @@ use crate::world::MotorSpec;
 
 /// A car: motor 1 drives the rear axle through a differential gear, servo 1 steers the front wheels.
 ///
-/// Its odometry takes the axle's roll from the motor's encoder and the direction from the steering. Errors are those of
-/// the rear wheels, as on a robot with two wheels. Of a fast car with [dynamics](Bicycle), mass and tyres decide how it
-/// moves, and a gyroscope measures how it turns.
+/// Its odometry takes the axle's roll from the motor's encoder and the direction from the steering. Errors
+/// are those of the rear wheels, as on a robot with two wheels. Of a fast car with [dynamics](Bicycle), mass
+/// and tyres decide how it moves, and a gyroscope measures how it turns.
 #[derive(Debug, Clone)]
 pub(super) struct Car {
     nominal: Ackermann,
@@ -64,8 +64,8 @@ impl Car {
         Self { bicycle, ..self }
     }
 
-    /// Lets motor and servo follow their commands for one tick and returns the robot's true motion, if nothing is in
-    /// the way.
+    /// Lets motor and servo follow their commands for one tick and returns the robot's true motion, if
+    /// nothing is in the way.
     pub(super) fn step(&mut self) -> PlanarMotion {
         // A manoeuvre starts when the wheels point where it needs them.
         let aims = self.steering != self.wanted && !self.autopilot.is_done();

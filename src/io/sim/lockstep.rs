@@ -18,9 +18,9 @@ pub(super) trait Ticking {
 
 /// A world that several programs share in lockstep.
 ///
-/// The world stands at tick `n` until every program that still runs has asked for something at tick `n + 1` or
-/// later; then whoever asked last advances it. What a program reads at a tick therefore depends on ticks alone, never
-/// on how threads are scheduled.
+/// The world stands at tick `n` until every program that still runs has asked for something at tick `n + 1`
+/// or later; then whoever asked last advances it. What a program reads at a tick therefore depends on ticks
+/// alone, never on how threads are scheduled.
 #[derive(Debug)]
 pub(super) struct Lockstep<W> {
     state: Mutex<State<W>>,

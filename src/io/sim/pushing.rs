@@ -28,7 +28,8 @@ impl Engine {
         moved
     }
 
-    /// Knocks over what a robot at a pose would be in and what falls. Each is a contact. Returns whether anything fell.
+    /// Knocks over what a robot at a pose would be in and what falls. Each is a contact. Returns whether
+    /// anything fell.
     pub(super) fn topple(&mut self, index: usize, pose: &Pose) -> bool {
         self.depth_at(index, pose);
         let strength = self.bodies[index].spec.mass;

@@ -123,7 +123,8 @@ pub struct LeftHandObservation {
 }
 
 impl LeftHand {
-    /// The rule for a robot that faces a direction. Fails with the name of the parameter that is out of range.
+    /// The rule for a robot that faces a direction. Fails with the name of the parameter that is out of
+    /// range.
     pub fn new(parameters: LeftHandParameters, heading: Direction) -> Result<Self> {
         require_positive("threshold", parameters.threshold)?;
         require_positive("turn rate", parameters.turn_rate)?;
@@ -139,7 +140,8 @@ impl LeftHand {
         Ok(Self { parameters, controller, phase: Phase::Choosing, at: (0, 0), heading, cells: 0 })
     }
 
-    /// Where the robot takes itself to be, or to be driving from: cells to the east and to the north since the start.
+    /// Where the robot takes itself to be, or to be driving from: cells to the east and to the north since
+    /// the start.
     pub fn at(&self) -> (i32, i32) {
         self.at
     }

@@ -42,9 +42,10 @@ impl LidarLeftParameters {
 
 /// Drives along the wall on the left by a lidar, and turns right where a wall is ahead (book, section 9.4).
 ///
-/// The shortest beam within 45 degrees of the left meets the wall at a right angle: its direction tells how the robot stands
-/// to the wall, its length how far it is. A proportional controller of both steers. All points that were
-/// [seen](LidarLeftObservation::points), put down where odometry has the robot, make a map that is as good as odometry.
+/// The shortest beam within 45 degrees of the left meets the wall at a right angle: its direction tells how
+/// the robot stands to the wall, its length how far it is. A proportional controller of both steers. All
+/// points that were [seen](LidarLeftObservation::points), put down where odometry has the robot, make a map
+/// that is as good as odometry.
 #[derive(Debug, Clone)]
 pub struct LidarLeft {
     parameters: LidarLeftParameters,

@@ -1,5 +1,5 @@
-//! Random mazes: perfect, braided, and such as competitions have; with the feature `testing` strategies for property
-//! tests too.
+//! Random mazes: perfect, braided, and such as competitions have; with the feature `testing` strategies for
+//! property tests too.
 
 mod carve;
 mod competition;

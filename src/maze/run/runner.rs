@@ -91,9 +91,9 @@ pub struct MazeRunner<'r, R: ?Sized> {
 }
 
 impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
-    /// A robot that stands in the middle of the maze's start cell and faces its start heading. `maze` is what it knows. It has
-    /// `time_limit` seconds for all that it does, infinity for any time; what is not done then fails with
-    /// [`TimedOut`](ErrorKind::TimedOut).
+    /// A robot that stands in the middle of the maze's start cell and faces its start heading. `maze` is what
+    /// it knows. It has `time_limit` seconds for all that it does, infinity for any time; what is not done
+    /// then fails with [`TimedOut`](ErrorKind::TimedOut).
     pub fn new(
         robot: &'r mut R,
         rig: Rig,

@@ -17,8 +17,8 @@ const BOTS16: &str = " _ _ _ _\n|a a a a|\n|a a a a|\n|a a a a|\n|A A A A|\n500\
 const BOTS4X4: &str = " _ _ _ _\n|a b c d|\n|b c d a|\n|c d a b|\n|D A B C|\n500\n";
 
 impl World {
-    /// The worlds that every script knows by the names of their files in EyeSim: Soccer1998, Field, Field2, Chess, Carolo,
-    /// obstacles, rectangle, small, bots16, bots4x4.
+    /// The worlds that every script knows by the names of their files in EyeSim: Soccer1998, Field, Field2,
+    /// Chess, Carolo, obstacles, rectangle, small, bots16, bots4x4.
     pub const PREDEFINED: [&'static str; 10] = [
         "Soccer1998",
         "Field",
@@ -55,7 +55,8 @@ fn maze(text: &str) -> World {
     maz::parse(text, "built-in.maz").map_or_else(|_| World::walled(2.0, 2.0), |parsed| parsed.value)
 }
 
-/// A picture on a floor of so many metres, each pixel 5 mm wide: the colour at metres from the near left corner.
+/// A picture on a floor of so many metres, each pixel 5 mm wide: the colour at metres from the near left
+/// corner.
 fn painted(name: &str, (width, height): (f64, f64), colour: impl Fn(f64, f64) -> Colour) -> Texture {
     const PIXEL: f64 = 0.005;
     let pixels = |metres: f64| (metres / PIXEL).round() as u32;

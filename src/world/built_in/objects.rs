@@ -10,8 +10,8 @@ const GREEN: Colour = Colour::from_hex(0x1c_9a_3c);
 const WOOD: Colour = Colour::from_hex(0x9c_6b_30);
 
 impl ObjectKind {
-    /// The objects that every scene knows by name. The balls' and boxes' masses, and the cones' and signs' sizes, are those
-    /// of real ones or of models that suit the robots.
+    /// The objects that every scene knows by name. The balls' and boxes' masses, and the cones' and signs'
+    /// sizes, are those of real ones or of models that suit the robots.
     pub const PREDEFINED: [&'static str; 22] = [
         "can",
         "soccer",
@@ -37,8 +37,8 @@ impl ObjectKind {
         "CancelSpeedLimitSign",
     ];
 
-    /// An object of [`PREDEFINED`](Self::PREDEFINED), without regard to case, or by the name of the file that describes it
-    /// in EyeSim's own folders, as `coneorange`.
+    /// An object of [`PREDEFINED`](Self::PREDEFINED), without regard to case, or by the name of the file that
+    /// describes it in EyeSim's own folders, as `coneorange`.
     pub fn predefined(name: &str) -> Option<Self> {
         let name = file_name(name).unwrap_or(name);
         let known = Self::PREDEFINED.into_iter().find(|known| known.eq_ignore_ascii_case(name))?;
@@ -79,8 +79,8 @@ fn file_name(name: &str) -> Option<&'static str> {
     FILES.into_iter().find(|(file, _)| file.eq_ignore_ascii_case(name)).map(|(_, name)| name)
 }
 
-/// A traffic cone of a Formula Student track, or one `scale` times as large. Sensors other than cameras meet a
-/// round cone with the area of its square foot.
+/// A traffic cone of a Formula Student track, or one `scale` times as large. Sensors other than cameras meet
+/// a round cone with the area of its square foot.
 fn cone(name: &str, colour: Colour, scale: f64) -> ObjectKind {
     let (half, height, plate) = (0.114 * scale, 0.325 * scale, 0.030 * scale);
     let shape = Shape::Cone { radius: 0.129 * scale, top: 0.025 * scale, height };

@@ -25,7 +25,8 @@ impl Word {
         written
     }
 
-    /// Whether there is ink at a place, from -1 to 1 across the word, and from -1 above to 1 below its capitals.
+    /// Whether there is ink at a place, from -1 to 1 across the word, and from -1 above to 1 below its
+    /// capitals.
     pub(super) fn covers(&self, x: f64, y: f64) -> bool {
         let (column, row) = (0.5 * (x + 1.0) * f64::from(self.size.width), 3.0 + 0.5 * (y + 1.0) * 13.0);
         let inside = (0.0..f64::from(self.size.width)).contains(&column) && (0.0..20.0).contains(&row);

@@ -53,8 +53,9 @@ impl RobotSpec {
         }
     }
 
-    /// EyeSim's LabBot: a larger differential drive robot, with a high handle at its back by which others tell it from
-    /// afar (book, section 5.3). A lidar of 100 mm's height and 10 degrees' tilt sees the handle from up to 2.8 m.
+    /// EyeSim's LabBot: a larger differential drive robot, with a high handle at its back by which others
+    /// tell it from afar (book, section 5.3). A lidar of 100 mm's height and 10 degrees' tilt sees the handle
+    /// from up to 2.8 m.
     pub fn labbot() -> Self {
         Self {
             name: "LabBot".into(),
@@ -99,8 +100,8 @@ impl RobotSpec {
         }
     }
 
-    /// A model car that is steered as its big sisters are (book, section 7.1), with an S4's sensors. Its turning circle
-    /// measures 0.45 m in radius.
+    /// A model car that is steered as its big sisters are (book, section 7.1), with an S4's sensors. Its
+    /// turning circle measures 0.45 m in radius.
     pub fn car() -> Self {
         let (wheelbase, half_width) = (0.260, 0.090);
         let (back, front) = (-0.060, 0.320);
@@ -130,8 +131,8 @@ impl RobotSpec {
         }
     }
 
-    /// A student's Formula car (book, section 14.5), with a motor at each wheel, a low lidar at its nose and a camera
-    /// above the driver's head.
+    /// A student's Formula car (book, section 14.5), with a motor at each wheel, a low lidar at its nose and
+    /// a camera above the driver's head.
     pub fn race_car() -> Self {
         let (nose, half_width) = (2.15, 0.70);
         Self {
@@ -173,7 +174,8 @@ impl RobotSpec {
         }
     }
 
-    /// The racing car as EyeSim's programs drive it (section 14.5): at full motor it does 5 m/s, and its lidar scans all round.
+    /// The racing car as EyeSim's programs drive it (section 14.5): at full motor it does 5 m/s, and its
+    /// lidar scans all round.
     pub fn sae() -> Self {
         let car = Self::race_car();
         let DriveSpec::Ackermann {
@@ -202,8 +204,8 @@ impl RobotSpec {
         Self { name: "SAE".into(), drive, lidar, ..car }
     }
 
-    /// The follower of section 5.3: an S4 whose tilted lidar looks over robots of its kind (Program 5.8), with four more
-    /// sensors (Program 5.9).
+    /// The follower of section 5.3: an S4 whose tilted lidar looks over robots of its kind (Program 5.8),
+    /// with four more sensors (Program 5.9).
     pub fn lidarbot() -> Self {
         let s4 = Self::s4();
         let ahead = s4.psds[0].clone();

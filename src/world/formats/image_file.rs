@@ -11,8 +11,8 @@ use super::limits::MAX_IMAGE_BYTES;
 use super::source::{Files, SourceFile};
 use crate::world::{OccupancyGrid, Texture};
 
-/// Looks a texture up that a file names at some place, and reads it. Without it, if that is tolerated, things are as
-/// `instead` says.
+/// Looks a texture up that a file names at some place, and reads it. Without it, if that is tolerated, things
+/// are as `instead` says.
 pub(super) fn load(
     texture: &mut Texture,
     named: (&str, Location),

@@ -33,8 +33,8 @@ pub fn parse_scene(
     scene_of(bytes, file, &mut Files::new(files, false))
 }
 
-/// As [`parse_scene`], but that scripts are read as by [`sim::parse_tolerantly`], and that a world without the images that it
-/// names has a gray, level floor.
+/// As [`parse_scene`], but that scripts are read as by [`sim::parse_tolerantly`], and that a world without
+/// the images that it names has a gray, level floor.
 pub fn parse_scene_tolerantly(
     bytes: Vec<u8>,
     file: &str,

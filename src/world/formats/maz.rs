@@ -10,12 +10,13 @@
 //! 360
 //! ```
 //!
-//! * `|` is a wall of one cell's height at `x`. It usually stands in an even column; one in an odd column, the place
-//!   of a cell, counts as well: it closes that cell on the right.
-//! * `_` in an odd column is a wall below the cell that ends at `x`; in the first line, the maze's upper edge.
-//! * A letter stands in the middle of the cell that ends at `x`, in an odd or an even column. A capital has a wall below
-//!   it as well. `s` and `u` head up, `l` left, `d` down, `r` right; `o` is a golf ball, `x` a crate; other letters are
-//!   places for simulation scripts to use. `.` and blanks are empty.
+//! * `|` is a wall of one cell's height at `x`. It usually stands in an even column; one in an odd column,
+//!   the place of a cell, counts as well: it closes that cell on the right.
+//! * `_` in an odd column is a wall below the cell that ends at `x`; in the first line, the maze's upper
+//!   edge.
+//! * A letter stands in the middle of the cell that ends at `x`, in an odd or an even column. A capital has a
+//!   wall below it as well. `s` and `u` head up, `l` left, `d` down, `r` right; `o` is a golf ball, `x` a
+//!   crate; other letters are places for simulation scripts to use. `.` and blanks are empty.
 //! * The cell size in millimetres is a single number before or after the picture; 360 without one.
 //! * The lower left corner of the picture is the origin. Empty lines, comments and lines that begin with anything but
 //!   `|`, `_` or a blank are skipped.

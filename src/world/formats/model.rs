@@ -1,7 +1,8 @@
 //! 3D models: Wavefront OBJ files, with their materials (MTL) and images.
 //!
-//! OBJ's axes are right-handed: x to the left, y up and z forward, as seen by who sits in the model. Faces keep the diffuse
-//! colour and image of their material (`Kd`, `map_Kd`) and are left out if it is more transparent than not (`d`, `Tr`).
+//! OBJ's axes are right-handed: x to the left, y up and z forward, as seen by who sits in the model. Faces
+//! keep the diffuse colour and image of their material (`Kd`, `map_Kd`) and are left out if it is more
+//! transparent than not (`d`, `Tr`).
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -22,8 +23,8 @@ const SHAPE_INSTEAD: &str = "cameras see the shape of its colliders";
 /// What becomes of a face whose image cannot be had.
 const GRAY_INSTEAD: &str = "it is gray";
 
-/// Reads the model that a file names at some place, `scale` metres in a unit; faces without a material have a colour. `None`
-/// if that fails and is got over.
+/// Reads the model that a file names at some place, `scale` metres in a unit; faces without a material have a
+/// colour. `None` if that fails and is got over.
 pub(super) fn load(
     model: &Path,
     named: (&str, Location),

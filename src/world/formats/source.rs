@@ -23,14 +23,15 @@ pub trait FileSource {
 
 /// Files on disk, looked up from the file that names them.
 ///
-/// First comes the name as written, from the folder of the file that names it. A file that is not there is looked for where
-/// EyeSim's own installation would have it, and where it lies if it came along without the installation's folders: the
-/// rest of the name behind `..` from that folder and the three above it; shorter and shorter ends of the name in that folder;
-/// and the same in the folders that EyeSim has for its kind, such as `texture` or `objects`, in or up to three folders above
-/// it. Last come the working folder and the home folder. Letters may differ in case.
+/// First comes the name as written, from the folder of the file that names it. A file that is not there is
+/// looked for where EyeSim's own installation would have it, and where it lies if it came along without the
+/// installation's folders: the rest of the name behind `..` from that folder and the three above it; shorter
+/// and shorter ends of the name in that folder; and the same in the folders that EyeSim has for its kind,
+/// such as `texture` or `objects`, in or up to three folders above it. Last come the working folder and the
+/// home folder. Letters may differ in case.
 ///
-/// `\` counts as `/`; a leading `~` and `$HOME` stand for the home folder; EyeSim 6's `%sim%` is dropped, and so is a drive
-/// letter where it leads nowhere.
+/// `\` counts as `/`; a leading `~` and `$HOME` stand for the home folder; EyeSim 6's `%sim%` is dropped, and
+/// so is a drive letter where it leads nowhere.
 #[derive(Debug, Clone, Default)]
 pub struct DiskFiles {
     home: Option<PathBuf>,
@@ -75,7 +76,8 @@ impl DiskFiles {
 /// How many folders above that of the file that names another one belong to the same installation.
 const LEVELS: usize = 3;
 
-/// A file that is not where its name says, in the folders of EyeSim's installation or brought along without them.
+/// A file that is not where its name says, in the folders of EyeSim's installation or brought along without
+/// them.
 fn installed(folder: &Path, plain: &str) -> Option<PathBuf> {
     let bare = plain.trim_start_matches(|c: char| c.is_ascii_alphabetic()).strip_prefix(':').unwrap_or(plain);
     let parts: Vec<&str> = bare.split('/').filter(|part| !matches!(*part, "" | "." | "..")).collect();
@@ -186,7 +188,8 @@ impl<'a> Files<'a> {
         }
     }
 
-    /// Hands on what came of reading, or gets over its error with a warning that ends with what is done instead.
+    /// Hands on what came of reading, or gets over its error with a warning that ends with what is done
+    /// instead.
     pub(super) fn get_over<T>(
         &self,
         result: Result<T, FormatError>,

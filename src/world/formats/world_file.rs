@@ -5,7 +5,8 @@ use super::source::{Files, decode, missing, stem};
 use super::{maz, movingai, ros_map, wld};
 use crate::world::World;
 
-/// Finds and reads the world that a file calls `reference` at some place, or one of that name which is built in.
+/// Finds and reads the world that a file calls `reference` at some place, or one of that name which is built
+/// in.
 pub(super) fn read_world(
     reference: &str,
     (referrer, at): (&str, Location),

@@ -50,8 +50,8 @@ fn camera() -> Result<String> {
     Ok(log)
 }
 
-/// Signs, cones and other robots on the model town's floor, through a pinhole and through a fisheye, and on each world that
-/// scripts know.
+/// Signs, cones and other robots on the model town's floor, through a pinhole and through a fisheye, and on
+/// each world that scripts know.
 fn sights() -> Result<String> {
     let mut log = String::new();
     for (i, name) in World::PREDEFINED.into_iter().enumerate() {

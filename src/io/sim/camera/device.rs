@@ -91,7 +91,8 @@ impl CameraDevice {
         Ok(())
     }
 
-    /// The image of the present frame for the robot of an index, which is at a pose: taken when the first one asks for it.
+    /// The image of the present frame for the robot of an index, which is at a pose: taken when the first one
+    /// asks for it.
     pub(in crate::io::sim) fn take(
         &mut self,
         studio: &mut Studio,

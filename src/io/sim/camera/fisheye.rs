@@ -7,13 +7,15 @@ use crate::geometry::math;
 use crate::io::Result;
 use crate::world::space::Space;
 
-/// An equidistant lens: a place in the picture is as far from the middle as its angle from the line of sight says.
+/// An equidistant lens: a place in the picture is as far from the middle as its angle from the line of sight
+/// says.
 ///
-/// Straight lines become curves in its picture, so what is to be seen is drawn on the sides of an upright cube about the
-/// camera, flat as they are, and looked at through the lens from there.
+/// Straight lines become curves in its picture, so what is to be seen is drawn on the sides of an upright
+/// cube about the camera, flat as they are, and looked at through the lens from there.
 #[derive(Debug)]
 pub(super) struct Fisheye {
-    /// Width and height of the picture, the angle across it, and the tilt, for which the sides were worked out.
+    /// Width and height of the picture, the angle across it, and the tilt, for which the sides were worked
+    /// out.
     of: (usize, usize, f64, f64),
     /// Pixels along each edge of the cube.
     edge: usize,
@@ -101,8 +103,8 @@ impl Fisheye {
     }
 }
 
-/// The direction, ahead, to the left and up, of a place so many radians to the right and down in the picture of a camera that
-/// looks up by `tilt`; `None` beyond straight behind it.
+/// The direction, ahead, to the left and up, of a place so many radians to the right and down in the picture
+/// of a camera that looks up by `tilt`; `None` beyond straight behind it.
 fn ray(right: f64, down: f64, tilt: f64) -> Option<Place> {
     let angle = math::hypot(right, down);
     if angle > PI {

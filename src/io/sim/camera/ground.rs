@@ -28,8 +28,8 @@ pub(super) struct Ground {
 /// The most places of the floor that a pixel averages.
 const MOST_PLACES: u32 = 8;
 
-/// Where the rays of one row meet the floor: the place of its first pixel, and the steps to the next pixel and to the next
-/// row.
+/// Where the rays of one row meet the floor: the place of its first pixel, and the steps to the next pixel
+/// and to the next row.
 struct FloorRow {
     start: Point,
     step: Vector,
@@ -74,8 +74,8 @@ impl Ground {
         }
     }
 
-    /// The image on the floor, averaged over what each pixel covers: along the row by the texture's smaller versions, and
-    /// across by several places.
+    /// The image on the floor, averaged over what each pixel covers: along the row by the texture's smaller
+    /// versions, and across by several places.
     fn draw_image(&self, pixels: &mut [Packed], line: &FloorRow, from: usize) {
         let (whole, _) = self.texture.level(1.0);
         let size = self.floor.size();
@@ -143,8 +143,8 @@ struct Run {
 }
 
 impl Run {
-    /// Takes the colours of an image between its texels, for pixels that are smaller than these. At its edges it goes on as
-    /// it ends.
+    /// Takes the colours of an image between its texels, for pixels that are smaller than these. At its edges
+    /// it goes on as it ends.
     fn smooth(&self, level: &Level, pixels: &mut [Packed]) {
         let edge = |size: usize| (size as f32 - 1.0, size as i32 - 1);
         let ((right, last_column), (bottom, last_row)) = (edge(level.width), edge(level.height));
@@ -163,8 +163,8 @@ impl Run {
         }
     }
 
-    /// Takes the means of the texels of some runs, whose number is a power of two; what rounding carries over the image's
-    /// edge takes the nearest.
+    /// Takes the means of the texels of some runs, whose number is a power of two; what rounding carries over
+    /// the image's edge takes the nearest.
     fn averaged(runs: &[Run], level: &Level, pixels: &mut [Packed]) {
         let (last_column, last_row) = (level.width as i32 - 1, level.height as i32 - 1);
         let shift = runs.len().trailing_zeros();

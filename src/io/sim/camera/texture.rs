@@ -24,7 +24,8 @@ pub(super) struct Level {
 }
 
 impl Texture {
-    /// A texture of an image, whose channels are multiplied by those of a colour. `None` for an image without pixels.
+    /// A texture of an image, whose channels are multiplied by those of a colour. `None` for an image without
+    /// pixels.
     pub(super) fn new(image: &RgbaImage, colour: Colour) -> Option<Self> {
         let by = [colour.red, colour.green, colour.blue].map(u32::from);
         let part = |value: u8, by: u32| (u32::from(value) * by + 127) / 255;
@@ -58,8 +59,8 @@ impl Texture {
 }
 
 impl Level {
-    /// The colour at a place in texels from the upper left corner, between the four texels whose middles are next to it;
-    /// `None` where it is more transparent than not. The picture repeats beyond its edges.
+    /// The colour at a place in texels from the upper left corner, between the four texels whose middles are
+    /// next to it; `None` where it is more transparent than not. The picture repeats beyond its edges.
     pub(super) fn smooth(&self, u: f32, v: f32) -> Option<Packed> {
         let (u, v) = (u - 0.5, v - 0.5);
         let (left, above) = (u.floor(), v.floor());

@@ -21,7 +21,8 @@ pub(super) struct Definitions {
     /// What is built in, once it is used.
     built_in_robots: Vec<Arc<RobotSpec>>,
     built_in_objects: Vec<Arc<ObjectKind>>,
-    /// Files that are missing or broken, in whose place stands something under a name that the script has yet to say.
+    /// Files that are missing or broken, in whose place stands something under a name that the script has yet
+    /// to say.
     missing: Vec<Missing>,
 }
 
@@ -121,8 +122,8 @@ impl Definitions {
         Ok(Some((name, text)))
     }
 
-    /// Gives a name that nothing has to something in the place of a missing file: of the one that is called most like it,
-    /// or else of the first one.
+    /// Gives a name that nothing has to something in the place of a missing file: of the one that is called
+    /// most like it, or else of the first one.
     pub(super) fn stand_in_for(&mut self, name: &str, at: Location, notes: &mut Notes<'_>) {
         let fitness = |missing: &Missing| {
             let likeness = likeness(&stem(&missing.reference), name);
@@ -184,7 +185,8 @@ fn is_reserved(name: &str) -> bool {
     RESERVED.iter().any(|reserved| reserved.eq_ignore_ascii_case(name))
 }
 
-/// How much a file's name is like another name: 2 if their letters and digits are the same, 1 if one holds the other.
+/// How much a file's name is like another name: 2 if their letters and digits are the same, 1 if one holds
+/// the other.
 fn likeness(file: &str, name: &str) -> u8 {
     let plain = |text: &str| text.to_ascii_lowercase().replace(|c: char| !c.is_ascii_alphanumeric(), "");
     let (file, name) = (plain(file), plain(name));

@@ -12,10 +12,11 @@
 //! | `marker X Y [R G B [A]]` | a mark on the floor |
 //!
 //! The robots of [`RobotSpec::PREDEFINED`](crate::world::RobotSpec::PREDEFINED) and the objects of
-//! [`ObjectKind::PREDEFINED`](crate::world::ObjectKind::PREDEFINED) are always known, and stand in for files of their names
-//! that do not exist, as the worlds of [`World::PREDEFINED`](crate::world::World::PREDEFINED) do; the names `S4`, `LabBot`
-//! and `Omni` are reserved. Names are those that the files state or the files' own names, in any case. Lines of EyeSim 6
-//! and lines that begin with an unknown word are skipped with a warning.
+//! [`ObjectKind::PREDEFINED`](crate::world::ObjectKind::PREDEFINED) are always known, and stand in for files
+//! of their names that do not exist, as the worlds of [`World::PREDEFINED`](crate::world::World::PREDEFINED)
+//! do; the names `S4`, `LabBot` and `Omni` are reserved. Names are those that the files state or the files'
+//! own names, in any case. Lines of EyeSim 6 and lines that begin with an unknown word are skipped with a
+//! warning.
 //!
 //! A robot at a letter without PHI heads where the letter says (see [`maz`](super::maz)). Letters that say nothing
 //! mean a random heading: it is drawn from a stream of random numbers with a fixed seed, so that it is the same each

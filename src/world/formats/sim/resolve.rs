@@ -24,11 +24,11 @@ pub fn parse(text: &str, file: &str, files: &mut dyn FileSource) -> Result<Parse
     parse_with(text, file, &mut Files::new(files, false))
 }
 
-/// Reads a script as a simulator does that has nobody to ask, and warns of what it gets over: lines that make no sense,
-/// and whose files cannot be read, are skipped; in the place of a robot or an object whose file is missing stands another
-/// one, under the name by which the script places it; in the place of a world that cannot be read stands a box of 2000 by
-/// 2000 mm, or of what all that is placed needs; a robot at a letter that the world lacks stands at some place of its
-/// own. Fails for a text that is too long alone.
+/// Reads a script as a simulator does that has nobody to ask, and warns of what it gets over: lines that make
+/// no sense, and whose files cannot be read, are skipped; in the place of a robot or an object whose file is
+/// missing stands another one, under the name by which the script places it; in the place of a world that
+/// cannot be read stands a box of 2000 by 2000 mm, or of what all that is placed needs; a robot at a letter
+/// that the world lacks stands at some place of its own. Fails for a text that is too long alone.
 pub fn parse_tolerantly(
     text: &str,
     file: &str,
