@@ -177,31 +177,12 @@ impl RobotSpec {
     /// The racing car as EyeSim's programs drive it (section 14.5): at full motor it does 5 m/s, and its
     /// lidar scans all round.
     pub fn sae() -> Self {
-        let car = Self::race_car();
-        let DriveSpec::Ackermann {
-            wheel_diameter,
-            track,
-            wheelbase,
-            max_steering,
-            ticks_per_turn,
-            dynamics,
-            ..
-        } = car.drive
-        else {
-            return car;
-        };
-        let max_wheel_speed = 20.0;
-        let drive = DriveSpec::Ackermann {
-            wheel_diameter,
-            track,
-            wheelbase,
-            max_steering,
-            max_wheel_speed,
-            ticks_per_turn,
-            dynamics,
-        };
-        let lidar = car.lidar.map(|lidar| LidarSpec { mount: lidar.mount, ..LidarSpec::default() });
-        Self { name: "SAE".into(), drive, lidar, ..car }
+        let mut car = Self { name: "SAE".into(), ..Self::race_car() };
+        if let DriveSpec::Ackermann { max_wheel_speed, .. } = &mut car.drive {
+            *max_wheel_speed = 20.0;
+        }
+        car.lidar = car.lidar.map(|lidar| LidarSpec { mount: lidar.mount, ..LidarSpec::default() });
+        car
     }
 
     /// The follower of section 5.3: an S4 whose tilted lidar looks over robots of its kind (Program 5.8),
