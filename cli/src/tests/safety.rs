@@ -277,16 +277,15 @@ fn the_driver_is_answered() {
 /// Nobody vouches for a sensor that is still late, so the car goes on standing; for one that was late, somebody does.
 #[test]
 fn a_sensor_that_stays_late_keeps_the_car_standing() {
-    for fault in ["late:lidar=1@6", "late=1@6"] {
-        // On a track on which no cone stands on the way of the stop, which is driven without news of the
-        // lane.
-        let options = ["--fault", fault, "--event", "button", "--time-limit", "20", "--seed", "2"];
+    for (fault, seed) in
+        [("late:lidar=1@6", "1"), ("late:lidar=1@6", "4"), ("late=1@6", "1"), ("late=1@6", "2")]
+    {
+        let options = ["--fault", fault, "--event", "button", "--time-limit", "20", "--seed", seed];
         let (_, report, _) = run("safety", &options);
-        assert_eq!(
-            (report["outcome"].as_str(), &report["collisions"]),
-            (Some("timed_out"), &0.into()),
-            "{report}"
-        );
+        // It brakes without news of the lane, so a cone may stand on its way: what is promised is how long that is.
+        assert_ne!(report["outcome"], "stood", "{report}");
+        let stop = &report["stops"][0];
+        assert!(stop["distance_m"].as_f64() <= stop["bound_m"].as_f64(), "{report}");
         let states: Vec<&str> =
             report["states"].as_array().unwrap().iter().map(|state| state[1].as_str().unwrap()).collect();
         assert_eq!(states, ["Manual", "Armed", "Auto", "SafeStop"], "{report}");
