@@ -285,7 +285,8 @@ fn a_sensor_that_stays_late_keeps_the_car_standing() {
         // It brakes without news of the lane, so a cone may stand on its way: what is promised is how long that is.
         assert_ne!(report["outcome"], "stood", "{report}");
         let stop = &report["stops"][0];
-        assert!(stop["distance_m"].as_f64() <= stop["bound_m"].as_f64(), "{report}");
+        let [driven, bound] = ["distance_m", "bound_m"].map(|field| stop[field].as_f64().unwrap());
+        assert!(driven <= bound, "{report}");
         let states: Vec<&str> =
             report["states"].as_array().unwrap().iter().map(|state| state[1].as_str().unwrap()).collect();
         assert_eq!(states, ["Manual", "Armed", "Auto", "SafeStop"], "{report}");
