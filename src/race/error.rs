@@ -3,7 +3,7 @@ use crate::ParameterError;
 /// Why no line could be planned.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum PlanError {
+pub enum LineError {
     /// Too few points for a line.
     #[error("{found} points; expected at least {needed}")]
     TooFew {

@@ -5,7 +5,7 @@ use crate::ParameterError;
 /// What is wrong with an image or a parameter.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Error {
+pub enum ImageError {
     /// An image without pixels.
     #[error("the image is {width} x {height} pixels; expected at least one pixel")]
     Empty {
@@ -54,7 +54,7 @@ pub enum Error {
 }
 
 /// What takes an image takes a view of one too, which always is one.
-impl From<Infallible> for Error {
+impl From<Infallible> for ImageError {
     fn from(never: Infallible) -> Self {
         match never {}
     }
