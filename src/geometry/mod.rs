@@ -8,12 +8,14 @@ pub mod math;
 mod pose;
 mod pose3;
 mod shapes;
+mod side;
 pub mod units;
 
 pub use line::FittedLine;
 pub use pose::{Pose, Twist, angle_difference, normalize_angle};
 pub use pose3::Pose3;
 pub use shapes::{Aabb, Segment};
+pub use side::WallSide;
 
 /// A point in the plane, in metres.
 pub type Point = nalgebra::Point2<f64>;
