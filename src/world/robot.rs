@@ -3,6 +3,7 @@ use std::path::PathBuf;
 use super::Body;
 use crate::ParameterError;
 use crate::geometry::Aabb;
+use crate::kinematics::Tracked;
 use crate::parameter::{require, require_finite, require_not_negative, require_positive};
 
 /// A description of a robot: its drive, outline and sensors. EyeSim's `.robi`.
@@ -22,6 +23,8 @@ pub struct RobotSpec {
     pub mast: Option<Mast>,
     /// Kilograms.
     pub mass: f64,
+    /// The coefficient of friction between the ground and its wheels or belts, which counts on hills.
+    pub friction: f64,
     /// Its position-sensitive devices: single-ray distance sensors.
     pub psds: Vec<PsdSpec>,
     /// Its laser scanner, if it has one.
@@ -67,6 +70,21 @@ pub enum DriveSpec {
         /// slip.
         dynamics: Option<CarDynamics>,
     },
+    /// Two belts side by side, which turn their robot by skidding. Its origin is in the middle between them.
+    Tracked {
+        /// Metres across the wheel that drives a belt.
+        wheel_diameter: f64,
+        /// Metres between the belts' middles.
+        track: f64,
+        /// Metres of a belt that lie on the ground.
+        length: f64,
+        /// Metres across a belt.
+        width: f64,
+        /// The fastest that a driving wheel turns, in radians per second.
+        max_wheel_speed: f64,
+        /// Encoder ticks in one turn of a driving wheel.
+        ticks_per_turn: f64,
+    },
     /// Four Mecanum wheels.
     Omni {
         /// Metres.
@@ -88,6 +106,7 @@ impl DriveSpec {
         match *self {
             Self::Differential { wheel_diameter, max_wheel_speed, .. }
             | Self::Ackermann { wheel_diameter, max_wheel_speed, .. }
+            | Self::Tracked { wheel_diameter, max_wheel_speed, .. }
             | Self::Omni { wheel_diameter, max_wheel_speed, .. } => 0.5 * wheel_diameter * max_wheel_speed,
         }
     }
@@ -96,7 +115,7 @@ impl DriveSpec {
     pub fn dynamics(&self) -> Option<CarDynamics> {
         match *self {
             Self::Ackermann { dynamics, .. } => dynamics,
-            Self::Differential { .. } | Self::Omni { .. } => None,
+            Self::Differential { .. } | Self::Tracked { .. } | Self::Omni { .. } => None,
         }
     }
 }
@@ -311,6 +330,9 @@ impl CameraSpec {
 }
 
 impl RobotSpec {
+    /// The coefficient of friction of rubber on a dry floor, for robots that state none.
+    pub const DEFAULT_FRICTION: f64 = 0.8;
+
     /// Checks that a mast stands on the robot.
     pub(super) fn validate_mast(&self) -> Result<(), ParameterError> {
         let Some(Mast { outline, top }) = self.mast else { return Ok(()) };
@@ -370,6 +392,12 @@ impl RobotSpec {
                     within("steering rate", dynamics.steering_rate, 100.0, "more than 0 and less than 100")?;
                 }
             }
+            DriveSpec::Tracked { wheel_diameter, track, length, width, max_wheel_speed, ticks_per_turn } => {
+                require_positive("wheel diameter", wheel_diameter)?;
+                Tracked::new(track, length, width)?;
+                require_positive("maximal wheel speed", max_wheel_speed)?;
+                require_positive("ticks per turn", ticks_per_turn)?;
+            }
             DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn } => {
                 require_positive("wheel diameter", wheel_diameter)?;
                 require_positive("track", track)?;
@@ -384,6 +412,7 @@ impl RobotSpec {
         require_positive("footprint radius", self.footprint.bounding_radius())?;
         require_positive("height", self.height)?;
         require_not_negative("mass", self.mass)?;
+        require_not_negative("friction", self.friction)?;
         for psd in &self.psds {
             require_positive("PSD maximal range", psd.max_range)?;
             psd.mount.validate()?;

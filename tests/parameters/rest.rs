@@ -27,7 +27,7 @@ fn the_simulator() {
 #[test]
 fn robots() {
     let s4 = RobotSpec::s4;
-    check!(RobotSpec = s4(), |p| simulation(p, SimOptions::default())?, { Positive: height; NotNegative: mass; }
+    check!(RobotSpec = s4(), |p| simulation(p, SimOptions::default())?, { Positive: height; NotNegative: mass, friction; }
         but name, drive, motor, footprint, mast, psds, lidar, camera, model, body);
     check!(MotorSpec = MotorSpec::default(), |p| simulation(RobotSpec { motor: p, ..s4() }, SimOptions::default())?,
         { NotNegative: time_constant; Positive: max_acceleration; });

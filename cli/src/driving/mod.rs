@@ -230,6 +230,7 @@ pub(crate) fn track(spec: &RobotSpec) -> f64 {
     match spec.drive {
         DriveSpec::Differential { track, .. }
         | DriveSpec::Ackermann { track, .. }
+        | DriveSpec::Tracked { track, .. }
         | DriveSpec::Omni { track, .. } => track,
         _ => f64::NAN,
     }

@@ -66,6 +66,7 @@ pub(crate) fn run_alone(
             // A call that waits past the end of time is cut off there.
             time: report.time.min(options.time_limit),
             pose: report.pose,
+            stance: report.stance,
             odometry: report.odometry,
             path_length: report.path_length,
             contacts: report.contacts,

@@ -56,6 +56,7 @@ pub use noise::NoiseModel;
 pub use options::SimOptions;
 pub use robot::SimRobot;
 pub use simulation::Simulation;
+pub use terrain::Mishap;
 pub use truth::Truth;
 
 pub use super::{Lcd, RobotTruth, TrailPoint};

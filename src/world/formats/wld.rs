@@ -7,8 +7,8 @@
 //! | `X1 Y1 X2 Y2 [THICKNESS HEIGHT [R G B]]` | a wall; other counts of numbers use the first four |
 //! | `push X Y PHI` … `pop` | moves the walls between them: by (X, Y), then turned **clockwise** by PHI |
 //! | `position X Y PHI` | the start pose, PHI counter-clockwise |
-//! | `terrain W H TOP FILE` | hills, in pictures and as data alone; sets the floor's size too |
-//! | `water_level Z` | water, in pictures alone |
+//! | `terrain W H TOP FILE` | hills, which carry robots and stop rays; sets the floor's size too |
+//! | `water_level Z` | water, in pictures, and in which robots on hills drown |
 //!
 //! The hills' elevations come from a gray PNG, JPEG or BMP image, black at 0 and white at TOP, or from an ESRI ASCII
 //! grid (`.asc`), its lowest place at 0 and its highest at TOP. The image lies as the floor's does, its first row at the
@@ -120,7 +120,7 @@ impl<'f> Reader<'f> {
             "water_level" => {
                 self.world.water_level = Some(args.length("the water level")?);
                 self.notes
-                    .warn(line.location(0), "`water_level`: water is shown in pictures and not simulated");
+                    .warn(line.location(0), "`water_level`: water carries nothing; on hills, robots drown in it");
             }
             _ => {
                 let message = format!("unknown keyword {}; the line is skipped", lexer::shown(keyword));
@@ -158,7 +158,7 @@ impl<'f> Reader<'f> {
         self.places.terrain = line.location(4);
         self.floor(width, height);
         self.notes
-            .warn(line.location(0), "`terrain`: hills are shown in pictures; robots drive on a level floor");
+            .warn(line.location(0), "`terrain`: cameras show a level floor");
         Ok(())
     }
 
@@ -323,8 +323,8 @@ mod tests {
         assert_eq!(
             warnings,
             [
-                "test.wld:8:1: `water_level`: water is shown in pictures and not simulated",
-                "test.wld:9:1: `terrain`: hills are shown in pictures; robots drive on a level floor",
+                "test.wld:8:1: `water_level`: water carries nothing; on hills, robots drown in it",
+                "test.wld:9:1: `terrain`: cameras show a level floor",
             ]
         );
         assert_eq!(value.floor.max, Point::new(6.0, 7.0));

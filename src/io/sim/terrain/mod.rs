@@ -18,10 +18,16 @@
 //! body turns as a ball of its mean radius of gyration, without precession. Feet do not know of edges of the ground
 //! between them. Air and water do not carry it.
 
+mod hills;
+mod mishap;
 mod rigid_body;
 #[cfg(test)]
 mod tests;
 mod undercarriage;
 
-pub(super) use rigid_body::RigidBody;
-pub(super) use undercarriage::Undercarriage;
+pub use mishap::Mishap;
+
+pub(super) use hills::Hills;
+use mishap::Watch;
+use rigid_body::RigidBody;
+use undercarriage::Undercarriage;

@@ -7,7 +7,7 @@ use crate::world::HeightField;
 
 /// A robot's body of mass 1 on its feet.
 #[derive(Debug, Clone)]
-pub(in crate::io::sim) struct RigidBody {
+pub(super) struct RigidBody {
     /// The middle of the mass, and how the body is turned.
     place: Point3,
     attitude: UnitQuaternion<f64>,
@@ -17,6 +17,8 @@ pub(in crate::io::sim) struct RigidBody {
     /// Each foot's impulse in the last tick: along the ground's normal, and along two tangents.
     impulses: Vec<Vector3>,
     contacts: Vec<Contact>,
+    /// Whether the last tick did not move it.
+    asleep: bool,
 }
 
 /// A foot on the ground, or about to be.
@@ -46,12 +48,14 @@ const SETTLED: f64 = 1e-10;
 const MARGIN: f64 = 5e-3;
 /// A foot that would end this deep looks where it comes into the ground.
 const DEEP: f64 = 1.5e-3;
+/// The energy of motion, in J for a kilogram, of a body that stands: 10 µm/s.
+const ASLEEP: f64 = 5e-11;
 /// The speed at which a body that was put into the ground comes out of it, in m/s.
 const EMERGING: f64 = 0.25;
 
 impl RigidBody {
     /// A body at rest, its robot's frame at a pose.
-    pub(in crate::io::sim) fn new(carriage: &Undercarriage, pose: &Pose3) -> Self {
+    pub(super) fn new(carriage: &Undercarriage, pose: &Pose3) -> Self {
         Self {
             place: pose.to_world(Point3::from(carriage.centre)),
             attitude: pose.attitude,
@@ -59,26 +63,37 @@ impl RigidBody {
             spin: Vector3::zeros(),
             impulses: vec![Vector3::zeros(); carriage.feet.len()],
             contacts: Vec::with_capacity(carriage.feet.len()),
+            asleep: false,
         }
     }
 
     /// The pose of the robot's frame.
-    pub(in crate::io::sim) fn pose(&self, carriage: &Undercarriage) -> Pose3 {
+    pub(super) fn pose(&self, carriage: &Undercarriage) -> Pose3 {
         Pose3::new(self.place - self.attitude * carriage.centre, self.attitude)
     }
 
     /// The middle of the mass.
-    pub(in crate::io::sim) fn middle(&self) -> Point3 {
+    pub(super) fn middle(&self) -> Point3 {
         self.place
     }
 
     /// Metres per second of the middle of the mass.
-    pub(in crate::io::sim) fn velocity(&self) -> Vector3 {
+    pub(super) fn velocity(&self) -> Vector3 {
         self.velocity
     }
 
+    /// Radians per second about each axis of the world.
+    pub(super) fn spin(&self) -> Vector3 {
+        self.spin
+    }
+
+    /// Whether it stands and nothing but a drive would move it.
+    pub(super) fn is_asleep(&self) -> bool {
+        self.asleep
+    }
+
     /// Whether a foot carried it in the last tick.
-    pub(in crate::io::sim) fn is_carried(&self) -> bool {
+    pub(super) fn is_carried(&self) -> bool {
         self.impulses.iter().any(|impulse| impulse.x > 0.0)
     }
 
@@ -93,7 +108,7 @@ impl RigidBody {
 
     /// Moves the body for `tick` seconds, while its drive turns wheels so that they would move it at a speed on
     /// level ground.
-    pub(in crate::io::sim) fn step(
+    pub(super) fn step(
         &mut self,
         ground: &HeightField,
         carriage: &Undercarriage,
@@ -102,9 +117,11 @@ impl RigidBody {
     ) {
         let (before, place, attitude) = (self.energy(carriage), self.place, self.attitude);
         self.advance(ground, carriage, drive, tick);
-        if *drive == PlanarTwist::STOP && !self.keeps_energy(before, carriage) {
+        let driven = *drive != PlanarTwist::STOP;
+        if !driven && !self.keeps_energy(before, carriage) {
             (self.place, self.attitude) = (place, attitude);
         }
+        self.asleep = !driven && self.is_carried() && self.kinetic(carriage) < ASLEEP;
     }
 
     fn advance(&mut self, ground: &HeightField, carriage: &Undercarriage, drive: &PlanarTwist, tick: f64) {
@@ -211,16 +228,17 @@ impl RigidBody {
     }
 
     /// Moves the body aside, as something in the way of its outline does, and takes the speed that led it there.
-    pub(in crate::io::sim) fn shove(&mut self, aside: crate::geometry::Vector, turned: f64, tick: f64) {
+    pub(super) fn shove(&mut self, aside: crate::geometry::Vector, turned: f64, tick: f64) {
         let way = Vector3::new(aside.x, aside.y, 0.0);
         self.place += way;
         self.attitude = turn(Vector3::z() * turned) * self.attitude;
+        self.asleep = false;
         self.velocity += way / tick;
         self.spin.z += turned / tick;
     }
 
     /// A body that rests on the ground, its robot's frame at a pose in the plane.
-    pub(in crate::io::sim) fn resting(
+    pub(super) fn resting(
         ground: &HeightField,
         carriage: &Undercarriage,
         pose: Pose,

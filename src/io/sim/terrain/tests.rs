@@ -75,7 +75,7 @@ impl Robot {
 }
 
 fn robots() -> Vec<RobotSpec> {
-    vec![RobotSpec::s4(), RobotSpec::labbot(), RobotSpec::omni(), RobotSpec::car()]
+    vec![RobotSpec::s4(), RobotSpec::labbot(), RobotSpec::omni(), RobotSpec::car(), RobotSpec::blizzard()]
 }
 
 #[test]
@@ -112,9 +112,29 @@ fn on_level_ground_robots_move_as_their_wheels_turn() {
             let found = robot.pose().pose();
             let apart = (found.position() - expected.position()).norm();
             let turned = crate::geometry::angle_difference(found.heading, expected.heading);
-            assert!(apart < 1e-3 && turned.abs() < 1e-3, "{} {drive:?}: {apart} {turned}", spec.name);
+            // Belts skid when they turn, and are calibrated for turns on the spot alone.
+            let skids = spec.name == "Blizzard" && drive.angular != 0.0;
+            let slack = if skids { 0.3 * drive.angular.abs() * 5.0 } else { 1e-3 };
+            assert!(apart < slack && turned.abs() < slack, "{} {drive:?}: {apart} {turned}", spec.name);
         }
     }
+}
+
+/// Turning on the spot, a tracked robot does as its odometry believes.
+#[test]
+fn belts_are_calibrated_for_turns_on_the_spot() {
+    let ground = incline(0.0);
+    let mut robot = Robot::resting(&RobotSpec::blizzard(), &ground, Pose::new(0.0, 0.0, 0.0));
+    let drive = PlanarTwist::new(0.0, 0.0, 0.5);
+    let (mut turned, mut before) = (0.0, 0.0);
+    for _ in 0..1000 {
+        robot.step(&ground, drive);
+        let heading = robot.pose().pose().heading;
+        turned += crate::geometry::angle_difference(heading, before);
+        before = heading;
+    }
+    assert!((turned - 5.0).abs() < 0.1, "{turned}");
+    assert!(robot.pose().position.xy().coords.norm() < 0.01, "{:?}", robot.pose());
 }
 
 #[test]
@@ -267,7 +287,7 @@ proptest! {
     #![proptest_config(crate::testing::cases(64))]
     #[test]
     fn without_motors_energy_never_rises_and_nothing_sinks_in(
-        seed in 0..1000_u64, robot in 0..4_usize, (x, y) in (-2.0..2.0f64, -2.0..2.0f64),
+        seed in 0..1000_u64, robot in 0..5_usize, (x, y) in (-2.0..2.0f64, -2.0..2.0f64),
         (roll, pitch, yaw) in (-0.5..0.5f64, -0.5..0.5f64, -3.0..3.0f64), drop in 0.05..0.4f64,
         (vx, vy, w) in (-1.0..1.0f64, -1.0..1.0f64, -3.0..3.0f64),
     ) {

@@ -1,12 +1,12 @@
 use std::f64::consts::FRAC_PI_4;
 
 use crate::geometry::{Vector, Vector3, direction, math, units};
-use crate::kinematics::PlanarTwist;
+use crate::kinematics::{PlanarTwist, Tracked};
 use crate::world::{DriveSpec, Footprint, RobotSpec};
 
 /// What of a robot meets the ground, and how.
 #[derive(Debug, Clone)]
-pub(in crate::io::sim) struct Undercarriage {
+pub(super) struct Undercarriage {
     /// The middle of the mass in the robot's frame, whose origin is on the ground under the driven axle.
     pub(super) centre: Vector3,
     /// The square of the mean radius of gyration, in m².
@@ -46,8 +46,6 @@ pub(super) enum Grip {
 const SAG: f64 = 1e-4;
 /// Metres per second squared.
 pub(super) const GRAVITY: f64 = 9.81;
-/// The coefficient of friction of rubber on a dry floor.
-const FRICTION: f64 = 0.8;
 /// The angles from straight down, in degrees, of the points of a wheel that may meet the ground.
 const RIM: [f64; 5] = [-60.0, -30.0, 0.0, 30.0, 60.0];
 /// The share of the way from the axle to the castor at which the mass has its middle.
@@ -59,9 +57,9 @@ impl Undercarriage {
     /// The undercarriage of a robot as its description has it.
     ///
     /// A drive of two wheels stands on a castor as well, at the farther end of the outline. What the description
-    /// leaves open is assumed: the middle of the mass lies at two fifths of the height, near the driven axle, or
+    /// leaves open is assumed: without a place the middle of the mass lies at two fifths of the height, near the driven axle, or
     /// between the axles.
-    pub(in crate::io::sim) fn of(spec: &RobotSpec) -> Self {
+    pub(super) fn of(spec: &RobotSpec) -> Self {
         let (back, front) = ends(&spec.footprint);
         let mut feet = Vec::new();
         let (wheels, ahead) = match spec.drive {
@@ -73,6 +71,10 @@ impl Undercarriage {
                 }
                 feet.push(Foot { place: Vector3::new(castor, 0.0, 0.0), grip: Grip::Free });
                 (3, BETWEEN * castor)
+            }
+            DriveSpec::Tracked { wheel_diameter, track, length, width, .. } => {
+                belts(&mut feet, Tracked { track, length, width }, 0.5 * wheel_diameter);
+                (16, 0.0)
             }
             DriveSpec::Ackermann { wheel_diameter, track, wheelbase, .. } => {
                 for side in [0.5, -0.5] {
@@ -93,8 +95,8 @@ impl Undercarriage {
             }
         };
         feet.extend(chassis(spec, ahead));
-        let centre = Vector3::new(ahead, 0.0, MIDDLE * spec.height);
-        Self::new(feet, centre, gyration(spec), wheels, FRICTION)
+        let centre = stated_centre(spec).unwrap_or(Vector3::new(ahead, 0.0, MIDDLE * spec.height));
+        Self::new(feet, centre, gyration(spec), wheels, spec.friction)
     }
 
     /// An undercarriage of feet whose places are from the robot's origin.
@@ -131,6 +133,32 @@ fn wheel(feet: &mut Vec<Foot>, axle: Vector, radius: f64, grip: Grip) {
     }));
 }
 
+/// The points of belts that may meet the ground: below, and on their way up to the wheels at their ends.
+fn belts(feet: &mut Vec<Foot>, drive: Tracked, radius: f64) {
+    let half = 0.5 * drive.equivalent().track;
+    for side in [1.0, -1.0] {
+        // A belt's speed is that of the wheel of the equivalent drive.
+        let grip = Grip::Driven(Vector::new(0.0, side * half));
+        let below = drive.places(side).map(|place| Vector3::new(place.x, place.y, 0.0));
+        feet.extend(below.map(|place| Foot { place, grip }));
+        for end in [0.5, -0.5] {
+            for degrees in [30.0, 60.0, 90.0] {
+                let (sin, cos) = math::sin_cos(units::from_deg(degrees));
+                let x = end * drive.length + end.signum() * radius * sin;
+                let place = Vector3::new(x, side * 0.5 * drive.track, radius * (1.0 - cos));
+                feet.push(Foot { place, grip });
+            }
+        }
+    }
+}
+
+/// The middle of the mass that a description states. Its place is from the origin of the robot's model.
+fn stated_centre(spec: &RobotSpec) -> Option<Vector3> {
+    let ([x, y, z], [ahead, up]) = (spec.body.mass_centre.map(|c| c * spec.body.scale), spec.body.axle);
+    let centre = Vector3::new(x - ahead, y, z - up + 0.5 * wheel_diameter(spec));
+    (spec.body.mass_centre != [0.0; 3] && centre.z > 0.0).then_some(centre)
+}
+
 /// The outline's ends along x.
 fn ends(footprint: &Footprint) -> (f64, f64) {
     match footprint {
@@ -141,12 +169,7 @@ fn ends(footprint: &Footprint) -> (f64, f64) {
 
 /// Corners of the outline, at its top and as high as the axle, and the belly, half as high.
 fn chassis(spec: &RobotSpec, belly: f64) -> Vec<Foot> {
-    let diameter = match spec.drive {
-        DriveSpec::Differential { wheel_diameter, .. }
-        | DriveSpec::Ackermann { wheel_diameter, .. }
-        | DriveSpec::Omni { wheel_diameter, .. } => wheel_diameter,
-    };
-    let axle = (0.5 * diameter).min(0.5 * spec.height);
+    let axle = (0.5 * wheel_diameter(spec)).min(0.5 * spec.height);
     let outline: Vec<Vector> = match spec.footprint {
         Footprint::Disc { radius } => {
             (0..8).map(|eighth| direction(FRAC_PI_4 * f64::from(eighth)) * radius).collect()
@@ -161,6 +184,15 @@ fn chassis(spec: &RobotSpec, belly: f64) -> Vec<Foot> {
         .flat_map(|height| outline.iter().map(move |corner| Vector3::new(corner.x, corner.y, height)));
     let belly = [Vector3::new(belly, 0.0, 0.5 * axle)];
     corners.chain(belly).map(|place| Foot { place, grip: Grip::Body }).collect()
+}
+
+fn wheel_diameter(spec: &RobotSpec) -> f64 {
+    match spec.drive {
+        DriveSpec::Differential { wheel_diameter, .. }
+        | DriveSpec::Ackermann { wheel_diameter, .. }
+        | DriveSpec::Tracked { wheel_diameter, .. }
+        | DriveSpec::Omni { wheel_diameter, .. } => wheel_diameter,
+    }
 }
 
 /// The square of the mean radius of gyration of a block as large as the robot.

@@ -35,6 +35,7 @@ pub fn parse(text: &str, file: &str) -> Result<Parsed<RobotSpec>, FormatError> {
 enum Drive {
     Differential,
     Ackermann,
+    Tracked,
     Omni,
 }
 
@@ -53,6 +54,8 @@ struct Reader<'f> {
     drive: Option<Drive>,
     wheel: Option<Wheel>,
     turn_axle: Option<f64>,
+    /// Length and width of belts.
+    tracks: Option<[f64; 2]>,
     steering: f64,
     dynamics: Option<CarDynamics>,
     psds: Vec<Psd>,
@@ -81,6 +84,7 @@ impl<'f> Reader<'f> {
             drive: None,
             wheel: None,
             turn_axle: None,
+            tracks: None,
             steering: DEFAULT_STEERING,
             dynamics: None,
             psds: Vec::new(),
@@ -154,6 +158,13 @@ impl<'f> Reader<'f> {
                 let degrees = args.degrees("the largest steering angle", f64::MIN_POSITIVE..=90.0)?;
                 self.steering = units::from_deg(degrees);
             }
+            "tracks" => {
+                let length = args.positive_size("the belts' length on the ground")?;
+                self.tracks = Some([length, args.positive_size("the belts' width")?]);
+            }
+            "friction" => {
+                self.spec.friction = args.plain("the coefficient of friction", 0.0..=1e9)?;
+            }
             "dynamics" => self.dynamics = Some(parts::dynamics(args)?),
             "outline" => self.outline = Some(parts::outline(line, args)?),
             "mast" => self.mast = Some((parts::mast(line, args)?, line.location(0))),
@@ -179,6 +190,7 @@ impl<'f> Reader<'f> {
             "DIFFERENTIAL_DRIVE" => Drive::Differential,
             "ACKERMANN_DRIVE" => Drive::Ackermann,
             "OMNI_DRIVE" => Drive::Omni,
+            "TRACKED_DRIVE" | "TRACK_DRIVE" | "TRACKS_DRIVE" | "CHAIN_DRIVE" | "CHAINS_DRIVE" => Drive::Tracked,
             _ => {
                 let message = format!("unknown drive {}; read as DIFFERENTIAL_DRIVE", shown(name));
                 self.notes.warn(line.location(1), message);
@@ -325,6 +337,18 @@ impl<'f> Reader<'f> {
             self.spec.body.turn_axle_height = 0.0;
             return Ok(DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn });
         }
+        if drive == Drive::Tracked {
+            self.spec.body.turn_axle_height = 0.0;
+            let [length, width] = self.belts(track)?;
+            return Ok(DriveSpec::Tracked {
+                wheel_diameter,
+                track,
+                length,
+                width,
+                max_wheel_speed,
+                ticks_per_turn,
+            });
+        }
         let ahead = self.spec.body.axle[0];
         let wheelbase = self.turn_axle.unwrap_or(ahead + track) - ahead;
         if self.turn_axle.is_none() && drive == Drive::Ackermann {
@@ -353,6 +377,21 @@ impl<'f> Reader<'f> {
                 dynamics: self.dynamics,
             },
         })
+    }
+
+    /// Length and width of belts.
+    fn belts(&mut self, track: f64) -> Result<[f64; 2], FormatError> {
+        let [length, width] = self.tracks.unwrap_or_else(|| {
+            let message = "no `tracks` line; the belts are half as long again as they are apart";
+            self.notes.warn(Location::START, message);
+            [1.5 * track, 0.3 * track]
+        });
+        if width <= track {
+            return Ok([length, width]);
+        }
+        let found = format!("belts {} mm wide", number::print(width, MILLI));
+        let expected = "belts no wider than they are apart";
+        Err(FormatError::new(self.notes.file, Location::START, found, expected))
     }
 
     fn place_sensors(&mut self) {
@@ -388,10 +427,11 @@ impl<'f> Reader<'f> {
 
     fn place_footprint(&mut self, drive: Drive) {
         let body = &mut self.spec.body;
-        let derived = body.footprint(drive == Drive::Differential);
+        let derived = body.footprint(matches!(drive, Drive::Differential | Drive::Tracked));
         let wheels = match self.spec.drive {
             DriveSpec::Differential { wheel_diameter, track, .. }
             | DriveSpec::Ackermann { wheel_diameter, track, .. }
+            | DriveSpec::Tracked { wheel_diameter, track, .. }
             | DriveSpec::Omni { wheel_diameter, track, .. } => 0.5 * (track + wheel_diameter),
         };
         let fallback = (Footprint::Disc { radius: wheels }, DEFAULT_HEIGHT);

@@ -123,12 +123,12 @@ fn a_car_has_two_axles() {
 #[test]
 fn other_drives_and_old_keywords_are_read_with_warnings() {
     let parsed =
-        parse("drive TRACKED_DRIVE\nwheel 54 3600 1100 45\ndiameter 54\nspeed 3", "Snow.robi").unwrap();
+        parse("drive SAIL_DRIVE\nwheel 54 3600 1100 45\ndiameter 54\nspeed 3", "Snow.robi").unwrap();
     let messages: Vec<String> = parsed.warnings.iter().map(ToString::to_string).collect();
     assert_eq!(
         messages,
         [
-            "Snow.robi:1:7: unknown drive `TRACKED_DRIVE`; read as DIFFERENTIAL_DRIVE",
+            "Snow.robi:1:7: unknown drive `SAIL_DRIVE`; read as DIFFERENTIAL_DRIVE",
             "Snow.robi:3:1: unknown keyword `diameter`; the line is skipped",
             "Snow.robi:4:1: unknown keyword `speed`; the line is skipped",
         ]
@@ -175,9 +175,23 @@ fn collider() -> impl Strategy<Value = Collider> {
     ]
 }
 
+#[test]
+fn belts_have_names_and_sizes() {
+    for name in ["TRACKED_DRIVE", "track_drive", "CHAIN_DRIVE"] {
+        let spec = robot(&format!("drive {name}\nwheel 60 900 1200 90\ntracks 250 60\nfriction 0.6"));
+        let DriveSpec::Tracked { track, length, width, .. } = spec.drive else { panic!("{:?}", spec.drive) };
+        assert_eq!((track, length, width, spec.friction), (0.18, 0.25, 0.06, 0.6));
+    }
+    let parsed = parse("drive TRACKED_DRIVE\nwheel 60 900 1200 90", "Snow.robi").unwrap();
+    assert!(parsed.warnings[0].to_string().contains("no `tracks` line"), "{:?}", parsed.warnings);
+    let wide = parse("drive TRACKED_DRIVE\nwheel 60 900 1200 90\ntracks 250 181", "Snow.robi").unwrap_err();
+    assert!(wide.to_string().contains("belts 181 mm wide"), "{wide}");
+}
+
 prop_compose! {
     fn drive()(
-        kind in 0..3,
+        kind in 0..4,
+        (length, slim) in (metres(), 0.01..1.0f64),
         (wheel_diameter, track, wheelbase) in (metres(), metres(), metres()),
         max_wheel_speed in 1..9999i32,
         ticks_per_turn in 1.0..9999.0f64,
@@ -187,6 +201,7 @@ prop_compose! {
         let max_steering = units::from_deg(f64::from(steering));
         match kind {
             0 => DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn },
+            3 => DriveSpec::Tracked { wheel_diameter, track, length, width: slim * track, max_wheel_speed, ticks_per_turn },
             1 => DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn },
             _ => DriveSpec::Ackermann { wheel_diameter, track, wheelbase, max_steering, max_wheel_speed, ticks_per_turn, dynamics: None },
         }
@@ -249,7 +264,7 @@ prop_compose! {
         drive in drive(),
         body in body(),
         outline in (0.01..1.0f64, 0.01..1.0f64, -1.0..0.0f64, -1.0..0.0f64),
-        (disc, height, mass) in (any::<bool>(), metres(), 0.0..99.0f64),
+        (disc, height, mass, friction) in (any::<bool>(), metres(), 0.0..99.0f64, 0.0..2.0f64),
         motor in (0.0..1.0f64, metres()),
         psds in proptest::collection::vec(psd(), 0..4),
         lidar in proptest::option::of(lidar()),
@@ -259,7 +274,7 @@ prop_compose! {
         let footprint = if disc { Footprint::Disc { radius: outline.0 } } else { Footprint::Rectangle(rectangle) };
         let motor = MotorSpec { time_constant: motor.0, max_acceleration: motor.1 };
         let model = Some(r"m\a b.obj".into());
-        RobotSpec { name, drive, motor, footprint, height, mast: None, mass, psds, lidar, camera, model, body }
+        RobotSpec { name, drive, motor, footprint, height, mast: None, mass, friction, psds, lidar, camera, model, body }
     }
 }
 
