@@ -234,16 +234,7 @@ impl Seat {
             camera: spec.camera.is_some() && on_wheels,
         };
         let (truth, scan) = (simulation.truth(), LidarScan::default());
-        Self {
-            robot,
-            truth,
-            identity,
-            index,
-            numbers,
-            scan,
-            walker,
-            ahead: 0.0,
-        }
+        Self { robot, truth, identity, index, numbers, scan, walker, ahead: 0.0 }
     }
 
     /// Who the robot is.

@@ -95,7 +95,9 @@ mod tests {
 
     #[test]
     fn nonsense_is_refused() {
-        for (track, length, width) in [(0.0, 1.0, 0.1), (1.0, f64::NAN, 0.1), (1.0, 1.0, -0.1), (0.1, 1.0, 0.2)] {
+        for (track, length, width) in
+            [(0.0, 1.0, 0.1), (1.0, f64::NAN, 0.1), (1.0, 1.0, -0.1), (0.1, 1.0, 0.2)]
+        {
             assert!(Tracked::new(track, length, width).is_err());
         }
     }

@@ -4,8 +4,8 @@ use super::engine::{Engine, Thing};
 use super::lockstep::Lockstep;
 use super::terrain::Mishap;
 use crate::geometry::{Pose, Pose3};
-use crate::parameter::require_finite;
 use crate::io::{Error, GroundTruth, Result, RobotTruth};
+use crate::parameter::require_finite;
 
 /// What is true in a simulated world. No robot reaches it; verdicts, pictures and tests do.
 #[derive(Debug, Clone)]

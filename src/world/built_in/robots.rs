@@ -122,10 +122,7 @@ impl RobotSpec {
             height: 0.190,
             mass: 2.4,
             psds: four_psds(half_length, half_width, 0.070),
-            lidar: Some(LidarSpec {
-                mount: Mount { z: 0.200, ..Mount::default() },
-                ..LidarSpec::default()
-            }),
+            lidar: Some(LidarSpec { mount: Mount { z: 0.200, ..Mount::default() }, ..LidarSpec::default() }),
             camera: Self::s4().camera.map(|camera| CameraSpec {
                 mount: Mount { x: 0.120, z: 0.170, ..Mount::default() },
                 ..camera

@@ -119,8 +119,10 @@ impl<'f> Reader<'f> {
             "terrain" => self.terrain(line, &mut args)?,
             "water_level" => {
                 self.world.water_level = Some(args.length("the water level")?);
-                self.notes
-                    .warn(line.location(0), "`water_level`: water carries nothing; on hills, robots drown in it");
+                self.notes.warn(
+                    line.location(0),
+                    "`water_level`: water carries nothing; on hills, robots drown in it",
+                );
             }
             _ => {
                 let message = format!("unknown keyword {}; the line is skipped", lexer::shown(keyword));
@@ -157,8 +159,7 @@ impl<'f> Reader<'f> {
         self.world.terrain = Some(Terrain { width, height, max_elevation, file: file.into(), surface: None });
         self.places.terrain = line.location(4);
         self.floor(width, height);
-        self.notes
-            .warn(line.location(0), "`terrain`: cameras show a level floor");
+        self.notes.warn(line.location(0), "`terrain`: cameras show a level floor");
         Ok(())
     }
 

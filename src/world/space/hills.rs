@@ -35,7 +35,6 @@ impl Space {
         if nearest <= max_range { nearest } else { f64::INFINITY }
     }
 
-
     /// The distance on the floor to the first wall or solid within a limit; infinite if there is none.
     fn nearest_over(
         &self,
@@ -47,7 +46,8 @@ impl Space {
         let mut nearest = f64::INFINITY;
         let ray = &slanted.ray;
         let wall = |number: u32, nearest: &mut f64| {
-            if let Some(hit) = slanted.hit_wall(ground, &self.walls[number as usize], lesser(*nearest, limit)) {
+            if let Some(hit) = slanted.hit_wall(ground, &self.walls[number as usize], lesser(*nearest, limit))
+            {
                 *nearest = lesser(hit, *nearest);
             }
         };
@@ -170,7 +170,8 @@ mod tests {
         space.set_level(can, 0.3);
         let along = unit(1.0, 0.0, 0.1);
         let range = |y: f64, above: f64, direction| {
-            space.cast_ray_over(&ground, Point3::new(1.0, y, 0.1 + above), direction, 20.0, None) * direction.x
+            space.cast_ray_over(&ground, Point3::new(1.0, y, 0.1 + above), direction, 20.0, None)
+                * direction.x
         };
         // Parallel to the ground: into the wall below its top, and beyond it above.
         assert!((range(5.0, 0.1, along) - 3.995).abs() < 1e-5);

@@ -89,13 +89,7 @@ impl Watch {
     }
 
     /// Looks at a robot after a tick.
-    pub(super) fn look(
-        &mut self,
-        body: &RigidBody,
-        pose: &Pose3,
-        ground: &HeightField,
-        drive: &PlanarTwist,
-    ) {
+    pub(super) fn look(&mut self, body: &RigidBody, pose: &Pose3, ground: &HeightField, drive: &PlanarTwist) {
         let middle = body.middle().z;
         self.gone = middle < ground.lowest() - OFF_THE_WORLD;
         if self.falls(body) {

@@ -44,7 +44,7 @@ const LOOKS: usize = 2;
 /// Rounds over all contacts, at most, and the change of an impulse below which they end, in m/s.
 const MOST_ROUNDS: usize = 60;
 const SETTLED: f64 = 1e-10;
-/// Feet higher than this after the tick are not looked at further.
+/// Feet of a body at rest that are higher than this are not looked at further.
 const MARGIN: f64 = 5e-3;
 /// A foot that would end this deep looks where it comes into the ground.
 const DEEP: f64 = 1.5e-3;
@@ -161,13 +161,15 @@ impl RigidBody {
         // Arms and rims point as they do in the middle of the tick, so that an arc is one.
         let middle = turn(spin * (0.5 * tick)) * self.attitude;
         let forward = middle * Vector3::x();
+        // A body that hits the ground on one side turns its other side towards it within the tick.
+        let margin = MARGIN + tick * self.velocity.norm();
         self.contacts.clear();
         for (number, foot) in carriage.feet.iter().enumerate() {
             let start = self.place + self.attitude * foot.place;
             let arm = middle * foot.place;
             let way = (velocity + spin.cross(&arm)) * tick;
             let Some((normal, gap)) = plane(ground, start, way) else { continue };
-            if gap + normal.dot(&way) > MARGIN {
+            if gap + normal.dot(&way) > margin {
                 self.impulses[number] = Vector3::zeros();
                 continue;
             }
@@ -238,12 +240,7 @@ impl RigidBody {
     }
 
     /// A body that rests on the ground, its robot's frame at a pose in the plane.
-    pub(super) fn resting(
-        ground: &HeightField,
-        carriage: &Undercarriage,
-        pose: Pose,
-        tick: f64,
-    ) -> Self {
+    pub(super) fn resting(ground: &HeightField, carriage: &Undercarriage, pose: Pose, tick: f64) -> Self {
         let (level, slope) = ground.height_and_gradient(pose.position()).unwrap_or_default();
         let forward = Vector3::new(pose.forward().x, pose.forward().y, slope.dot(&pose.forward()));
         let left = Vector3::new(-slope.x, -slope.y, 1.0).cross(&forward).normalize();

@@ -74,7 +74,7 @@ impl Undercarriage {
             }
             DriveSpec::Tracked { wheel_diameter, track, length, width, .. } => {
                 belts(&mut feet, Tracked { track, length, width }, 0.5 * wheel_diameter);
-                (16, 0.0)
+                (4, 0.0)
             }
             DriveSpec::Ackermann { wheel_diameter, track, wheelbase, .. } => {
                 for side in [0.5, -0.5] {

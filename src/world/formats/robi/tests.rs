@@ -122,8 +122,7 @@ fn a_car_has_two_axles() {
 
 #[test]
 fn other_drives_and_old_keywords_are_read_with_warnings() {
-    let parsed =
-        parse("drive SAIL_DRIVE\nwheel 54 3600 1100 45\ndiameter 54\nspeed 3", "Snow.robi").unwrap();
+    let parsed = parse("drive SAIL_DRIVE\nwheel 54 3600 1100 45\ndiameter 54\nspeed 3", "Snow.robi").unwrap();
     let messages: Vec<String> = parsed.warnings.iter().map(ToString::to_string).collect();
     assert_eq!(
         messages,
