@@ -9,7 +9,7 @@ use roverlab::geometry::{Point, Pose};
 use roverlab::io::control::run;
 use roverlab::io::log::{Difference, Header, Log, LogWriter, Replay};
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::io::{Clock, DistanceSensors, Drive, ErrorKind, Psd, Result};
+use roverlab::io::{Clock, DistanceSensors, ErrorKind, Odometry, Psd, Result};
 use roverlab::world::{RobotSpec, Scene, World};
 
 /// The program: it does not know what kind of robot it drives. Returns the last odometry and the range ahead.

@@ -8,7 +8,7 @@ use std::cell::RefCell;
 
 use roverlab::geometry::{Pose, Twist, units};
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::io::{Clock, Drive};
+use roverlab::io::{Clock, Drive, Odometry};
 use roverlab::safety::SafetyState::{Armed, Auto, EmergencyStop, Manual, SafeStop};
 use roverlab::safety::{Beat, Panel, Requests, SafetyState, Supervised, SupervisorParameters};
 use roverlab::world::{RobotSpec, Scene, World};

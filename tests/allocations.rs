@@ -6,7 +6,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use roverlab::geometry::{Point, Pose, Twist};
-use roverlab::io::{Clock, DistanceSensors, Drive, Lidar, LidarScan, LidarSettings, Psd, Result};
+use roverlab::io::{Clock, DistanceSensors, Drive, Lidar, LidarScan, LidarSettings, Odometry, Psd, Result};
 use roverlab::safety::{
     BaseStation, Beat, Causes, Panel, Requests, SafetyState, Station, Supervised, SupervisorParameters,
 };

@@ -32,7 +32,7 @@ pub use actuators::{Encoders, Motors, Servos};
 pub use camera::{Camera, Resolution};
 pub use clock::Clock;
 pub use display::{Display, DisplayOption, Fill, Font, FontFamily, FontStyle, Picture, Pixel, Viewport};
-pub use drive::Drive;
+pub use drive::{Drive, Manoeuvres, Odometry, StallDetector};
 pub use error::{Error, ErrorKind, Result};
 pub use keys::{Key, Keys};
 pub use lcd::Lcd;
@@ -45,13 +45,29 @@ pub use truth::{RobotTruth, TrailPoint, Witness};
 
 /// A full robot: every capability at once.
 pub trait RobotIo:
-    Clock + Drive + DistanceSensors + Lidar + Camera + Display + Keys + Radio + Motors + Servos + Encoders
+    Clock
+    + Drive
+    + Odometry
+    + Manoeuvres
+    + StallDetector
+    + DistanceSensors
+    + Lidar
+    + Camera
+    + Display
+    + Keys
+    + Radio
+    + Motors
+    + Servos
+    + Encoders
 {
 }
 
 impl<R> RobotIo for R where
     R: Clock
         + Drive
+        + Odometry
+        + Manoeuvres
+        + StallDetector
         + DistanceSensors
         + Lidar
         + Camera

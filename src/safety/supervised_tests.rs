@@ -4,8 +4,8 @@ use crate::io::control;
 use crate::io::sim::{SimOptions, Simulation, TICK};
 use crate::io::wrappers::{Fault, Faulty};
 use crate::io::{
-    Camera, Clock, Display, DistanceSensors, Drive, ErrorKind, Key, Keys, Lidar, LidarScan, MockRobot,
-    Motors, Psd, Servos,
+    Camera, Clock, Display, DistanceSensors, Drive, ErrorKind, Key, Keys, Lidar, LidarScan, Manoeuvres,
+    MockRobot, Motors, Odometry, Psd, Servos,
 };
 use crate::kinematics::PlanarMotion;
 use crate::race::GapDriver;

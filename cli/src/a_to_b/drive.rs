@@ -1,6 +1,6 @@
 use roverlab::drive::{AToB, AToBOutcome, AToBParameters, Goal, Method, Path};
 use roverlab::geometry::Point;
-use roverlab::io::{self, Clock, Drive, Lidar, LidarScan, control};
+use roverlab::io::{self, Clock, Lidar, LidarScan, Odometry, control};
 use roverlab::kinematics::{Differential, OdometryErrors, OdometryUncertainty};
 use roverlab::scan::{Landmark, LandmarkFilter};
 

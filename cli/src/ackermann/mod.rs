@@ -3,7 +3,7 @@
 use roverlab::drive::{CarDriver, CarOutcome, CarParameters, CarToB, Goal, Method, Path};
 use roverlab::geometry::{Pose, angle_difference, normalize_angle, units};
 use roverlab::io::control::run;
-use roverlab::io::{self, Clock, Drive, Motors, Servos};
+use roverlab::io::{self, Clock, Motors, Odometry, Servos};
 use roverlab::kinematics::Ackermann;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, Marker, RobotSpec, Scene, World};

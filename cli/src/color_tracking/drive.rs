@@ -4,7 +4,7 @@ use roverlab::drive::colour::{
 };
 use roverlab::geometry::Point;
 use roverlab::io::control::run;
-use roverlab::io::{self, Camera, Clock, Display, Drive, ErrorKind, Lidar, Picture, Pixel, Viewport};
+use roverlab::io::{self, Camera, Clock, Display, ErrorKind, Lidar, Odometry, Picture, Pixel, Viewport};
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod, Sighting, teach_hue};
 use roverlab::world::Colour;
 

@@ -11,8 +11,8 @@ use roverlab::io::delegate::{
 };
 use roverlab::io::{
     Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys, Lidar,
-    LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos,
-    Viewport,
+    LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Picture, Pixel, Psd, Radio, RadioMessage,
+    Resolution, Result, Servos, StallDetector, Viewport,
 };
 use roverlab::safety::{
     Beat, Causes, Panel, Requests, SafetyState, StopRecord, StoppingModel, Supervised, SupervisorParameters,

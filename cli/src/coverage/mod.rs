@@ -16,7 +16,7 @@ use roverlab::drive::{
 use roverlab::geometry::{Point, Pose, units};
 use roverlab::io::control::{self, SensedBy};
 use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
-use roverlab::io::{self, Clock, Drive, Lidar, LidarScan};
+use roverlab::io::{self, Clock, Lidar, LidarScan, Odometry};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
 use roverlab::scan::{LocalisationMap, Localiser, LocaliserParameters};

@@ -1,6 +1,6 @@
 use roverlab::drive::{RandomDrive, RandomDriveParameters};
 use roverlab::io::control::{self, until};
-use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar, LidarScan};
+use roverlab::io::{self, Clock, DistanceSensors, Lidar, LidarScan, Odometry};
 use roverlab::random::Stream;
 use roverlab::scan::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
 

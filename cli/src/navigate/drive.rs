@@ -1,5 +1,5 @@
 use roverlab::geometry::{Point, Pose};
-use roverlab::io::{self, Clock, Drive, Lidar, control};
+use roverlab::io::{self, Clock, Lidar, Odometry, control};
 use roverlab::nav::{NavigateEvent, NavigateOutcome, NavigateParameters, Navigator};
 use roverlab::world::World;
 

@@ -3,7 +3,7 @@
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::wrappers::{Fault, Faulty, Traced};
-use roverlab::io::{Clock, Drive, Lidar, MockRobot, Motors, Result, Servos};
+use roverlab::io::{Clock, Drive, Lidar, MockRobot, Motors, Odometry, Result, Servos};
 use roverlab::race::{Cone, ConeTrack, GapDriver};
 use roverlab::random::Stream;
 use roverlab::safety::{

@@ -9,7 +9,7 @@ use roverlab::drive::{
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::Fleet;
 use roverlab::io::wrappers::Traced;
-use roverlab::io::{Clock, Drive, Lidar, LidarScan, Radio, Result};
+use roverlab::io::{Clock, Drive, Lidar, LidarScan, Odometry, Radio, Result};
 use roverlab::world::{Footprint, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
 
 use super::{Scenario, noise, note, note_truth, other};
