@@ -3,6 +3,14 @@
 //! One capability is one small trait. An algorithm asks for what it uses, `fn run(robot: &mut (impl Clock + Drive +
 //! Lidar))`, and so runs on a simulated robot, on a recording and on a real one. [`RobotIo`] is all of them at once.
 //! Every trait works behind `&mut R`, `Box<R>` and `dyn`.
+//!
+//! # Robots of one's own
+//!
+//! A robot implements what it has, and nothing else. [`Clock`] and [`Drive`] are enough for a behaviour that looks at
+//! nothing; [`Odometry`], if the robot measures how it moves, and the traits of its sensors open the others. A
+//! behaviour that needs more than the robot has does not compile. [`Manoeuvres`] and a [`StallDetector`], if it has
+//! none of its own, come with [`wrappers::Manoeuvring`]. No method makes up a value: where a program wants a full
+//! [`RobotIo`], what is missing answers [`Error::unsupported`].
 
 mod actuators;
 mod camera;

@@ -22,7 +22,7 @@ pub(super) fn station(change: impl Fn(f64, &mut Panel)) -> impl FnMut(f64, Beat)
 }
 
 /// Drives with 0.5 m/s for some seconds, a command every 0.1 s.
-pub(super) fn drive<R: Clock + Drive, S: Station>(car: &mut Supervised<R, S>, seconds: f64) {
+pub(super) fn drive<R: Clock + Drive + Odometry, S: Station>(car: &mut Supervised<R, S>, seconds: f64) {
     for _ in 0..(10.0 * seconds).round() as usize {
         let _ = car.set_speed(Twist::new(0.5, 0.1));
         let _ = car.wait(0.1);

@@ -4,7 +4,9 @@ use roverlab::drive::colour::{
 };
 use roverlab::geometry::Point;
 use roverlab::io::control::run;
-use roverlab::io::{self, Camera, Clock, Display, ErrorKind, Lidar, Odometry, Picture, Pixel, Viewport};
+use roverlab::io::{
+    self, Camera, Clock, Display, Drive, ErrorKind, Lidar, Odometry, Picture, Pixel, StallDetector, Viewport,
+};
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod, Sighting, teach_hue};
 use roverlab::world::Colour;
 
@@ -45,7 +47,7 @@ fn failure(error: &roverlab::vision::Error) -> io::Error {
 }
 
 /// Drives by a hue. `watch` is called after each step.
-pub(crate) fn drive<R: Camera + Clock + Display + Drive + Lidar + ?Sized>(
+pub(crate) fn drive<R: Camera + Clock + Display + Drive + Odometry + StallDetector + Lidar + ?Sized>(
     robot: &mut R,
     hue: u8,
     options: &Options,

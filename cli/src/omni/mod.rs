@@ -79,7 +79,7 @@ pub(crate) struct Options {
 }
 
 /// Drives a robot along a route. `watch` is called after each step.
-pub(crate) fn drive<R: Clock + Drive + Motors + ?Sized>(
+pub(crate) fn drive<R: Clock + Odometry + Motors + ?Sized>(
     robot: &mut R,
     options: &Options,
     mut watch: impl FnMut(),

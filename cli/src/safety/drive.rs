@@ -5,7 +5,7 @@ use std::fmt;
 use roverlab::ParameterError;
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::wrappers::{Fault, FaultKind};
-use roverlab::io::{Clock, Drive, Lidar, LidarScan, Manoeuvres, Odometry};
+use roverlab::io::{Clock, Drive, Lidar, LidarScan, Odometry};
 use roverlab::race::{Racer, RacerParameters, sightings};
 use roverlab::safety::{Causes, SafetyState, SpeedError, StoppingModel, Supervised, SupervisorParameters};
 use roverlab::world::RobotSpec;

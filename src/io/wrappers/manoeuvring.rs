@@ -8,7 +8,7 @@ use crate::io::{
     Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::kinematics::{Displacement, arc_between};
-use crate::parameter::{ParameterError, require_finite, require_positive};
+use crate::parameter::{ParameterError, require_finite, require_not_negative, require_positive};
 use crate::world::Colour;
 
 /// How manoeuvres are made of speeds.
@@ -16,16 +16,15 @@ use crate::world::Colour;
 pub struct ManoeuvringParameters {
     /// Seconds from one look at odometry to the next.
     pub period: f64,
-    /// How hard the robot brakes before the end of a way, in m/s².
-    pub deceleration: f64,
-    /// The same for a turn on the spot, in rad/s².
-    pub angular_deceleration: f64,
+    /// The time constant, in seconds, with which the robot takes up a speed: told to stop, it rolls on as far as its
+    /// speed takes it in that time.
+    pub lag: f64,
 }
 
 impl Default for ManoeuvringParameters {
-    /// For a small robot.
+    /// Twenty looks a second at a robot that does at once as it is told.
     fn default() -> Self {
-        Self { period: 0.05, deceleration: 0.5, angular_deceleration: 5.0 }
+        Self { period: 0.05, lag: 0.0 }
     }
 }
 
@@ -33,8 +32,7 @@ impl ManoeuvringParameters {
     /// Fails with the name of the parameter that makes no sense.
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("period", self.period)?;
-        require_positive("deceleration", self.deceleration)?;
-        require_positive("angular deceleration", self.angular_deceleration)
+        require_not_negative("lag", self.lag)
     }
 }
 
@@ -42,12 +40,14 @@ impl ManoeuvringParameters {
 ///
 /// While it is told to move, it looks at odometry once in a period of the robot's clock: in waits, and at the first
 /// call after that. A manoeuvre is then given the speeds that share out what is left of its length and of its angle
-/// over the same time, so that what went wrong on the way is made up for. The robot stalls when it has been told to
-/// move for half a second and a centimetre, and has not come half as far. While it is not told to move, calls go
-/// straight through.
+/// over the same time, so that what went wrong on the way is made up for. While the robot is not told to move, calls
+/// go straight through.
 ///
-/// A way ends where odometry says so. It overshoots by what the robot does between being told to stop and standing,
-/// which is little if it can brake as its [parameters](ManoeuvringParameters) say.
+/// What is left is counted without the way that the robot rolls on by itself; so robots with a lag stop where the way
+/// ends, too. They are done when they stand.
+///
+/// The robot stalls when it has been told to move for half a second and a centimetre, and odometry has not moved half
+/// as far. Wheels that slip while something holds the robot deceive odometry, and that detector with it.
 ///
 /// ```
 /// use ambassador::Delegate;
@@ -106,9 +106,21 @@ struct Way {
     back: bool,
     /// Metres, or radians for a turn on the spot, per second.
     speed: f64,
-    /// Whether it ends when the present period has passed.
-    ends: bool,
+    phase: Phase,
 }
+
+/// How far a manoeuvre has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Phase {
+    Going,
+    /// It has the speed that takes it to its end in this period.
+    Ending,
+    /// It was told to stop so many seconds ago.
+    Rolling(f64),
+}
+
+/// Lags after which a robot that was told to stop stands: it has a hundredth of its speed.
+const STANDS: f64 = 5.0;
 
 /// How long a robot has been where it is, and how far it should have come since.
 #[derive(Debug, Clone, Copy)]
@@ -152,26 +164,32 @@ impl Way {
         require_positive("speed", speed.abs())?;
         let turns = left.length == 0.0;
         let back = if turns { left.angle < 0.0 } else { left.length < 0.0 };
-        Ok(Self { left, turns, back, speed: speed.abs(), ends: false })
+        Ok(Self { left, turns, back, speed: speed.abs(), phase: Phase::Going })
     }
 
-    /// Metres or radians that are left; less than none when it has gone too far.
-    fn rest(&self) -> f64 {
-        let rest = if self.turns { self.left.angle } else { self.left.length };
-        if self.back { -rest } else { rest }
+    /// Metres or radians along the way.
+    fn along(&self, motion: Displacement) -> f64 {
+        let along = if self.turns { motion.angle } else { motion.length };
+        if self.back { -along } else { along }
     }
 
-    /// The speed for the next period; `None` at the end.
-    fn twist(&mut self, parameters: &ManoeuvringParameters) -> Option<Twist> {
-        let rest = self.rest();
-        if self.ends || rest <= 0.0 {
-            return None;
+    /// Goes a period further, with so much of the way to be told: the speed from now on, or `None` at the end.
+    fn next(&mut self, untold: Displacement, parameters: &ManoeuvringParameters) -> Option<Twist> {
+        let rest = self.along(untold);
+        self.phase = match self.phase {
+            Phase::Going if rest > self.speed * parameters.period => Phase::Going,
+            Phase::Going if rest > 0.0 => Phase::Ending,
+            Phase::Going | Phase::Ending => Phase::Rolling(0.0),
+            Phase::Rolling(seconds) => Phase::Rolling(seconds + parameters.period),
+        };
+        match self.phase {
+            Phase::Rolling(seconds) if seconds >= STANDS * parameters.lag => None,
+            Phase::Rolling(_) => Some(Twist::STOP),
+            Phase::Going | Phase::Ending => {
+                let seconds = (rest / self.speed).max(parameters.period);
+                Some(Twist::new(untold.length / seconds, untold.angle / seconds))
+            }
         }
-        let brakes = if self.turns { parameters.angular_deceleration } else { parameters.deceleration };
-        let seconds = rest / self.speed.min((2.0 * brakes * rest).sqrt());
-        self.ends = seconds <= parameters.period;
-        let seconds = seconds.max(parameters.period);
-        Some(Twist::new(self.left.length / seconds, self.left.angle / seconds))
     }
 }
 
@@ -253,12 +271,18 @@ impl<R: Clock + Drive + Odometry> Manoeuvring<R> {
         let Some(way) = &mut motion.way else { return Ok(()) };
         way.left.length -= went.length;
         way.left.angle -= went.angle;
-        let Some(twist) = way.twist(&self.parameters) else {
-            self.motion = None;
-            return self.inner.stop();
+        let speed = self.inner.speed()?;
+        let untold = Displacement {
+            length: way.left.length - self.parameters.lag * speed.linear,
+            angle: way.left.angle - self.parameters.lag * speed.angular,
         };
-        motion.told = twist;
-        self.inner.set_speed(twist)
+        let next = way.next(untold, &self.parameters);
+        motion.told = next.unwrap_or(Twist::STOP);
+        self.inner.set_speed(motion.told)?;
+        if next.is_none() {
+            self.motion = None;
+        }
+        Ok(())
     }
 }
 
@@ -339,7 +363,7 @@ impl<R: Clock + Drive + Odometry> Manoeuvres for Manoeuvring<R> {
 
     fn remaining(&mut self) -> Result<f64> {
         self.keep_up()?;
-        Ok(self.way().map_or(0.0, |way| way.rest().max(0.0)))
+        Ok(self.way().map_or(0.0, |way| way.along(way.left).max(0.0)))
     }
 
     fn is_done(&mut self) -> Result<bool> {

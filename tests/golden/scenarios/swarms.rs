@@ -125,9 +125,9 @@ fn troop(follows: Follows, seed: u64) -> Result<String> {
 type Step = Box<dyn FnMut(&mut dyn Member) -> Result<()>>;
 
 /// The capabilities of a robot in a troop.
-trait Member: Clock + Drive + Lidar + Radio {}
+trait Member: Clock + Drive + Odometry + Lidar + Radio {}
 
-impl<R: Clock + Drive + Lidar + Radio> Member for R {}
+impl<R: Clock + Drive + Odometry + Lidar + Radio> Member for R {}
 
 /// One step of the leader, which tells all others where it is.
 fn lead(robot: &mut dyn Member, cruise: &mut Cruise, start: Pose, scan: &mut LidarScan) -> Result<()> {
