@@ -8,8 +8,8 @@ use super::{Causes, Station};
 use crate::geometry::{Pose, Twist};
 use crate::io::wrappers::signatures;
 use crate::io::{
-    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
-    Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Picture, Pixel, Psd, Radio,
+    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
+    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
     RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;

@@ -10,8 +10,8 @@ use super::values::{self, Put, Values};
 use super::wire;
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    Camera, Display, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys, Lidar,
-    LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Picture, Pixel, Psd, Radio, RadioMessage,
+    Camera, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys,
+    Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
     Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;

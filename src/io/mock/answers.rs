@@ -5,8 +5,8 @@ use super::ideal::IdealDrive;
 use super::robot::{MockRobot, take_due, unscripted};
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
-    Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Picture, Pixel, Psd, Radio,
+    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
+    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
     RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::kinematics::Displacement;
@@ -288,7 +288,7 @@ impl Display for MockRobot {
         self.display.draw_circle(centre, diameter, colour, fill)
     }
 
-    fn draw_image(&mut self, picture: Picture<'_>, viewport: Viewport) -> Result<()> {
+    fn draw_image(&mut self, picture: DisplayImage<'_>, viewport: Viewport) -> Result<()> {
         self.command(Call::DrawImage(picture.dimensions(), viewport));
         self.display.draw_image(picture, viewport)
     }

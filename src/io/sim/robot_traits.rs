@@ -4,8 +4,8 @@ use super::engine::Engine;
 use super::{FleetRobot, SimRobot};
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
-    Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Picture, Pixel, Psd, Radio,
+    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
+    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
     RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::kinematics::Displacement;
@@ -189,7 +189,7 @@ macro_rules! robot_through_engine {
                 self.call(|engine, i| engine.bodies[i].lcd().draw_circle(centre, diameter, colour, fill))
             }
 
-            fn draw_image(&mut self, picture: Picture<'_>, viewport: Viewport) -> Result<()> {
+            fn draw_image(&mut self, picture: DisplayImage<'_>, viewport: Viewport) -> Result<()> {
                 self.call(|engine, i| engine.bodies[i].lcd().draw_image(picture, viewport))
             }
 

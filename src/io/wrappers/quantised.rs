@@ -4,9 +4,9 @@ use image::RgbImage;
 use crate::geometry::{Pose, Twist, math, normalize_angle, units};
 use crate::io::delegate::ambassador_impl_StallDetector;
 use crate::io::{
-    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font, Key, Keys,
-    Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Picture, Pixel, Psd, Radio, RadioMessage,
-    Resolution, Result, Servos, StallDetector, Viewport,
+    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font,
+    Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
+    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -288,7 +288,7 @@ impl<R: Display + Clock> Display for Quantised<R> {
     }
 
     /// Fails for images that have none of RoBIOS's sizes. It takes three calls.
-    fn draw_image(&mut self, picture: Picture<'_>, viewport: Viewport) -> Result<()> {
+    fn draw_image(&mut self, picture: DisplayImage<'_>, viewport: Viewport) -> Result<()> {
         Resolution::of(picture.dimensions())?;
         self.inner.wait(0.0)?;
         self.inner.wait(0.0)?;

@@ -6,8 +6,8 @@ use image::RgbImage;
 use super::trace_text::{Digest, Token, put_scan};
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys, Lidar,
-    LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Picture, Pixel, Psd, Radio, RadioMessage,
+    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key,
+    Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
     Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
