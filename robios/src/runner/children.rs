@@ -12,7 +12,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use eyesim::memory::Memory;
-use eyesim::plan::{Plan, names};
+use eyesim::plan::{BUILD, Plan, names};
 use eyesim::process;
 use eyesim::report::{Report, Stage};
 use roverlab::world::Scene;
@@ -103,7 +103,7 @@ pub(crate) fn start(
     command.env(names::CPU_TIME, options.cpu_time.to_string());
     command.env_remove(names::KEYBOARD);
     let keyboard = if options.is_live() { keyboard(program, &mut command)? } else { None };
-    command.env(names::LIBRARY, &library).env("PYTHONDONTWRITEBYTECODE", "1");
+    command.env(names::LIBRARY, &library).env(names::BUILD, BUILD).env("PYTHONDONTWRITEBYTECODE", "1");
     if let Some(lcd) = &options.lcd {
         command.env(names::LCD, whole(lcd));
     }
