@@ -246,7 +246,7 @@ fn robot(name: &str, warnings: &mut Vec<String>) -> Result<RobotSpec, String> {
             RobotSpec::PREDEFINED.join(", ")
         ));
     }
-    let parsed = formats::load_robot(name).map_err(|error| error.to_string())?;
+    let parsed = formats::load_robot_tolerantly(name).map_err(|error| error.to_string())?;
     warnings.extend(parsed.warnings.iter().map(ToString::to_string));
     Ok(parsed.value)
 }
