@@ -93,7 +93,8 @@ fn a_robot_of_a_file_is_seen_as_its_model_says() {
     let folder = Folder::new("model");
     write(&folder, "robots/cart.robi", "drive DIFFERENTIAL_DRIVE\nwheel 54 3600 1100 45\nmodel cart.obj\n");
     write(&folder, "look.py", LOOK);
-    let script = folder.write("look.sim", "robot ../robots/cart.robi\nS4 500 1000 0 look.py\ncart 1000 1000 0\n");
+    let script =
+        folder.write("look.sim", "robot ../robots/cart.robi\nS4 500 1000 0 look.py\ncart 1000 1000 0\n");
     let outline = run(&script);
     assert_eq!(numbers(&outline)[3], 0, "{outline}");
     let [warning] = warnings(&outline)[..] else { panic!("{outline}") };
@@ -114,7 +115,11 @@ fn a_sound_that_is_not_there_is_reported() {
     }
     let folder = Folder::new("sound");
     write(&folder, "bell.wav", "a sound");
-    let file = write(&folder, "play.py", "from eye import *\nfor name in 'BELL.wav', 'gong.wav':\n    AUPlay(name)\n");
+    let file = write(
+        &folder,
+        "play.py",
+        "from eye import *\nfor name in 'BELL.wav', 'gong.wav':\n    AUPlay(name)\n",
+    );
     let all = run(&file);
     assert_eq!(all["sounds"], 2, "{all}");
     let [warning] = warnings(&all)[..] else { panic!("{all}") };

@@ -3,8 +3,8 @@ use std::sync::Arc;
 
 use super::super::args::Args;
 use super::super::error::{FormatError, Location, Notes, Parsed};
-use super::super::lexer::{self, Line, shown};
 use super::super::esobj::DEFAULT_COLOUR;
+use super::super::lexer::{self, Line, shown};
 use super::super::limits::{MAX_METRES, MAX_PARTS};
 use super::super::model;
 use super::super::number::MILLI;
