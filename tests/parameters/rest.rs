@@ -1,6 +1,7 @@
 use roverlab::geometry::Pose;
 use roverlab::io::MockRobot;
 use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
+use roverlab::io::wrappers::{Manoeuvring, ManoeuvringParameters};
 use roverlab::random::Stream;
 use roverlab::safety::{BaseStation, HealthLimits, SpeedError, Supervised, SupervisedParameters};
 use roverlab::vision::{Hog, HogParameters};
@@ -55,6 +56,12 @@ fn safety() {
         { NotNegative: share, offset; });
     check!(HealthLimits = HealthLimits::default(), |p| supervised(SupervisedParameters { health: p, ..parameters() })?,
         { Positive: acceleration, speed_step, age; Count: repeats; });
+}
+
+#[test]
+fn manoeuvres() {
+    check!(ManoeuvringParameters = ManoeuvringParameters::default(), |p| Manoeuvring::new(MockRobot::new(), p)?,
+        { Positive: period; NotNegative: lag; });
 }
 
 #[test]
