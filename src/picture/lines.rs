@@ -60,12 +60,18 @@ pub(super) fn cloud(points: &[Point], style: &Style, frame: &Frame) -> Group {
 
 /// Dots, one for every place where there are any.
 pub(super) fn dots(pixels: &[Pixel], style: &Style) -> Group {
-    // Places on a grid of half a pixel: more dots would only darken each other.
+    // Places on a grid of half a pixel, row by row: more dots would only darken each other.
     let places: BTreeSet<(i64, i64)> =
-        pixels.iter().map(|p| ((2.0 * p.x).round() as i64, (2.0 * p.y).round() as i64)).collect();
+        pixels.iter().map(|p| ((2.0 * p.y).round() as i64, (2.0 * p.x).round() as i64)).collect();
+    let places: Vec<_> = places.into_iter().collect();
     let half = |twice: i64| number(twice as f64 / 2.0);
-    let data =
-        places.iter().fold(String::new(), |data, (x, y)| data + "M" + &half(*x) + " " + &half(*y) + "h0");
+    let apart = (2.0 * style.width).max(1.0) as i64;
+    // Dots that touch are a line.
+    let runs = places.chunk_by(|a, b| a.0 == b.0 && b.1 - a.1 <= apart);
+    let data = runs.fold(String::new(), |data, run| {
+        let ((y, x), (_, last)) = (run[0], run[run.len() - 1]);
+        data + "M" + &half(x) + " " + &half(y) + "h" + &half(last - x)
+    });
     Group::new().add(line(data, style.colour, style.width).set("stroke-opacity", number(style.opacity)))
 }
 

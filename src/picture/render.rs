@@ -225,6 +225,14 @@ mod tests {
                     picture.mark_named(Mark::Goal, point, text.clone());
                     picture.disc(point, size, Style::new(Colour::RED).filled(size).labelled(text.clone()));
                     picture.robot(Pose::new(point.x, point.y, size), &Footprint::Disc { radius: 0.1 });
+                    picture.during(point.y..size);
+                    let poses = [(point.x, Pose::default()), (size, Pose::new(point.x, point.y, size))];
+                    picture.drive(&poses, &Footprint::Disc { radius: size });
+                    picture.moving_line(
+                        poses.map(|(time, pose)| (time, vec![pose.position(); 2])),
+                        Style::aid(),
+                    );
+                    picture.trace([(size, point), (point.x, point), (point.y, point)], Style::plan());
                 }
                 picture
             },
@@ -239,6 +247,9 @@ mod tests {
             prop_assert!(usvg::Tree::from_str(&text, &usvg::Options::default()).is_ok(), "{text}");
             prop_assert!(!text.contains("NaN\"") && !text.contains("inf\""));
             prop_assert_eq!(text, picture.to_svg());
+            let moving = picture.to_moving_svg();
+            prop_assert!(usvg::Tree::from_str(&moving, &usvg::Options::default()).is_ok(), "{moving}");
+            prop_assert!(!["NaN", "inf;", "inf\""].iter().any(|wrong| moving.contains(wrong)), "{moving}");
         }
     }
 }
