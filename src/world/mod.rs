@@ -16,6 +16,7 @@ mod object;
 mod robot;
 mod scene;
 pub mod space;
+mod terrain;
 mod texture;
 mod wall;
 
@@ -29,6 +30,7 @@ pub use object::{Billboard, Marker, Object, ObjectKind, Shape};
 pub use robot::{
     CameraSpec, CarDynamics, DriveSpec, Footprint, LidarSpec, Mast, MotorSpec, Mount, PsdSpec, RobotSpec,
 };
-pub use scene::{Place, RobotPlacement, Scene, Settings, Terrain, World};
+pub use scene::{Place, RobotPlacement, Scene, Settings, World};
+pub use terrain::{HeightField, Terrain};
 pub use texture::Texture;
 pub use wall::Wall;

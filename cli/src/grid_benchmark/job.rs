@@ -4,7 +4,7 @@ use roverlab::nav::grid::{
 use roverlab::world::BitGrid;
 use roverlab::world::formats::movingai::{self, Query};
 
-use super::{Algorithm, Args, own_map};
+use super::{Algorithm, Args, own_map, picture};
 use crate::common::{Failure, Outcome, Progress, Report, Stopwatch, rounded};
 
 /// What came of all queries.
@@ -42,6 +42,7 @@ impl Result {
 
 /// The work of the command.
 pub(crate) fn work(args: &Args) -> std::result::Result<Report, Failure> {
+    args.plain.check_picture()?;
     let (name, grid, queries) = match (&args.map, &args.scen) {
         (Some(map), Some(scen)) => {
             let grid = movingai::load_map(map).map_err(Failure::input)?.value.grid();
@@ -68,7 +69,15 @@ pub(crate) fn work(args: &Args) -> std::result::Result<Report, Failure> {
         }
         _ => own_map::with_queries(args.plain.seed),
     };
-    Ok(report(&answer(name, &grid, &queries, args)?))
+    let result = answer(name, &grid, &queries, args)?;
+    let longest = queries.iter().max_by(|a, b| a.optimal.total_cmp(&b.optimal));
+    let report = report(&result);
+    Ok(match longest {
+        Some(query) => {
+            args.plain.draw(report, "grid_benchmark.svg", || picture::of(&result.map, &grid, query))
+        }
+        None => report,
+    })
 }
 
 fn report(result: &Result) -> Report {
