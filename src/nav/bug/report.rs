@@ -9,6 +9,8 @@ pub enum BugOutcome {
     Reached,
     /// The robot went all the way round an obstacle without getting nearer to the goal: there is no way.
     Unreachable,
+    /// The robot sees that there is no room for it at the goal, nor anywhere near enough to it.
+    NoRoom,
     /// The time was over.
     TimedOut,
     /// Who watched had seen enough.

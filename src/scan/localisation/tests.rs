@@ -147,7 +147,6 @@ fn wrong_input_is_refused() {
     assert!(localiser.update(Pose::new(f64::NAN, 0.0, 0.0), &scan).is_err());
     for bad in [
         LocaliserParameters { radius: 0.0, ..LocaliserParameters::default() },
-        LocaliserParameters { candidates: 0, ..LocaliserParameters::default() },
         LocaliserParameters { least_probability: 0.5, ..LocaliserParameters::default() },
     ] {
         assert!(Localiser::new(LocalisationMap::new(&room()).unwrap(), bad).is_err());
