@@ -103,6 +103,9 @@ fn verdict(drive: &Drive) -> String {
         Ending::Verdict(DistBugOutcome::Unreachable) => {
             "all round the obstacle without a place to leave it: the goal cannot be reached".into()
         }
+        Ending::Verdict(DistBugOutcome::NoRoom) => {
+            "there is no room for the robot at the goal: the goal cannot be reached".into()
+        }
         Ending::Verdict(DistBugOutcome::TimedOut | DistBugOutcome::Stopped) => {
             format!("the time is over, {off} mm from the goal")
         }
@@ -129,6 +132,7 @@ fn report(trip: &Trip, drive: &Drive, options: &Options, picture: Option<&Path>)
     let (outcome, error) = match &drive.ending {
         Ending::Verdict(DistBugOutcome::Reached) => (Outcome::verdict("reached"), None),
         Ending::Verdict(DistBugOutcome::Unreachable) => (Outcome::verdict("unreachable"), None),
+        Ending::Verdict(DistBugOutcome::NoRoom) => (Outcome::verdict("no_room"), None),
         Ending::Verdict(DistBugOutcome::TimedOut | DistBugOutcome::Stopped) => {
             (Outcome::failure("timed_out"), None)
         }

@@ -36,6 +36,7 @@ fn title(drive: &Drive) -> String {
     let ending = match &drive.ending {
         Ending::Verdict(DistBugOutcome::Reached) => "goal reached",
         Ending::Verdict(DistBugOutcome::Unreachable) => "the goal cannot be reached",
+        Ending::Verdict(DistBugOutcome::NoRoom) => "no room at the goal",
         Ending::Verdict(DistBugOutcome::TimedOut | DistBugOutcome::Stopped) => "the time is over",
         Ending::Failed(_) => "the robot failed",
     };

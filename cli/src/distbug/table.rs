@@ -86,7 +86,7 @@ fn line(row: &Row<'_>) -> String {
         row.runs.len(),
         row.percent(),
         row.ended(DistBugOutcome::Reached),
-        row.ended(DistBugOutcome::Unreachable),
+        row.ended(DistBugOutcome::Unreachable) + row.ended(DistBugOutcome::NoRoom),
         row.ended(DistBugOutcome::TimedOut),
     );
     for (judgement, _) in Judgement::WRONG {
@@ -152,6 +152,7 @@ fn level(row: &Row<'_>, index: usize, trials: &[Trial]) -> Value {
         "correct_percent": row.percent(),
         "reached": row.ended(DistBugOutcome::Reached),
         "unreachable": row.ended(DistBugOutcome::Unreachable),
+        "no_room": row.ended(DistBugOutcome::NoRoom),
         "timed_out": row.ended(DistBugOutcome::TimedOut),
         "runs_with_contact": row.contacts(),
         "mean_path_ratio": row.path_ratio().map(rounded),

@@ -1,8 +1,8 @@
 use roverlab::nav::grid::{
     AnyAngle, GridPlanner, GridSearch, JumpPointSearch, PlanError, PreparedJumps, Quadtree, QuadtreePlanner,
 };
-use roverlab::world::{BitGrid, GridCell};
 use roverlab::world::formats::movingai::{self, Query};
+use roverlab::world::{BitGrid, GridCell};
 
 use super::{Algorithm, Args, own_map};
 use crate::common::{Failure, Outcome, Progress, Report, Stopwatch, rounded};

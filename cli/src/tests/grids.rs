@@ -113,12 +113,12 @@ fn water_is_a_map_of_its_own_and_blocked_ends_are_skipped() {
     let (map, scen) = (folder.join("pond.map"), folder.join("pond.scen"));
     fs::write(&map, "type octile\nheight 3\nwidth 6\nmap\n...WWW\n.@.W@W\n..SWWT\n").unwrap();
     let lines = [
-        "0 0 2 2 4",  // round the corner of the blocked cell
-        "3 0 5 1 3",  // in water
+        "0 0 2 2 4", // round the corner of the blocked cell
+        "3 0 5 1 3", // in water
         "3 2 5 0 4",
-        "0 0 3 0 3",  // from land into water
-        "1 1 0 0 1",  // blocked
-        "5 2 3 2 2",  // trees
+        "0 0 3 0 3", // from land into water
+        "1 1 0 0 1", // blocked
+        "5 2 3 2 2", // trees
     ];
     let text: String = lines.iter().map(|line| format!("0 pond 6 3 {line}\n")).collect();
     fs::write(&scen, format!("version 1\n{text}")).unwrap();
@@ -137,9 +137,7 @@ fn water_is_a_map_of_its_own_and_blocked_ends_are_skipped() {
 #[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn published_lengths_with_water_are_met() {
     let folder = published("movingai_water");
-    for (name, skipped, others) in
-        [("darkforest", 15, 0), ("petrifiedforest", 11, 72), ("theglaive", 4, 1)]
-    {
+    for (name, skipped, others) in [("darkforest", 15, 0), ("petrifiedforest", 11, 72), ("theglaive", 4, 1)] {
         let map = folder.join(format!("{name}.map"));
         let scen = folder.join(format!("{name}.map.scen"));
         let options = ["--map", map.to_str().unwrap(), "--scen", scen.to_str().unwrap()];

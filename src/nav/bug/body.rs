@@ -208,8 +208,12 @@ impl Body {
         let error = POINT_ERROR + NOISE_SLACK * self.filter.noise();
         let (least, tolerance) = (distances.least - error, self.parameters.goal_tolerance);
         let goal = self.pose.to_local(self.goal);
-        let near: Vec<Vector> =
-            self.points.iter().map(|point| point - goal).filter(|away| away.norm() < least + tolerance).collect();
+        let near: Vec<Vector> = self
+            .points
+            .iter()
+            .map(|point| point - goal)
+            .filter(|away| away.norm() < least + tolerance)
+            .collect();
         let has_room = |place: Vector| near.iter().all(|point| (point - place).norm() >= least);
         let places = (1..=RINGS).flat_map(|ring| (0..DIRECTIONS).map(move |turn| (ring, turn)));
         let place = |(ring, turn): (u32, u32)| {

@@ -191,7 +191,8 @@ fn off(scan: &LidarScan, expected: &[f64], beam: usize, is_smooth: bool) -> f64 
     }
     let beside = [beam.checked_sub(1), Some(beam), Some(beam + 1)].into_iter().flatten();
     let sides = beside.filter_map(|beam| expected.get(beam)).map(|&range| within(range));
-    let (low, high) = sides.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), side| (low.min(side), high.max(side)));
+    let (low, high) =
+        sides.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), side| (low.min(side), high.max(side)));
     range - range.clamp(low, high)
 }
 

@@ -30,11 +30,11 @@ impl LocalisationMap {
         // The inside of what is solid has no surface.
         let hollow = World { map: None, ..world.clone() };
         let clearance = Clearance::new(&hollow, RESOLUTION, CLEARANCE).map_err(|error| {
-            Error::new(ErrorKind::InvalidInput, "the world cannot be mapped").with_source(error)
+            Error::new(ErrorKind::InvalidInput, format!("the world cannot be mapped: {error}"))
         })?;
         let surfaces = Surfaces::new(&clearance);
         let blocks = World { map: world.map.clone(), ..World::empty(0.0, 0.0) };
-        Ok(Self { space, bounds: world.bounds(), clearance, surfaces, blocks })
+        Ok(Self { space, bounds: world.site(), clearance, surfaces, blocks })
     }
 
     /// Whether a disc about a place touches nothing, to within 40 mm. Radii beyond 0.3 m count as that.

@@ -129,7 +129,10 @@ mod tests {
             let bound = f64::from(surfaces.at(place.x, place.y)) * STEP;
             assert!(bound <= truth, "{bound} for {truth} at {place}");
             let is_inside = world.floor.contains(place);
-            assert!(!is_inside || bound > truth - 0.05 * 4.0 * HALF_DIAGONAL - STEP, "{bound} for {truth} at {place}");
+            assert!(
+                !is_inside || bound > truth - 0.05 * 4.0 * HALF_DIAGONAL - STEP,
+                "{bound} for {truth} at {place}"
+            );
         }
     }
 
