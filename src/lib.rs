@@ -13,7 +13,7 @@
 //! use roverlab::geometry::{Point, Pose};
 //! use roverlab::io::control::run;
 //! use roverlab::io::sim::{SimOptions, Simulation};
-//! use roverlab::nav::{DistBug, BugOutcome, DistBugParameters};
+//! use roverlab::nav::{DistBug, BugOutcome, BugParameters};
 //! use roverlab::world::{RobotSpec, Scene, Wall, World};
 //!
 //! # fn main() -> roverlab::io::Result<()> {
@@ -25,7 +25,7 @@
 //! let mut robot = simulation.robot(0)?;
 //!
 //! let goal = Point::new(2.5, 1.0);
-//! let mut bug = DistBug::new(start.to_local(goal), DistBugParameters::default())?;
+//! let mut bug = DistBug::new(start.to_local(goal), BugParameters::default())?;
 //! let outcome = run(&mut robot, &mut bug, 120.0, |_, _, _| {})?;
 //!
 //! let truth = simulation.truth().robot(0)?;
@@ -78,6 +78,7 @@
 //! and evaluates populations on several threads; `checkpoint` saves evolutions; `physics` adds a walking
 //! robot; `robios` drives a real EyeBot.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 // Where some wings are off, what they alone would use is left over, and links to them are plain text.
 #![cfg_attr(
     not(feature = "default"),
@@ -119,3 +120,33 @@ pub use parameter::ParameterError;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// So do those in the guide.
+#[cfg(doctest)]
+mod guide {
+    #[doc = include_str!("../docs/guide/first-robot.md")]
+    struct FirstRobot;
+    #[doc = include_str!("../docs/guide/driving.md")]
+    struct Driving;
+    #[doc = include_str!("../docs/guide/lidar.md")]
+    struct Lidar;
+    #[doc = include_str!("../docs/guide/swarms.md")]
+    struct Swarms;
+    #[doc = include_str!("../docs/guide/wall-following.md")]
+    struct WallFollowing;
+    #[doc = include_str!("../docs/guide/other-drives.md")]
+    struct OtherDrives;
+    #[doc = include_str!("../docs/guide/mazes.md")]
+    struct Mazes;
+    #[doc = include_str!("../docs/guide/navigation.md")]
+    struct Navigation;
+    #[doc = include_str!("../docs/guide/vision.md")]
+    struct Vision;
+    #[doc = include_str!("../docs/guide/evolution.md")]
+    struct Evolution;
+    #[doc = include_str!("../docs/guide/racing.md")]
+    struct Racing;
+    #[cfg(feature = "testing")]
+    #[doc = include_str!("../docs/guide/own-planner.md")]
+    struct OwnPlanner;
+}

@@ -2,17 +2,17 @@ use std::f64::consts::FRAC_PI_2;
 use std::ops::ControlFlow;
 
 use super::a_to_b::dog_twist;
-use super::{FollowerParameters, Hermite, Method};
+use super::{Hermite, Method, PathFollowerParameters};
 use crate::geometry::{Pose, Twist};
 use crate::io::control::{Behaviour, Decision, SensedBy, Senses, halts};
-use crate::io::{Drive, Error, Result};
+use crate::io::{Error, Odometry, Result, StallDetector};
 use crate::parameter::{require_positive, require_up_to};
 
 /// What [`Chase`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChaseParameters {
     /// Speed, turn rate and deceleration.
-    pub follower: FollowerParameters,
+    pub follower: PathFollowerParameters,
     /// The distance to the goal, in metres, at which it is caught.
     pub distance: f64,
     /// The book's k of splines.
@@ -26,7 +26,7 @@ pub struct ChaseParameters {
 impl Default for ChaseParameters {
     fn default() -> Self {
         Self {
-            follower: FollowerParameters::default(),
+            follower: PathFollowerParameters::default(),
             distance: 0.05,
             spline_scale: 1.0,
             turn_threshold: 0.2,
@@ -58,7 +58,7 @@ pub enum ChaseOutcome {
     Stopped,
 }
 
-halts!(ChaseOutcome);
+halts!(ChaseOutcome { Caught: "the goal is caught", Blocked: "something holds the robot" });
 
 /// Drives towards a goal that moves: each method of chapter 3 begins anew from where robot and goal are at each step, and
 /// drives the first bit of it.
@@ -107,7 +107,7 @@ impl Chase {
             Method::Turn => self.turn_or_drive(bearing, distance),
             // A goal that moves is not braked for.
             Method::Dog => {
-                let follower = FollowerParameters { deceleration: f64::INFINITY, ..*follower };
+                let follower = PathFollowerParameters { deceleration: f64::INFINITY, ..*follower };
                 dog_twist(&follower, bearing, distance)
             }
             // Forward arcs to goals behind are long; the robot turns towards them first.
@@ -124,7 +124,7 @@ impl Chase {
 
     /// The behaviour after a goal. `goal` says, for a time since the first step, where it is in the frame of
     /// the robot's odometry, by whatever way the robot learns of it.
-    pub fn after<R: Drive + ?Sized>(
+    pub fn after<R: Odometry + StallDetector + ?Sized>(
         &mut self,
         mut goal: impl FnMut(&mut R, f64) -> Result<Pose>,
     ) -> impl Senses<R, Observation = ChaseObservation, Command = Twist, Outcome = ChaseOutcome> {

@@ -3,6 +3,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::Picture;
+use crate::parameter::debug_as_sentence;
 
 /// The files that a picture can be written to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,7 +16,7 @@ pub enum FileType {
 }
 
 /// Why a picture could not be saved.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum SaveError {
     /// The name does not say which type of file is wanted.
@@ -27,6 +28,12 @@ pub enum SaveError {
     /// This build writes no PNG.
     #[error("{}: a PNG picture, which needs the feature `png`; expected a name that ends in .svg", path.display())]
     NoPng {
+        /// The name.
+        path: PathBuf,
+    },
+    /// PNG files do not move.
+    #[error("{}: a PNG picture, which does not move; expected a name that ends in .svg", path.display())]
+    Still {
         /// The name.
         path: PathBuf,
     },
@@ -47,6 +54,8 @@ pub enum SaveError {
         source: io::Error,
     },
 }
+
+debug_as_sentence!(SaveError);
 
 impl FileType {
     /// The type that a file's name asks for, without regard to case. Fails if no picture can be saved under it, which
@@ -80,6 +89,19 @@ impl Picture {
             FileType::Png => png(self, path)?,
         };
         replace(path, &bytes).map_err(|source| SaveError::Write { path: path.to_owned(), source })
+    }
+}
+
+impl Picture {
+    /// Saves the picture as it [moves](Self::to_moving_svg), under a name that ends in `.svg`, in the same way.
+    pub fn save_moving(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
+        let path = path.as_ref();
+        match FileType::of(path)? {
+            FileType::Svg => {}
+            FileType::Png => return Err(SaveError::Still { path: path.to_owned() }),
+        }
+        let written = replace(path, self.to_moving_svg().as_bytes());
+        written.map_err(|source| SaveError::Write { path: path.to_owned(), source })
     }
 }
 

@@ -1,9 +1,10 @@
 use crate::ParameterError;
+use crate::parameter::debug_as_sentence;
 
 /// Why no line could be planned.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum PlanError {
+pub enum LineError {
     /// Too few points for a line.
     #[error("{found} points; expected at least {needed}")]
     TooFew {
@@ -35,3 +36,5 @@ pub enum PlanError {
     #[error(transparent)]
     Parameter(#[from] ParameterError),
 }
+
+debug_as_sentence!(LineError);

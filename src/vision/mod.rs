@@ -7,7 +7,7 @@
 //! ```
 //! use roverlab::vision::{Border, GrayView, GrayViewMut, laplace_into};
 //!
-//! # fn main() -> Result<(), roverlab::vision::Error> {
+//! # fn main() -> Result<(), roverlab::vision::ImageError> {
 //! let image = [0, 0, 0, 0, 90, 0, 0, 0, 0];
 //! let mut edges = [0; 9];
 //! laplace_into(GrayView::new(&image, 3, 3)?, GrayViewMut::new(&mut edges, 3, 3)?, Border::Zero)?;
@@ -18,6 +18,8 @@
 //!
 //! [`motion`] has what moves in an image. The robots that drive by what they see are in
 //! [`drive`](crate::drive).
+//!
+//! The module `images` (feature `image`) has the same kernels on images of the crate `image`, which return new images.
 //!
 //! The functions in `_into` write into memory of the caller's and allocate nothing. The loops are plain Rust that the
 //! compiler vectorises for several generations of processors; the best one that the processor has is chosen at run
@@ -51,7 +53,7 @@ mod hsv;
 mod hue;
 mod hue_match;
 #[cfg(feature = "image")]
-mod images;
+pub mod images;
 mod laplace;
 pub mod motion;
 #[cfg(feature = "rayon")]
@@ -71,7 +73,7 @@ pub use colour_finder::{ColourFinder, FindMethod, Sighting, teach_hue};
 pub use combine::{overlay_gray_into, overlay_into, threshold_into};
 pub use components::{Blob, Components};
 pub use difference::{absolute_difference_into, mean_difference, sector_differences};
-pub use error::Error;
+pub use error::ImageError;
 pub use fused::hue_histogram_into;
 pub use gaussian::{GaussianKernel, gaussian_into};
 pub use gray::{GrayWeights, gray_into, gray_to_rgb_into};

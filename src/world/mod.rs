@@ -17,6 +17,7 @@ mod robot;
 mod scene;
 mod site;
 pub mod space;
+mod terrain;
 mod texture;
 mod wall;
 
@@ -24,12 +25,13 @@ pub use bit_grid::{BitGrid, BitGridError, GridCell};
 pub use body::{Axis, Body, Collider, Place3};
 pub use clearance::{Clearance, Raster};
 pub use colour::Colour;
-pub use grid::{Cell, OccupancyGrid};
+pub use grid::{Occupancy, OccupancyGrid};
 pub use mesh::{Face, Material, Mesh};
 pub use object::{Billboard, Marker, Object, ObjectKind, Shape};
 pub use robot::{
     CameraSpec, CarDynamics, DriveSpec, Footprint, LidarSpec, Mast, MotorSpec, Mount, PsdSpec, RobotSpec,
 };
-pub use scene::{Place, RobotPlacement, Scene, Settings, Terrain, World};
+pub use scene::{Place, RobotPlacement, Scene, Settings, World};
+pub use terrain::{HeightField, Terrain};
 pub use texture::Texture;
 pub use wall::Wall;

@@ -1,8 +1,9 @@
 use roverlab::geometry::Pose;
 use roverlab::io::MockRobot;
 use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
+use roverlab::io::wrappers::{Manoeuvring, ManoeuvringParameters};
 use roverlab::random::Stream;
-use roverlab::safety::{BaseStation, HealthLimits, SpeedError, Supervised, SupervisorParameters};
+use roverlab::safety::{BaseStation, HealthLimits, SpeedError, Supervised, SupervisedParameters};
 use roverlab::vision::{Hog, HogParameters};
 use roverlab::world::generate::{CourseOptions, RoomOptions, obstacle_course, room};
 use roverlab::world::{CameraSpec, LidarSpec, MotorSpec, PsdSpec, RobotSpec, Scene, World};
@@ -28,7 +29,7 @@ fn the_simulator() {
 fn robots() {
     let s4 = RobotSpec::s4;
     check!(RobotSpec = s4(), |p| simulation(p, SimOptions::default())?, { Positive: height; NotNegative: mass; }
-        but name, drive, motor, footprint, mast, psds, lidar, camera, model, body);
+        but name, drive, motor, footprint, mast, psds, lidar, camera, model, mesh, body);
     check!(MotorSpec = MotorSpec::default(), |p| simulation(RobotSpec { motor: p, ..s4() }, SimOptions::default())?,
         { NotNegative: time_constant; Positive: max_acceleration; });
     check!(PsdSpec = s4().psds[0].clone(),
@@ -44,17 +45,23 @@ fn robots() {
 
 #[test]
 fn safety() {
-    let parameters = SupervisorParameters::default;
-    let supervised = |parameters: SupervisorParameters| {
+    let parameters = SupervisedParameters::default;
+    let supervised = |parameters: SupervisedParameters| {
         Supervised::new(MockRobot::new(), BaseStation::new(1.0), parameters).map(|_| ())
     };
-    check!(SupervisorParameters = parameters(), |p| supervised(p)?,
+    check!(SupervisedParameters = parameters(), |p| supervised(p)?,
         { Positive: period, heartbeat, watchdog, override_threshold, gentle, standing; AnyCount: fence_debounce; }
         but fence, speed_error, health);
-    check!(SpeedError = SpeedError::default(), |p| supervised(SupervisorParameters { speed_error: p, ..parameters() })?,
+    check!(SpeedError = SpeedError::default(), |p| supervised(SupervisedParameters { speed_error: p, ..parameters() })?,
         { NotNegative: share, offset; });
-    check!(HealthLimits = HealthLimits::default(), |p| supervised(SupervisorParameters { health: p, ..parameters() })?,
+    check!(HealthLimits = HealthLimits::default(), |p| supervised(SupervisedParameters { health: p, ..parameters() })?,
         { Positive: acceleration, speed_step, age; Count: repeats; });
+}
+
+#[test]
+fn manoeuvres() {
+    check!(ManoeuvringParameters = ManoeuvringParameters::default(), |p| Manoeuvring::new(MockRobot::new(), p)?,
+        { Positive: period; NotNegative: lag; });
 }
 
 #[test]

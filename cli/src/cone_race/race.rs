@@ -7,15 +7,15 @@ use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::sim::{RobotTruth, SimOptions};
 use roverlab::io::{self, LidarScan, RobotIo};
 use roverlab::race::{
-    CameraMount, CameraSight, CarLimits, Cone, ConeMap, LaneFinder, LineTracker, RacePhase, Racer, Sighting,
-    SpeedProfile, Verdict, sightings,
+    CameraMount, CameraSight, CarLimits, Cone, ConeMap, ConeSighting, LaneFinder, LineTracker, RacePhase,
+    RaceScore, Racer, SpeedProfile, sightings,
 };
 use roverlab::world::{RobotSpec, Scene};
 
 use super::Sensors;
 use super::event;
 use crate::common::{Claimed, Failure, Stage};
-use crate::cones::{Course, Judge, pass};
+use crate::cones::{Course, Judge, Passed, pass};
 
 /// What a race is made of, beside its course.
 #[derive(Debug, Clone, Copy)]
@@ -126,7 +126,7 @@ fn pursue(line: &[Point], rear: Pose) -> Twist {
 #[derive(Debug, Clone)]
 pub(crate) struct Second {
     pub(crate) cones_hit: usize,
-    pub(crate) trail: Vec<(Pose, f64)>,
+    pub(crate) trail: Vec<Passed>,
 }
 
 /// How a race ended.
@@ -145,13 +145,13 @@ pub(crate) enum Ending {
 /// What came out of a race.
 #[derive(Debug, Clone)]
 pub(crate) struct Outcome {
-    pub(crate) verdict: Verdict,
+    pub(crate) verdict: RaceScore,
     /// How far it came, or what failed.
     pub(crate) ending: Result<Ending, String>,
     pub(crate) truth: RobotTruth,
     pub(crate) time: f64,
     /// Where the car was, and how fast, at every decision.
-    pub(crate) trail: Vec<(Pose, f64)>,
+    pub(crate) trail: Vec<Passed>,
     /// The racing line in the frame of the world.
     pub(crate) line: Vec<Point>,
     /// Of each flying lap on a racing line, the lap time over the quasi-steady optimum on that line.
@@ -190,7 +190,7 @@ impl Eyes {
     }
 
     /// The cones around a car.
-    pub(super) fn look<R: RobotIo + ?Sized>(&mut self, car: &mut R) -> io::Result<Vec<Sighting>> {
+    pub(super) fn look<R: RobotIo + ?Sized>(&mut self, car: &mut R) -> io::Result<Vec<ConeSighting>> {
         let mut seen = Vec::new();
         if self.sensors != Sensors::Camera {
             car.scan_into(&mut self.scan)?;

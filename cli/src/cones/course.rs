@@ -11,6 +11,7 @@ use roverlab::race::{
 use roverlab::random::Stream;
 use roverlab::world::{Scene, World};
 
+use super::Passed;
 use crate::common::{CommonArgs, Failure};
 
 /// Cones, the corridor that the referee goes by, and the start.
@@ -202,10 +203,10 @@ impl Course {
     }
 
     /// The ground around the cones and around what was driven, for pictures; far off the track, a car may leave it.
-    pub(crate) fn frame(&self, trail: &[(Pose, f64)]) -> World {
+    pub(crate) fn frame(&self, trail: &[Passed]) -> World {
         let mut world = self.ground();
         let most = world.floor.inflated(BEYOND);
-        let driven = trail.iter().map(|(pose, _)| pose.position()).filter(|place| most.contains(*place));
+        let driven = trail.iter().map(|passed| passed.pose.position()).filter(|place| most.contains(*place));
         if let Some(around) = Aabb::around(driven) {
             world.floor = world.floor.union(&around.inflated(MARGIN));
         }

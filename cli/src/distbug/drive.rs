@@ -1,11 +1,12 @@
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::control::run;
-use roverlab::io::log::Witness;
+use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::{RobotTruth, SimOptions};
 use roverlab::io::{self, ErrorKind};
-use roverlab::nav::{DistBug, DistBugEvent, DistBugOutcome, DistBugParameters, WallSide};
+use roverlab::nav::{BugEvent, BugOutcome, BugParameters, DistBug, WallSide};
 
 use crate::common::{Failure, Stage, StageTruth, Trip};
+use crate::driving::Trail;
 
 /// How to drive.
 #[derive(Debug, Clone)]
@@ -20,7 +21,7 @@ pub(crate) struct Options {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Ending {
     /// With a verdict, or because the time was over.
-    Verdict(DistBugOutcome),
+    Verdict(BugOutcome),
     /// The robot failed.
     Failed(String),
 }
@@ -58,8 +59,8 @@ pub(crate) struct Drive {
     /// Metres from the robot to the goal, truly.
     pub(crate) goal_distance: f64,
     /// Where the robot was at each step, truly and by odometry.
-    pub(crate) true_path: Vec<Point>,
-    pub(crate) odometry_path: Vec<Point>,
+    pub(crate) trail: Trail,
+    pub(crate) odometry_path: Vec<(f64, Point)>,
     /// What the robot saw last, in the world as the robot takes it.
     pub(crate) seen: Vec<Point>,
 }
@@ -93,7 +94,7 @@ pub(crate) fn drive(
 ) -> Result<Drive, Failure> {
     let start = trip.start();
     let radius = trip.spec().footprint.bounding_radius();
-    let parameters = DistBugParameters::for_radius(radius);
+    let parameters = BugParameters::for_radius(radius);
     let mut bug = DistBug::new(start.to_local(trip.goal), parameters).map_err(Failure::input)?;
     let mut robot = stage.robot(0)?;
     let mut log = Log::new(stage.truth(0)?, start);
@@ -116,10 +117,10 @@ pub(crate) fn sim_options(options: &Options) -> SimOptions {
     }
 }
 
-fn ending(result: io::Result<DistBugOutcome>) -> Ending {
+fn ending(result: io::Result<BugOutcome>) -> Ending {
     match result {
         Ok(outcome) => Ending::Verdict(outcome),
-        Err(error) if error.kind() == ErrorKind::TimedOut => Ending::Verdict(DistBugOutcome::TimedOut),
+        Err(error) if error.kind() == ErrorKind::TimedOut => Ending::Verdict(BugOutcome::TimedOut),
         Err(error) => Ending::Failed(Failure::from(error).to_string()),
     }
 }
@@ -130,8 +131,8 @@ struct Log {
     start: Pose,
     events: Vec<Event>,
     contacts: usize,
-    true_path: Vec<Point>,
-    odometry_path: Vec<Point>,
+    trail: Trail,
+    odometry_path: Vec<(f64, Point)>,
 }
 
 impl Log {
@@ -141,8 +142,8 @@ impl Log {
             start,
             events: Vec::new(),
             contacts: 0,
-            true_path: vec![start.position()],
-            odometry_path: vec![start.position()],
+            trail: vec![(0.0, start)],
+            odometry_path: vec![(0.0, start.position())],
         }
     }
 
@@ -154,16 +155,16 @@ impl Log {
             let touched = truth.contact_places.iter().skip(self.contacts);
             self.events.extend(touched.map(|&point| Event { time, happening: Happening::Contact { point } }));
             self.contacts = truth.contact_places.len();
-            self.true_path.push(truth.pose.position());
-            self.odometry_path.push(self.start.compose(&truth.odometry).position());
+            self.trail.push((time, truth.pose));
+            self.odometry_path.push((time, self.start.compose(&truth.odometry).position()));
         }
         let distance = bug.goal_distance();
         for event in bug.take_events() {
             let happening = match event {
-                DistBugEvent::Hit { point, side } => {
+                BugEvent::Hit { point, side } => {
                     Happening::Hit { point: self.start.to_world(point), side, distance }
                 }
-                DistBugEvent::Leave { point, free } => {
+                BugEvent::Leave { point, free } => {
                     Happening::Leave { point: self.start.to_world(point), free, distance }
                 }
                 _ => continue,
@@ -175,15 +176,16 @@ impl Log {
 
     fn finish(mut self, bug: &DistBug, goal: Point, ending: Ending) -> Result<Drive, Failure> {
         let truth = self.truth.robot(0).map_err(Failure::run)?;
-        self.true_path.push(truth.pose.position());
         let believed = self.start.compose(&bug.pose());
+        let sim_time = self.truth.time().map_err(Failure::run)?;
+        self.trail.push((sim_time, truth.pose));
         Ok(Drive {
             ending,
             events: self.events,
             odometry: self.start.compose(&truth.odometry),
-            sim_time: self.truth.time().map_err(Failure::run)?,
+            sim_time,
             goal_distance: truth.pose.distance_to(goal),
-            true_path: self.true_path,
+            trail: self.trail,
             odometry_path: self.odometry_path,
             seen: bug.visible_points().iter().map(|&point| believed.to_world(point)).collect(),
             truth,

@@ -2,7 +2,7 @@
 
 use image::{DynamicImage, RgbImage};
 use roverlab::geometry::Twist;
-use roverlab::io::{self, Camera, Clock, Display, Drive, Picture, Resolution, Viewport};
+use roverlab::io::{self, Camera, Clock, Display, DisplayImage, Drive, Resolution, Viewport};
 
 use super::checks::refused;
 use super::kernel::{Kernel, Runner};
@@ -33,10 +33,10 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         show(robot, &mut runner, args.repeat, &mut count)
     })?;
     let mut report = run.report(|_| Outcome::verdict("shown"));
-    if let Ok(shown) = &run.ending
-        && let Some(output) = &args.output
-    {
+    let output = args.output.clone().or_else(|| common.unnamed_file("edges.png"));
+    if let (Ok(shown), Some(output)) = (&run.ending, &output) {
         file::save(&DynamicImage::from(shown.clone()), output)?;
+        common.tell(format_args!("image: {}", output.display()));
     }
     let (width, height) = run.ending.as_ref().map_or((0, 0), RgbImage::dimensions);
     report = report
@@ -44,7 +44,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         .field("definition", args.definition.name())
         .field("width", width)
         .field("height", height)
-        .field("output", args.output.clone())
+        .field("output", output)
         .field("frames", frames);
     Ok(report)
 }
@@ -66,9 +66,9 @@ fn show(
             .map_err(|error| io::Error::new(io::ErrorKind::Other, error.to_string()).with_source(error))?;
         match &processed.image {
             DynamicImage::ImageLuma8(gray) if runner.kernel != Kernel::Hog => {
-                robot.draw_image(Picture::Gray(gray), Viewport::default())?;
+                robot.draw_image(DisplayImage::Gray(gray), Viewport::default())?;
             }
-            other => robot.draw_image(Picture::Rgb(&other.to_rgb8()), Viewport::default())?,
+            other => robot.draw_image(DisplayImage::Rgb(&other.to_rgb8()), Viewport::default())?,
         }
         robot.wait(PERIOD)?;
         step();

@@ -4,12 +4,14 @@ use std::ops::ControlFlow;
 use std::rc::Rc;
 
 use roverlab::drive::{
-    Cruise, CruiseParameters, FollowMeObservation, FollowMeParameters, Follower, Formation, robots_in,
+    Cruise, CruiseParameters, Follower, FollowerObservation, FollowerParameters, Formation, robots_in,
 };
 use roverlab::geometry::{Point, Pose, direction};
-use roverlab::io::log::Troop;
+use roverlab::io::log::FleetIo;
 use roverlab::io::{self, LidarScan, Psd, RobotIo};
 use roverlab::world::{Footprint, Scene};
+
+use crate::driving::Trail;
 
 use super::scene::Mode;
 
@@ -17,7 +19,7 @@ use super::scene::Mode;
 #[derive(Debug, Clone)]
 pub(crate) struct SwarmRun {
     /// Where the robots were, the leader first.
-    pub(crate) paths: Vec<Vec<Pose>>,
+    pub(crate) paths: Vec<Trail>,
     pub(crate) odometry: Vec<Pose>,
     pub(crate) contacts: u64,
     pub(crate) contact_places: Vec<Point>,
@@ -116,7 +118,7 @@ pub(crate) fn gap_of(scene: &Scene, mode: Mode, follower: usize) -> f64 {
 
 /// Lets a leader drive past waypoints and the others follow, for so many seconds.
 pub(crate) fn run<'a>(
-    fleet: &mut (dyn Troop<'a> + 'a),
+    fleet: &mut (dyn FleetIo<'a> + 'a),
     scene: &Scene,
     waypoints: &[Point],
     mode: Mode,
@@ -134,7 +136,7 @@ pub(crate) fn run<'a>(
         }
     }
     let mut run = SwarmRun {
-        paths: scene.robots.iter().map(|robot| vec![robot.pose]).collect(),
+        paths: scene.robots.iter().map(|robot| vec![(0.0, robot.pose)]).collect(),
         odometry: Vec::new(),
         contacts: 0,
         contact_places: Vec::new(),
@@ -147,11 +149,12 @@ pub(crate) fn run<'a>(
     let mut gaps = 0_u64;
     while fleet.time()? + 0.5 * PERIOD < seconds {
         fleet.run_for(PERIOD)?;
+        let time = fleet.time()?;
         for (path, robot) in run.paths.iter_mut().zip(0..) {
-            path.push(fleet.pose(robot)?);
+            path.push((time, fleet.pose(robot)?));
         }
-        watch(fleet.time()?);
-        if fleet.time()? < FORMING {
+        watch(time);
+        if time < FORMING {
             continue;
         }
         for follower in 1..robots {
@@ -182,13 +185,13 @@ pub(crate) fn run<'a>(
     Ok(run)
 }
 
-fn gap_now(paths: &[Vec<Pose>], mode: Mode, follower: usize) -> f64 {
-    let last = |robot: usize| paths[robot].last().copied().unwrap_or_default();
+fn gap_now(paths: &[Trail], mode: Mode, follower: usize) -> f64 {
+    let last = |robot: usize| paths[robot].last().map_or(Pose::default(), |(_, pose)| *pose);
     last(follower).distance_to(last(ahead_of(mode, follower)).position())
 }
 
 fn control_leader<'a>(
-    fleet: &mut (dyn Troop<'a> + 'a),
+    fleet: &mut (dyn FleetIo<'a> + 'a),
     scene: &Scene,
     waypoints: &[Point],
     mode: Mode,
@@ -218,18 +221,18 @@ fn control_leader<'a>(
 }
 
 fn control_follower<'a>(
-    fleet: &mut (dyn Troop<'a> + 'a),
+    fleet: &mut (dyn FleetIo<'a> + 'a),
     scene: &Scene,
     mode: Mode,
     follower: usize,
     last_seen: Rc<Cell<f64>>,
 ) -> io::Result<()> {
     let leader_radius = radius_of(scene, ahead_of(mode, follower));
-    let parameters = FollowMeParameters {
+    let parameters = FollowerParameters {
         gap: gap_of(scene, mode, follower),
         leader_radius,
         radius: radius_of(scene, follower),
-        ..FollowMeParameters::default()
+        ..FollowerParameters::default()
     };
     let mut behaviour = Follower::new(parameters)?;
     let rays = rays_of(scene, follower);
@@ -242,7 +245,7 @@ fn control_follower<'a>(
             eyes.look_round(robot)?;
         }
         let candidates = robots_in(&eyes.scan, leader_radius);
-        let seen = FollowMeObservation { time, pose, candidates: &candidates, obstacles: &eyes.points };
+        let seen = FollowerObservation { time, pose, candidates: &candidates, obstacles: &eyes.points };
         let twist = behaviour.step(&seen)?;
         robot.set_speed(twist)?;
         last_seen.set(time - behaviour.unseen(time).min(time));
@@ -251,7 +254,11 @@ fn control_follower<'a>(
     fleet.control(follower, PERIOD, Box::new(step))
 }
 
-fn control_by_radio<'a>(fleet: &mut (dyn Troop<'a> + 'a), scene: &Scene, follower: usize) -> io::Result<()> {
+fn control_by_radio<'a>(
+    fleet: &mut (dyn FleetIo<'a> + 'a),
+    scene: &Scene,
+    follower: usize,
+) -> io::Result<()> {
     let start = scene.robots[follower].pose;
     let place = scene.robots[0].pose.to_local(start.position());
     let formation = Formation { radius: radius_of(scene, follower), ..Formation::at(place) };

@@ -4,7 +4,7 @@ use roverlab::nav::grid::{
 use roverlab::world::formats::movingai::{self, Query};
 use roverlab::world::{BitGrid, GridCell};
 
-use super::{Algorithm, Args, own_map};
+use super::{Algorithm, Args, own_map, picture};
 use crate::common::{Failure, Outcome, Progress, Report, Stopwatch, rounded};
 
 /// What came of all queries.
@@ -61,6 +61,7 @@ impl Domain {
 
 /// The work of the command.
 pub(crate) fn work(args: &Args) -> std::result::Result<Report, Failure> {
+    args.plain.check_picture()?;
     let (name, grids, queries) = match (&args.map, &args.scen) {
         (Some(map), Some(scen)) => {
             let map_of_all = movingai::load_map(map).map_err(Failure::input)?.value;
@@ -92,7 +93,19 @@ pub(crate) fn work(args: &Args) -> std::result::Result<Report, Failure> {
         }
     };
     let mut domains: Vec<Domain> = grids.into_iter().map(Domain::new).collect();
-    Ok(report(&answer(name, &mut domains, &queries, args)?))
+    let result = answer(name, &mut domains, &queries, args)?;
+    let longest = queries.iter().max_by(|a, b| a.optimal.total_cmp(&b.optimal));
+    let report = report(&result);
+    Ok(
+        match longest
+            .and_then(|query| Some((query, domains.iter().find(|domain| domain.has_both_ends(query))?)))
+        {
+            Some((query, domain)) => args
+                .plain
+                .draw(report, "grid_benchmark.svg", || picture::of(&result.map, &domain.grid, query)),
+            None => report,
+        },
+    )
 }
 
 fn report(result: &Result) -> Report {

@@ -2,6 +2,7 @@
 
 mod job;
 mod own_map;
+pub(crate) mod picture;
 
 pub(crate) use job::work;
 
@@ -27,6 +28,7 @@ JSON fields:
   mean_ratio, worst_ratio     length in terms of the published one
   mean_expanded               nodes taken off the queue, per query
   timing                      with --timing: median_us and p95_us of a query, preprocess_ms to get ready for the map
+  picture                     the longest query, by four planners
 Outcomes: solved; wrong if a query that was not skipped got no path, or one of an octile planner is not as long as published.
 Water (`W`) is a map of its own: ways lead within it and within the land. A query that starts or ends outside of the map is
 none."

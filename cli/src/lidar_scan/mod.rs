@@ -9,13 +9,13 @@ use roverlab::io::sim::NoiseModel;
 use roverlab::io::{self, Clock, Display, Lidar, LidarScan};
 use roverlab::picture::{Picture, Style};
 use roverlab::scan::{
-    ExtractionParameters, Extremum, ExtremumKind, ScanFeatures, extract_features, local_extrema, plot_scan,
+    Extremum, ExtremumKind, ScanFeatures, ScanFeaturesParameters, extract_features, local_extrema, plot_scan,
 };
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, World};
 use serde_json::{Value, json};
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
-use crate::driving::{Conditions, Run, check_lidar, drawn, paced};
+use crate::driving::{Conditions, Run, check_lidar, paced};
 
 /// The command line of `lidar-scan`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -63,7 +63,7 @@ const PROMINENCE: f64 = 0.08;
 /// Takes a scan and shows it.
 pub(crate) fn scan<R: Clock + Lidar + Display + ?Sized>(
     robot: &mut R,
-    parameters: &ExtractionParameters,
+    parameters: &ScanFeaturesParameters,
 ) -> io::Result<Seen> {
     let scan = robot.scan()?;
     let features = extract_features(&scan, parameters)?;
@@ -81,25 +81,23 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let scene = common.placed_without_goal("the robot stands still", scene)?;
     check_lidar(&scene)?;
     let conditions = Conditions::new(common, 5.0)?;
-    let parameters = ExtractionParameters {
+    let parameters = ScanFeaturesParameters {
         range_error: NoiseModel::real().scaled(conditions.noise).range,
-        ..ExtractionParameters::default()
+        ..ScanFeaturesParameters::default()
     };
     let run = conditions.run(&scene, paced(common), |robot, step| {
         let seen = scan(robot, &parameters);
         step();
         seen
     })?;
-    let (file, trouble) =
-        drawn(common, "lidar_scan.svg", || picture(&scene, &run, conditions.noise, conditions.seed));
     let report = run.report(|_| Outcome::verdict("scanned"));
     let report = match &run.ending {
         Ok(seen) => fields(report, seen, &scene),
         Err(_) => report,
     };
     let (lcd, lcd_trouble) = save_display(args, &run);
-    let trouble = trouble.or(lcd_trouble);
-    Ok(Report { trouble, ..report.field("lcd", lcd).field("picture", file) })
+    let report = Report { trouble: lcd_trouble, ..report.field("lcd", lcd) };
+    Ok(common.draw(report, "lidar_scan.svg", || picture(&scene, &run, conditions.noise, conditions.seed)))
 }
 
 fn save_display(args: &Args, run: &Run<Seen>) -> (Option<PathBuf>, Option<String>) {

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::drive::{Finding, Options, drive};
 use super::{campaign, picture, worlds};
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
-use crate::driving::{Conditions, Run, check_lidar, drawn, paced, world_with_others};
+use crate::driving::{Conditions, Run, check_lidar, paced, world_with_others};
 
 /// The command line of `localise`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -51,7 +51,7 @@ pub(crate) struct Args {
 }
 
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
-    ("campaign", &["robot", "start", "goal", "picture", "robios", "quantised", "realtime", "fault", "supervised"]),
+    ("campaign", &["robot", "start", "goal", "picture", "animation", "robios", "quantised", "realtime", "fault", "supervised"]),
     ("!campaign", &["starts"]),
 ]);
 
@@ -71,10 +71,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     check_lidar(&scene)?;
     let conditions = Conditions::new(common, args.patience + 30.0)?;
     let run = run(args, &scene, &conditions, paced(common))?;
-    let (file, trouble) =
-        drawn(common, "localise.svg", || picture::of(&scene, &run, conditions.noise, conditions.seed));
-    let report = report(&run).field("time_limit_s", conditions.time_limit).field("picture", file);
-    Ok(Report { trouble, ..report })
+    let report = report(&run).field("time_limit_s", conditions.time_limit);
+    Ok(common.draw(report, "localise.svg", || picture::of(&scene, &run, conditions.noise, conditions.seed)))
 }
 
 /// The office, with a robot somewhere in it.

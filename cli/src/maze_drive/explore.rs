@@ -1,13 +1,13 @@
 use roverlab::geometry::Pose;
 use roverlab::io::sim::NoiseModel;
 use roverlab::maze::{
-    Exploration, Maze, MazeRunner, Preference, RecursiveExplorer, Rig, Route, RunnerParameters, Unknown,
+    Exploration, Maze, MazeRunner, MazeRunnerParameters, Preference, RecursiveExplorer, Rig, Route, Unknown,
     shortest_route,
 };
 
 use super::place::{Place, unexplored};
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
-use crate::driving::{Conditions, drawn, paced};
+use crate::driving::{Conditions, paced};
 
 /// The command line of `maze-explore`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -61,7 +61,8 @@ pub(crate) fn work(args: &ExploreArgs) -> Result<Report, Failure> {
     let place = Place::new(&args.common, args.micromouse)?;
     let maze = place.maze();
     let conditions = Conditions::new(&args.common, 600.0 + 40.0 * maze.cell_count() as f64)?;
-    let parameters = if args.micromouse { RunnerParameters::MICROMOUSE } else { RunnerParameters::EYEBOT };
+    let parameters =
+        if args.micromouse { MazeRunnerParameters::MICROMOUSE } else { MazeRunnerParameters::EYEBOT };
     let run = conditions.run_watched(&place.scene(), paced(&args.common), |robot, step| {
         let range = NoiseModel::real().scaled(conditions.noise).range;
         let rig = Rig::new(&place.spec, conditions.odometry_errors(), range)?;
@@ -85,13 +86,6 @@ pub(crate) fn work(args: &ExploreArgs) -> Result<Report, Failure> {
         Ok(Told { exploration, known: runner.maze().clone(), route, at_goal, pose: runner.pose() })
     })?;
     let told = run.ending.as_ref().ok();
-    let (picture, trouble) = drawn(&args.common, "maze_explore.svg", || {
-        let caption = told.map_or(String::new(), |told| {
-            let Exploration { visited, looks, time, .. } = told.exploration;
-            format!("{visited} of {} cells visited, {looks} looks, {time:.0} s", maze.cell_count())
-        });
-        place.picture_of("Recursive exploration", caption, &run)
-    });
     let report = run.report(|told| match (&told.route, told.at_goal) {
         (None, _) => Outcome::verdict("unreachable"),
         (Some(_), true) => Outcome::verdict("returned"),
@@ -109,17 +103,23 @@ pub(crate) fn work(args: &ExploreArgs) -> Result<Report, Failure> {
         .field("exploration_s", told.map(|told| rounded(told.exploration.time)))
         .field("steps", told.and_then(|told| told.route.as_ref().map(Route::steps)))
         .field("at_goal", told.is_some_and(|told| told.at_goal))
-        .field("localisation_error_mm", lost.map(millimetres))
-        .field("picture", picture);
-    Ok(Report { trouble, ..report })
+        .field("localisation_error_mm", lost.map(millimetres));
+    Ok(args.common.draw(report, "maze_explore.svg", || {
+        let caption = told.map_or(String::new(), |told| {
+            let Exploration { visited, looks, time, .. } = told.exploration;
+            format!("{visited} of {} cells visited, {looks} looks, {time:.0} s", maze.cell_count())
+        });
+        place.picture_of("Recursive exploration", caption, &run)
+    }))
 }
 
 fn wrong_walls(known: &Maze, truth: &Maze) -> usize {
-    use roverlab::maze::{Direction, Wall};
+    use roverlab::maze::{Direction, WallState};
     let sides = truth.cells().flat_map(|cell| Direction::ALL.map(|side| (cell, side)));
     let wrong = |&(cell, side): &(_, _)| {
         let wall = known.wall(cell, side);
-        wall != Wall::Unknown && (wall == Wall::Present) != (truth.wall(cell, side) != Wall::Absent)
+        wall != WallState::Unknown
+            && (wall == WallState::Present) != (truth.wall(cell, side) != WallState::Absent)
     };
     sides.filter(wrong).count()
 }

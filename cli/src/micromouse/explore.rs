@@ -1,20 +1,20 @@
 use std::cell::Cell;
 
-use roverlab::geometry::{Point, Pose};
+use roverlab::geometry::Pose;
 use roverlab::io;
 use roverlab::io::sim::NoiseModel;
 use roverlab::maze::files::MazeFile;
 use roverlab::maze::{
-    Exploration, FastPlan, Goals, Maze, MazeRunner, Rig, RunnerParameters, Scale, TwoPhaseExplorer, Verdict,
-    mouse,
+    Exploration, ExplorationOutcome, FastPlan, Goals, Maze, MazeRunner, MazeRunnerParameters, Rig, Scale,
+    TwoPhaseExplorer, mouse,
 };
-use roverlab::picture::Picture;
+use roverlab::picture::{Figure, Picture, SERIES, Style};
 use roverlab::world::{RobotSpec, Scene};
 
 use super::plan::with_maze;
 use super::{Args, picture, scene};
 use crate::common::{Driven, Failure, Outcome, Report, millimetres, rounded};
-use crate::driving::{Conditions, Run, drawn, paced};
+use crate::driving::{Conditions, Run, draw_contacts, paced};
 
 /// What the robot says after its drive.
 #[derive(Debug, Clone)]
@@ -32,11 +32,11 @@ pub(crate) struct Told {
 }
 
 /// The robot, and the maze in its size.
-pub(crate) fn kit(doubled: bool) -> (RobotSpec, Scale, RunnerParameters) {
+pub(crate) fn kit(doubled: bool) -> (RobotSpec, Scale, MazeRunnerParameters) {
     if doubled {
-        (RobotSpec::s4(), Scale::DOUBLED, RunnerParameters::EYEBOT)
+        (RobotSpec::s4(), Scale::DOUBLED, MazeRunnerParameters::EYEBOT)
     } else {
-        (mouse(), Scale::MICROMOUSE, RunnerParameters::MICROMOUSE)
+        (mouse(), Scale::MICROMOUSE, MazeRunnerParameters::MICROMOUSE)
     }
 }
 
@@ -54,9 +54,8 @@ pub(crate) fn explore(args: &Args) -> Result<Report, Failure> {
         drive(robot, args, &file.maze, &conditions, &mut told, step)
     })?;
     let told = told.as_ref();
-    let (drawing, trouble) = drawn(&args.common, "micromouse.svg", || picture_of(&file, &run, told, scale));
     let report = run.report(|()| match told {
-        Some(Told { exploration: Exploration { verdict: Verdict::Unreachable, .. }, .. }) => {
+        Some(Told { exploration: Exploration { verdict: ExplorationOutcome::Unreachable, .. }, .. }) => {
             Outcome::verdict("unreachable")
         }
         Some(Told { race: Some(_), .. }) => Outcome::verdict("raced"),
@@ -66,7 +65,7 @@ pub(crate) fn explore(args: &Args) -> Result<Report, Failure> {
     let at_goal = goal_error(run.truth.pose, &file.maze, scale);
     let report = with_run(report, told, run.truth.pose, scale)
         .field("goal_error_mm", told.and_then(|told| told.race).map(|_| millimetres(at_goal)));
-    Ok(Report { trouble, ..report.field("picture", drawing) })
+    Ok(args.common.draw(report, "micromouse.svg", || picture_of(&file, &run, told, (&spec, scale))))
 }
 
 /// Metres from where a robot is to the middle of the nearest cell of the goal.
@@ -121,8 +120,9 @@ pub(crate) fn drive(
 }
 
 fn with_run(report: Report, told: Option<&Told>, truth: Pose, scale: Scale) -> Report {
-    let proved =
-        told.is_some_and(|told| matches!(told.exploration.verdict, Verdict::Optimal | Verdict::Unreachable));
+    let proved = told.is_some_and(|told| {
+        matches!(told.exploration.verdict, ExplorationOutcome::Optimal | ExplorationOutcome::Unreachable)
+    });
     let seconds = |time: Option<f64>| time.map(rounded);
     let error = told.map(|told| truth.distance_to(told.pose.position()));
     report
@@ -138,9 +138,13 @@ fn with_run(report: Report, told: Option<&Told>, truth: Pose, scale: Scale) -> R
         .field("cell_mm", millimetres(scale.cell))
 }
 
-fn picture_of(file: &MazeFile, run: &Run<()>, told: Option<&Told>, scale: Scale) -> Picture {
-    let path: Vec<Point> = run.positions().collect();
-    let split = told.map_or(path.len(), |told| told.explored_steps.min(path.len()));
+fn picture_of(
+    file: &MazeFile,
+    run: &Run<()>,
+    told: Option<&Told>,
+    (spec, scale): (&RobotSpec, Scale),
+) -> Picture {
+    let split = told.map_or(run.trail.len(), |told| told.explored_steps.min(run.trail.len()));
     let mut picture = picture::of_maze(&file.maze, scale);
     let caption = match told.map(|told| (told, told.race)) {
         Some((told, Some(race))) => format!(
@@ -154,9 +158,9 @@ fn picture_of(file: &MazeFile, run: &Run<()>, told: Option<&Told>, scale: Scale)
         None => "the drive failed".into(),
     };
     picture.title("Micromouse").caption(caption);
-    picture::add_drive(&mut picture, &path, split);
-    for &place in &run.truth.contact_places {
-        picture.mark(roverlab::picture::Mark::Contact, place);
-    }
+    picture::add_drive(&mut picture, &run.trail, split);
+    let figure = Figure::Robot { poses: run.trail.clone(), footprint: spec.footprint };
+    picture.add(figure, Style::new(SERIES[0]));
+    draw_contacts(&mut picture, &run.truth.contact_places);
     picture
 }

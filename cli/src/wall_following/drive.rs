@@ -1,12 +1,12 @@
 use std::ops::ControlFlow;
 
 use roverlab::drive::{
-    AlongWall, FollowsWalls, LidarWallFollower, LidarWallParameters, PidWallFollower, PidWallParameters,
-    TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallOutcome, WallReading, WallSensors,
-    WallSide,
+    AlongWall, FollowsWalls, LidarWallFollower, LidarWallFollowerParameters, PidWallFollower,
+    PidWallFollowerParameters, TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallOutcome,
+    WallReading, WallSensors, WallSide,
 };
 use roverlab::io::control::run;
-use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar};
+use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar, Odometry, StallDetector};
 
 use super::Controller;
 
@@ -42,7 +42,7 @@ pub(crate) struct Beside {
 }
 
 /// Lets a robot follow a wall. `watch` is called after each step.
-pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
+pub(crate) fn drive<R: Clock + Drive + Odometry + StallDetector + DistanceSensors + Lidar + ?Sized>(
     robot: &mut R,
     options: &Options,
     watch: &mut dyn FnMut(Beside) -> ControlFlow<()>,
@@ -64,20 +64,24 @@ pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
             Ok(Walk { outcome, side: follower.side() })
         }
         Controller::Pid => {
-            let parameters = PidWallParameters {
+            let parameters = PidWallFollowerParameters {
                 side: one_side,
                 distance,
                 speed,
                 sensors,
-                ..PidWallParameters::default()
+                ..PidWallFollowerParameters::default()
             };
             let mut follower = PidWallFollower::new(parameters)?;
             let outcome = walk(robot, &mut follower, time_limit, watch)?;
             Ok(Walk { outcome, side: Some(one_side) })
         }
         Controller::Lidar => {
-            let parameters =
-                LidarWallParameters { side: one_side, distance, speed, ..LidarWallParameters::default() };
+            let parameters = LidarWallFollowerParameters {
+                side: one_side,
+                distance,
+                speed,
+                ..LidarWallFollowerParameters::default()
+            };
             let mut follower = LidarWallFollower::new(parameters)?;
             let outcome = walk(robot, &mut follower, time_limit, watch)?;
             Ok(Walk { outcome, side: Some(one_side) })
@@ -91,7 +95,7 @@ pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
     }
 }
 
-fn walk<R: Clock + Drive + ?Sized, C: FollowsWalls<Observation: WallReading<R>>>(
+fn walk<R: Clock + Drive + StallDetector + ?Sized, C: FollowsWalls<Observation: WallReading<R>>>(
     robot: &mut R,
     controller: &mut C,
     time_limit: f64,

@@ -1,5 +1,8 @@
 /// Hands the methods of one capability to another macro, behind whatever context that macro wants to see again.
 ///
+/// A method that means the same by others of its capability, such as `stop`, is not listed: whoever gets such a call
+/// makes those.
+///
 /// Arguments that implement `Copy` or are references go on to the robot inside as they are.
 macro_rules! signatures {
     (Clock => $then:ident!($($context:tt)*)) => {
@@ -11,9 +14,17 @@ macro_rules! signatures {
     (Drive => $then:ident!($($context:tt)*)) => {
         $then! { $($context)* Drive {
             fn set_speed(twist: Twist) -> ();
+        } }
+    };
+    (Odometry => $then:ident!($($context:tt)*)) => {
+        $then! { $($context)* Odometry {
             fn speed() -> Twist;
             fn pose() -> Pose;
             fn set_pose(pose: Pose) -> ();
+        } }
+    };
+    (Manoeuvres => $then:ident!($($context:tt)*)) => {
+        $then! { $($context)* Manoeuvres {
             fn straight(distance: f64, speed: f64) -> ();
             fn turn(angle: f64, speed: f64) -> ();
             fn curve(length: f64, angle: f64, speed: f64) -> ();
@@ -21,6 +32,10 @@ macro_rules! signatures {
             fn remaining() -> f64;
             fn is_done() -> bool;
             fn wait_done() -> ();
+        } }
+    };
+    (StallDetector => $then:ident!($($context:tt)*)) => {
+        $then! { $($context)* StallDetector {
             fn is_stalled() -> bool;
         } }
     };
@@ -57,7 +72,7 @@ macro_rules! signatures {
             fn draw_line(from: Pixel, to: Pixel, colour: Colour) -> ();
             fn draw_rectangle(corner: Pixel, opposite: Pixel, colour: Colour, fill: Fill) -> ();
             fn draw_circle(centre: Pixel, diameter: i32, colour: Colour, fill: Fill) -> ();
-            fn draw_image(picture: Picture<'_>, viewport: Viewport) -> ();
+            fn draw_image(picture: DisplayImage<'_>, viewport: Viewport) -> ();
             fn set_menu_label(key: Key, label: &str, foreground: Colour, background: Colour) -> ();
             fn set_menu(labels: [&str; 4]) -> ();
             fn set_display_option(option: DisplayOption, on: bool) -> ();

@@ -1,6 +1,6 @@
 use crate::geometry::Point;
+use crate::geometry::WallSide;
 use crate::io::control::halts;
-use crate::nav::boundary::WallSide;
 
 /// How the run of a bug ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub enum BugOutcome {
     Stopped,
 }
 
-halts!(BugOutcome);
+halts!(BugOutcome { Reached: "the goal is reached", Unreachable: "no way leads to the goal" });
 
 /// What the robot is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,8 @@
 use crate::geometry::Point;
+use crate::parameter::debug_as_sentence;
 use crate::world::{BitGrid, GridCell};
 
-use super::components::Components;
+use super::components::GridComponents;
 use super::cost;
 
 /// A way through a grid, with what it took to find it.
@@ -26,7 +27,7 @@ pub struct SearchStatistics {
 }
 
 /// Why there is no path.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
     /// The grid has no cells.
@@ -61,6 +62,8 @@ pub enum PlanError {
         goal: GridCell,
     },
 }
+
+debug_as_sentence!(PlanError);
 
 /// An end of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -135,7 +138,7 @@ fn towards(from: usize, to: usize) -> usize {
 /// Refuses queries that need no search.
 pub(super) fn check(
     grid: &BitGrid,
-    components: &Components,
+    components: &GridComponents,
     start: GridCell,
     goal: GridCell,
 ) -> Result<(), PlanError> {

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::geometry::{Point, Pose, angle_difference, direction};
 use crate::io::sim::{SimOptions, Simulation};
-use crate::io::{Drive, Lidar, LidarScan};
+use crate::io::{Lidar, LidarScan, Manoeuvres, Odometry};
 use crate::random::Stream;
 use crate::world::{RobotSpec, Scene, Wall, World};
 
