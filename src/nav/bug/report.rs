@@ -17,7 +17,11 @@ pub enum BugOutcome {
     Stopped,
 }
 
-halts!(BugOutcome { Reached: "the goal is reached", Unreachable: "no way leads to the goal" });
+halts!(BugOutcome {
+    Reached: "the goal is reached",
+    Unreachable: "no way leads to the goal",
+    NoRoom: "the robot has no room at the goal",
+});
 
 /// What the robot is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
