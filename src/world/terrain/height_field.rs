@@ -168,8 +168,7 @@ impl HeightField {
         }
         let place = (point - self.area.min).component_mul(&self.per_metre);
         // The far border belongs to the last cells.
-        let (column, row) =
-            ((place.x as usize).min(self.columns - 2), (place.y as usize).min(self.rows - 2));
+        let (column, row) = ((place.x as usize).min(self.columns - 2), (place.y as usize).min(self.rows - 2));
         let share = Vector::new(place.x - column as f64, place.y - row as f64);
         Some(Spot { column, row, share })
     }
@@ -190,11 +189,8 @@ impl HeightField {
     #[inline]
     fn gradient_at(&self, spot: &Spot) -> Vector {
         let [a, b, c, d] = self.corners(spot.column, spot.row);
-        let rise = if spot.share.x >= spot.share.y {
-            Vector::new(b - a, d - b)
-        } else {
-            Vector::new(d - c, c - a)
-        };
+        let rise =
+            if spot.share.x >= spot.share.y { Vector::new(b - a, d - b) } else { Vector::new(d - c, c - a) };
         rise.component_mul(&self.per_metre)
     }
 }
@@ -271,7 +267,9 @@ mod tests {
     #[test]
     fn there_is_nothing_beyond() {
         let field = HeightField::new(2, 2, area(1.0, 1.0), vec![0.0; 4]).unwrap();
-        for (x, y) in [(-1.1, 2.5), (0.1, 2.5), (-0.5, 1.9), (-0.5, 3.1), (f64::NAN, 2.5), (f64::INFINITY, 2.5)] {
+        for (x, y) in
+            [(-1.1, 2.5), (0.1, 2.5), (-0.5, 1.9), (-0.5, 3.1), (f64::NAN, 2.5), (f64::INFINITY, 2.5)]
+        {
             assert_eq!(field.height(Point::new(x, y)), None);
         }
         assert_eq!(field.height(Point::new(0.0, 3.0)), Some(0.0));

@@ -30,6 +30,12 @@ impl Terrain {
     pub fn new(file: impl Into<PathBuf>, surface: HeightField) -> Self {
         let far = surface.area().max;
         let max_elevation = surface.highest();
-        Self { width: far.x, height: far.y, max_elevation, file: file.into(), surface: Some(Arc::new(surface)) }
+        Self {
+            width: far.x,
+            height: far.y,
+            max_elevation,
+            file: file.into(),
+            surface: Some(Arc::new(surface)),
+        }
     }
 }

@@ -128,7 +128,11 @@ impl Walk {
             if level > 0 {
                 let (a, b) = (self.height(self.at), self.height(until));
                 let bounds = pyramid.block(level, self.column, self.row);
-                let passes = if side > 0.0 { a.min(b) > f64::from(bounds.high) } else { a.max(b) < f64::from(bounds.low) };
+                let passes = if side > 0.0 {
+                    a.min(b) > f64::from(bounds.high)
+                } else {
+                    a.max(b) < f64::from(bounds.low)
+                };
                 if !passes {
                     level = if level == FIRST { 0 } else { level - 1 };
                     continue;
@@ -239,8 +243,7 @@ mod tests {
         let mut nearest = f64::INFINITY;
         for row in 0..field.rows() - 1 {
             for column in 0..field.columns() - 1 {
-                let [a, b, c, d] =
-                    [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| corner(column + x, row + y));
+                let [a, b, c, d] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| corner(column + x, row + y));
                 for [a, b, c] in [[a, b, d], [a, d, c]] {
                     let (u, v) = (b - a, c - a);
                     let p = direction.cross(&v);

@@ -25,7 +25,9 @@ fn incline(degrees: f64) -> HeightField {
 fn hills(seed: u64, height: f64) -> HeightField {
     let mut stream = Stream::new(seed);
     let waves: Vec<_> = (0..8)
-        .map(|_| (Vector::new(stream.between(-3.0, 3.0), stream.between(-3.0, 3.0)), stream.between(0.0, 6.0)))
+        .map(|_| {
+            (Vector::new(stream.between(-3.0, 3.0), stream.between(-3.0, 3.0)), stream.between(0.0, 6.0))
+        })
         .collect();
     field(257, |at| {
         waves.iter().map(|(wave, phase)| height / 8.0 * math::sin(wave.dot(&at.coords) + phase)).sum()
@@ -225,7 +227,17 @@ fn a_steep_face_stops_a_robot() {
 
 #[test]
 fn a_robot_drives_up_a_ramp_and_falls_off_a_ledge() {
-    let ground = field(401, |at| if at.x < 0.0 { 0.0 } else if at.x < 1.0 { 0.2 * at.x } else if at.x < 2.0 { 0.2 } else { 0.0 });
+    let ground = field(401, |at| {
+        if at.x < 0.0 {
+            0.0
+        } else if at.x < 1.0 {
+            0.2 * at.x
+        } else if at.x < 2.0 {
+            0.2
+        } else {
+            0.0
+        }
+    });
     let mut robot = Robot::resting(&RobotSpec::labbot(), &ground, Pose::new(-1.0, 0.0, 0.0));
     robot.run(&ground, PlanarTwist::new(0.25, 0.0, 0.0), 10.0);
     let on_top = robot.pose();
