@@ -1,6 +1,7 @@
 use roverlab::geometry::Pose;
 use roverlab::io::MockRobot;
 use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
+use roverlab::io::wrappers::{Manoeuvring, ManoeuvringParameters};
 use roverlab::random::Stream;
 use roverlab::safety::{BaseStation, HealthLimits, SpeedError, Supervised, SupervisedParameters};
 use roverlab::vision::{Hog, HogParameters};
@@ -28,7 +29,7 @@ fn the_simulator() {
 fn robots() {
     let s4 = RobotSpec::s4;
     check!(RobotSpec = s4(), |p| simulation(p, SimOptions::default())?, { Positive: height; NotNegative: mass; }
-        but name, drive, motor, footprint, mast, psds, lidar, camera, model, body);
+        but name, drive, motor, footprint, mast, psds, lidar, camera, model, mesh, body);
     check!(MotorSpec = MotorSpec::default(), |p| simulation(RobotSpec { motor: p, ..s4() }, SimOptions::default())?,
         { NotNegative: time_constant; Positive: max_acceleration; });
     check!(PsdSpec = s4().psds[0].clone(),
@@ -55,6 +56,12 @@ fn safety() {
         { NotNegative: share, offset; });
     check!(HealthLimits = HealthLimits::default(), |p| supervised(SupervisedParameters { health: p, ..parameters() })?,
         { Positive: acceleration, speed_step, age; Count: repeats; });
+}
+
+#[test]
+fn manoeuvres() {
+    check!(ManoeuvringParameters = ManoeuvringParameters::default(), |p| Manoeuvring::new(MockRobot::new(), p)?,
+        { Positive: period; NotNegative: lag; });
 }
 
 #[test]

@@ -1,6 +1,6 @@
 use roverlab::drive::{Chase, ChaseOutcome, ChaseParameters};
 use roverlab::geometry::{Pose, Twist, units};
-use roverlab::io::{self, Clock, Drive, control};
+use roverlab::io::{self, Clock, Drive, Odometry, StallDetector, control};
 use roverlab::kinematics::{Displacement, advance};
 use roverlab::picture::{Mark, Picture, Style};
 
@@ -48,7 +48,7 @@ pub(super) fn parse_moving(text: &str) -> Result<Twist, String> {
 }
 
 /// Drives a robot after a goal that moves. Where that is, the robot is told in the frame of its odometry.
-fn chase<R: Clock + Drive + ?Sized>(
+fn chase<R: Clock + Drive + Odometry + StallDetector + ?Sized>(
     robot: &mut R,
     options: &Options,
     quarry: &Quarry,

@@ -3,7 +3,7 @@
 use roverlab::drive::{CarDriver, CarOutcome, CarToB, CarToBParameters, Goal, Method, Path};
 use roverlab::geometry::{Pose, angle_difference, normalize_angle, units};
 use roverlab::io::control::run;
-use roverlab::io::{self, Clock, Drive, Motors, Servos};
+use roverlab::io::{self, Clock, Motors, Odometry, Servos, StallDetector};
 use roverlab::kinematics::Ackermann;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, Marker, RobotSpec, Scene, World};
@@ -59,7 +59,7 @@ pub(crate) struct Arrival {
 }
 
 /// Drives a car to a goal. `watch` is called after each step.
-pub(crate) fn drive<R: Clock + Drive + Motors + Servos + ?Sized>(
+pub(crate) fn drive<R: Clock + Odometry + StallDetector + Motors + Servos + ?Sized>(
     robot: &mut R,
     options: &Options,
     mut watch: impl FnMut(),

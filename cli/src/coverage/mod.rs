@@ -16,7 +16,7 @@ use roverlab::drive::{
 use roverlab::geometry::{Point, Pose, units};
 use roverlab::io::control::{self, SensedBy};
 use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
-use roverlab::io::{self, Clock, Drive, Lidar, LidarScan};
+use roverlab::io::{self, Clock, Drive, Lidar, LidarScan, Odometry};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
 use roverlab::scan::{LocalisationMap, Localiser, LocaliserParameters};
@@ -151,7 +151,7 @@ fn scene() -> Scene {
 }
 
 /// Drives a tour. `watch` is called after each step.
-fn drive<R: Clock + Drive + Lidar + ?Sized>(
+fn drive<R: Clock + Drive + Odometry + Lidar + ?Sized>(
     robot: &mut R,
     localiser: &mut Localiser,
     tour: &mut Tour,

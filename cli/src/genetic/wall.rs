@@ -4,7 +4,7 @@ use roverlab::geometry::{Pose, math};
 use roverlab::io::control::run;
 use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::io::{Clock, DistanceSensors, Drive, Result};
+use roverlab::io::{Clock, DistanceSensors, Drive, Odometry, Result, StallDetector};
 use roverlab::picture::{Mark, Picture};
 use roverlab::world::{RobotSpec, Scene, World};
 use serde_json::{Map, Value, json};
@@ -80,7 +80,7 @@ fn scene() -> Scene {
 }
 
 /// Drives along the wall: what it costs, and where the robot was.
-fn drive<R: Clock + DistanceSensors + Drive>(
+fn drive<R: Clock + DistanceSensors + Drive + Odometry + StallDetector>(
     genes: &[f64],
     robot: &mut R,
     truth: &mut impl GroundTruth,

@@ -1,7 +1,7 @@
 use roverlab::drive::{RandomDrive, RandomDriveParameters};
 use roverlab::geometry::Pose;
 use roverlab::io::control::{self, until};
-use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar, LidarScan};
+use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar, LidarScan, Odometry};
 use roverlab::random::Stream;
 use roverlab::scan::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
 
@@ -37,7 +37,7 @@ const EVERY: u32 = 4;
 const REST: f64 = 1.0;
 
 /// Drives about until one place explains all scans, or patience is over. `watch` is called after each step.
-pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
+pub(crate) fn drive<R: Clock + Drive + Odometry + DistanceSensors + Lidar + ?Sized>(
     robot: &mut R,
     options: &Options,
     mut watch: impl FnMut(),

@@ -2,7 +2,7 @@
 
 use roverlab::drive::{OmniDriver, OmniOutcome, OmniParameters, OmniTracker};
 use roverlab::geometry::{Point, Pose, Segment, angle_difference, math, units};
-use roverlab::io::{self, Clock, Drive, Motors, control};
+use roverlab::io::{self, Clock, Motors, Odometry, control};
 use roverlab::kinematics::Omni;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{DriveSpec, RobotSpec, Scene, World};
@@ -79,7 +79,7 @@ pub(crate) struct Options {
 }
 
 /// Drives a robot along a route. `watch` is called after each step.
-pub(crate) fn drive<R: Clock + Drive + Motors + ?Sized>(
+pub(crate) fn drive<R: Clock + Odometry + Motors + ?Sized>(
     robot: &mut R,
     options: &Options,
     mut watch: impl FnMut(),

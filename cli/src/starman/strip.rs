@@ -1,6 +1,6 @@
 use roverlab::geometry::{Point, direction};
 use roverlab::io::sim::starman::{Starman, StarmanPosture};
-use roverlab::io::{Clock, Drive, Result, Servos};
+use roverlab::io::{Clock, Odometry, Result, Servos};
 use roverlab::picture::{Picture, Style};
 use roverlab::world::{Colour, Wall, World};
 

@@ -3,7 +3,7 @@ use std::ops::ControlFlow;
 use super::{WallFollower, WallObservation, WallPhase, WallSide};
 use crate::geometry::Twist;
 use crate::io::control::{Behaviour, Decision, Senses, halts};
-use crate::io::{DistanceSensors, Drive, Lidar, LidarScan, Psd, Result};
+use crate::io::{DistanceSensors, Lidar, LidarScan, Odometry, Psd, Result, StallDetector};
 
 /// A controller that steers along walls.
 #[auto_impl::auto_impl(&mut)]
@@ -30,7 +30,7 @@ pub trait WallReading<R: ?Sized> {
     fn read(&mut self, robot: &mut R) -> Result<()>;
 }
 
-impl<R: Drive + DistanceSensors + ?Sized> WallReading<R> for WallObservation {
+impl<R: Odometry + DistanceSensors + ?Sized> WallReading<R> for WallObservation {
     fn read(&mut self, robot: &mut R) -> Result<()> {
         *self = Self {
             pose: robot.pose()?,
@@ -113,7 +113,7 @@ impl<C: FollowsWalls> Behaviour for AlongWall<C> {
 
 impl<R, C> Senses<R> for AlongWall<C>
 where
-    R: Drive + ?Sized,
+    R: StallDetector + ?Sized,
     C: FollowsWalls<Observation: WallReading<R>>,
 {
     fn sense(&mut self, robot: &mut R, _time: f64, now: &mut Self::Observation) -> Result<()> {

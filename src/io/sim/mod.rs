@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use roverlab::geometry::Pose;
-//! use roverlab::io::{DistanceSensors, Drive, Psd};
+//! use roverlab::io::{DistanceSensors, Manoeuvres, Psd};
 //! use roverlab::io::sim::{SimOptions, Simulation};
 //! use roverlab::world::{RobotSpec, Scene, World};
 //!

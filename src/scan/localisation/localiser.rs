@@ -48,7 +48,7 @@ impl Localisation {
 ///
 /// ```
 /// use roverlab::geometry::{Point, Pose};
-/// use roverlab::io::{Drive, Lidar, Clock};
+/// use roverlab::io::{Odometry, Manoeuvres, Lidar, Clock};
 /// use roverlab::io::sim::{SimOptions, Simulation};
 /// use roverlab::scan::{Localiser, LocaliserParameters, LocalisationMap};
 /// use roverlab::world::{RobotSpec, Scene, Wall, World};

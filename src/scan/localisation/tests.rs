@@ -3,7 +3,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use super::*;
 use crate::geometry::{Point, Pose, angle_difference, direction};
 use crate::io::sim::{SimOptions, Simulation};
-use crate::io::{Drive, Lidar, LidarScan};
+use crate::io::{Lidar, LidarScan, Manoeuvres, Odometry};
 use crate::world::{RobotSpec, Scene, Wall, World};
 
 /// A room that looks the same from nowhere else.
