@@ -56,6 +56,14 @@ pub enum LineError {
         /// All that it passes.
         all: u32,
     },
+    /// A loop that turns back on itself.
+    #[error("a loop that turns back at ({x}, {y}) m; expected one that a car can drive")]
+    TurnsBack {
+        /// Where.
+        x: f64,
+        /// Where.
+        y: f64,
+    },
     /// A loop that crosses itself.
     #[error("a loop that crosses itself at ({x}, {y}) m; expected one that does not")]
     Crosses {
