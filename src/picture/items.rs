@@ -357,9 +357,11 @@ impl Figure {
         }
     }
 
-    /// Whether there is anything to see of it.
-    pub(super) fn is_visible(&self) -> bool {
-        self.extent().iter().any(is_finite)
+    /// Whether there is anything to see of it: of a line, more than so many metres.
+    pub(super) fn is_visible(&self, shortest: f64) -> bool {
+        let bounds = Aabb::around(self.extent().into_iter().filter(is_finite));
+        let is_line = matches!(self, Figure::Line { .. });
+        bounds.is_some_and(|bounds| !is_line || bounds.size().max() >= shortest)
     }
 }
 

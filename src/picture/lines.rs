@@ -68,10 +68,13 @@ pub(super) fn dots(pixels: &[Pixel], style: &Style) -> Group {
     let apart = (2.0 * style.width).max(1.0) as i64;
     // Dots that touch are a line.
     let runs = places.chunk_by(|a, b| a.0 == b.0 && b.1 - a.1 <= apart);
-    let data = runs.fold(String::new(), |data, run| {
+    let (mut data, mut at) = (String::new(), (0, 0));
+    for run in runs {
         let ((y, x), (_, last)) = (run[0], run[run.len() - 1]);
-        data + "M" + &half(x) + " " + &half(y) + "h" + &half(last - x)
-    });
+        // From the end of the run before: short numbers.
+        data += &format!("m{} {}h{}", half(x - at.1), half(y - at.0), half(last - x));
+        at = (y, last);
+    }
     Group::new().add(line(data, style.colour, style.width).set("stroke-opacity", number(style.opacity)))
 }
 

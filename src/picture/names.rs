@@ -49,7 +49,7 @@ fn name(item: &Item, frame: &Frame, labels: &mut Labels) -> Option<Group> {
     if !is_finite(position) {
         return None;
     }
-    let name = text::fit(&text::clean(name), labels::SIZE, 160.0);
+    let name = text::fit(&text::clean(name), labels::SIZE, 240.0);
     let at = frame.at(*position);
     let reach = if mark.is_some() { Mark::REACH } else { 0.0 };
     let placed = labels.place(&name, at, reach)?;

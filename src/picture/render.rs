@@ -180,7 +180,8 @@ fn draw(
 /// The radius of a ring around a robot that ends near a place, in pixels; 0 if there is none.
 fn around(picture: &Picture, place: Point, frame: &Frame) -> f64 {
     let near = picture.items.iter().filter_map(|item| match &item.figure {
-        Figure::Robot { poses, footprint } => {
+        // Pale ones show where a robot was, or will be.
+        Figure::Robot { poses, footprint } if item.style.opacity >= 1.0 => {
             let (_, pose) = poses.last()?;
             let (off, reach) = (pose.distance_to(place), footprint.bounding_radius());
             (off < 0.5 * reach).then(|| frame.length(reach + off) + 5.0)

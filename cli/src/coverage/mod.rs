@@ -17,13 +17,13 @@ use roverlab::geometry::{Point, Pose, units};
 use roverlab::io::control::{self, SensedBy};
 use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
 use roverlab::io::{self, Clock, Drive, Lidar, LidarScan, Odometry};
-use roverlab::picture::{Picture, Style};
+use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
 use roverlab::scan::{LocalisationMap, Localiser, LocaliserParameters};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
 use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, rounded};
-use crate::driving::{Conditions, Run, check_lidar, paced, world_with_others};
+use crate::driving::{Conditions, Run, check_lidar, draw_contacts, paced, world_with_others};
 
 /// The command line of `coverage`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -209,6 +209,8 @@ fn picture(args: &Args, scene: &Scene, done: &Covered) -> Picture {
     let left_out = Style::new(Colour::from_hex(0xd0_20_20)).labelled("left out");
     picture.line(plan.points().iter().copied(), Style::plan());
     picture.points(map.cells(false), left_out);
-    run.draw(&mut picture, &scene.robots[0].spec);
+    picture.drive(&run.trail, &scene.robots[0].spec.footprint);
+    picture.mark(Mark::Start, scene.robots[0].pose.position());
+    draw_contacts(&mut picture, &run.truth.contact_places);
     picture
 }

@@ -7,8 +7,8 @@ use roverlab::world::formats::movingai::Query;
 use roverlab::world::{BitGrid, GridCell, Wall, World};
 
 /// How many colours tell when a cell was expanded, and the seconds of a film from one to the next.
-const SHADES: usize = 16;
-const SHADE: f64 = 0.4;
+const SHADES: usize = 10;
+const SHADE: f64 = 0.6;
 /// About how many pixels a panel is wide.
 const PANEL: f64 = 240.0;
 
@@ -94,10 +94,9 @@ pub(crate) fn of_grid(grid: &BitGrid) -> Picture {
         let (kept, done): (Vec<_>, Vec<_>) =
             open.drain(..).partition(|(from, to, _)| runs.contains(&(*from, *to)));
         for (from, to, top) in done {
-            let middle = height as f64 - 0.5 * (top + row) as f64;
-            let mut wall = Wall::new(Point::new(from as f64, middle), Point::new(to as f64, middle));
-            wall.thickness = (row - top) as f64;
-            world.walls.push(wall);
+            world
+                .walls
+                .push(rectangle([from, to].map(|x| x as f64), [top, row].map(|y| (height - y) as f64)));
         }
         let known: Vec<_> = kept.iter().map(|(from, to, _)| (*from, *to)).collect();
         open = kept;
@@ -108,6 +107,20 @@ pub(crate) fn of_grid(grid: &BitGrid) -> Picture {
     let mut picture = Picture::new(&world);
     picture.without_scale();
     picture
+}
+
+/// A rectangle as a wall along its longer side, a little too wide, so that no seam shows between two.
+fn rectangle([left, right]: [f64; 2], [top, bottom]: [f64; 2]) -> Wall {
+    const SEAM: f64 = 0.1;
+    let (x, y) = (0.5 * (left + right), 0.5 * (top + bottom));
+    let (across, up) = (right - left, top - bottom);
+    let mut wall = if across >= up {
+        Wall::new(Point::new(left, y), Point::new(right, y))
+    } else {
+        Wall::new(Point::new(x, bottom), Point::new(x, top))
+    };
+    wall.thickness = across.min(up) + SEAM;
+    wall
 }
 
 /// The runs of blocked cells in a row: the first one and the one behind the last.

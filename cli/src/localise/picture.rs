@@ -42,7 +42,8 @@ pub(crate) fn of(scene: &Scene, run: &Run<Finding>, noise: f64, seed: u64) -> Pi
     }
     for (index, place) in finding.hypotheses.iter().take(finding.localisation.count()).enumerate() {
         let style = if index == 0 { guess().labelled("place found") } else { guess() };
-        picture.robot_with(place.pose, &outline, style);
+        picture.robot_with(place.pose, &outline, style.clone());
+        picture.disc(place.pose.position(), 1.7 * outline.bounding_radius(), style.width(2.4));
     }
     picture.during(..);
     run.draw(&mut picture, &scene.robots[0].spec);
