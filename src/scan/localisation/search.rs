@@ -40,14 +40,14 @@ struct Middle {
 }
 
 /// The edge of the smallest blocks in metres.
-const LEAF: f64 = 0.1;
+const LEAF: f64 = 0.05;
 /// Metres from which on turning counts as much as it does: in a small round room made of straight pieces, a scan turned by one
 /// piece fits nearly as well, and is another pose.
 const NEAREST: f64 = 3.0;
 /// How often the largest blocks are divided.
-const LEVELS: usize = 5;
+const LEVELS: usize = 6;
 /// Of each block that is divided so many times more, one pose is kept.
-const KEPT: usize = 1;
+const KEPT: usize = 2;
 /// The number of points of a scan that are compared.
 const COMPARED: usize = 72;
 /// Points lie within so many standard deviations of their ranges on surfaces.
