@@ -10,7 +10,7 @@ use super::job::run;
 use super::worlds::{Place, Starts, worlds};
 use super::{Args, Finding};
 use crate::common::{Failure, Outcome, Progress, Report, millimetres, rounded};
-use crate::driving::{Conditions, world_with_others};
+use crate::driving::Conditions;
 
 /// What came of many starts in one world.
 #[derive(Debug, Clone, PartialEq)]
@@ -134,7 +134,7 @@ pub(crate) fn rows(args: &Args) -> Result<Vec<Row>, Failure> {
         Some(file) => {
             let scene = args.common.load_scene("world", file).map_err(Failure::input)?.value;
             let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            vec![Place { name, world: world_with_others(&scene), symmetry: 1, share: 0 }]
+            vec![Place { name, world: scene.world, symmetry: 1, share: 0 }]
         }
     };
     let mut progress = Progress::start();

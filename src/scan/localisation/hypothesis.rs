@@ -84,8 +84,12 @@ impl Hypothesis {
         let distance = math::hypot(motion.x, motion.y);
         let along = parameters.odometry_error.0 * distance + 1e-5;
         let turn = parameters.odometry_error.1 * motion.heading.abs() + 0.02 * distance + 1e-5;
-        let added = Vector3::new(along * along, along * along, turn * turn);
-        self.covariance = carried * self.covariance * carried.transpose() + Matrix3::from_diagonal(&added);
+        self.covariance = carried * self.covariance * carried.transpose();
+        // Wheels of other than nominal size err in the same way at each step: what is not seen otherwise errs by all steps' sum.
+        for (axis, error) in [along, along, turn].into_iter().enumerate() {
+            let before = self.covariance[(axis, axis)].max(0.0).sqrt();
+            self.covariance[(axis, axis)] += error * (2.0 * before + error);
+        }
     }
 
     /// Moves to where a scan fits best, near where odometry says, in so many steps.

@@ -15,8 +15,10 @@ pub struct LocalisationMap {
     blocks: World,
 }
 
-/// Metres along an edge of the cells in which places are looked up.
-const RESOLUTION: f64 = 0.05;
+/// Metres along an edge of the cells in which places are looked up, at the least and at the most, and about how many there are
+/// in between.
+const RESOLUTION: (f64, f64) = (0.02, 0.05);
+const CELLS: f64 = 2e6;
 /// Metres from walls up to which places may have to be free.
 const CLEARANCE: f64 = 0.3;
 
@@ -29,7 +31,10 @@ impl LocalisationMap {
         }
         // The inside of what is solid has no surface.
         let hollow = World { map: None, ..world.clone() };
-        let clearance = Clearance::new(&hollow, RESOLUTION, CLEARANCE).map_err(|error| {
+        let (finest, coarsest) = RESOLUTION;
+        let size = world.site().size();
+        let resolution = (size.x * size.y / CELLS).sqrt().clamp(finest, coarsest);
+        let clearance = Clearance::new(&hollow, resolution, CLEARANCE).map_err(|error| {
             Error::new(ErrorKind::InvalidInput, format!("the world cannot be mapped: {error}"))
         })?;
         let surfaces = Surfaces::new(&clearance);
@@ -40,7 +45,8 @@ impl LocalisationMap {
     /// Whether a disc about a place touches nothing, to within 40 mm. Radii beyond 0.3 m count as that.
     pub fn is_free(&self, place: Point, radius: f64) -> bool {
         let far = self.clearance.at_point(place);
-        let least = radius.min(CLEARANCE - 1e-6) - std::f64::consts::FRAC_1_SQRT_2 * RESOLUTION;
+        let least = radius.min(CLEARANCE - 1e-6)
+            - std::f64::consts::FRAC_1_SQRT_2 * self.clearance.raster().resolution();
         far.is_some_and(|distance| distance > least) && !self.blocks.is_inside_walls(place)
     }
 
