@@ -72,18 +72,10 @@ pub(crate) fn changed(mut trip: Trip, count: u32, stream: &mut Stream) -> Result
         let ways = Reachability::new(&trip.scene.world, radius, resolution).map_err(Failure::run)?;
         let Some(way) = ways.shortest_path(start, goal) else { break };
         for _ in 0..TRIES {
-            // Half of them lie near the way.
-            let near = stream.chance(0.5);
-            let spread = if near { 0.15 } else { 0.0 };
-            let place = if near {
-                way.points[stream.below(way.points.len())]
-            } else {
-                let floor = known.floor;
-                Point::new(stream.between(floor.min.x, floor.max.x), stream.between(floor.min.y, floor.max.y))
-            };
+            let way_point = way.points[stream.below(way.points.len())];
             let place = Point::new(
-                place.x + stream.between(-1.0, 1.0) * spread,
-                place.y + stream.between(-1.0, 1.0) * spread,
+                way_point.x + stream.between(-SPREAD, SPREAD),
+                way_point.y + stream.between(-SPREAD, SPREAD),
             );
             let mut world = trip.scene.world.clone();
             add(&mut world, place, stream);
@@ -101,6 +93,8 @@ pub(crate) fn changed(mut trip: Trip, count: u32, stream: &mut Stream) -> Result
     Ok(Course { trip, known, unmapped })
 }
 
+/// An unmapped obstacle lies at most so far from the known way, in metres along each axis, so that it matters.
+const SPREAD: f64 = 0.15;
 /// Half the length of the longest unmapped wall, in metres.
 const WALL: f64 = 0.3;
 
