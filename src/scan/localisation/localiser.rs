@@ -103,7 +103,7 @@ const SHARES: [f64; 4] = [0.92, 0.8, 0.7, EXPLAINED];
 /// next scans leave nothing of its probability.
 const AS_WELL: f64 = 0.06;
 /// Metres and radians that a robot moves before what said too little is looked at again.
-const LOOK_AGAIN: (f64, f64) = (0.25, 0.5);
+const LOOK_AGAIN: (f64, f64) = (0.5, 0.5);
 /// A hypothesis counts if it is this probable in terms of the best one.
 const COUNTS: f64 = 0.02;
 /// The share of beams that have to be as expected.
