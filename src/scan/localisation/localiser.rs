@@ -98,11 +98,12 @@ const TRACK_STEPS: usize = 3;
 /// How far a candidate of a search may be off, in metres and radians.
 const CANDIDATE_SPREAD: f64 = 0.15;
 /// The shares of a scan's beams that a search asks for, until some pose explains so many.
-const SHARES: [f64; 3] = [0.85, 0.72, EXPLAINED];
-/// A pose explains a scan as well as the best one does if it explains so little less of it, as a share of all beams.
-const AS_WELL: f64 = 0.12;
+const SHARES: [f64; 4] = [0.92, 0.8, 0.7, EXPLAINED];
+/// A pose explains a scan as well as the best one does if it explains so little less of it, as a share of all beams: with more, the
+/// next scans leave nothing of its probability.
+const AS_WELL: f64 = 0.06;
 /// Metres and radians that a robot moves before what said too little is looked at again.
-const LOOK_AGAIN: (f64, f64) = (0.25, 0.5);
+const LOOK_AGAIN: (f64, f64) = (0.5, 0.5);
 /// A hypothesis counts if it is this probable in terms of the best one.
 const COUNTS: f64 = 0.02;
 /// The share of beams that have to be as expected.

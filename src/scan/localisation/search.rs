@@ -53,7 +53,7 @@ const COMPARED: usize = 72;
 /// Points lie within so many standard deviations of their ranges on surfaces.
 const DEVIATIONS: f64 = 4.0;
 /// The most blocks that are told apart.
-const MOST_BLOCKS: usize = 1000;
+const MOST_BLOCKS: usize = 2000;
 
 /// A pose for each small block of poses in which a share of the scan's points may lie on surfaces; `None` if there are more
 /// such blocks than can be looked at: then the scan says too little.
