@@ -78,6 +78,7 @@
 //! and evaluates populations on several threads; `checkpoint` saves evolutions; `physics` adds a walking
 //! robot; `robios` drives a real EyeBot.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 // Where some wings are off, what they alone would use is left over, and links to them are plain text.
 #![cfg_attr(
     not(feature = "default"),

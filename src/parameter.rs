@@ -1,4 +1,5 @@
 use std::borrow::Cow;
+use std::fmt;
 
 /// A parameter that is not what it must be: its name, its value and what is accepted.
 ///
@@ -12,7 +13,7 @@ use std::borrow::Cow;
 /// assert_eq!(error.name(), "wheelbase");
 /// assert_eq!(error.to_string(), "wheelbase is NaN; expected a positive, finite number");
 /// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[error("{name} is {value}; expected {expected}")]
 pub struct ParameterError {
     name: Cow<'static, str>,
@@ -52,6 +53,34 @@ impl ParameterError {
     }
 }
 
+/// Makes the `Debug` of error types their sentence, as that is what a `main` that returns an error prints.
+macro_rules! debug_as_sentence {
+    ($($error:ty),+ $(,)?) => {$(
+        impl std::fmt::Debug for $error {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                crate::parameter::write_with_causes(self, f)
+            }
+        }
+    )+};
+}
+pub(crate) use debug_as_sentence;
+
+debug_as_sentence!(ParameterError);
+
+/// Writes an error's sentence, and in a line each what caused it, unless that has been said already.
+pub(crate) fn write_with_causes(error: &dyn std::error::Error, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let mut said = error.to_string();
+    f.write_str(&said)?;
+    for cause in std::iter::successors(error.source(), |error| error.source()) {
+        let sentence = cause.to_string();
+        if !said.contains(&sentence) {
+            write!(f, "\n  caused by: {sentence}")?;
+            said = sentence;
+        }
+    }
+    Ok(())
+}
+
 /// Fails unless a parameter is good.
 pub(crate) fn require(
     name: &'static str,
@@ -80,4 +109,32 @@ pub(crate) fn require_up_to(name: &'static str, value: f64, most: f64) -> Result
 /// Fails unless a parameter is a finite number of at least zero.
 pub(crate) fn require_not_negative(name: &'static str, value: f64) -> Result<(), ParameterError> {
     require(name, value, value.is_finite() && value >= 0.0, "a finite number of at least 0")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Clone, PartialEq, thiserror::Error)]
+    #[error("the track has no width")]
+    struct Outer(#[source] ParameterError);
+
+    debug_as_sentence!(Outer);
+
+    #[test]
+    fn a_main_that_fails_prints_sentences() {
+        let error = ParameterError::new("width", 0.0, "more than 0");
+        assert_eq!(format!("{error:?}"), "width is 0; expected more than 0");
+        let both = "the track has no width\n  caused by: width is 0; expected more than 0";
+        assert_eq!(format!("{:?}", Outer(error)), both);
+    }
+
+    #[cfg(feature = "io")]
+    #[test]
+    fn a_cause_that_says_the_same_is_not_printed_again() {
+        use crate::io::Error;
+        let error = Error::from(ParameterError::new("width", 0.0, "more than 0"));
+        assert_eq!(format!("{error:?}"), "width is 0; expected more than 0");
+        assert_eq!(format!("{:?}", Error::unsupported("lidar")), "the robot has no lidar");
+    }
 }

@@ -3,8 +3,10 @@
 //! The generator is the named, portable xoshiro256++; the distributions on top are written here because those of
 //! the usual crates change between releases and use the platform's logarithm.
 
+use std::convert::Infallible;
+
 use rand::SeedableRng;
-use rand::rand_core::Rng as _;
+use rand::rand_core::{Rng as _, TryRng};
 use rand::rngs::Xoshiro256PlusPlus;
 
 use crate::geometry::math;
@@ -21,6 +23,9 @@ use crate::geometry::math;
 /// let mut again = Stream::new(1).child("lidar", 0);
 /// assert_eq!(lidar.normal().to_bits(), again.normal().to_bits());
 /// ```
+///
+/// It is a generator of the crate `rand` 0.10 too, so the distributions of `rand_distr` draw from it. How many numbers
+/// they draw, and what they make of them, is theirs: it may change with their release.
 #[derive(Debug, Clone)]
 pub struct Stream {
     seed: u64,
@@ -90,6 +95,22 @@ impl Stream {
         for i in (1..items.len()).rev() {
             items.swap(i, self.below(i + 1));
         }
+    }
+}
+
+impl TryRng for Stream {
+    type Error = Infallible;
+
+    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
+        self.generator.try_next_u32()
+    }
+
+    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
+        self.generator.try_next_u64()
+    }
+
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
+        self.generator.try_fill_bytes(bytes)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::geometry::Pose;
 use crate::io::control::{Behaviour, Decision, Manoeuvre, SensedBy, Senses, halts};
 use crate::io::{Drive, Result};
 
-halts!(AToBOutcome);
+halts!(AToBOutcome { Reached: "the goal is reached", Blocked: "something holds the robot" });
 
 impl Behaviour for AToB {
     type Observation = AToBObservation;

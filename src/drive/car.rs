@@ -95,7 +95,11 @@ pub enum CarOutcome {
     Stopped,
 }
 
-halts!(CarOutcome);
+halts!(CarOutcome {
+    Reached: "the goal is reached",
+    Missed: "the car stopped beside the goal each time",
+    Blocked: "something holds the car",
+});
 
 /// What a car sees at a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -58,7 +58,7 @@ pub enum ChaseOutcome {
     Stopped,
 }
 
-halts!(ChaseOutcome);
+halts!(ChaseOutcome { Caught: "the goal is caught", Blocked: "something holds the robot" });
 
 /// Drives towards a goal that moves: each method of chapter 3 begins anew from where robot and goal are at each step, and
 /// drives the first bit of it.

@@ -215,7 +215,7 @@ pub enum OmniOutcome {
     Stopped,
 }
 
-halts!(OmniOutcome);
+halts!(OmniOutcome { Reached: "the end of the route is reached", Missed: "the end of the route is missed" });
 
 impl Behaviour for OmniPilot<'_> {
     type Observation = Pose;

@@ -1,6 +1,7 @@
 use std::fmt;
 
 use crate::ParameterError;
+use crate::parameter::debug_as_sentence;
 
 /// The result of asking a robot for something.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -14,12 +15,13 @@ pub type Result<T> = std::result::Result<T, Error>;
 /// assert_eq!(error.kind(), ErrorKind::Unsupported);
 /// assert_eq!(error.to_string(), "the robot has no lidar");
 /// ```
-#[derive(Debug)]
 pub struct Error {
     kind: ErrorKind,
     message: String,
     source: Option<Box<dyn std::error::Error + Send + Sync>>,
 }
+
+debug_as_sentence!(Error);
 
 /// What kind of thing went wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -3,6 +3,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::Picture;
+use crate::parameter::debug_as_sentence;
 
 /// The files that a picture can be written to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,7 +16,7 @@ pub enum FileType {
 }
 
 /// Why a picture could not be saved.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum SaveError {
     /// The name does not say which type of file is wanted.
@@ -47,6 +48,8 @@ pub enum SaveError {
         source: io::Error,
     },
 }
+
+debug_as_sentence!(SaveError);
 
 impl FileType {
     /// The type that a file's name asks for, without regard to case. Fails if no picture can be saved under it, which

@@ -1,7 +1,8 @@
 use crate::ParameterError;
+use crate::parameter::debug_as_sentence;
 
 /// Why no line could be planned.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LineError {
     /// Too few points for a line.
@@ -35,3 +36,5 @@ pub enum LineError {
     #[error(transparent)]
     Parameter(#[from] ParameterError),
 }
+
+debug_as_sentence!(LineError);

@@ -20,7 +20,7 @@ pub enum RaceOutcome {
     Stopped,
 }
 
-halts!(RaceOutcome);
+halts!(RaceOutcome { Finished: "the race is finished", Lost: "the car is lost" });
 
 /// Makes a racer with phases a behaviour of cars with a lidar.
 macro_rules! races {

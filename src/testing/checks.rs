@@ -1,5 +1,6 @@
 use super::lines::{between_walls, entered, squeezed};
 use crate::nav::grid::{AnyAngle, GridPath, GridPlanner, GridSearch, PlanError};
+use crate::parameter::debug_as_sentence;
 use crate::world::{BitGrid, GridCell};
 
 /// Which ways count as the shortest.
@@ -12,7 +13,7 @@ pub enum Movement {
 }
 
 /// What a planner did wrong.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[error("from {start} to {goal}: {what}")]
 pub struct Violation {
     /// The start of the query.
@@ -22,6 +23,8 @@ pub struct Violation {
     /// What was found, and what was expected.
     pub what: String,
 }
+
+debug_as_sentence!(Violation);
 
 /// Costs that differ by less are the same: sums are rounded.
 const TOLERANCE: f64 = 1e-6;

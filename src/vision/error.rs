@@ -1,9 +1,10 @@
 use std::convert::Infallible;
 
 use crate::ParameterError;
+use crate::parameter::debug_as_sentence;
 
 /// What is wrong with an image or a parameter.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImageError {
     /// An image without pixels.
@@ -52,6 +53,8 @@ pub enum ImageError {
     #[error(transparent)]
     Parameter(#[from] ParameterError),
 }
+
+debug_as_sentence!(ImageError);
 
 /// What takes an image takes a view of one too, which always is one.
 impl From<Infallible> for ImageError {

@@ -1,6 +1,7 @@
 use super::{Occupancy, OccupancyGrid};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose};
+use crate::parameter::debug_as_sentence;
 
 /// The place of a cell in a grid: its column and row, both from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -58,7 +59,7 @@ pub struct BitGrid {
 }
 
 /// Why there is no grid.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BitGridError {
     /// The grid would not fit into memory.
@@ -80,6 +81,8 @@ pub enum BitGridError {
         expected: usize,
     },
 }
+
+debug_as_sentence!(BitGridError);
 
 impl BitGrid {
     /// The most cells that a grid may have.

@@ -279,7 +279,7 @@ impl PushHome {
     }
 }
 
-halts!(PushOutcome);
+halts!(PushOutcome { Home: "the object is home", Blocked: "something holds the robot" });
 
 impl Behaviour for PushHome {
     type Observation = ColourObservation;

@@ -275,7 +275,7 @@ impl ColourTracker {
     }
 }
 
-halts!(ColourOutcome);
+halts!(ColourOutcome { Reached: "the object is reached", Blocked: "something holds the robot" });
 
 impl Behaviour for ColourTracker {
     type Observation = ColourObservation;

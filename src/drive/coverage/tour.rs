@@ -112,7 +112,7 @@ pub enum TourOutcome {
     Stopped,
 }
 
-halts!(TourOutcome);
+halts!(TourOutcome { Finished: "the tour is finished" });
 
 impl Behaviour for Tour {
     /// Where the robot takes itself to be; it stands as long as it does not know.

@@ -60,7 +60,7 @@ pub enum WallOutcome {
     Blocked,
 }
 
-halts!(WallOutcome);
+halts!(WallOutcome { Blocked: "something holds the robot" });
 
 /// A drive along walls by a controller.
 #[derive(Debug, Clone)]

@@ -59,13 +59,23 @@ pub enum Halt {
 
 /// Makes ends from outside outcomes of an enum with variants of their names.
 macro_rules! halts {
-    ($outcome:ty) => {
+    ($outcome:ident { $($variant:ident: $sentence:literal),* $(,)? }) => {
         impl From<crate::io::control::Halt> for $outcome {
             fn from(halt: crate::io::control::Halt) -> Self {
                 match halt {
                     crate::io::control::Halt::TimedOut => Self::TimedOut,
                     crate::io::control::Halt::Stopped => Self::Stopped,
                 }
+            }
+        }
+
+        impl std::fmt::Display for $outcome {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(match self {
+                    $(Self::$variant => $sentence,)*
+                    Self::TimedOut => "the time is over",
+                    Self::Stopped => "the run was stopped by its observer",
+                })
             }
         }
     };

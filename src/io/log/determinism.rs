@@ -3,10 +3,10 @@ use std::fmt;
 use super::{Difference, Header, Log, LogError, LogWriter, Player};
 use crate::io::sim::{SimOptions, Simulation};
 use crate::io::{Error, Result, RobotIo};
+use crate::parameter::debug_as_sentence;
 use crate::world::Scene;
 
 /// Why a behaviour is not deterministic.
-#[derive(Debug)]
 #[non_exhaustive]
 pub enum Indeterminate {
     /// Two runs with one seed differ.
@@ -28,6 +28,8 @@ pub enum Indeterminate {
     /// A recording cannot be made or read.
     Recording(LogError),
 }
+
+debug_as_sentence!(Indeterminate);
 
 impl fmt::Display for Indeterminate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

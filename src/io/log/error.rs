@@ -2,8 +2,10 @@ use std::io;
 
 use thiserror::Error;
 
+use crate::parameter::debug_as_sentence;
+
 /// Why a file cannot be used as a recording.
-#[derive(Debug, Error)]
+#[derive(Error)]
 #[non_exhaustive]
 pub enum LogError {
     /// It is no MCAP file.
@@ -72,6 +74,8 @@ pub enum LogError {
     #[error("the recording cannot be read or written: {0}")]
     Io(#[from] io::Error),
 }
+
+debug_as_sentence!(LogError);
 
 impl LogError {
     pub(super) fn damaged(what: impl Into<String>) -> Self {

@@ -105,7 +105,7 @@ pub enum LeftHandOutcome {
     Stalled,
 }
 
-halts!(LeftHandOutcome);
+halts!(LeftHandOutcome { Stalled: "something holds the robot" });
 
 /// What a [`LeftHand`] sees at a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

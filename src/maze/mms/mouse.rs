@@ -4,6 +4,7 @@ use crate::maze::{
     Cell, Direction, ExplorationOutcome, ExplorationStep, Explorer, Goals, Maze, Preference,
     TwoPhaseExplorer, Unknown, WallState, shortest_route_between,
 };
+use crate::parameter::debug_as_sentence;
 
 /// What the mouse does next.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -15,13 +16,15 @@ pub enum Move {
 }
 
 /// An answer that makes no sense.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("found the answer {found:?} to {command}; expected {expected}")]
 pub struct MmsError {
     command: String,
     found: String,
     expected: &'static str,
 }
+
+debug_as_sentence!(MmsError);
 
 /// The mouse's side: explores the maze to the proof that the best route is known, and then drives that.
 ///

@@ -6,6 +6,7 @@ use super::{
 };
 use crate::geometry::Point;
 use crate::io::Result;
+use crate::parameter::debug_as_sentence;
 
 /// The bugs of this library, to choose among by name.
 ///
@@ -45,11 +46,13 @@ pub enum BugKind {
 }
 
 /// A name that no bug has.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown bug `{found}`; expected one of {}", BugKind::names())]
 pub struct UnknownBug {
     found: String,
 }
+
+debug_as_sentence!(UnknownBug);
 
 impl BugKind {
     /// All of them.

@@ -15,7 +15,7 @@ pub enum BugOutcome {
     Stopped,
 }
 
-halts!(BugOutcome);
+halts!(BugOutcome { Reached: "the goal is reached", Unreachable: "no way leads to the goal" });
 
 /// What the robot is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -31,7 +31,7 @@ pub struct GraphStep<N> {
 }
 
 /// Why there is no path.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GraphError<N: std::fmt::Debug> {
     /// A node does not belong to the graph.
@@ -66,6 +66,12 @@ pub enum GraphError<N: std::fmt::Debug> {
         /// To here.
         goal: N,
     },
+}
+
+impl<N: std::fmt::Debug> std::fmt::Debug for GraphError<N> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// The cheapest way from one node to another one, by A\*.

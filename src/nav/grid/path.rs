@@ -1,4 +1,5 @@
 use crate::geometry::Point;
+use crate::parameter::debug_as_sentence;
 use crate::world::{BitGrid, GridCell};
 
 use super::components::GridComponents;
@@ -26,7 +27,7 @@ pub struct SearchStatistics {
 }
 
 /// Why there is no path.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
     /// The grid has no cells.
@@ -61,6 +62,8 @@ pub enum PlanError {
         goal: GridCell,
     },
 }
+
+debug_as_sentence!(PlanError);
 
 /// An end of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -16,7 +16,11 @@ pub enum NavigatorOutcome {
     Stopped,
 }
 
-halts!(NavigatorOutcome);
+halts!(NavigatorOutcome {
+    Reached: "the goal is reached",
+    Unreachable: "no way leads to the goal",
+    Stuck: "the robot makes no progress",
+});
 
 /// What the robot is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

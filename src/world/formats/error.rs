@@ -1,5 +1,7 @@
 use std::fmt;
 
+use crate::parameter::debug_as_sentence;
+
 /// A place in a text file. Lines and columns count from 1, columns in characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Location {
@@ -17,7 +19,7 @@ impl Location {
 /// Why a file could not be read: where, what stands there, and what should.
 ///
 /// A file that is missing is reported at the line that names it.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}:{column}: found {found}; expected {expected}")]
 pub struct FormatError {
     /// The file as its reader was given it.
@@ -31,6 +33,8 @@ pub struct FormatError {
     /// What should stand there.
     pub expected: String,
 }
+
+debug_as_sentence!(FormatError);
 
 impl FormatError {
     /// An error from its parts.

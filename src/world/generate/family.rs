@@ -1,4 +1,5 @@
 use crate::ParameterError;
+use crate::parameter::debug_as_sentence;
 use std::fmt;
 use std::str::FromStr;
 
@@ -90,11 +91,13 @@ impl fmt::Display for CourseFamily {
 }
 
 /// A name that no family of courses has.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown family of courses `{found}`; expected one of {}", CourseFamily::ALL.map(CourseFamily::name).join(", "))]
 pub struct UnknownFamily {
     found: String,
 }
+
+debug_as_sentence!(UnknownFamily);
 
 impl FromStr for CourseFamily {
     type Err = UnknownFamily;
