@@ -9,7 +9,9 @@ use super::items::Picture;
 use super::text;
 use crate::geometry::Vector;
 
+/// Pixels of the title's letters.
 const TITLE: f64 = 19.0;
+/// Pixels of the caption's letters.
 const CAPTION: f64 = 12.5;
 
 /// The height of title and caption together, with the space below them.

@@ -8,13 +8,14 @@ use super::canvas::{number, rectangle, words};
 use super::colours::{INK, PALE_INK, ramp};
 use super::frame::Pixel;
 use super::items::Picture;
+use super::labels::SIZE;
 use super::{Mark, Style, lines, scenery, text};
 use crate::geometry::{Aabb, Vector};
 use crate::world::{Colour, Shape};
 
-const SIZE: f64 = 12.0;
-/// Pixels from the left end of a line's symbol to its text, and from one line to the next.
+/// Pixels from the left end of a line's symbol to its text.
 const INDENT: f64 = 34.0;
+/// Pixels from one line to the next.
 const ROW: f64 = 23.0;
 /// Pixels between entries that share a row.
 const BETWEEN: f64 = 22.0;

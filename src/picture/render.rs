@@ -12,10 +12,13 @@ use super::legend::{Arrangement, Legend};
 use super::{lines, names, robots, scenery};
 use crate::geometry::{Aabb, Vector};
 
+/// Pixels round the plot.
 const MARGIN: f64 = 28.0;
 /// Pixels between plot and legend.
 const GUTTER: f64 = 26.0;
+/// Pixels of the page's width at least, for titles.
 const NARROWEST_PAGE: f64 = 340.0;
+/// Pixels of the page's width at most.
 const WIDEST_PAGE: f64 = 1340.0;
 /// Pixels around the world where paths still show.
 const BLEED: f64 = 10.0;

@@ -88,13 +88,15 @@ pub struct Localiser {
     searches: u32,
 }
 
-/// Steps by which candidates of a search and hypotheses on the way are matched.
+/// Steps by which candidates of a search are matched.
 const SEARCH_STEPS: usize = 10;
+/// Steps by which hypotheses on the way are matched.
 const TRACK_STEPS: usize = 3;
 /// How far a candidate of a search may be off, in metres and radians.
 const CANDIDATE_SPREAD: f64 = 0.15;
-/// How many candidates are tried again, turned by so many radians.
+/// How many candidates are tried again, turned.
 const TURNED: usize = 16;
+/// By how many radians they are turned.
 const TURNS: [f64; 6] = [-0.2, -0.13, -0.06, 0.06, 0.13, 0.2];
 /// A hypothesis counts if it is this probable in terms of the best one.
 const COUNTS: f64 = 0.02;
