@@ -8,7 +8,7 @@ use roverlab::drive::{RandomDrive, RandomDriveParameters};
 use roverlab::geometry::{Point, Pose, angle_difference, units};
 use roverlab::io::control::{run, until};
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::io::{Drive, Lidar, Result};
+use roverlab::io::{Lidar, Odometry, Result};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
 use roverlab::scan::{Localisation, LocalisationMap, Localiser, LocaliserParameters};

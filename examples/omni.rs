@@ -5,7 +5,7 @@
 
 use roverlab::drive::{OmniDriver, OmniOutcome, OmniParameters, OmniTracker};
 use roverlab::geometry::{Point, Pose, angle_difference, units};
-use roverlab::io::Drive;
+use roverlab::io::Odometry;
 use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::kinematics::Omni;

@@ -6,7 +6,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use roverlab::geometry::{Point, Pose, Twist};
-use roverlab::io::{Clock, DistanceSensors, Drive, Lidar, LidarScan, LidarSettings, Psd, Result};
+use roverlab::io::{Clock, DistanceSensors, Drive, Lidar, LidarScan, LidarSettings, Odometry, Psd, Result};
 use roverlab::safety::{
     BaseStation, Causes, Heartbeat, Panel, Requests, SafetyState, Station, Supervised, SupervisedParameters,
 };
@@ -78,7 +78,9 @@ impl Drive for Plain {
         self.twist = twist;
         Ok(())
     }
+}
 
+impl Odometry for Plain {
     fn speed(&mut self) -> Result<Twist> {
         Ok(self.twist)
     }
@@ -90,34 +92,6 @@ impl Drive for Plain {
     fn set_pose(&mut self, pose: Pose) -> Result<()> {
         self.pose = pose;
         Ok(())
-    }
-
-    fn straight(&mut self, _: f64, speed: f64) -> Result<()> {
-        self.set_speed(Twist::new(speed, 0.0))
-    }
-
-    fn turn(&mut self, _: f64, speed: f64) -> Result<()> {
-        self.set_speed(Twist::new(0.0, speed))
-    }
-
-    fn curve(&mut self, _: f64, _: f64, speed: f64) -> Result<()> {
-        self.set_speed(Twist::new(speed, 0.0))
-    }
-
-    fn remaining(&mut self) -> Result<f64> {
-        Ok(0.0)
-    }
-
-    fn is_done(&mut self) -> Result<bool> {
-        Ok(true)
-    }
-
-    fn wait_done(&mut self) -> Result<()> {
-        Ok(())
-    }
-
-    fn is_stalled(&mut self) -> Result<bool> {
-        Ok(false)
     }
 }
 

@@ -6,7 +6,7 @@ use roverlab::geometry::{Point, Pose, Twist, Vector, angle_difference};
 use roverlab::io::control::{self, Behaviour, LidarObservation};
 use roverlab::io::sim::{NoiseModel, SimOptions, SimRobot, Simulation, Truth};
 use roverlab::io::wrappers::{Fault, Faulty};
-use roverlab::io::{Clock, Drive, ErrorKind, Lidar, LidarScan};
+use roverlab::io::{Clock, Drive, ErrorKind, Lidar, LidarScan, Odometry};
 use roverlab::nav::{BugEvent, BugOutcome, BugParameters, DistBug};
 use roverlab::scan::{ScanFilter, ScanMatcher};
 use roverlab::world::{RobotSpec, Scene, Wall, World};

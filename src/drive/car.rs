@@ -5,7 +5,7 @@ use super::{Goal, Method, Path, PathFollower, PathFollowerParameters, Steering};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Command, Decision, Senses, halts};
-use crate::io::{Drive, Error, Motors, Result, Servos};
+use crate::io::{Error, Motors, Odometry, Result, Servos, StallDetector};
 use crate::kinematics::{Ackermann, CarState};
 use crate::parameter::{require, require_positive, require_up_to};
 
@@ -380,7 +380,7 @@ impl Behaviour for CarToB {
     }
 }
 
-impl<R: Drive + ?Sized> Senses<R> for CarToB {
+impl<R: Odometry + StallDetector + ?Sized> Senses<R> for CarToB {
     fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut CarObservation) -> Result<()> {
         *seen = CarObservation { pose: robot.pose()?, stalled: robot.is_stalled()? };
         Ok(())

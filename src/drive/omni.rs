@@ -3,7 +3,7 @@ use std::ops::ControlFlow;
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Vector, angle_difference, direction, normalize_angle};
 use crate::io::control::{Behaviour, Command, Decision, Senses, halts};
-use crate::io::{Drive, Error, Motors, Result};
+use crate::io::{Error, Motors, Odometry, Result};
 use crate::kinematics::{Omni, PlanarTwist};
 use crate::parameter::{require_finite, require_positive};
 
@@ -247,7 +247,7 @@ impl Behaviour for OmniPilot<'_> {
     }
 }
 
-impl<R: Drive + ?Sized> Senses<R> for OmniPilot<'_> {
+impl<R: Odometry + ?Sized> Senses<R> for OmniPilot<'_> {
     fn sense(&mut self, robot: &mut R, _time: f64, pose: &mut Pose) -> Result<()> {
         *pose = robot.pose()?;
         Ok(())

@@ -24,8 +24,11 @@ pub fn chart(history: &[GenerationStatistics]) -> Picture {
     ];
     let lower = Panel { history, bottom: MARGIN, height: DIVERSITY };
     let upper = Panel { history, bottom: 2.0 * MARGIN + DIVERSITY, height: FITNESS };
-    lower.draw(&mut picture, &[("diversity", Colour::from_hex(0x002b_8a3e), |row| row.diversity)]);
-    upper.draw(&mut picture, &fitness);
+    lower.draw(&mut picture, &[("diversity", Colour::from_hex(0x002b_8a3e), |row| row.diversity)], 0.0);
+    // One that failed must not flatten what the best have learnt.
+    let bests = || history.iter().map(|row| row.best);
+    let (first, last) = (bests().fold(f64::INFINITY, f64::min), bests().fold(f64::NEG_INFINITY, f64::max));
+    upper.draw(&mut picture, &fitness, first - (last - first).max(0.05 * last.abs()));
     picture
 }
 
@@ -40,13 +43,13 @@ struct Panel<'a> {
 }
 
 impl Panel<'_> {
-    fn draw(&self, picture: &mut Picture, curves: &[Curve<'_>]) {
+    fn draw(&self, picture: &mut Picture, curves: &[Curve<'_>], least: f64) {
         let values = || curves.iter().flat_map(|(_, _, value)| self.history.iter().map(value));
-        let least = values().fold(f64::INFINITY, f64::min).min(0.0);
+        let least = if least.is_finite() { least } else { 0.0 };
         let most = values().fold(f64::NEG_INFINITY, f64::max).max(least + f64::MIN_POSITIVE);
         let last = self.history.len().saturating_sub(1).max(1) as f64;
         let at = |generation: f64, value: f64| {
-            let up = (value - least) / (most - least);
+            let up = ((value - least) / (most - least)).clamp(0.0, 1.0);
             Point::new(MARGIN + WIDTH * generation / last, self.bottom + self.height * up)
         };
         picture.line([at(0.0, most), at(0.0, least), at(last, least)], Style::aid());

@@ -2,14 +2,18 @@ use crate::world::Colour;
 
 /// Colours that tell things of one kind apart, several robots for instance: the n-th takes the n-th, in a circle.
 /// Readers who see few colours can tell them apart too.
-pub const SERIES: [Colour; 7] = [
+pub const SERIES: [Colour; 11] = [
     Colour::from_hex(0x1f_6f_b2),
     Colour::from_hex(0x1b_92_7a),
     Colour::from_hex(0xa5_4f_96),
     Colour::from_hex(0xb0_7d_12),
-    Colour::from_hex(0x5b_5f_c7),
+    Colour::from_hex(0xc8_3e_4d),
     Colour::from_hex(0x7a_8b_2a),
     Colour::from_hex(0x3b_9e_c9),
+    Colour::from_hex(0x5b_45_9c),
+    Colour::from_hex(0xe2_85_2b),
+    Colour::from_hex(0x5d_4b_3c),
+    Colour::from_hex(0x2b_8a_3e),
 ];
 
 /// The page: white.
@@ -32,9 +36,9 @@ pub(super) const PALE_INK: Colour = Colour::from_hex(0x6d_75_84);
 pub(super) const LETTER: Colour = Colour::from_hex(0xc2_ba_a8);
 /// Where odometry takes a robot to be.
 pub(super) const ODOMETRY: Colour = Colour::from_hex(0xe2_85_2b);
-/// Leave points, goals and plans.
+/// Goals and starts.
 pub(super) const GREEN: Colour = Colour::from_hex(0x2e_8b_57);
-/// Hit points, and crosses where something went wrong.
+/// Contacts, and what went wrong.
 pub(super) const RED: Colour = Colour::from_hex(0xc8_3e_4d);
 /// Points that sensors have seen.
 pub(super) const CLOUD: Colour = Colour::from_hex(0xb8_55_8b);

@@ -183,7 +183,7 @@ mod tests {
     use super::*;
     use crate::geometry::{Pose, Twist};
     use crate::io::sim::{SimOptions, Simulation, TICK};
-    use crate::io::{Clock, Drive};
+    use crate::io::{Clock, Drive, Odometry};
     use crate::kinematics::PlanarMotion;
     use crate::race::ConeTrack;
     use proptest::prelude::*;

@@ -1,6 +1,7 @@
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use super::Body;
+use super::{Body, Mesh};
 use crate::ParameterError;
 use crate::geometry::Aabb;
 use crate::parameter::{require, require_finite, require_not_negative, require_positive};
@@ -28,8 +29,10 @@ pub struct RobotSpec {
     pub lidar: Option<LidarSpec>,
     /// Its camera, if it has one.
     pub camera: Option<CameraSpec>,
-    /// The 3D model that EyeSim shows, if any. Cameras here see the outline.
+    /// The file of its 3D model, if it has one.
     pub model: Option<PathBuf>,
+    /// The surface that cameras see; without it, they see the outline.
+    pub mesh: Option<Arc<Mesh>>,
     /// What its description file says about its solid beyond footprint and height.
     pub body: Body,
 }

@@ -1,6 +1,7 @@
 use roverlab::geometry::{Aabb, Point, Pose};
 use roverlab::io::MockRobot;
 use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
+use roverlab::io::wrappers::{Manoeuvring, ManoeuvringParameters};
 use roverlab::random::Stream;
 use roverlab::safety::{
     BaseStation, Deadline, Debounce, HealthLimits, SignalLimits, SignalMonitor, SpeedError, Supervised,
@@ -34,7 +35,7 @@ fn the_simulator() {
 fn robots() {
     let s4 = RobotSpec::s4;
     check!(RobotSpec = s4(), |p| simulation(p, SimOptions::default())?, { Positive: height; NotNegative: mass; }
-        but name, drive, motor, footprint, mast, psds, lidar, camera, model, body);
+        but name, drive, motor, footprint, mast, psds, lidar, camera, model, mesh, body);
     check!(MotorSpec = MotorSpec::default(), |p| simulation(RobotSpec { motor: p, ..s4() }, SimOptions::default())?,
         { NotNegative: time_constant; Positive: max_acceleration; });
     check!(PsdSpec = s4().psds[0].clone(),
@@ -116,6 +117,12 @@ fn safety() {
     for needed in [0, 1, u16::MAX] {
         assert_eq!(Debounce::new(needed).update(true), needed <= 1, "{needed}");
     }
+}
+
+#[test]
+fn manoeuvres() {
+    check!(ManoeuvringParameters = ManoeuvringParameters::default(), |p| Manoeuvring::new(MockRobot::new(), p)?,
+        { Positive: period; NotNegative: lag; });
 }
 
 #[test]

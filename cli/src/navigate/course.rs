@@ -64,7 +64,7 @@ pub(crate) fn generated(seed: u64) -> Result<Course, Failure> {
 pub(crate) fn changed(mut trip: Trip, count: u32, stream: &mut Stream) -> Result<Course, Failure> {
     let known = trip.scene.world.clone();
     let radius = PASSAGE * trip.spec().footprint.bounding_radius();
-    let size = known.bounds().size();
+    let size = known.site().size();
     let resolution = (radius / 6.0).max((size.x * size.y / MAX_CELLS).sqrt());
     let (start, goal) = (trip.start().position(), trip.goal);
     let mut unmapped = 0;
@@ -87,7 +87,9 @@ pub(crate) fn changed(mut trip: Trip, count: u32, stream: &mut Stream) -> Result
             );
             let mut world = trip.scene.world.clone();
             add(&mut world, place, stream);
-            let apart = |point: Point| (place - point).norm() > APART + WALL;
+            // Half in a wall it would hardly be seen.
+            let in_wall = known.walls.iter().any(|wall| wall.line.distance_to(place) < 0.5 * APART);
+            let apart = |point: Point| (place - point).norm() > APART + WALL && !in_wall;
             let ways = Reachability::new(&world, radius, resolution).map_err(Failure::run)?;
             if apart(start) && apart(goal) && ways.connected(start, goal) {
                 trip.scene.world = world;

@@ -5,7 +5,7 @@ use std::fmt;
 use roverlab::ParameterError;
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::wrappers::{Fault, FaultKind};
-use roverlab::io::{Clock, Drive, Lidar, LidarScan};
+use roverlab::io::{Clock, Drive, Lidar, LidarScan, Odometry};
 use roverlab::race::{Racer, RacerParameters, sightings};
 use roverlab::safety::{Causes, SafetyState, SpeedError, StoppingModel, Supervised, SupervisedParameters};
 use roverlab::world::RobotSpec;

@@ -2,7 +2,7 @@ use std::ops::ControlFlow;
 
 use crate::geometry::{Point, Pose, Twist, angle_difference, math};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
-use crate::io::{Drive, Error, Result};
+use crate::io::{Error, Odometry, Result};
 use crate::parameter::require_positive;
 
 /// What [`Tour`] goes by.
@@ -132,7 +132,7 @@ impl Behaviour for Tour {
 }
 
 /// By odometry.
-impl<R: Drive + ?Sized> Senses<R> for Tour {
+impl<R: Odometry + ?Sized> Senses<R> for Tour {
     fn sense(&mut self, robot: &mut R, _time: f64, place: &mut Option<Pose>) -> Result<()> {
         *place = Some(robot.pose()?);
         Ok(())

@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use roverlab::geometry::Pose;
-//! use roverlab::io::{DistanceSensors, Drive, Psd};
+//! use roverlab::io::{DistanceSensors, Manoeuvres, Psd};
 //! use roverlab::io::sim::{SimOptions, Simulation};
 //! use roverlab::world::{RobotSpec, Scene, World};
 //!
@@ -47,6 +47,7 @@ mod robot_traits;
 mod simulation;
 #[cfg(feature = "physics")]
 pub mod starman;
+mod terrain;
 mod truth;
 mod wheels;
 

@@ -77,7 +77,7 @@ impl Strategy for DistRule {
         }
         let free = sight.free.min(sight.distance) * self.doubt.trust();
         let promising = sight.distance - free <= self.least_distance - sight.step;
-        if promising || sight.is_goal_at_hand() { Decision::Leave } else { Decision::Follow }
+        if promising { Decision::Leave } else { Decision::Follow }
     }
 }
 

@@ -8,7 +8,7 @@ use super::route::Route;
 use super::steering::Steering;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Decision, Halt, LidarObservation, Senses};
-use crate::io::{Drive, Error, Lidar, Result};
+use crate::io::{Error, Lidar, Odometry, Result};
 use crate::nav::surroundings::Surroundings;
 use crate::scan::{ScanFilter, check_measured};
 use crate::world::{GridCell, World};
@@ -403,7 +403,7 @@ impl Behaviour for Navigator {
     }
 }
 
-impl<R: Drive + Lidar + ?Sized> Senses<R> for Navigator {
+impl<R: Odometry + Lidar + ?Sized> Senses<R> for Navigator {
     fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LidarObservation) -> Result<()> {
         seen.read(robot)
     }

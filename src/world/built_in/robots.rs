@@ -49,6 +49,7 @@ impl RobotSpec {
                 fisheye: false,
             }),
             model: None,
+            mesh: None,
             body: Body::default(),
         }
     }

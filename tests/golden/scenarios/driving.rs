@@ -8,7 +8,7 @@ use roverlab::drive::{
 };
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::control::run;
-use roverlab::io::{Clock, Drive, Lidar, LidarScan, Result};
+use roverlab::io::{Clock, Drive, Lidar, LidarScan, Odometry, Result};
 use roverlab::kinematics::{
     Ackermann, CarState, Differential, Displacement, OdometryErrors, OdometryUncertainty, Omni, PlanarTwist,
     WheelSpeeds, advance, advance_planar,

@@ -15,7 +15,7 @@ use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::control::{run, until};
 use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
 use roverlab::io::wrappers::{Faulty, Traced};
-use roverlab::io::{Clock, DistanceSensors, Drive, Keys, Lidar, Psd, Radio, Result};
+use roverlab::io::{Clock, DistanceSensors, Drive, Keys, Lidar, Manoeuvres, Odometry, Psd, Radio, Result};
 use roverlab::kinematics::{Ackermann, Omni};
 use roverlab::maze::{Direction, LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters};
 use roverlab::nav::{BugKind, BugParameters, DistBug, Navigator, NavigatorParameters};

@@ -3,7 +3,7 @@
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::wrappers::{Fault, Faulty, Traced};
-use roverlab::io::{Clock, Drive, Lidar, MockRobot, Motors, Result, Servos};
+use roverlab::io::{Clock, Drive, Lidar, MockRobot, Motors, Odometry, Result, Servos};
 use roverlab::race::{Cone, ConeTrack, GapDriver};
 use roverlab::random::Stream;
 use roverlab::safety::{
@@ -64,7 +64,7 @@ fn monitors() -> Result<String> {
 }
 
 /// Notes the state of a supervised vehicle, why it is in it, and its last stop.
-fn note_state<R: Clock + Drive, S: Station>(log: &mut String, car: &Supervised<R, S>) {
+fn note_state<R: Clock + Drive + Odometry, S: Station>(log: &mut String, car: &Supervised<R, S>) {
     let stop = car.last_stop().map(|stop| (stop.time, stop.causes.bits(), stop.state, stop.speed));
     let causes: Vec<&str> = car.causes().names().collect();
     note(log, "vehicle", &(car.state(), causes, stop, car.asked()));

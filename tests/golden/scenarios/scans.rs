@@ -6,7 +6,7 @@ use roverlab::drive::{RandomDrive, RandomDriveObservation, RandomDriveParameters
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::control::{Senses, run};
 use roverlab::io::sim::Lcd;
-use roverlab::io::{Clock, Drive, Lidar, LidarScan, Result};
+use roverlab::io::{Clock, Drive, Lidar, LidarScan, Odometry, Result};
 use roverlab::nav::{Navigator, NavigatorParameters};
 use roverlab::random::Stream;
 use roverlab::scan::{

@@ -125,6 +125,11 @@ impl Figure {
         self.world.bodies[self.body].translation().x
     }
 
+    /// How fast that moves along the floor, in metres per second.
+    pub(super) fn speed(&self) -> f64 {
+        self.world.bodies[self.body].linvel().x
+    }
+
     pub(super) fn truth(&self) -> StarmanTruth {
         StarmanTruth {
             posture: self.posture(),
