@@ -1,4 +1,4 @@
-use crate::geometry::{Point, direction, free_distance};
+use crate::geometry::{Point, direction, meeting};
 
 /// How far a round robot can drive among points that it sees, in its own frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,10 +14,11 @@ const TRIED: u32 = 18;
 const SPACING: f64 = 0.13;
 
 impl Way {
-    /// Metres straight on in a direction until the outline is at a point that is not passed with the margin. What has been
-    /// passed does not count.
+    /// Metres straight on in a direction until the outline is at a point. What has been passed does not count.
     pub(super) fn free(&self, points: &[Point], towards: f64) -> f64 {
-        free_distance(points, direction(towards), self.radius + self.margin).0 + self.margin
+        let (ahead, half) = (direction(towards), self.radius + self.margin);
+        let room = |(along, before): (f64, f64)| along - (before - self.margin).max(0.0);
+        points.iter().filter_map(|point| meeting(point, ahead, half)).map(room).fold(f64::INFINITY, f64::min)
     }
 
     /// The direction nearest to a wished one in which so many metres are free, or else the one with the most room; and the

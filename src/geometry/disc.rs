@@ -1,8 +1,15 @@
 use super::{Point, Vector, cross};
 
-/// How far a disc about the origin can move in a direction, a unit vector, until it touches one of some points, and which: in
-/// metres, infinite where none is in the way. Less than 0 for a point ahead that lies within the disc already; what lies
-/// behind its middle does not count.
+/// How a disc about the origin that moves in a direction, a unit vector, meets a point: the metres until its middle is beside
+/// the point, and by how many its rim is there before. `None` for what it passes, and for what lies behind its middle.
+pub fn meeting(point: &Point, towards: Vector, radius: f64) -> Option<(f64, f64)> {
+    let (along, across) = (point.coords.dot(&towards), cross(towards, point.coords));
+    let depth = radius * radius - across * across;
+    (along > 0.0 && depth > 0.0).then(|| (along, depth.sqrt()))
+}
+
+/// How far such a disc can move until it touches one of some points, and which: in metres, infinite where none is in the way.
+/// Less than 0 for a point ahead that lies within the disc already.
 ///
 /// ```
 /// use roverlab::geometry::{Point, Vector, free_distance};
@@ -13,17 +20,10 @@ use super::{Point, Vector, cross};
 pub fn free_distance(points: &[Point], towards: Vector, radius: f64) -> (f64, Option<Point>) {
     let mut free = (f64::INFINITY, None);
     for point in points {
-        let along = point.coords.dot(&towards);
-        if along <= 0.0 {
-            continue;
-        }
-        let across = cross(towards, point.coords);
-        let depth = radius * radius - across * across;
-        if depth > 0.0 {
-            let distance = along - depth.sqrt();
-            if distance < free.0 {
-                free = (distance, Some(*point));
-            }
+        if let Some((along, before)) = meeting(point, towards, radius)
+            && along - before < free.0
+        {
+            free = (along - before, Some(*point));
         }
     }
     free

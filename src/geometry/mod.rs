@@ -12,7 +12,7 @@ mod shapes;
 mod side;
 pub mod units;
 
-pub use disc::free_distance;
+pub use disc::{free_distance, meeting};
 pub use line::FittedLine;
 pub use pose::{Pose, Twist, angle_difference, normalize_angle};
 pub use pose3::Pose3;
