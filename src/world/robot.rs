@@ -381,7 +381,8 @@ impl RobotSpec {
                 require_positive("wheel diameter", wheel_diameter)?;
                 require_positive("track", track)?;
                 require_positive("wheelbase", wheelbase)?;
-                require_positive("maximal steering", max_steering)?;
+                let good = max_steering > 0.0 && max_steering < std::f64::consts::FRAC_PI_2;
+                require("maximal steering", max_steering, good, "more than 0 and less than a right angle")?;
                 require_positive("maximal wheel speed", max_wheel_speed)?;
                 require_positive("ticks per turn", ticks_per_turn)?;
                 if let Some(dynamics) = dynamics {
