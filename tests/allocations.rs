@@ -159,7 +159,7 @@ fn supervision_allocates_nothing_after_it_was_made() {
             [(-1.0, -1.0), (1.8, -1.0), (1.8, 1.0), (-1.0, 1.0)].map(|(x, y)| Point::new(x, y)).to_vec();
         let steps = if cause == Causes::OUTSIDE_FENCE { 120 } else { 60 };
         let parameters = SupervisedParameters { fence, ..SupervisedParameters::default() };
-        let crew = Crew { base: BaseStation::new(0.5), change };
+        let crew = Crew { base: BaseStation::new(0.5).unwrap(), change };
         let mut car = Supervised::new(Plain::default(), crew, parameters).unwrap();
         let mut scan = LidarScan { ranges: Vec::with_capacity(180), ..LidarScan::default() };
         assert_eq!(allocations(|| drive(&mut car, &mut scan, steps)), 0, "{state:?}");
@@ -172,7 +172,7 @@ fn supervision_allocates_nothing_after_it_was_made() {
 fn what_allocates_is_counted() {
     assert!(allocations(|| drop(std::hint::black_box(vec![1_u8; 100]))) > 0);
     let made = allocations(|| {
-        let crew = Crew { base: BaseStation::new(0.5), change: |_, _| {} };
+        let crew = Crew { base: BaseStation::new(0.5).unwrap(), change: |_, _| {} };
         drop(Supervised::new(Plain::default(), crew, SupervisedParameters::default()));
     });
     assert!(made > 0, "a supervisor is made of memory");

@@ -64,13 +64,13 @@ const CASES: [Case; 24] = [
         driven(robot, &mut behaviour.after(goal), limit, stop)
     }),
     ("car", RobotSpec::car, |robot, limit, stop| {
-        let driver = CarDriver { kinematics: Ackermann::new(0.12, 0.1, 0.5).unwrap(), full_speed: 0.5 };
+        let driver = CarDriver::new(Ackermann::new(0.12, 0.1, 0.5).unwrap(), 0.5).unwrap();
         let goal = Goal::point(Point::new(2.0, -2.0));
         let mut behaviour = CarToB::new(Method::Arc, goal, driver, CarToBParameters::default())?;
         driven(robot, &mut behaviour, limit, stop)
     }),
     ("Mecanum", RobotSpec::omni, |robot, limit, stop| {
-        let driver = OmniDriver { kinematics: Omni::mecanum(0.2, 0.2).unwrap(), full_speed: 0.5 };
+        let driver = OmniDriver::new(Omni::mecanum(0.2, 0.2).unwrap(), 0.5).unwrap();
         let tracker = OmniTracker::new(Pose::default(), &[GOAL], OmniParameters::default())?;
         driven(robot, &mut tracker.by(driver), limit, stop)
     }),

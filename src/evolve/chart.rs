@@ -3,10 +3,13 @@ use crate::geometry::Point;
 use crate::picture::{Picture, Style};
 use crate::world::{Colour, World};
 
-/// Metres on the sheet: panels one above the other, and what is left round them for the scales.
+/// Metres of a panel's width on the sheet.
 const WIDTH: f64 = 1.6;
+/// Metres of the height of the panel of fitness.
 const FITNESS: f64 = 0.7;
+/// Metres of the height of the panel of diversity.
 const DIVERSITY: f64 = 0.3;
+/// Metres that are left round panels for the scales.
 const MARGIN: f64 = 0.12;
 
 /// Draws a run: the best, mean and worst fitness of each generation, and below it the diversity.

@@ -12,9 +12,11 @@ use super::{Mark, Style, lines, robots, scenery, text};
 use crate::geometry::{Aabb, Vector};
 use crate::world::{Colour, Footprint, Shape};
 
+/// Pixels of the legend's letters.
 const SIZE: f64 = 12.5;
-/// Pixels from the left end of a line's symbol to its text, and from one line to the next.
+/// Pixels from the left end of a line's symbol to its text.
 const INDENT: f64 = 30.0;
+/// Pixels from one line to the next.
 const ROW: f64 = 21.0;
 /// Pixels between entries that share a row.
 const BETWEEN: f64 = 18.0;

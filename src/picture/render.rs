@@ -14,10 +14,13 @@ use super::lines::{self, Path};
 use super::{Mark, names, robots, scenery};
 use crate::geometry::{Aabb, Point, Vector};
 
+/// Pixels round the plot.
 const MARGIN: f64 = 20.0;
 /// Pixels between plot and legend.
 const GUTTER: f64 = 20.0;
+/// Pixels of the page's width at least, for titles.
 const NARROWEST_PAGE: f64 = 340.0;
+/// Pixels of the page's width at most.
 const WIDEST_PAGE: f64 = 600.0;
 /// Beside a plot narrower than this, and not below it, stands the legend.
 const NARROW_PLOT: f64 = 300.0;

@@ -167,14 +167,14 @@ impl<R: Clock + Drive + Odometry, S: Station> Supervised<R, S> {
     /// Fails with the name of the parameter that is out of range.
     pub fn new(inner: R, station: S, parameters: SupervisedParameters) -> Result<Self> {
         parameters.validate()?;
-        let mut watchdog = Deadline::new(parameters.watchdog);
+        let mut watchdog = Deadline::checked(parameters.watchdog);
         watchdog.feed(0.0);
         Ok(Self {
             inner,
             station,
             core: SafetyCore::new(),
             seen: Causes::NONE,
-            heartbeat: Deadline::new(parameters.heartbeat),
+            heartbeat: Deadline::checked(parameters.heartbeat),
             heard: None,
             sent: 0,
             waited: 0.0,

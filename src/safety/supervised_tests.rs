@@ -35,7 +35,8 @@ pub(super) fn mock() -> MockRobot {
 
 /// A car with a base station, armed and started.
 pub(super) fn stationed() -> Supervised<MockRobot, BaseStation> {
-    let mut car = Supervised::new(mock(), BaseStation::new(0.5), SupervisedParameters::default()).unwrap();
+    let mut car =
+        Supervised::new(mock(), BaseStation::new(0.5).unwrap(), SupervisedParameters::default()).unwrap();
     drive(&mut car, 0.1);
     car.station_mut().panel.requests.arm = true;
     drive(&mut car, 0.2);

@@ -100,7 +100,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     };
     let run = conditions.run(&trip.scene, paced(common), |robot, step| drive(robot, &options, step))?;
     let report = report(args, &trip, &run, heading)
-        .field("turning_radius_mm", millimetres(driver.kinematics.turning_radius()))
+        .field("turning_radius_mm", millimetres(driver.kinematics().turning_radius()))
         .field("time_limit_s", conditions.time_limit);
     Ok(common.draw(report, "ackermann.svg", || picture(args, &trip, &run, &conditions, heading)))
 }
@@ -134,7 +134,7 @@ fn driver(spec: &RobotSpec) -> Result<CarDriver, Failure> {
         return Err(Failure::input("found no car; expected one"));
     };
     let kinematics = Ackermann::new(wheelbase, track, max_steering).map_err(Failure::input)?;
-    Ok(CarDriver { kinematics, full_speed: 0.5 * wheel_diameter * max_wheel_speed })
+    CarDriver::new(kinematics, 0.5 * wheel_diameter * max_wheel_speed).map_err(Failure::input)
 }
 
 fn report(args: &Args, trip: &Trip, run: &Run<Arrival>, heading: Option<f64>) -> Report {

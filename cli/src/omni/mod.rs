@@ -155,7 +155,7 @@ fn driver(common: &CommonArgs, spec: &RobotSpec) -> Result<OmniDriver, Failure> 
         return Err(Failure::input(format!("found another robot; expected {expected}")));
     };
     let kinematics = Omni::mecanum(track, wheelbase).map_err(Failure::input)?;
-    Ok(OmniDriver { kinematics, full_speed: 0.5 * wheel_diameter * max_wheel_speed })
+    OmniDriver::new(kinematics, 0.5 * wheel_diameter * max_wheel_speed).map_err(Failure::input)
 }
 
 fn report(args: &Args, run: &Run<OmniOutcome>, way: &[Point]) -> Report {

@@ -41,8 +41,9 @@ pub struct Tour {
 
 /// Legs shorter than this, in metres, are left out.
 const LEAST_LEG: f64 = 0.008;
-/// Heading errors, in radians, at which a turn on the spot ends, and at which one is needed again.
+/// The heading error in radians at which a turn on the spot ends.
 const ALIGNED: f64 = 0.03;
+/// The heading error in radians at which a turn on the spot is needed again.
 const ASTRAY: f64 = 0.5;
 
 impl Tour {

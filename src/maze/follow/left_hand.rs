@@ -89,8 +89,9 @@ enum Phase {
     Resting(usize),
 }
 
-/// Seconds, and metres per second, of coming to rest.
+/// Seconds of coming to rest.
 const REST: f64 = 0.3;
+/// Metres per second below which it is at rest.
 const AT_REST: f64 = 2e-3;
 
 /// How a drive along the left wall ended.

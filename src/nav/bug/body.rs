@@ -50,8 +50,6 @@ pub(super) struct GoalView {
     pub(super) is_at_hand: bool,
 }
 
-/// The standard deviation of a lidar's ranges that the filter starts from, in metres.
-const EXPECTED_NOISE: f64 = 0.010;
 /// How far round the robot points count for its next step, in steps.
 const REACH: f64 = 2.4;
 /// How much farther round the robot the ends of walls are kept in mind.
@@ -71,13 +69,15 @@ const RINGS: u32 = 4;
 const DIRECTIONS: u32 = 24;
 /// Radians per second at which the robot turns to look round.
 const LOOKING_TURN: f64 = 2.0;
-/// The least speed along a free heading, in metres per second, and how far from it, in radians, the robot may point.
+/// The least speed along a free heading, in metres per second.
 const CREEP: f64 = 0.02;
+/// Radians by which the robot may point away from that heading.
 const POINTING: f64 = 0.3;
 /// How fast the robot closes in on the place where it must stand, in metres per second for each metre.
 const APPROACH_RATE: f64 = 4.0;
-/// A turn of more radians than this turns the robot round, and a speed of more metres per second is too much for that.
+/// A turn of more radians than this turns the robot round.
 const TURNING_ROUND: f64 = 2.0;
+/// Metres per second that are too fast for turning round.
 const ROLLING: f64 = 0.05;
 /// Steps, at the start, that only look.
 const SETTLING_STEPS: u32 = 12;
@@ -100,7 +100,7 @@ impl Body {
             slow_to_pass,
             ends: WallEnds::default(),
             look: LookRound::default(),
-            filter: ScanFilter::new(EXPECTED_NOISE),
+            filter: ScanFilter::new(),
             matcher: ScanMatcher::new(),
         })
     }
@@ -244,6 +244,7 @@ impl Body {
 
     /// The speed, from the present one, from which the robot can still stop before what is ahead, or at the goal.
     fn safe_speed(&self, present: f64) -> f64 {
+        /// Metres that are left before what is ahead, for rounding.
         const HAIR: f64 = 0.001;
         let passing = if self.slow_to_pass && self.phase == BugPhase::ToGoal { 1.0 } else { 0.5 };
         let outline = self.parameters.robot_radius + passing * self.parameters.least_clearance;

@@ -92,8 +92,9 @@ pub struct Localiser {
     searches: u32,
 }
 
-/// Steps by which candidates of a search and hypotheses on the way are matched.
+/// Steps by which candidates of a search are matched.
 const SEARCH_STEPS: usize = 10;
+/// Steps by which hypotheses on the way are matched.
 const TRACK_STEPS: usize = 3;
 /// How far a candidate of a search may be off, in metres and radians.
 const CANDIDATE_SPREAD: f64 = 0.15;

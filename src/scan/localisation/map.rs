@@ -67,7 +67,7 @@ impl LocalisationMap {
 }
 
 /// The height above the floor of a scanner that does not tell. What objects are lower is not in the map then, either.
-const HEIGHT: f64 = 0.04;
+pub(crate) const HEIGHT: f64 = 0.04;
 
 /// A scanner with the beams of a scan.
 pub(super) fn scanner_of(scan: &LidarScan) -> Scanner {

@@ -11,5 +11,7 @@ mod tests;
 
 pub use hypothesis::Hypothesis;
 pub use localiser::{Localisation, Localiser};
+#[cfg(feature = "nav")]
+pub(crate) use map::HEIGHT;
 pub use map::LocalisationMap;
 pub use parameters::LocaliserParameters;

@@ -205,6 +205,7 @@ pub fn parse_map(text: &str, file: &str) -> Result<Parsed<Map>, FormatError> {
     Ok(Notes::new(file).finish(Map { width, height, terrain }))
 }
 
+/// What is accepted as a width or a height.
 const SIZE: &str = "a number of cells from 1 to 33554432";
 
 fn size(text: &str) -> Option<usize> {

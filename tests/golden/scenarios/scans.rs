@@ -84,7 +84,7 @@ fn map() -> Result<String> {
 fn matching() -> Result<String> {
     let mut found = String::new();
     let log = ride(&in_room(0.5, 0.5, 0.2), noise(2.0, 103), |robot| {
-        let (mut matcher, mut filter) = (ScanMatcher::new(), ScanFilter::new(0.01));
+        let (mut matcher, mut filter) = (ScanMatcher::new(), ScanFilter::new());
         let (mut scan, mut points) = (LidarScan::default(), Vec::<Point>::new());
         robot.set_speed(Twist::new(0.15, 0.35))?;
         for _ in 0..120 {
