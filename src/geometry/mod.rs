@@ -3,6 +3,7 @@
 //! Conventions follow ROS REP 103: metres and radians, x forward, y left, angles counter-clockwise. Millimetres
 //! and degrees, which the book, EyeSim's files and the command line use, are converted here and nowhere else.
 
+mod disc;
 mod line;
 pub mod math;
 mod pose;
@@ -11,6 +12,7 @@ mod shapes;
 mod side;
 pub mod units;
 
+pub use disc::{free_distance, meeting};
 pub use line::FittedLine;
 pub use pose::{Pose, Twist, angle_difference, normalize_angle};
 pub use pose3::Pose3;

@@ -15,6 +15,7 @@ mod mesh;
 mod object;
 mod robot;
 mod scene;
+mod site;
 pub mod space;
 mod terrain;
 mod texture;

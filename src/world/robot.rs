@@ -1,6 +1,7 @@
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use super::Body;
+use super::{Body, Mesh};
 use crate::ParameterError;
 use crate::geometry::Aabb;
 use crate::kinematics::Tracked;
@@ -31,8 +32,10 @@ pub struct RobotSpec {
     pub lidar: Option<LidarSpec>,
     /// Its camera, if it has one.
     pub camera: Option<CameraSpec>,
-    /// The 3D model that EyeSim shows, if any. Cameras here see the outline.
+    /// The file of its 3D model, if it has one.
     pub model: Option<PathBuf>,
+    /// The surface that cameras see; without it, they see the outline.
+    pub mesh: Option<Arc<Mesh>>,
     /// What its description file says about its solid beyond footprint and height.
     pub body: Body,
 }
@@ -144,6 +147,11 @@ pub struct CarDynamics {
     pub steering_rate: f64,
 }
 
+impl CarDynamics {
+    /// Metres per second above which tyres slip. Below half of it wheels roll; between, it is a mixture.
+    pub const SLIPS: f64 = 4.0;
+}
+
 impl Default for CarDynamics {
     /// A student's Formula car.
     fn default() -> Self {
@@ -201,6 +209,13 @@ impl Footprint {
         }
     }
 
+    fn validate(&self) -> Result<(), ParameterError> {
+        match self {
+            Self::Disc { radius } => require_positive("radius", *radius),
+            Self::Rectangle(outline) => validate_outline(outline),
+        }
+    }
+
     /// Whether a rectangle of the robot's frame lies within the outline.
     fn holds(&self, part: &Aabb) -> bool {
         match self {
@@ -213,6 +228,18 @@ impl Footprint {
             }
         }
     }
+}
+
+/// Fails unless a rectangle has a finite width and depth above zero.
+fn validate_outline(outline: &Aabb) -> Result<(), ParameterError> {
+    for (name, least, most) in
+        [("outline along x", outline.min.x, outline.max.x), ("outline along y", outline.min.y, outline.max.y)]
+    {
+        require_finite(name, least)?;
+        require_finite(name, most)?;
+        require(name, most - least, most > least, "a corner beyond the other one")?;
+    }
+    Ok(())
 }
 
 /// A part of a robot that is higher and narrower than the rest: a handle, a pole. Rays meet it; what drives
@@ -336,6 +363,7 @@ impl RobotSpec {
     /// Checks that a mast stands on the robot.
     pub(super) fn validate_mast(&self) -> Result<(), ParameterError> {
         let Some(Mast { outline, top }) = self.mast else { return Ok(()) };
+        validate_outline(&outline).map_err(|error| error.of(&format!("robot {}: mast", self.name)))?;
         let good = top.is_finite() && top > self.height;
         let reach = Footprint::Rectangle(outline).bounding_radius();
         let holds = self.footprint.holds(&outline);
@@ -375,7 +403,8 @@ impl RobotSpec {
                 require_positive("wheel diameter", wheel_diameter)?;
                 require_positive("track", track)?;
                 require_positive("wheelbase", wheelbase)?;
-                require_positive("maximal steering", max_steering)?;
+                let good = max_steering > 0.0 && max_steering < std::f64::consts::FRAC_PI_2;
+                require("maximal steering", max_steering, good, "more than 0 and less than a right angle")?;
                 require_positive("maximal wheel speed", max_wheel_speed)?;
                 require_positive("ticks per turn", ticks_per_turn)?;
                 if let Some(dynamics) = dynamics {
@@ -409,7 +438,7 @@ impl RobotSpec {
         let lag = self.motor.time_constant;
         require("motor time constant", lag, lag.is_finite() && lag >= 0.0, "a finite number of at least 0")?;
         require_positive("maximal acceleration", self.motor.max_acceleration)?;
-        require_positive("footprint radius", self.footprint.bounding_radius())?;
+        self.footprint.validate().map_err(|error| error.of("footprint"))?;
         require_positive("height", self.height)?;
         require_not_negative("mass", self.mass)?;
         require_not_negative("friction", self.friction)?;

@@ -78,7 +78,7 @@ pub(crate) fn run_together(
         let (seed, index) = (options.seed.to_string().into(), program.robot.to_string().into());
         let variables =
             BTreeMap::from([(names::SHARED, "1".into()), (names::SEED, seed), (names::INDEX, index)]);
-        Ok((seat, start(program, variables, options, folder)?))
+        Ok((seat, start(program, variables, options, folder, stopwatch)?))
     });
     for (number, (seat, running)) in tables.collect::<Result<Vec<_>, String>>()?.into_iter().enumerate() {
         processes.extend(running.as_ref().ok().map(Running::id));

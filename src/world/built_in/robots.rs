@@ -51,6 +51,7 @@ impl RobotSpec {
                 fisheye: false,
             }),
             model: None,
+            mesh: None,
             body: Body::default(),
         }
     }

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `drive DIFFERENTIAL_DRIVE`, `ACKERMANN_DRIVE`, `OMNI_DRIVE`, `TRACKED_DRIVE` | how it moves; `TRACK_DRIVE` and `CHAIN_DRIVE` are tracked too, other names are read as differential |
 //! | `name NAME` | by which scenes place it; the file's name without it |
-//! | `model FILE [X Y Z RX RY RZ]` | the 3D model, and how it is shifted and turned; kept, and not shown |
+//! | `model FILE [X Y Z RX RY RZ]` | the 3D model that cameras see, and how it is shifted and turned |
 //! | `collider box SX SY SZ X Y Z`, `sphere R X Y Z`, `capsule R H X Y Z` | solid parts: sizes, then middle |
 //! | `mass KG X Y Z` | its mass and the middle of it, which counts on hills unless it is 0 0 0 |
 //! | `axis UP FORWARD` | the driven axle |
@@ -60,4 +60,5 @@ mod tests;
 mod write;
 
 pub use read::parse;
+pub(super) use read::parse_with_model;
 pub use write::print;
