@@ -5,8 +5,8 @@ use std::path::Path;
 use roverlab::geometry::{Aabb, Point, Pose, math};
 use roverlab::io::Resolution;
 use roverlab::race::{
-    CarOutline, CentreLine, CentreLineParameters, Cone, ConeColour, ConeTrack, Corridor, EventCourse,
-    GeneratedTrack, LaneParameters, RacerParameters, TrackFile, TrackOptions, generate, lined, parse_track,
+    CarOutline, CentreLine, Cone, ConeColour, ConeTrack, Corridor, EventCourse, GeneratedTrack,
+    LaneParameters, RacerParameters, TrackFile, TrackOptions, generate, lined, parse_track,
 };
 use roverlab::random::Stream;
 use roverlab::world::{Scene, World};
@@ -128,13 +128,8 @@ impl Course {
             let [blue, yellow] = [ConeColour::Blue, ConeColour::Yellow].map(|paint| track.of(paint).count());
             refused(format!("no start, {blue} blue and {yellow} yellow cones"))
         })?;
-        // Colours in a file are right.
-        let parameters = CentreLineParameters { colour: f64::INFINITY, ..CentreLineParameters::default() };
-        let line = CentreLine::from_cones(&track.cones, start, &parameters)
-            .map_err(|error| refused(error.to_string()))?;
-        if !line.corridor.is_closed() {
-            return Err(refused(format!("a way of {:.0} m that does not close", line.corridor.length())));
-        }
+        let line =
+            CentreLine::round_track(&track.cones, start).map_err(|error| refused(error.to_string()))?;
         let corridor = line.corridor.beginning_near(line_of(track, start));
         Ok(Self { cones: track.cones.clone(), corridor, start, wide: false, event: None })
     }

@@ -96,6 +96,9 @@ fn verdict(drive: &Drive) -> String {
         Ending::Verdict(BugOutcome::Unreachable) => {
             "all round the obstacle without a place to leave it: the goal cannot be reached".into()
         }
+        Ending::Verdict(BugOutcome::NoRoom) => {
+            "there is no room for the robot at the goal: the goal cannot be reached".into()
+        }
         Ending::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped) => {
             format!("the time is over, {off} mm from the goal")
         }
@@ -107,6 +110,7 @@ fn report(trip: &Trip, drive: &Drive, options: &Options) -> Report {
     let (outcome, error) = match &drive.ending {
         Ending::Verdict(BugOutcome::Reached) => (Outcome::verdict("reached"), None),
         Ending::Verdict(BugOutcome::Unreachable) => (Outcome::verdict("unreachable"), None),
+        Ending::Verdict(BugOutcome::NoRoom) => (Outcome::verdict("no_room"), None),
         Ending::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped) => (Outcome::failure("timed_out"), None),
         Ending::Failed(error) => (Outcome::failure("failed"), Some(error.clone())),
     };

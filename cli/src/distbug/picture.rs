@@ -41,6 +41,7 @@ fn title(drive: &Drive) -> String {
     let ending = match &drive.ending {
         Ending::Verdict(BugOutcome::Reached) => "goal reached",
         Ending::Verdict(BugOutcome::Unreachable) => "the goal cannot be reached",
+        Ending::Verdict(BugOutcome::NoRoom) => "no room at the goal",
         Ending::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped) => "the time is over",
         Ending::Failed(_) => "the robot failed",
     };

@@ -37,7 +37,7 @@ JSON fields:
   time_limit_s, picture
   rows                        with --campaign only: the table
 Collisions, pose, odometry and path length: contacts are those of all robots, the rest is the leader's.
-Outcomes: followed, lost, collided; with --campaign: passed, wrong."
+Outcomes: followed, lost, blocked (the leader found no way on: it drove less than a third of what it could), collided; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// How many robots follow [default: those of the world, or 1].
@@ -89,7 +89,11 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let mut fleet = common.fleet(&scene, options)?;
     let run = run(&mut *fleet, &scene, &waypoints, mode, seconds, paced(common))?;
     drop(fleet);
-    let outcome = if run.lost.is_empty() { Outcome::verdict("followed") } else { Outcome::failure("lost") };
+    let outcome = match () {
+        () if run.is_leader_held() => Outcome::failure("blocked"),
+        () if run.lost.is_empty() => Outcome::verdict("followed"),
+        () => Outcome::failure("lost"),
+    };
     let leader = run.paths[0].last().map(|(_, pose)| *pose);
     let report = Report {
         sim_time: Some(run.sim_time),

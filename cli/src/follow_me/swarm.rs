@@ -32,6 +32,13 @@ pub(crate) struct SwarmRun {
     pub(crate) leader_path: f64,
 }
 
+impl SwarmRun {
+    /// Whether the leader hardly got anywhere, so that there was little to follow.
+    pub(crate) fn is_leader_held(&self) -> bool {
+        self.leader_path < CruiseParameters::default().speed * self.sim_time / 3.0
+    }
+}
+
 /// Seconds in which a swarm forms.
 const FORMING: f64 = 10.0;
 /// A follower whose true gap is this many times what it should be is lost.

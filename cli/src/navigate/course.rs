@@ -64,7 +64,7 @@ pub(crate) fn generated(seed: u64) -> Result<Course, Failure> {
 pub(crate) fn changed(mut trip: Trip, count: u32, stream: &mut Stream) -> Result<Course, Failure> {
     let known = trip.scene.world.clone();
     let radius = PASSAGE * trip.spec().footprint.bounding_radius();
-    let size = known.bounds().size();
+    let size = known.site().size();
     let resolution = (radius / 6.0).max((size.x * size.y / MAX_CELLS).sqrt());
     let (start, goal) = (trip.start().position(), trip.goal);
     let mut unmapped = 0;

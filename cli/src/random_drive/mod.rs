@@ -117,7 +117,7 @@ fn add_robots(scene: &mut Scene, robots: usize, seed: u64) -> Result<(), Failure
             "--robots {robots}: found {found} robots in the world; expected at least as many"
         )));
     }
-    let (spec, floor) = (Arc::clone(&scene.robots[0].spec), scene.world.bounds());
+    let (spec, floor) = (Arc::clone(&scene.robots[0].spec), scene.world.site());
     let free = FreeFloor::new(scene, &spec);
     let mut stream = Stream::new(seed).child("places", 0);
     for _ in found..robots {

@@ -47,6 +47,7 @@ mod robot_traits;
 mod simulation;
 #[cfg(feature = "physics")]
 pub mod starman;
+mod terrain;
 mod truth;
 mod wheels;
 

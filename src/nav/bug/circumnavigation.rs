@@ -121,7 +121,7 @@ impl<const BY_RANGE: bool> Strategy for Circumnavigation<BY_RANGE> {
         if self.returning.is_none() {
             self.survey(sight);
         }
-        if self.is_there(sight) || sight.is_goal_at_hand() { Decision::Leave } else { Decision::Follow }
+        if self.is_there(sight) { Decision::Leave } else { Decision::Follow }
     }
 
     fn all_round(&mut self, sight: &Sight, lap: f64) -> Decision {

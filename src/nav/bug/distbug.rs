@@ -82,7 +82,7 @@ impl Strategy for DistRule {
         }
         let free = sight.free.min(sight.distance) * (1.0 - self.doubt);
         let promising = sight.distance - free <= self.least_distance - sight.step;
-        if promising || sight.is_goal_at_hand() { Decision::Leave } else { Decision::Follow }
+        if promising { Decision::Leave } else { Decision::Follow }
     }
 }
 

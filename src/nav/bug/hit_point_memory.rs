@@ -88,9 +88,6 @@ impl<R: LeaveRule, const ALTERNATING: bool> Strategy for HitPointMemory<R, ALTER
         self.side = Some(sight.side);
         let allowed = self.rule.allows(body.goal, sight);
         let met = self.meets_remembered(sight);
-        if sight.is_goal_at_hand() {
-            return Decision::Leave;
-        }
         if let Course::Back { length, from } = self.course {
             if self.is_back(sight, length, from) {
                 self.course = Course::Other;

@@ -183,9 +183,6 @@ impl Strategy for Tangent {
 
     fn consider(&mut self, body: &Body, sight: &Sight) -> Decision {
         self.passed = self.passed.min(sight.corner_distance());
-        if sight.is_goal_at_hand() {
-            return Decision::Leave;
-        }
         self.panorama.look(body.surroundings.points(), body.parameters.follow_distances().least);
         let (pose, radius) = (body.pose, body.parameters.robot_radius);
         let goal = pose.to_local(body.goal);

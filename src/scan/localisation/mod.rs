@@ -5,6 +5,7 @@ mod localiser;
 mod map;
 mod parameters;
 mod search;
+mod surfaces;
 #[cfg(test)]
 mod tests;
 

@@ -5,6 +5,7 @@
 
 mod args;
 pub mod bitmap;
+pub mod elevation_grid;
 mod error;
 pub mod esobj;
 mod image_file;
@@ -19,6 +20,7 @@ pub mod robi;
 pub mod ros_map;
 pub mod sim;
 mod source;
+mod terrain_file;
 pub mod wld;
 mod world_file;
 mod yaml;

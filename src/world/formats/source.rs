@@ -103,7 +103,7 @@ fn installed(folder: &Path, plain: &str) -> Option<PathBuf> {
 fn kind_folders(file: &Path) -> &'static [&'static str] {
     let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     match ending.to_ascii_lowercase().as_str() {
-        "png" | "jpg" | "jpeg" | "bmp" => {
+        "png" | "jpg" | "jpeg" | "bmp" | "asc" => {
             &["texture", "textures", "heightmap", "worlds/texture", "worlds/heightmap"]
         }
         "esobj" => &["objects", "object"],
