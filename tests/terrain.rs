@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use roverlab::geometry::{Aabb, Point, Pose, Vector, math, units};
 use roverlab::io::sim::{Mishap, SimOptions, Simulation, TICK};
-use roverlab::io::{Clock, DistanceSensors, Drive, Lidar, Psd};
+use roverlab::io::{Clock, DistanceSensors, Lidar, Manoeuvres, Odometry, Psd};
 use roverlab::world::{
     Colour, HeightField, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, Shape, Terrain, Wall, World,
 };
@@ -195,14 +195,14 @@ proptest! {
 /// The book's crater in small: a tracked robot drives up to its rim.
 #[test]
 fn a_tracked_robot_climbs_where_it_skids() {
-    let crater = |at: Point| 0.6 * (-((at - Point::new(2.0, 2.0)).norm_squared() - 1.0).powi(2)).exp();
+    let crater = |at: Point| 0.15 * math::exp(-((at - Point::new(2.0, 2.0)).norm_squared() - 1.0).powi(2));
     let simulation = simulation(world(257, crater), RobotSpec::blizzard(), Pose::new(0.4, 0.4, 0.785));
     let (mut robot, truth) = (simulation.robot(0).unwrap(), simulation.truth());
     let start = truth.pose_in_space(0).unwrap().position.z;
     robot.straight(1.2, 0.2).unwrap();
     robot.wait_done().unwrap();
     let end = truth.pose_in_space(0).unwrap();
-    assert!(end.position.z > start + 0.4, "{end:?}");
+    assert!(end.position.z > start + 0.1, "{end:?}");
     assert_eq!(truth.mishap(0).unwrap(), None);
     robot.turn(1.5, 0.5).unwrap();
     robot.wait_done().unwrap();

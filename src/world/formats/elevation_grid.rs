@@ -208,13 +208,11 @@ impl<'a> Words<'a> {
 
     /// The error for what is missing at the present place.
     fn error_here(&mut self, expected: impl Into<String>) -> FormatError {
-        match self.peek() {
-            Some(word) => self.error(&word, expected),
-            None => {
-                let at = Location { line: self.number, column: self.line.chars().count() + 1 };
-                FormatError::new(self.file, at, "the end of the file", expected)
-            }
+        if let Some(word) = self.peek() {
+            return self.error(&word, expected);
         }
+        let at = Location { line: self.number, column: self.line.chars().count() + 1 };
+        FormatError::new(self.file, at, "the end of the file", expected)
     }
 }
 

@@ -34,7 +34,7 @@ pub(super) const FIRST: u32 = 2;
 impl Pyramid {
     /// The pyramid over a grid of samples, row by row.
     pub(super) fn over(columns: usize, rows: usize, heights: &[f32]) -> Self {
-        let size = |samples: usize| (samples - 2 >> FIRST) + 1;
+        let size = |samples: usize| ((samples - 2) >> FIRST) + 1;
         let mut levels = vec![Level::from_samples((size(columns), size(rows)), (columns, rows), heights)];
         while let Some(above) = levels.last().and_then(Level::above) {
             levels.push(above);
@@ -68,7 +68,7 @@ impl Level {
     ) -> Self {
         let mut blocks = Vec::with_capacity(columns * rows);
         // Samples on the border between two blocks belong to both.
-        let part = |block: usize, samples: usize| (block << FIRST)..((block + 1 << FIRST) + 1).min(samples);
+        let part = |block: usize, samples: usize| (block << FIRST)..(((block + 1) << FIRST) + 1).min(samples);
         for row in 0..rows {
             for column in 0..columns {
                 let mut bounds = Bounds::NONE;

@@ -107,7 +107,9 @@ impl Undercarriage {
         wheels: u32,
         friction: f64,
     ) -> Self {
-        feet.iter_mut().for_each(|foot| foot.place -= centre);
+        for foot in &mut feet {
+            foot.place -= centre;
+        }
         Self { centre, gyration, feet, softness: f64::from(wheels) * SAG / GRAVITY, friction }
     }
 }
