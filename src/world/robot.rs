@@ -4,7 +4,6 @@ use std::sync::Arc;
 use super::{Body, Mesh};
 use crate::ParameterError;
 use crate::geometry::Aabb;
-use crate::kinematics::Tracked;
 use crate::parameter::{require, require_finite, require_not_negative, require_positive};
 
 /// A description of a robot: its drive, outline and sensors. EyeSim's `.robi`.
@@ -423,7 +422,10 @@ impl RobotSpec {
             }
             DriveSpec::Tracked { wheel_diameter, track, length, width, max_wheel_speed, ticks_per_turn } => {
                 require_positive("wheel diameter", wheel_diameter)?;
-                Tracked::new(track, length, width)?;
+                require_positive("track", track)?;
+                require_positive("belt length", length)?;
+                require_positive("belt width", width)?;
+                require("belt width", width, width <= track, "at most the distance between the belts")?;
                 require_positive("maximal wheel speed", max_wheel_speed)?;
                 require_positive("ticks per turn", ticks_per_turn)?;
             }

@@ -239,9 +239,7 @@ impl<'f> Reader<'f> {
             "DIFFERENTIAL_DRIVE" => Drive::Differential,
             "ACKERMANN_DRIVE" => Drive::Ackermann,
             "OMNI_DRIVE" => Drive::Omni,
-            "TRACKED_DRIVE" | "TRACK_DRIVE" | "TRACKS_DRIVE" | "CHAIN_DRIVE" | "CHAINS_DRIVE" => {
-                Drive::Tracked
-            }
+            "TRACKED_DRIVE" | "TRACK_DRIVE" | "CHAIN_DRIVE" => Drive::Tracked,
             _ => {
                 let message = format!("unknown drive {}; read as DIFFERENTIAL_DRIVE", shown(name));
                 self.notes.warn(line.location(1), message);
