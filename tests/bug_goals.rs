@@ -102,18 +102,22 @@ fn reached_is_reached_beside_walls() {
     assert!(wrong.is_empty() && runs > 60, "{} of {runs}: {wrong:#?}", wrong.len());
 }
 
-#[test]
-#[ignore = "takes minutes: cargo test --release --all-features --test bug_goals -- --ignored"]
-fn ten_thousand_goals_beside_walls() {
-    let (wrong, runs) = wrong(1000, 0, 2);
-    assert!(wrong.is_empty(), "{} of {runs}: {wrong:#?}", wrong.len());
-}
+mod campaigns {
+    use super::*;
 
-/// With noise some verdicts may be wrong, but none that says that the goal is reached.
-#[test]
-#[ignore = "takes minutes: cargo test --release --all-features --test bug_goals -- --ignored"]
-fn goals_beside_walls_with_noise() {
-    let (wrong, runs) = wrong(300, 1, 3);
-    let beyond = wrong.iter().filter(|words| words.contains("Reached")).count();
-    assert!(beyond == 0 && 100 * wrong.len() < runs, "{} of {runs}: {wrong:#?}", wrong.len());
+    #[test]
+    #[ignore = "takes minutes: cargo test --release --all-features --test bug_goals -- --ignored"]
+    fn ten_thousand_goals_beside_walls() {
+        let (wrong, runs) = wrong(1000, 0, 2);
+        assert!(wrong.is_empty(), "{} of {runs}: {wrong:#?}", wrong.len());
+    }
+
+    /// With noise some verdicts may be wrong, but none that says that the goal is reached.
+    #[test]
+    #[ignore = "takes minutes: cargo test --release --all-features --test bug_goals -- --ignored"]
+    fn goals_beside_walls_with_noise() {
+        let (wrong, runs) = wrong(300, 1, 3);
+        let beyond = wrong.iter().filter(|words| words.contains("Reached")).count();
+        assert!(beyond == 0 && 100 * wrong.len() < runs, "{} of {runs}: {wrong:#?}", wrong.len());
+    }
 }

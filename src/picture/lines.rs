@@ -61,8 +61,9 @@ pub(super) fn cloud(points: &[Point], style: &Style, frame: &Frame) -> Group {
 /// Dots, one for every place where there are any.
 pub(super) fn dots(pixels: &[Pixel], style: &Style) -> Group {
     // Places on a grid of half a pixel, row by row: more dots would only darken each other.
-    let places: BTreeSet<(i64, i64)> =
-        pixels.iter().map(|p| ((2.0 * p.y).round() as i64, (2.0 * p.x).round() as i64)).collect();
+    // Far beyond any picture, 32 bits are where places end, so that differences of two always fit.
+    let half_pixels = |value: f64| i64::from((2.0 * value).round() as i32);
+    let places: BTreeSet<(i64, i64)> = pixels.iter().map(|p| (half_pixels(p.y), half_pixels(p.x))).collect();
     let places: Vec<_> = places.into_iter().collect();
     let half = |twice: i64| number(twice as f64 / 2.0);
     let apart = (2.0 * style.width).max(1.0) as i64;

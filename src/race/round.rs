@@ -214,11 +214,15 @@ mod tests {
         assert!(wrong.is_empty() && 2 * read > all, "{read} of {all}: {wrong:#?}");
     }
 
-    #[test]
-    #[ignore = "takes a minute: cargo test --release --all-features --lib round -- --ignored"]
-    fn three_hundred_spoiled_tracks_are_read_right_or_refused() {
-        let (read, all, wrong) = read(100..150);
-        assert!(wrong.is_empty() && 2 * read > all, "{read} of {all}: {wrong:#?}");
+    mod campaigns {
+        use super::*;
+
+        #[test]
+        #[ignore = "takes a minute: cargo test --release --all-features --lib round -- --ignored"]
+        fn three_hundred_spoiled_tracks_are_read_right_or_refused() {
+            let (read, all, wrong) = read(100..150);
+            assert!(wrong.is_empty() && 2 * read > all, "{read} of {all}: {wrong:#?}");
+        }
     }
 
     #[test]
