@@ -24,7 +24,7 @@ fn hills(samples: usize) -> HeightField {
     let waves: Vec<(Vector, f64, f64)> = (0..24)
         .map(|_| {
             let wave = Vector::new(stream.between(-6.0, 6.0), stream.between(-6.0, 6.0));
-            (wave, stream.between(0.0, 6.28), 1.0 / (1.0 + wave.norm()))
+            (wave, stream.between(0.0, std::f64::consts::TAU), 1.0 / (1.0 + wave.norm()))
         })
         .collect();
     let total: f64 = waves.iter().map(|(_, _, size)| size).sum();

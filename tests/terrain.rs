@@ -136,7 +136,7 @@ fn off_the_world_is_a_fall_without_end() {
 fn water_drowns_and_a_drop_lands() {
     let mut wet = world(101, |at| 0.2 * (at.x - 2.0));
     wet.water_level = Some(0.0);
-    let wet = simulation(wet, RobotSpec::labbot(), Pose::new(3.0, 2.0, 3.14));
+    let wet = simulation(wet, RobotSpec::labbot(), Pose::new(3.0, 2.0, std::f64::consts::PI));
     let mut robot = wet.robot(0).unwrap();
     robot.straight(2.5, 0.3).unwrap();
     let _ = robot.wait(12.0);
@@ -195,7 +195,10 @@ proptest! {
 /// The book's crater in small: a tracked robot drives up to its rim.
 #[test]
 fn a_tracked_robot_climbs_where_it_skids() {
-    let crater = |at: Point| 0.15 * math::exp(-((at - Point::new(2.0, 2.0)).norm_squared() - 1.0).powi(2));
+    let crater = |at: Point| {
+        let beyond_rim = (at - Point::new(2.0, 2.0)).norm_squared() - 1.0;
+        0.15 * math::exp(-beyond_rim * beyond_rim)
+    };
     let simulation = simulation(world(257, crater), RobotSpec::blizzard(), Pose::new(0.4, 0.4, 0.785));
     let (mut robot, truth) = (simulation.robot(0).unwrap(), simulation.truth());
     let start = truth.pose_in_space(0).unwrap().position.z;

@@ -1,6 +1,7 @@
 //! Areas, clouds of points and lines.
 
 use std::collections::BTreeSet;
+use std::fmt::Write as _;
 use std::ops::Range;
 
 use svg::node::element::{Group, Mask};
@@ -73,7 +74,7 @@ pub(super) fn dots(pixels: &[Pixel], style: &Style) -> Group {
     for run in runs {
         let ((y, x), (_, last)) = (run[0], run[run.len() - 1]);
         // From the end of the run before: short numbers.
-        data += &format!("m{} {}h{}", half(x - at.1), half(y - at.0), half(last - x));
+        let _ = write!(data, "m{} {}h{}", half(x - at.1), half(y - at.0), half(last - x));
         at = (y, last);
     }
     Group::new().add(line(data, style.colour, style.width).set("stroke-opacity", number(style.opacity)))

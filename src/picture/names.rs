@@ -35,10 +35,14 @@ fn keep_clear(labels: &mut Labels, item: &Item, frame: &Frame) {
         }
         Figure::Robot { poses, footprint } => {
             let extent = poses.last().and_then(|(_, pose)| robots::extent(pose, footprint, frame));
-            extent.into_iter().for_each(|extent| labels.keep_off(extent));
+            if let Some(extent) = extent {
+                labels.keep_off(extent);
+            }
         }
         Figure::Line { points, .. } => {
-            runs(points).into_iter().for_each(|run| labels.avoid(&thinned(&points[run], frame)));
+            for run in runs(points) {
+                labels.avoid(&thinned(&points[run], frame));
+            }
         }
         _ => {}
     }

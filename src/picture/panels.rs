@@ -34,7 +34,7 @@ impl Picture {
         let (min, max) = (bounds.min + shift, bounds.max + shift);
         let corners = [min, Point::new(max.x, min.y), max, Point::new(min.x, max.y)];
         self.polygon(corners, Style::aid().opacity(0.5));
-        self.world.walls.extend(panel.world.walls.iter().cloned().map(|mut wall| {
+        self.world.walls.extend(panel.world.walls.iter().copied().map(|mut wall| {
             wall.line.a += shift;
             wall.line.b += shift;
             wall

@@ -64,7 +64,7 @@ fn drives() {
             if let DriveSpec::Ackermann { dynamics, .. } = &mut spec.drive {
                 *dynamics = Some(p);
             }
-            simulation(spec, SimOptions::default())?
+            simulation(spec, SimOptions::default())?;
         },
         { Bounded: mass_centre, gyration, grip, stiffness, balance, brake, steering_rate; });
 }

@@ -29,7 +29,7 @@ fn name(colour: ConeColour) -> &'static str {
         ConeColour::Yellow => "yellow cone",
         ConeColour::Orange => "orange cone",
         ConeColour::BigOrange => "big orange cone",
-        _ => "cone",
+        ConeColour::Unknown => "cone",
     }
 }
 

@@ -1,3 +1,5 @@
+use std::path::Path;
+
 use roverlab::nav::grid::{
     AnyAngle, GridPlanner, GridSearch, JumpPointSearch, PlanError, PreparedJumps, Quadtree, QuadtreePlanner,
 };
@@ -62,50 +64,43 @@ impl Domain {
 /// The work of the command.
 pub(crate) fn work(args: &Args) -> std::result::Result<Report, Failure> {
     args.plain.check_picture()?;
-    let (name, grids, queries) = match (&args.map, &args.scen) {
-        (Some(map), Some(scen)) => {
-            let map_of_all = movingai::load_map(map).map_err(Failure::input)?.value;
-            let (grid, water) = (map_of_all.grid(), map_of_all.water());
-            let queries = movingai::load_scenarios(scen).map_err(Failure::input)?.value;
-            if queries.is_empty() {
-                return Err(Failure::input(format!(
-                    "{}: found no queries; expected at least one",
-                    scen.display()
-                )));
-            }
-            if let Some(query) = queries.iter().find(|q| (q.width, q.height) != (grid.width(), grid.height()))
-            {
-                return Err(Failure::input(format!(
-                    "{}: found queries for a map of {} x {} cells; expected {} x {}, as in {}",
-                    scen.display(),
-                    query.width,
-                    query.height,
-                    grid.width(),
-                    grid.height(),
-                    map.display()
-                )));
-            }
-            (map.display().to_string(), vec![grid, water], queries)
-        }
-        _ => {
-            let (name, grid, queries) = own_map::with_queries(args.plain.seed);
-            (name, vec![grid], queries)
-        }
+    let (name, grids, queries) = if let (Some(map), Some(scen)) = (&args.map, &args.scen) {
+        published(map, scen)?
+    } else {
+        let (name, grid, queries) = own_map::with_queries(args.plain.seed);
+        (name, vec![grid], queries)
     };
     let mut domains: Vec<Domain> = grids.into_iter().map(Domain::new).collect();
     let result = answer(name, &mut domains, &queries, args)?;
     let longest = queries.iter().max_by(|a, b| a.optimal.total_cmp(&b.optimal));
     let report = report(&result);
-    Ok(
-        match longest
-            .and_then(|query| Some((query, domains.iter().find(|domain| domain.has_both_ends(query))?)))
-        {
-            Some((query, domain)) => args
-                .plain
-                .draw(report, "grid_benchmark.svg", || picture::of(&result.map, &domain.grid, query)),
-            None => report,
-        },
-    )
+    let domain_of = |query| domains.iter().find(|domain| domain.has_both_ends(query));
+    let Some((query, domain)) = longest.and_then(|query| Some((query, domain_of(query)?))) else {
+        return Ok(report);
+    };
+    Ok(args.plain.draw(report, "grid_benchmark.svg", || picture::of(&result.map, &domain.grid, query)))
+}
+
+/// The name, the grids to plan on (ground, then water) and the queries of published files.
+fn published(map: &Path, scen: &Path) -> std::result::Result<(String, Vec<BitGrid>, Vec<Query>), Failure> {
+    let map_of_all = movingai::load_map(map).map_err(Failure::input)?.value;
+    let (grid, water) = (map_of_all.grid(), map_of_all.water());
+    let queries = movingai::load_scenarios(scen).map_err(Failure::input)?.value;
+    if queries.is_empty() {
+        return Err(Failure::input(format!("{}: found no queries; expected at least one", scen.display())));
+    }
+    if let Some(query) = queries.iter().find(|q| (q.width, q.height) != (grid.width(), grid.height())) {
+        return Err(Failure::input(format!(
+            "{}: found queries for a map of {} x {} cells; expected {} x {}, as in {}",
+            scen.display(),
+            query.width,
+            query.height,
+            grid.width(),
+            grid.height(),
+            map.display()
+        )));
+    }
+    Ok((map.display().to_string(), vec![grid, water], queries))
 }
 
 fn report(result: &Result) -> Report {

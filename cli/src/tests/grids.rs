@@ -120,7 +120,7 @@ fn water_is_a_map_of_its_own_and_blocked_ends_are_skipped() {
         "1 1 0 0 1", // blocked
         "5 2 3 2 2", // trees
     ];
-    let text: String = lines.iter().map(|line| format!("0 pond 6 3 {line}\n")).collect();
+    let text = lines.map(|line| format!("0 pond 6 3 {line}\n")).concat();
     fs::write(&scen, format!("version 1\n{text}")).unwrap();
     let options = ["--map", map.to_str().unwrap(), "--scen", scen.to_str().unwrap()];
     for algorithm in ["dijkstra", "astar", "jps", "jps_plus"] {

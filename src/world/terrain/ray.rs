@@ -296,7 +296,7 @@ mod tests {
         let field = hills(3, 17, 11);
         let pitch = field.pitch();
         for row in 0..11 {
-            let y = 0.5 + pitch.y * row as f64;
+            let y = 0.5 + pitch.y * f64::from(row);
             for down in [-1.0, 1.0] {
                 let at = Point3::new(-1.0, y, -down * 0.6);
                 let towards = unit(4.0, 0.0, down * 1.2);
