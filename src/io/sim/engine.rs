@@ -5,6 +5,7 @@ use super::camera::{CameraDevice, Moment, Studio};
 use super::lockstep::{Ticking, no_robot};
 use super::movable::{Movable, movables};
 use super::options::ticks_in;
+use super::watch::{Onlooking, Watcher};
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
 use crate::geometry::{Pose, Twist};
 use crate::io::{Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result};
@@ -29,6 +30,7 @@ pub(super) struct Engine {
     moves: Vec<Move>,
     studio: Box<Studio>,
     trail_ticks: Option<u64>,
+    watcher: Option<Box<dyn Watcher>>,
 }
 
 /// What a robot's program puts somewhere else at the next tick.
@@ -101,6 +103,7 @@ impl Engine {
             moves: Vec::new(),
             studio,
             trail_ticks,
+            watcher: None,
         })
     }
 
@@ -143,6 +146,30 @@ impl Engine {
         }
     }
 
+    /// Lets somebody look on from now on, in place of who did before.
+    pub(super) fn watch(&mut self, watcher: Box<dyn Watcher>) {
+        self.watcher = Some(watcher);
+        self.show();
+    }
+
+    /// Shows the world to who looks on.
+    fn show(&mut self) {
+        if let Some(mut watcher) = self.watcher.take() {
+            watcher.tick(&mut Onlooking::new(self));
+            self.watcher = Some(watcher);
+        }
+    }
+
+    /// Fails without an object of this index.
+    pub(super) fn check_object(&self, object: usize) -> Result<()> {
+        let objects = self.movables.len();
+        if object < objects {
+            return Ok(());
+        }
+        let expected = format!("an index below {objects}, the number of objects");
+        Err(Error::invalid_input("object", object, &expected))
+    }
+
     /// Advances the world by one tick.
     pub(super) fn step(&mut self) {
         self.make_moves();
@@ -161,6 +188,7 @@ impl Engine {
         self.deliver();
         self.tick += 1;
         self.extend_trails();
+        self.show();
     }
 
     fn extend_trails(&mut self) {
@@ -257,7 +285,11 @@ impl Engine {
         let pose = body.pose();
         let Some(camera) = &mut body.camera else { return Err(Error::unsupported("camera")) };
         let moment = Moment { tick: self.tick, light: self.options.light, noise: &self.options.noise };
-        camera.take(&mut self.studio, &self.space, (index, pose), moment, image)
+        camera.take(&mut self.studio, &self.space, (index, pose), moment, image)?;
+        if let Some(watcher) = &mut self.watcher {
+            watcher.image(index, image);
+        }
+        Ok(())
     }
 
     pub(super) fn set_odometry(&mut self, index: usize, pose: Pose) -> Result<()> {
@@ -275,7 +307,11 @@ impl Engine {
         let origin = body.pose().position() + body.course.turned(device.offset);
         let direction = body.course.turned(device.direction);
         let range = self.space.cast_ray(origin, direction, device.height, device.max_range, Some(body.solid));
-        Ok(noisy(range, sigma, device.max_range, &mut body.psd_noise))
+        let reading = noisy(range, sigma, device.max_range, &mut body.psd_noise);
+        if let Some(watcher) = &mut self.watcher {
+            watcher.distance(index, psd, reading);
+        }
+        Ok(reading)
     }
 
     pub(super) fn scan_into(&mut self, index: usize, scan: &mut LidarScan) -> Result<()> {
@@ -292,6 +328,9 @@ impl Engine {
         self.space.scan(&mut device.scanner, &pose, Some(body.solid), &mut scan.ranges);
         for range in &mut scan.ranges {
             *range = noisy(*range, sigma, device.max_range, &mut device.noise);
+        }
+        if let Some(watcher) = &mut self.watcher {
+            watcher.scan(index, scan);
         }
         Ok(())
     }

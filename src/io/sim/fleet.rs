@@ -1,7 +1,7 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
-use super::SimOptions;
+use super::{SimOptions, Watcher};
 use super::body::Body;
 use super::engine::Engine;
 use super::lockstep::{check_duration, no_robot, time_is_over};
@@ -75,6 +75,11 @@ impl<'a> Fleet<'a> {
         let engine = Engine::new(scene, options)?;
         let members = engine.bodies.iter().map(|_| None).collect();
         Ok(Self { engine, members })
+    }
+
+    /// Lets somebody look on, from now on.
+    pub fn watch(&mut self, watcher: Box<dyn Watcher>) {
+        self.engine.watch(watcher);
     }
 
     /// How many robots there are.

@@ -48,6 +48,7 @@ mod simulation;
 #[cfg(feature = "physics")]
 pub mod starman;
 mod truth;
+mod watch;
 mod wheels;
 
 pub use fleet::{Fleet, FleetRobot};
@@ -56,6 +57,7 @@ pub use options::SimOptions;
 pub use robot::SimRobot;
 pub use simulation::Simulation;
 pub use truth::Truth;
+pub use watch::{Onlooking, Watcher};
 
 pub use super::{Lcd, RobotTruth, TrailPoint};
 
