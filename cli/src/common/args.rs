@@ -8,7 +8,8 @@ use roverlab::geometry::Pose;
 use roverlab::io::wrappers::Fault;
 
 use super::values::{GoalOption, parse_goal, parse_noise, parse_picture, parse_pose, parse_seconds};
-use super::{Failure, Origin, is_same_file};
+use super::library::Library;
+use super::{Failure, Origin, is_same_file, onlooker};
 
 /// The folder of files that no option names.
 const UNNAMED: &str = "target/pictures";
@@ -174,7 +175,7 @@ impl CommonArgs {
 
     /// Tells a person what happens during a run. Silent with `--json`.
     pub(crate) fn tell(&self, event: impl Display) {
-        if !self.json {
+        if !self.json && !onlooker::told(&event) {
             // A reader that went away, as `head` does, is no reason to stop the run.
             let _ = writeln!(std::io::stdout(), "{event}");
         }
@@ -193,7 +194,7 @@ impl CommonArgs {
 
     /// The picture's file: the one that `--picture` names, or one in the folder for what nobody named.
     pub(crate) fn picture_file(&self, name: &str) -> Option<PathBuf> {
-        self.picture.clone().or_else(|| self.unnamed_file(name))
+        if onlooker::is_there() { None } else { self.picture.clone().or_else(|| self.unnamed_file(name)) }
     }
 
     /// The file for an output that no option names: in a folder of its own, and only without `--json`. `None`
@@ -220,7 +221,7 @@ impl CommonArgs {
 
 /// Fails if a library cannot be loaded.
 fn check_library(library: &Path) -> Result<(), Failure> {
-    let opened = roverlab::io::robios::RobiosRobot::open(library);
+    let opened = Library::open(library, Pose::default());
     opened
         .map(|_| ())
         .map_err(|error| Failure::input(format!("--robios {error}; expected a library of RoBIOS")))

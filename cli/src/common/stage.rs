@@ -3,20 +3,20 @@ use std::fmt;
 use std::fs::File;
 use std::io::BufWriter;
 use std::ops::{Deref, DerefMut};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use roverlab::geometry::Pose;
 use roverlab::io::log::{Attachment, Header, LogError, LogWriter, Player, Troop, Witness};
-use roverlab::io::robios::{RobiosRobot, RobiosTruth};
-use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, Simulation};
+use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, Simulation, Watcher};
 use roverlab::io::wrappers::{Deadman, Fault, Faulty, Quantised};
 use roverlab::io::{self, Key, RobotIo};
 use roverlab::safety::{SpeedError, StoppingModel};
 use roverlab::world::{RobotPlacement, Scene, formats};
 
+use super::library::{Library, alone};
 use super::supervision::{DEADMAN, Stops, guarded};
-use super::{CommonArgs, Failure, Origin};
+use super::{CommonArgs, Failure, Origin, onlooker};
 
 /// How many bytes of a recording a robot that is apart may be ahead of the others.
 const MOST_AHEAD: usize = 1 << 20;
@@ -61,8 +61,7 @@ enum Play {
     /// Each robot alone in a world of its own.
     Apart(Vec<Simulation>),
     Recording(Player),
-    /// The one robot behind a library, until it is taken, and what is known about it.
-    Library(PathBuf, Mutex<(Option<RobiosRobot>, Option<RobiosTruth>)>),
+    Library(Library),
 }
 
 /// Where a run is recorded, and what it replays.
@@ -158,12 +157,14 @@ impl CommonArgs {
             (Some(player), _) => Stage::new(Play::Recording(player), Vec::new()),
             (None, Some(library)) => {
                 let start = scene.robots.first().map_or(Pose::default(), |robot| robot.pose);
-                let robot = RobiosRobot::open(library).map_err(Failure::input)?;
-                let truth = robot.truth(start);
-                let play = Play::Library(library.clone(), Mutex::new((Some(robot), Some(truth))));
-                Stage::new(play, self.faults()?)
+                Stage::new(Play::Library(Library::open(library, start)?), self.faults()?)
             }
-            _ => Stage { quantised: self.quantised, ..Stage::simulated(scene, options, self.faults()?)? },
+            _ => {
+                let (scene, watcher) = onlooker::watched(scene);
+                let stage = Stage::simulated(&scene, options, self.faults()?)?;
+                stage.watch(watcher);
+                Stage { quantised: self.quantised, ..stage }
+            }
         };
         self.recorded(scene, stage, motors(scene))
     }
@@ -185,8 +186,13 @@ impl CommonArgs {
         let play = if let Some(player) = self.player() {
             Play::Recording(player)
         } else {
-            let simulations = (0..robots).map(|_| Simulation::new(scene, options.clone()));
-            Play::Apart(simulations.collect::<io::Result<_>>().map_err(Failure::input)?)
+            let (shown, watcher) = onlooker::watched(scene);
+            let simulations = (0..robots).map(|_| Simulation::new(&shown, options.clone()));
+            let simulations: Vec<_> = simulations.collect::<io::Result<_>>().map_err(Failure::input)?;
+            if let (Some(first), Some(watcher)) = (simulations.first(), watcher) {
+                first.watch(watcher);
+            }
+            Play::Apart(simulations)
         };
         let mut stage = self.recorded(scene, Stage::new(play, Vec::new()), motors(scene))?;
         if let Some(guard) = &mut stage.guard {
@@ -223,7 +229,14 @@ impl CommonArgs {
         }
         let troop: Box<dyn Troop<'a> + 'a> = match &player {
             Some(player) => Box::new(player.troop()),
-            None => Box::new(Fleet::new(scene, options).map_err(Failure::input)?),
+            None => {
+                let (scene, watcher) = onlooker::watched(scene);
+                let mut fleet = Fleet::new(&scene, options).map_err(Failure::input)?;
+                if let Some(watcher) = watcher {
+                    fleet.watch(watcher);
+                }
+                Box::new(fleet)
+            }
         };
         let recording = self.recording(scene, player)?;
         let troop = match &recording.writer {
@@ -320,6 +333,13 @@ impl Stage {
         Ok(Self::new(Play::Simulation(simulation), faults))
     }
 
+    /// Lets somebody look on at a simulation.
+    fn watch(&self, watcher: Option<Box<dyn Watcher>>) {
+        if let (Play::Simulation(simulation), Some(watcher)) = (&self.play, watcher) {
+            simulation.watch(watcher);
+        }
+    }
+
     fn new(play: Play, faults: Vec<Fault>) -> Self {
         Self {
             play,
@@ -351,10 +371,7 @@ impl Stage {
             }
             Play::Simulation(simulation) => self.faulty(simulated(simulation, index)?, index)?,
             Play::Apart(simulations) => self.faulty(simulated(&simulations[index], 0)?, index)?,
-            Play::Library(library, taken) => {
-                let robot = taken.lock().unwrap_or_else(PoisonError::into_inner).0.take();
-                self.faulty(robot.filter(|_| index == 0).ok_or_else(|| alone(library))?, index)?
-            }
+            Play::Library(library) => self.faulty(library.robot()?, index)?,
             Play::Recording(player) => {
                 self.recording.recorder(player.robot(index).map_err(|error| foreign(&error))?, index)
             }
@@ -395,10 +412,7 @@ impl Stage {
             Play::Simulation(simulation) => Box::new(simulation.truth()),
             Play::Apart(simulations) => Box::new(simulations[index].truth()),
             Play::Recording(player) => Box::new(player.truth(index).map_err(|error| foreign(&error))?),
-            Play::Library(library, taken) => {
-                let truth = taken.lock().unwrap_or_else(PoisonError::into_inner).1.take();
-                Box::new(truth.ok_or_else(|| alone(library))?)
-            }
+            Play::Library(library) => library.truth()?,
         };
         Ok(match &self.recording.writer {
             Some(writer) => Box::new(writer.witness(witness, index)),
@@ -412,7 +426,7 @@ impl Stage {
             Play::Simulation(simulation) => simulation.press_key(index, time, key),
             Play::Apart(simulations) => simulations[index].press_key(0, time, key),
             // Whoever stands beside a real robot presses its keys.
-            Play::Recording(_) | Play::Library(..) => Ok(()),
+            Play::Recording(_) | Play::Library(_) => Ok(()),
         }
     }
 }
@@ -438,14 +452,6 @@ impl Claimed {
         let Some(Watch { truth, who, model, stops }) = guard else { return Ok(robot) };
         guarded(robot, truth, who, model, stops).map_err(Failure::run)
     }
-}
-
-/// A library has one robot.
-fn alone(library: &Path) -> Failure {
-    let library = library.display();
-    Failure::input(format!(
-        "--robios {library}: found several robots that drive; expected a run of one robot"
-    ))
 }
 
 /// A recording that lacks a robot belongs to another scene.

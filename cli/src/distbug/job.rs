@@ -5,7 +5,7 @@ use roverlab::geometry::{Point, units};
 use roverlab::nav::{DistBugOutcome, WallSide};
 
 use super::{Args, Drive, Ending, Event, Happening, Options, campaign, drive, picture, scene, sim_options};
-use crate::common::{CommonArgs, Failure, Outcome, Pacer, Progress, Report, Trip, millimetres, point_in_mm};
+use crate::common::{CommonArgs, Failure, Outcome, Pacer, Progress, Report, Trip, millimetres, onlooker, point_in_mm};
 
 /// The picture that is drawn unless another file is named.
 const PICTURE: &str = "distbug.svg";
@@ -117,6 +117,7 @@ fn drawn(
     drive: &Drive,
     options: &Options,
 ) -> Result<Option<PathBuf>, Failure> {
+    onlooker::pictured(|| picture::of(trip, drive, options));
     let file = common.picture_file(PICTURE);
     if let Some(file) = &file {
         picture::of(trip, drive, options).save(file)?;

@@ -13,7 +13,9 @@ use roverlab::kinematics::OdometryErrors;
 use roverlab::picture::{Picture, SaveError};
 use roverlab::world::{Colour, DriveSpec, Object, ObjectKind, RobotSpec, Scene, Shape, World};
 
-use crate::common::{CommonArgs, Driven, Failure, Outcome, Pacer, Report, Stage, StageTruth};
+use crate::common::{
+    CommonArgs, Driven, Failure, Outcome, Pacer, Report, Stage, StageTruth, onlooker,
+};
 
 pub(crate) use way::Way;
 
@@ -206,7 +208,12 @@ pub(crate) fn drawn(
     name: &str,
     picture: impl FnOnce() -> Picture,
 ) -> (Option<PathBuf>, Option<String>) {
-    let Some(file) = common.picture_file(name) else { return (None, None) };
+    // Who looks on wants the picture itself.
+    let mut picture = Some(picture);
+    if onlooker::is_there() {
+        picture.take().map(onlooker::pictured);
+    }
+    let (Some(picture), Some(file)) = (picture, common.picture_file(name)) else { return (None, None) };
     match save(&picture(), &file) {
         Ok(()) => {
             common.tell(format_args!("picture: {}", file.display()));
