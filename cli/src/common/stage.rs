@@ -96,6 +96,7 @@ impl DerefMut for StagedTroop<'_> {
 
 /// One robot with a world of its own kind: made by the command or replayed, and recorded if the options ask
 /// for it. For all else as a [`Stage`].
+#[cfg_attr(not(feature = "native"), allow(dead_code, reason = "only the walking robot needs it"))]
 pub(crate) struct StagedRobot {
     // Let go before the recording is finished.
     robot: Driven,
@@ -248,6 +249,7 @@ impl CommonArgs {
 
     /// A robot that no scene describes: `own`, or that of the recording which `--replay` names. The scene is what
     /// viewers show around it.
+    #[cfg_attr(not(feature = "native"), allow(dead_code, reason = "only the walking robot needs it"))]
     pub(crate) fn staged_robot(
         &self,
         scene: &Scene,
