@@ -4,11 +4,11 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use roverlab::drive::{
-    AToB, AToBObservation, AToBParameters, CarDriver, CarParameters, CarToB, Chase, ChaseParameters,
-    CoverageMap, CoverageParameters, CoveragePlan, Cruise, CruiseParameters, FollowMeObservation,
-    FollowMeParameters, Follower, FollowerParameters, Formation, Goal, LidarWallFollower,
-    LidarWallParameters, Method, OmniDriver, OmniParameters, OmniTracker, Path, PathFollower, Pid,
-    PidParameters, PidWallFollower, PidWallParameters, RandomDrive, RandomDriveParameters, Tour,
+    AToB, AToBObservation, AToBParameters, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters,
+    CoverageMap, CoverageMapParameters, CoveragePlan, Cruise, CruiseParameters, Follower,
+    FollowerObservation, FollowerParameters, Formation, Goal, LidarWallFollower, LidarWallFollowerParameters,
+    Method, OmniDriver, OmniParameters, OmniTracker, Path, PathFollower, PathFollowerParameters, Pid,
+    PidParameters, PidWallFollower, PidWallFollowerParameters, RandomDrive, RandomDriveParameters, Tour,
     TourParameters, TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallObservation, WallPhase,
     WallSide, robots_in,
 };
@@ -20,7 +20,7 @@ use roverlab::kinematics::{
 };
 use roverlab::random::Stream;
 use roverlab::scan::{
-    ExtractionParameters, Localisation, LocalisationMap, Localiser, LocaliserParameters, extract_features,
+    Localisation, LocalisationMap, Localiser, LocaliserParameters, ScanFeaturesParameters, extract_features,
     local_extrema,
 };
 use roverlab::world::{RobotSpec, Scene, Wall, World};
@@ -35,7 +35,7 @@ fn paths(c: &mut Criterion) {
     let round = || Path::dubins(Pose::default(), GOAL, 0.5).expect("a path");
     assert!(round().end().distance_to(GOAL.position()) < 1e-6, "a Dubins path ends at its goal");
     c.bench_function("Dubins path of 1.6 m: plan", |b| b.iter(round));
-    let follower = PathFollower::new(plan(), FollowerParameters::default()).expect("a follower");
+    let follower = PathFollower::new(plan(), PathFollowerParameters::default()).expect("a follower");
     let middle = plan().at(0.8).pose;
     c.bench_function("path follower: step", |b| {
         let mut follower = follower.clone();
@@ -70,7 +70,8 @@ fn others(c: &mut Criterion) {
     let kinematics = Ackermann::new(0.26, 0.16, 0.5).expect("a car");
     let driver = CarDriver { kinematics, full_speed: 0.5 };
     let goal = Goal::pose(Pose::new(2.0, 1.0, 1.0));
-    let mut car = CarToB::new(Method::Spline, goal, driver, CarParameters::default()).expect("a behaviour");
+    let mut car =
+        CarToB::new(Method::Spline, goal, driver, CarToBParameters::default()).expect("a behaviour");
     (0..200).for_each(|_| assert!(car.step(Pose::default()).expect("a command").is_some()));
     c.bench_function("car: step", |b| b.iter(|| car.step(black_box(Pose::new(0.1, 0.0, 0.0)))));
 
@@ -111,7 +112,7 @@ fn behaviours(c: &mut Criterion) {
     c.bench_function("wall following, distance sensors: step", |b| {
         b.iter(|| wall.step(black_box(&seen(0.2, 0.115))));
     });
-    let mut pid = PidWallFollower::new(PidWallParameters::default()).expect("a follower");
+    let mut pid = PidWallFollower::new(PidWallFollowerParameters::default()).expect("a follower");
     c.bench_function("wall following, PID: step", |b| {
         b.iter(|| pid.step(black_box(&seen(0.2, 0.155)), 0.02));
     });
@@ -121,19 +122,19 @@ fn behaviours(c: &mut Criterion) {
     });
 
     let (world, scan) = (room(), scan(1.0));
-    let mut lidar = LidarWallFollower::new(LidarWallParameters::default()).expect("a follower");
+    let mut lidar = LidarWallFollower::new(LidarWallFollowerParameters::default()).expect("a follower");
     c.bench_function("wall following, lidar: step", |b| b.iter(|| lidar.step(black_box(&scan))));
     let points: Vec<Point> = scan.points().collect();
     let mut random = RandomDrive::new(RandomDriveParameters::default(), Stream::new(1)).expect("a drive");
     c.bench_function("random drive: step", |b| b.iter(|| random.step(black_box(PLACE), &points)));
     let mut cruise = Cruise::new(vec![Point::new(3.0, 0.0)], CruiseParameters::default()).expect("a cruise");
     c.bench_function("leader: step", |b| b.iter(|| cruise.step(black_box(Pose::default()), &points)));
-    let mut follower = Follower::new(FollowMeParameters::default()).expect("a follower");
+    let mut follower = Follower::new(FollowerParameters::default()).expect("a follower");
     c.bench_function("follow me, robots in the scan included: step", |b| {
         b.iter(|| {
             let candidates = robots_in(black_box(&scan), 0.06);
             let pose = Pose::default();
-            follower.step(&FollowMeObservation {
+            follower.step(&FollowerObservation {
                 time: 0.0,
                 pose,
                 candidates: &candidates,
@@ -146,7 +147,7 @@ fn behaviours(c: &mut Criterion) {
         b.iter(|| formation.step(black_box(Pose::default()), Pose::new(0.6, -0.3, 0.1), 0.15, &points));
     });
 
-    let map = CoverageMap::new(&world, PLACE.position(), CoverageParameters::default()).expect("a map");
+    let map = CoverageMap::new(&world, PLACE.position(), CoverageMapParameters::default()).expect("a map");
     let plan = CoveragePlan::new(&map, PLACE.position()).expect("a plan");
     assert!(plan.share() > 0.94, "the plan covers the floor");
     let mut tour = Tour::new(plan.points(), TourParameters::default()).expect("a tour");
@@ -179,7 +180,7 @@ fn scan(noise: f64) -> LidarScan {
 fn scans(c: &mut Criterion) {
     let scan = scan(1.0);
     assert_eq!(scan.ranges.len(), 360);
-    let parameters = ExtractionParameters::default();
+    let parameters = ScanFeaturesParameters::default();
     let features = extract_features(&scan, &parameters).expect("features");
     assert!(features.walls.len() >= 5, "the walls are found");
     c.bench_function("360 beams: walls, corners, objects", |b| {

@@ -11,7 +11,7 @@ use roverlab::io::control::run;
 use roverlab::io::log::{Header, Log, LogWriter, Player};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{Camera, Clock, Drive, Lidar, Resolution, Result};
-use roverlab::nav::{DistBug, DistBugOutcome, DistBugParameters};
+use roverlab::nav::{BugOutcome, BugParameters, DistBug};
 use roverlab::random::Stream;
 use roverlab::world::generate::{CourseOptions, obstacle_course};
 use roverlab::world::{RobotSpec, Scene};
@@ -30,8 +30,8 @@ fn simulation(scene: &Scene) -> Simulation {
     Simulation::new(scene, options).expect("a simulation")
 }
 
-fn drive(robot: &mut (impl Clock + Drive + Lidar), goal: Point) -> DistBugOutcome {
-    let mut bug = DistBug::new(goal, DistBugParameters::default()).expect("a goal");
+fn drive(robot: &mut (impl Clock + Drive + Lidar), goal: Point) -> BugOutcome {
+    let mut bug = DistBug::new(goal, BugParameters::default()).expect("a goal");
     run(robot, &mut bug, 3600.0, |_, _, _| {}).expect("a robot that works")
 }
 
@@ -69,7 +69,7 @@ fn distbug(c: &mut Criterion) {
     let plain = || drive(&mut simulation(&scene).robot(0).expect("a robot"), goal);
     let log = Log::read(record(&scene, goal, Vec::new())).expect("a recording");
     let replay = || drive(&mut Player::new(&log).robot(0).expect("a robot"), goal);
-    assert_eq!((plain(), replay()), (DistBugOutcome::Reached, DistBugOutcome::Reached));
+    assert_eq!((plain(), replay()), (BugOutcome::Reached, BugOutcome::Reached));
     let mut memory = log.bytes().to_vec();
     println!(
         "Recording costs {:.1} % of the run: fastest of {ROUNDS} each, in turn",

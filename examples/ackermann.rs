@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release --example ackermann`
 
-use roverlab::drive::{CarDriver, CarOutcome, CarParameters, CarToB, Goal, Method};
+use roverlab::drive::{CarDriver, CarOutcome, CarToB, CarToBParameters, Goal, Method};
 use roverlab::geometry::{Pose, angle_difference, units};
 use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let options = SimOptions { trail_interval: Some(0.05), ..SimOptions::with_noise(1.0, 1) };
     let simulation = Simulation::new(&scene, options)?;
     let target = Goal::pose(start.inverse().compose(&goal));
-    let mut drive = CarToB::new(Method::Spline, target, driver, CarParameters::default())?;
+    let mut drive = CarToB::new(Method::Spline, target, driver, CarToBParameters::default())?;
     let plan = drive.plan(Pose::default())?.ok_or("the car is at its goal")?;
     let outcome = run(&mut simulation.robot(0)?, &mut drive, 60.0, |_, _, _| {})?;
 

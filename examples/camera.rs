@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use roverlab::geometry::{Pose, units};
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::io::{Camera, Clock, Display, Picture, Resolution, Servos, Viewport};
+use roverlab::io::{Camera, Clock, Display, DisplayImage, Resolution, Servos, Viewport};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let heading = units::to_deg(simulation.truth().pose(0)?.heading);
     assert!(heading.abs() < 0.01, "the robot itself has not turned");
 
-    robot.draw_image(Picture::Rgb(&aside), Viewport::default())?;
+    robot.draw_image(DisplayImage::Rgb(&aside), Viewport::default())?;
     robot.set_menu(["", "", "", "END"])?;
     std::fs::create_dir_all("target/pictures")?;
     ahead.save("target/pictures/camera.png")?;

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use roverlab::drive::colour::{ColourOutcome, ColourPhase, ColourTracker, TrackerParameters};
+use roverlab::drive::colour::{ColourOutcome, ColourPhase, ColourTracker, ColourTrackerParameters};
 use roverlab::geometry::Pose;
 use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let red = hue([200, 30, 30], HueScale::Robios, ColourFinder::LIMITS);
     let camera = spec.camera.as_ref().ok_or("the robot has no camera")?;
     let finder = ColourFinder::new(red, 12, FindMethod::Blob, camera.into())?;
-    let mut tracker = ColourTracker::new(finder, TrackerParameters::default())?;
+    let mut tracker = ColourTracker::new(finder, ColourTrackerParameters::default())?;
     let (mut time, mut phase, mut first) = (0.0, ColourPhase::Searching, None);
     let outcome = run(&mut simulation.robot(0)?, &mut tracker, 120.0, |_, tracker, _| {
         time = simulation.truth().time();

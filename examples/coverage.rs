@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use roverlab::drive::{CoverageMap, CoverageParameters, CoveragePlan, Tour, TourOutcome, TourParameters};
+use roverlab::drive::{CoverageMap, CoverageMapParameters, CoveragePlan, Tour, TourOutcome, TourParameters};
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::control::{SensedBy, run};
 use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // The plan covers what the robot's disc can reach from its start.
     let start = Pose::new(0.2, 0.2, 0.0);
-    let mut map = CoverageMap::new(&world, start.position(), CoverageParameters::default())?;
+    let mut map = CoverageMap::new(&world, start.position(), CoverageMapParameters::default())?;
     let plan = CoveragePlan::new(&map, start.position())?;
     println!("{:.1} m2 of floor, a plan {:.0} m long", map.area(), plan.length());
 

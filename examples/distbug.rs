@@ -10,7 +10,7 @@ use std::sync::Arc;
 use roverlab::geometry::{Point, Pose, direction, units};
 use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::nav::{DistBug, DistBugEvent as Event, DistBugOutcome, DistBugParameters};
+use roverlab::nav::{BugEvent as Event, BugOutcome, BugParameters, DistBug};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, Marker, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut marks = Vec::new();
 
     // The robot counts from where it stands, so the goal is given in its own frame.
-    let mut bug = DistBug::new(start.to_local(goal), DistBugParameters::default())?;
+    let mut bug = DistBug::new(start.to_local(goal), BugParameters::default())?;
     let outcome = run(&mut robot, &mut bug, 600.0, |_, bug, step| {
         for event in bug.take_events() {
             let (mark, letter, point, words) = match event {
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let drift = units::to_mm(end.pose.distance_to(start.compose(&end.odometry).position()));
     println!("{time:5.1} s: {outcome:?} after {driven:.1} m, {missed:.0} mm from the goal");
     println!("Odometry alone is {drift:.0} mm wrong by now; the robot corrects it by matching scans.");
-    assert!(outcome == DistBugOutcome::Reached && end.contacts == 0 && missed < 100.0);
+    assert!(outcome == BugOutcome::Reached && end.contacts == 0 && missed < 100.0);
 
     let mut picture = Picture::new(&scene.world);
     picture.title("DistBug: goal reached");

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use roverlab::drive::{
-    Cruise, CruiseParameters, FollowMeObservation, FollowMeParameters, Follower, robots_in,
+    Cruise, CruiseParameters, Follower, FollowerObservation, FollowerParameters, robots_in,
 };
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::{Fleet, SimOptions};
@@ -42,14 +42,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     })?;
     for follower in 1..scene.robots.len() {
         let leader_radius = scene.robots[follower - 1].spec.footprint.bounding_radius();
-        let parameters = FollowMeParameters { gap: GAP, leader_radius, ..FollowMeParameters::default() };
+        let parameters = FollowerParameters { gap: GAP, leader_radius, ..FollowerParameters::default() };
         let mut behaviour = Follower::new(parameters)?;
         fleet.control(follower, PERIOD, move |robot| {
             let (time, pose, scan) = (robot.now()?, robot.pose()?, robot.scan()?);
             // Things of its size may be the robot ahead; the follower tracks the one that moves as expected.
             let candidates = robots_in(&scan, leader_radius);
             let obstacles: Vec<Point> = scan.points().collect();
-            let seen = FollowMeObservation { time, pose, candidates: &candidates, obstacles: &obstacles };
+            let seen = FollowerObservation { time, pose, candidates: &candidates, obstacles: &obstacles };
             let twist = behaviour.step(&seen)?;
             robot.set_speed(twist)?;
             Ok(ControlFlow::Continue(()))

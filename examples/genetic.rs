@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use roverlab::drive::{AlongWall, PidParameters, PidWallFollower, PidWallParameters};
+use roverlab::drive::{AlongWall, PidParameters, PidWallFollower, PidWallFollowerParameters};
 use roverlab::evolve::{
     Arithmetic, Evolution, Gaussian, Genetic, Recipe, Selection, Serial, StopRules, Trial, chart,
 };
@@ -68,9 +68,9 @@ fn error(genes: &[f64], seed: u64) -> Result<f64> {
     let scene = Scene::with_robot(World::walled(6.0, 2.0), RobotSpec::s4(), Pose::new(0.5, 1.65, 0.2));
     let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, seed))?;
     let [proportional, integral, derivative] = gains(genes);
-    let base = PidWallParameters::default();
+    let base = PidWallFollowerParameters::default();
     let gains = PidParameters { proportional, integral, derivative, ..base.gains };
-    let controller = PidWallFollower::new(PidWallParameters { gains, ..base })?;
+    let controller = PidWallFollower::new(PidWallFollowerParameters { gains, ..base })?;
     let truth = simulation.truth();
     let (mut squares, mut count) = (0.0, 0.0);
     run(&mut simulation.robot(0)?, &mut AlongWall::new(controller), 15.0, |_, _, step| {

@@ -9,7 +9,7 @@ use roverlab::geometry::{Point, Pose, units};
 use roverlab::io::Lidar;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::picture::{Picture, SERIES, Style};
-use roverlab::scan::{ExtractionParameters, extract_features};
+use roverlab::scan::{ScanFeaturesParameters, extract_features};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let nearest = scan.ranges.iter().copied().fold(f64::INFINITY, f64::min);
     println!("{} beams; the nearest thing is {nearest:.2} m away", scan.ranges.len());
 
-    let found = extract_features(&scan, &ExtractionParameters::default())?;
+    let found = extract_features(&scan, &ScanFeaturesParameters::default())?;
     let mut picture = Picture::new(&scene.world);
     picture.title("Walls, corners and objects in one scan");
     picture.points(scan.points().map(|point| pose.to_world(point)), Style::lidar());

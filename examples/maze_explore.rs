@@ -7,7 +7,7 @@ use roverlab::geometry::units;
 use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
 use roverlab::kinematics::OdometryErrors;
 use roverlab::maze::{
-    Maze, MazeRunner, Preference, RecursiveExplorer, Rig, RunnerParameters, Scale, Unknown,
+    Maze, MazeRunner, MazeRunnerParameters, Preference, RecursiveExplorer, Rig, Scale, Unknown,
     distances_to_goal, files, shortest_route,
 };
 use roverlab::picture::{Mark, Picture, Style};
@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     known.set_goals(maze.goals());
     let NoiseModel { wheel_scale, wheel_mismatch, track, slip, .. } = noise;
     let rig = Rig::new(&spec, OdometryErrors { wheel_scale, wheel_mismatch, track, slip }, noise.range)?;
-    let mut runner = MazeRunner::new(&mut robot, rig, known, scale, RunnerParameters::EYEBOT, 1200.0)?;
+    let mut runner = MazeRunner::new(&mut robot, rig, known, scale, MazeRunnerParameters::EYEBOT, 1200.0)?;
     let found = runner.explore(&mut RecursiveExplorer::new(), &mut |_| {})?;
     println!("explored {} of {} cells in {:.0} s", found.visited, maze.cell_count(), found.time);
     let explored = simulation.truth().robot(0)?.trail.len();

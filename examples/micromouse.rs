@@ -7,7 +7,8 @@ use roverlab::geometry::units;
 use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
 use roverlab::kinematics::OdometryErrors;
 use roverlab::maze::{
-    Goals, Maze, MazeRunner, Rig, RunnerParameters, Scale, TwoPhaseExplorer, Unknown, Verdict, files, mouse,
+    ExplorationOutcome, Goals, Maze, MazeRunner, MazeRunnerParameters, Rig, Scale, TwoPhaseExplorer, Unknown,
+    files, mouse,
 };
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::Scene;
@@ -46,7 +47,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     known.set_goals(maze.goals());
     let NoiseModel { wheel_scale, wheel_mismatch, track, slip, .. } = noise;
     let rig = Rig::new(&spec, OdometryErrors { wheel_scale, wheel_mismatch, track, slip }, noise.range)?;
-    let mut runner = MazeRunner::new(&mut robot, rig, known, scale, RunnerParameters::MICROMOUSE, 1200.0)?;
+    let mut runner =
+        MazeRunner::new(&mut robot, rig, known, scale, MazeRunnerParameters::MICROMOUSE, 1200.0)?;
     let mut explorer = TwoPhaseExplorer::new(Goals::StepsAndTime(Box::new(runner.planner())));
     let found = runner.explore(&mut explorer, &mut |_| {})?;
     let (seconds, unknown) = (found.time, runner.maze().unknown_walls());
@@ -62,7 +64,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let truth = simulation.truth().robot(0)?;
     let off = units::to_mm(truth.pose.distance_to(scale.centre(plan.route.end())));
     println!("The mouse stands {off:.0} mm from the middle of a goal cell.");
-    assert!(found.verdict == Verdict::Optimal && (plan.time - best.time).abs() < 1e-5);
+    assert!(found.verdict == ExplorationOutcome::Optimal && (plan.time - best.time).abs() < 1e-5);
     assert!(truth.contacts == 0 && off < 30.0);
 
     let path: Vec<_> = truth.trail.iter().map(|point| point.pose.position()).collect();

@@ -6,7 +6,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use roverlab::drive::motion_watch::{MotionWatch, WatchParameters};
+use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::geometry::{Pose, Twist, units};
 use roverlab::io::sim::{Fleet, SimOptions};
 use roverlab::io::{Camera, Clock, Drive, Error, ErrorKind};
@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     scene.robots.extend([watcher, mover].map(|pose| RobotPlacement::new(Arc::clone(&spec), pose)));
 
     let options = SimOptions { trail_interval: Some(0.1), ..SimOptions::with_noise(1.0, 1) };
-    let parameters = WatchParameters::new(field_of_view);
+    let parameters = MotionWatchParameters::new(field_of_view);
     let mut watch = MotionWatch::new(parameters)?;
     // The time of each image in which something moved, and where: left, in the middle, right.
     let alarms = std::cell::RefCell::new(Vec::new());

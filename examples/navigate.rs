@@ -9,7 +9,7 @@ use std::sync::Arc;
 use roverlab::geometry::{Point, Pose, units};
 use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::nav::{NavigateEvent, NavigateOutcome, NavigateParameters, Navigator};
+use roverlab::nav::{Navigator, NavigatorEvent, NavigatorOutcome, NavigatorParameters};
 use roverlab::picture::{Mark, Picture, SERIES, Style};
 use roverlab::world::{Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
@@ -36,18 +36,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::with_robot(real.clone(), spec.clone(), start);
     let options = SimOptions { trail_interval: Some(0.1), ..SimOptions::with_noise(1.0, 1) };
     let simulation = Simulation::new(&scene, options)?;
-    let parameters = NavigateParameters::for_footprint(spec.footprint);
+    let parameters = NavigatorParameters::for_footprint(spec.footprint);
     let mut navigator = Navigator::new(&known, start, goal, parameters)?;
     let (mut plan, mut repairs) = (Vec::new(), 0);
     let outcome = run(&mut simulation.robot(0)?, &mut navigator, 300.0, |_, navigator, step| {
         let time = step.time;
         for event in navigator.take_events() {
             match event {
-                NavigateEvent::Planned { length, .. } if plan.is_empty() => {
+                NavigatorEvent::Planned { length, .. } if plan.is_empty() => {
                     println!("{time:5.1} s: first plan, {length:.2} m long");
                     plan = navigator.path().to_vec();
                 }
-                NavigateEvent::Replanned { length, .. } => {
+                NavigatorEvent::Replanned { length, .. } => {
                     repairs += 1;
                     println!("{time:5.1} s: something is in the way; now {length:.2} m to the goal");
                 }
@@ -62,7 +62,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!(
         "{time:5.1} s: {outcome:?} after {length:.2} m and {repairs} repairs, {off:.0} mm from the goal"
     );
-    assert_eq!((outcome, truth.contacts), (NavigateOutcome::Reached, 0));
+    assert_eq!((outcome, truth.contacts), (NavigatorOutcome::Reached, 0));
     assert!(off < 60.0 && repairs > 0);
 
     let mut picture = Picture::new(&real);

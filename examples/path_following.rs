@@ -4,7 +4,7 @@
 //!
 //! `cargo run --release --example path_following`
 
-use roverlab::drive::{FollowerParameters, Path, PathFollower, Steering, Waypoint};
+use roverlab::drive::{Path, PathFollower, PathFollowerParameters, Steering, Waypoint};
 use roverlab::geometry::{Point, Twist, units};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{Clock, Drive};
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut robot = simulation.robot(0)?;
         // From now on odometry speaks of the world, as the path does.
         robot.set_pose(start)?;
-        let parameters = FollowerParameters { steering, ..FollowerParameters::default() };
+        let parameters = PathFollowerParameters { steering, ..PathFollowerParameters::default() };
         let mut follower = PathFollower::new(path.clone(), parameters)?;
         while follower.rest() > 0.01 {
             let twist = follower.step(robot.pose()?);

@@ -10,7 +10,7 @@ use roverlab::geometry::{Pose, Twist, units};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{Clock, Drive};
 use roverlab::safety::SafetyState::{Armed, Auto, EmergencyStop, Manual, SafeStop};
-use roverlab::safety::{Beat, Panel, Requests, SafetyState, Supervised, SupervisorParameters};
+use roverlab::safety::{Heartbeat, Panel, Requests, SafetyState, Supervised, SupervisedParameters};
 use roverlab::world::{RobotSpec, Scene, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -20,18 +20,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // The base station: what its people press at which time, and what it hears of the robot.
     let heard = RefCell::new(vec![(Manual, 0.0)]);
-    let station = |now: f64, beat: Beat| {
+    let station = |now: f64, heartbeat: Heartbeat| {
         let mut heard = heard.borrow_mut();
-        if heard.last().is_some_and(|&(state, _)| state != beat.state) {
-            let causes: Vec<&str> = beat.causes.names().collect();
+        if heard.last().is_some_and(|&(state, _)| state != heartbeat.state) {
+            let causes: Vec<&str> = heartbeat.causes.names().collect();
             let cause = if causes.is_empty() { "as asked".into() } else { causes.join(", ") };
-            println!("{now:5.2} s: {:?}, {cause}", beat.state);
-            heard.push((beat.state, now));
+            println!("{now:5.2} s: {:?}, {cause}", heartbeat.state);
+            heard.push((heartbeat.state, now));
         }
         let within = |from: f64, to: f64| (from..to).contains(&now);
         Panel {
             // The radio link is lost for a second.
-            heartbeat: (!within(3.0, 4.0)).then_some(beat.count),
+            heartbeat: (!within(3.0, 4.0)).then_some(heartbeat.count),
             requests: Requests {
                 arm: within(0.2, 0.4) || within(6.0, 6.2),
                 start: within(0.6, 0.8) || within(6.4, 6.6),
@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             ..Panel::default()
         }
     };
-    let parameters = SupervisorParameters::default();
+    let parameters = SupervisedParameters::default();
     let mut car = Supervised::new(simulation.robot(0)?, station, parameters.clone())?;
 
     // The program knows nothing of all this; it drives on and on.

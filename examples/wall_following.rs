@@ -5,8 +5,8 @@
 //! `cargo run --release --example wall_following`
 
 use roverlab::drive::{
-    AlongWall, FollowsWalls, LidarWallFollower, LidarWallParameters, WallFollower, WallFollowerParameters,
-    WallReading,
+    AlongWall, FollowsWalls, LidarWallFollower, LidarWallFollowerParameters, WallFollower,
+    WallFollowerParameters, WallReading,
 };
 use roverlab::geometry::{Point, units};
 use roverlab::io::Result;
@@ -26,7 +26,7 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
         .mark(Mark::Start, room.start.position());
 
     let mut sensors = WallFollower::new(WallFollowerParameters::default())?;
-    let mut lidar = LidarWallFollower::new(LidarWallParameters::default())?;
+    let mut lidar = LidarWallFollower::new(LidarWallFollowerParameters::default())?;
     let runs = [("distance sensors", walk(&scene, &mut sensors)?), ("lidar", walk(&scene, &mut lidar)?)];
     for (&colour, (name, truth)) in SERIES.iter().zip(runs) {
         let path: Vec<Point> = truth.trail.iter().map(|point| point.pose.position()).collect();

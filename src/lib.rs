@@ -13,7 +13,7 @@
 //! use roverlab::geometry::{Point, Pose};
 //! use roverlab::io::control::run;
 //! use roverlab::io::sim::{SimOptions, Simulation};
-//! use roverlab::nav::{DistBug, BugOutcome, DistBugParameters};
+//! use roverlab::nav::{DistBug, BugOutcome, BugParameters};
 //! use roverlab::world::{RobotSpec, Scene, Wall, World};
 //!
 //! # fn main() -> roverlab::io::Result<()> {
@@ -25,7 +25,7 @@
 //! let mut robot = simulation.robot(0)?;
 //!
 //! let goal = Point::new(2.5, 1.0);
-//! let mut bug = DistBug::new(start.to_local(goal), DistBugParameters::default())?;
+//! let mut bug = DistBug::new(start.to_local(goal), BugParameters::default())?;
 //! let outcome = run(&mut robot, &mut bug, 120.0, |_, _, _| {})?;
 //!
 //! let truth = simulation.truth().robot(0)?;

@@ -8,7 +8,7 @@ use std::cell::Cell;
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::{Clock, DistanceSensors, Drive, Lidar, LidarScan, LidarSettings, Psd, Result};
 use roverlab::safety::{
-    BaseStation, Beat, Causes, Panel, Requests, SafetyState, Station, Supervised, SupervisorParameters,
+    BaseStation, Causes, Heartbeat, Panel, Requests, SafetyState, Station, Supervised, SupervisedParameters,
 };
 
 /// Counts what the present thread allocates.
@@ -147,11 +147,11 @@ struct Crew {
 }
 
 impl Station for Crew {
-    fn exchange(&mut self, now: f64, beat: Beat) -> Panel {
+    fn exchange(&mut self, now: f64, heartbeat: Heartbeat) -> Panel {
         self.base.look(now);
         self.base.panel.requests = Requests { arm: now > 0.03, start: now > 0.07, disarm: false };
         (self.change)(now, &mut self.base.panel);
-        self.base.exchange(now, beat)
+        self.base.exchange(now, heartbeat)
     }
 }
 
@@ -184,7 +184,7 @@ fn supervision_allocates_nothing_after_it_was_made() {
         let fence =
             [(-1.0, -1.0), (1.8, -1.0), (1.8, 1.0), (-1.0, 1.0)].map(|(x, y)| Point::new(x, y)).to_vec();
         let steps = if cause == Causes::OUTSIDE_FENCE { 120 } else { 60 };
-        let parameters = SupervisorParameters { fence, ..SupervisorParameters::default() };
+        let parameters = SupervisedParameters { fence, ..SupervisedParameters::default() };
         let crew = Crew { base: BaseStation::new(0.5), change };
         let mut car = Supervised::new(Plain::default(), crew, parameters).unwrap();
         let mut scan = LidarScan { ranges: Vec::with_capacity(180), ..LidarScan::default() };
@@ -199,7 +199,7 @@ fn what_allocates_is_counted() {
     assert!(allocations(|| drop(std::hint::black_box(vec![1_u8; 100]))) > 0);
     let made = allocations(|| {
         let crew = Crew { base: BaseStation::new(0.5), change: |_, _| {} };
-        drop(Supervised::new(Plain::default(), crew, SupervisorParameters::default()));
+        drop(Supervised::new(Plain::default(), crew, SupervisedParameters::default()));
     });
     assert!(made > 0, "a supervisor is made of memory");
 }

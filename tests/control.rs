@@ -4,13 +4,13 @@
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
-use roverlab::drive::colour::{ColourTracker, HomeParameters, PushHome, TrackerParameters};
-use roverlab::drive::motion_watch::{MotionWatch, WatchParameters};
+use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
+use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::{
-    AToB, AToBParameters, AlongWall, CarDriver, CarParameters, CarToB, Chase, ChaseParameters, Goal,
-    LidarWallFollower, LidarWallParameters, Method, OmniDriver, OmniParameters, OmniTracker, PidWallFollower,
-    PidWallParameters, RandomDrive, RandomDriveParameters, TwoLevelWallFollower, WallFollower,
-    WallFollowerParameters,
+    AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters, Goal,
+    LidarWallFollower, LidarWallFollowerParameters, Method, OmniDriver, OmniParameters, OmniTracker,
+    PidWallFollower, PidWallFollowerParameters, RandomDrive, RandomDriveParameters, TwoLevelWallFollower,
+    WallFollower, WallFollowerParameters,
 };
 use roverlab::evolve::Gait;
 use roverlab::geometry::{Point, Pose, Twist};
@@ -21,9 +21,9 @@ use roverlab::io::{Call, Clock, Drive, Error, ErrorKind, MockRobot, Result};
 use roverlab::kinematics::{Ackermann, OdometryErrors, Omni};
 use roverlab::maze::{
     Direction, LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters, Maze, MazeRunner,
-    RecursiveExplorer, Rig, RunnerParameters, Scale, Wall, mouse,
+    MazeRunnerParameters, RecursiveExplorer, Rig, Scale, WallState, mouse,
 };
-use roverlab::nav::{BugKind, BugParameters, DistBug, NavigateParameters, Navigator};
+use roverlab::nav::{BugKind, BugParameters, DistBug, Navigator, NavigatorParameters};
 use roverlab::race::{
     Cone, ConeTrack, EventParameters, EventRacer, GapDriver, RaceOutcome, Racer, RacerParameters,
 };
@@ -66,7 +66,7 @@ const CASES: [Case; 24] = [
     ("car", RobotSpec::car, |robot, limit, stop| {
         let driver = CarDriver { kinematics: Ackermann::new(0.12, 0.1, 0.5).unwrap(), full_speed: 0.5 };
         let goal = Goal::point(Point::new(2.0, -2.0));
-        let mut behaviour = CarToB::new(Method::Arc, goal, driver, CarParameters::default())?;
+        let mut behaviour = CarToB::new(Method::Arc, goal, driver, CarToBParameters::default())?;
         driven(robot, &mut behaviour, limit, stop)
     }),
     ("Mecanum", RobotSpec::omni, |robot, limit, stop| {
@@ -79,11 +79,11 @@ const CASES: [Case; 24] = [
         driven(robot, &mut AlongWall::new(follower), limit, stop)
     }),
     ("wall by PID", RobotSpec::s4, |robot, limit, stop| {
-        let follower = PidWallFollower::new(PidWallParameters::default())?;
+        let follower = PidWallFollower::new(PidWallFollowerParameters::default())?;
         driven(robot, &mut AlongWall::new(follower), limit, stop)
     }),
     ("wall by lidar", RobotSpec::s4, |robot, limit, stop| {
-        let follower = LidarWallFollower::new(LidarWallParameters::default())?;
+        let follower = LidarWallFollower::new(LidarWallFollowerParameters::default())?;
         driven(robot, &mut AlongWall::new(follower), limit, stop)
     }),
     ("wall as printed", RobotSpec::s4, |robot, limit, stop| {
@@ -115,19 +115,19 @@ const CASES: [Case; 24] = [
     }),
     ("navigate", RobotSpec::s4, |robot, limit, stop| {
         let goal = Point::new(5.5, 5.5);
-        let mut navigator = Navigator::new(&room(), START, goal, NavigateParameters::default())?;
+        let mut navigator = Navigator::new(&room(), START, goal, NavigatorParameters::default())?;
         driven(robot, &mut navigator, limit, stop)
     }),
     ("colour", RobotSpec::s4, |robot, limit, stop| {
-        let mut tracker = ColourTracker::new(finder(), TrackerParameters::default())?;
+        let mut tracker = ColourTracker::new(finder(), ColourTrackerParameters::default())?;
         driven(robot, &mut tracker, limit, stop)
     }),
     ("home", RobotSpec::s4, |robot, limit, stop| {
-        let mut push = PushHome::new(finder(), Point::origin(), HomeParameters::default())?;
+        let mut push = PushHome::new(finder(), Point::origin(), PushHomeParameters::default())?;
         driven(robot, &mut push, limit, stop)
     }),
     ("motion", RobotSpec::s4, |robot, limit, stop| {
-        driven(robot, &mut MotionWatch::new(WatchParameters::new(1.0)).unwrap(), limit, stop)
+        driven(robot, &mut MotionWatch::new(MotionWatchParameters::new(1.0)).unwrap(), limit, stop)
     }),
     ("gait", RobotSpec::s4, |robot, limit, stop| {
         let gait = Gait::from_bytes(&[30, 128, 200, 40, 128, 90], 2, 1)?;
@@ -229,9 +229,9 @@ fn the_time_limit_and_who_watches_end_every_run() {
 fn an_exploration_ends_by_the_same_rules() {
     let explored = |fault: &str, limit: f64| {
         let (scale, spec) = (Scale::MICROMOUSE, mouse());
-        let mut maze = Maze::filled(1, 12, Wall::Present).unwrap();
+        let mut maze = Maze::filled(1, 12, WallState::Present).unwrap();
         for y in 0..11 {
-            maze.set_wall(roverlab::maze::Cell::new(0, y), Direction::North, Wall::Absent);
+            maze.set_wall(roverlab::maze::Cell::new(0, y), Direction::North, WallState::Absent);
         }
         let start = scale.pose(maze.start(), maze.heading());
         let scene = Scene::with_robot(scale.world(&maze), spec.clone(), start);
@@ -240,7 +240,7 @@ fn an_exploration_ends_by_the_same_rules() {
         let mut robot =
             Faulty::new(simulation.robot(0).unwrap(), fault.parse().into_iter().collect::<Vec<_>>());
         let known = Maze::unexplored(1, 12).unwrap();
-        let parameters = RunnerParameters::MICROMOUSE;
+        let parameters = MazeRunnerParameters::MICROMOUSE;
         let mut runner =
             MazeRunner::new(&mut robot, rig(&spec).unwrap(), known, scale, parameters, limit).unwrap();
         let found = runner.explore(&mut RecursiveExplorer::new(), &mut |_| ());

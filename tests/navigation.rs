@@ -7,7 +7,7 @@ use roverlab::io::control::{self, Behaviour, LidarObservation};
 use roverlab::io::sim::{NoiseModel, SimOptions, SimRobot, Simulation, Truth};
 use roverlab::io::wrappers::{Fault, Faulty};
 use roverlab::io::{Clock, Drive, ErrorKind, Lidar, LidarScan};
-use roverlab::nav::{DistBug, DistBugEvent, DistBugOutcome, DistBugParameters};
+use roverlab::nav::{BugEvent, BugOutcome, BugParameters, DistBug};
 use roverlab::scan::{ScanFilter, ScanMatcher};
 use roverlab::world::{RobotSpec, Scene, Wall, World};
 
@@ -140,9 +140,9 @@ fn run(
     start: Pose,
     goal: Point,
     options: SimOptions,
-) -> (DistBugOutcome, Vec<DistBugEvent>, Pose, u32) {
+) -> (BugOutcome, Vec<BugEvent>, Pose, u32) {
     let (mut robot, truth) = robot_in(world, start, options);
-    let mut bug = DistBug::new(start.to_local(goal), DistBugParameters::default()).unwrap();
+    let mut bug = DistBug::new(start.to_local(goal), BugParameters::default()).unwrap();
     let mut events = Vec::new();
     let outcome =
         control::run(&mut robot, &mut bug, 300.0, |_, bug, _| events.extend(bug.take_events())).unwrap();
@@ -154,8 +154,8 @@ fn run(
 fn a_goal_in_sight_is_reached_without_a_hit() {
     let goal = Point::new(1.2, 2.5);
     let (outcome, events, pose, contacts) = run(room(), START, goal, SimOptions::ideal());
-    assert_eq!((outcome, contacts), (DistBugOutcome::Reached, 0));
-    assert_eq!(events, [DistBugEvent::End(DistBugOutcome::Reached)]);
+    assert_eq!((outcome, contacts), (BugOutcome::Reached, 0));
+    assert_eq!(events, [BugEvent::End(BugOutcome::Reached)]);
     assert!(pose.distance_to(goal) < 0.05);
 }
 
@@ -164,11 +164,11 @@ fn hits_and_leaves_alternate_and_get_nearer() {
     let goal = Point::new(2.6, 2.0);
     for noise in [0.0, 1.0] {
         let (outcome, events, pose, contacts) = run(room(), START, goal, SimOptions::with_noise(noise, 3));
-        assert_eq!((outcome, contacts), (DistBugOutcome::Reached, 0), "noise {noise}");
+        assert_eq!((outcome, contacts), (BugOutcome::Reached, 0), "noise {noise}");
         assert!(pose.distance_to(goal) < 0.05);
         let kinds: Vec<_> = events.iter().map(std::mem::discriminant).collect();
         assert!(kinds.windows(2).all(|pair| pair[0] != pair[1]), "{events:?}");
-        assert!(matches!(events[0], DistBugEvent::Hit { .. }));
+        assert!(matches!(events[0], BugEvent::Hit { .. }));
     }
 }
 
@@ -182,7 +182,7 @@ fn a_walled_in_goal_is_unreachable() {
     for noise in [0.0, 1.0] {
         let options = SimOptions::with_noise(noise, 2);
         let (outcome, _, _, contacts) = run(world.clone(), START, Point::new(2.0, 2.0), options);
-        assert_eq!((outcome, contacts), (DistBugOutcome::Unreachable, 0), "noise {noise}");
+        assert_eq!((outcome, contacts), (BugOutcome::Unreachable, 0), "noise {noise}");
     }
 }
 
@@ -193,23 +193,23 @@ fn a_robot_in_a_box_says_so() {
     let corners = [(-side, -side), (side, -side), (side, side), (-side, side)];
     world.add_loop(&corners.map(|(x, y)| Point::new(START.x + x, START.y + y)));
     let (outcome, ..) = run(world, START, Point::new(2.0, 2.0), SimOptions::ideal());
-    assert_eq!(outcome, DistBugOutcome::Unreachable);
+    assert_eq!(outcome, BugOutcome::Unreachable);
 }
 
 #[test]
 fn time_runs_out() {
     let (mut robot, _) = robot_in(room(), START, SimOptions::ideal());
-    let mut bug = DistBug::new(Point::new(5.0, 0.0), DistBugParameters::default()).unwrap();
-    assert_eq!(control::run(&mut robot, &mut bug, 1.0, |_, _, _| {}).unwrap(), DistBugOutcome::TimedOut);
+    let mut bug = DistBug::new(Point::new(5.0, 0.0), BugParameters::default()).unwrap();
+    assert_eq!(control::run(&mut robot, &mut bug, 1.0, |_, _, _| {}).unwrap(), BugOutcome::TimedOut);
 }
 
 #[test]
 fn bad_parameters_and_readings_are_named() {
-    let parameters = DistBugParameters { step: -1.0, ..DistBugParameters::default() };
+    let parameters = BugParameters { step: -1.0, ..BugParameters::default() };
     let error = DistBug::new(Point::origin(), parameters).unwrap_err();
     assert_eq!(error.to_string(), "STEP is -1; expected a positive, finite number");
-    assert!(DistBug::new(Point::new(f64::NAN, 0.0), DistBugParameters::default()).is_err());
-    let mut bug = DistBug::new(Point::new(1.0, 0.0), DistBugParameters::default()).unwrap();
+    assert!(DistBug::new(Point::new(f64::NAN, 0.0), BugParameters::default()).is_err());
+    let mut bug = DistBug::new(Point::new(1.0, 0.0), BugParameters::default()).unwrap();
     let odometry = Pose::new(f64::NAN, 0.0, 0.0);
     let observation = LidarObservation { odometry, ..LidarObservation::default() };
     assert_eq!(bug.step(0.0, &observation).unwrap_err().kind(), ErrorKind::InvalidInput);
@@ -220,7 +220,7 @@ fn nan_ranges_do_not_stop_the_run() {
     let (mut robot, _) = robot_in(room(), START, SimOptions::ideal());
     let mut scan = robot.scan().unwrap();
     scan.ranges.iter_mut().step_by(3).for_each(|range| *range = f64::NAN);
-    let mut bug = DistBug::new(Point::new(1.0, 0.0), DistBugParameters::default()).unwrap();
+    let mut bug = DistBug::new(Point::new(1.0, 0.0), BugParameters::default()).unwrap();
     let observation = LidarObservation { scan, ..LidarObservation::default() };
     for _ in 0..50 {
         let decision = bug.step(0.0, &observation).unwrap();
@@ -230,7 +230,7 @@ fn nan_ranges_do_not_stop_the_run() {
 
 #[test]
 fn a_blind_lidar_and_a_stopped_clock_end_the_run_with_an_error() {
-    let mut bug = DistBug::new(Point::new(1.0, 0.0), DistBugParameters::default()).unwrap();
+    let mut bug = DistBug::new(Point::new(1.0, 0.0), BugParameters::default()).unwrap();
     let (mut robot, _) = robot_in(room(), START, SimOptions::ideal());
     let mut scan = robot.scan().unwrap();
     scan.ranges.fill(f64::NAN);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use image::GrayImage;
 use roverlab::vision::{self, Border, Canny, CannyThresholds, GaussianKernel, SobelScale};
-use roverlab::world::Cell;
+use roverlab::world::Occupancy;
 use roverlab::world::formats::{load_scene, ros_map};
 
 fn published(folder: &str) -> PathBuf {
@@ -30,7 +30,7 @@ fn cells_are_counted_as_published() {
         let grid = &map.grid;
         let number = |index: usize| columns[index].parse::<usize>().unwrap();
         assert_eq!((grid.width(), grid.height()), (number(2), number(3)), "{line}");
-        let counts = [Cell::Occupied, Cell::Free, Cell::Unknown].map(|cell| grid.count(cell));
+        let counts = [Occupancy::Occupied, Occupancy::Free, Occupancy::Unknown].map(|cell| grid.count(cell));
         assert_eq!(counts, [number(6), number(7), number(8)], "{line}");
         assert_eq!(grid.resolution(), columns[4].parse::<f64>().unwrap(), "{line}");
         assert!(load_scene(&path).is_ok());
@@ -86,7 +86,7 @@ fn pictures(name: &str, made: &str) -> (GrayImage, GrayImage) {
 
 #[test]
 #[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
-fn gradients_are_those_of_imageproc_but_for_rounding() -> Result<(), vision::Error> {
+fn gradients_are_those_of_imageproc_but_for_rounding() -> Result<(), vision::ImageError> {
     let (elephant, truth) = pictures("elephant.png", "elephant_gradients.png");
     let mut found = elephant.clone();
     vision::sobel_l2_into(
@@ -110,7 +110,7 @@ fn gradients_are_those_of_imageproc_but_for_rounding() -> Result<(), vision::Err
 
 #[test]
 #[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
-fn edges_are_those_of_imageproc() -> Result<(), vision::Error> {
+fn edges_are_those_of_imageproc() -> Result<(), vision::ImageError> {
     let (zebra, truth) = pictures("zebra.png", "zebra_canny.png");
     let (mut smooth, mut found) = (zebra.clone(), zebra.clone());
     let kernel = GaussianKernel::new(7, 1.4)?;

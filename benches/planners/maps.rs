@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use roverlab::nav::grid::Components;
+use roverlab::nav::grid::GridComponents;
 use roverlab::random::Stream;
 use roverlab::world::formats::movingai;
 use roverlab::world::{BitGrid, GridCell};
@@ -59,7 +59,7 @@ pub(crate) fn own(size: usize, queries: usize) -> Vec<Map> {
 
 fn with_queries(name: String, grid: BitGrid, count: usize) -> Map {
     let mut stream = Stream::new(3);
-    let components = Components::new(&grid);
+    let components = GridComponents::new(&grid);
     let mut queries = Vec::new();
     while queries.len() < count {
         let mut cell = || GridCell::new(stream.below(grid.width()), stream.below(grid.height()));

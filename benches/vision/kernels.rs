@@ -2,8 +2,8 @@ use std::hint::black_box;
 
 use image::{GrayImage, RgbImage};
 use roverlab::vision::{
-    Border, Canny, CannyThresholds, Components, Error, GaussianKernel, GrayView, GrayViewMut, GrayWeights,
-    Hog, HogParameters, HoughLines, HoughSegments, HueLimits, HueRange, HueScale, RgbViewMut,
+    Border, Canny, CannyThresholds, Components, GaussianKernel, GrayView, GrayViewMut, GrayWeights, Hog,
+    HogParameters, HoughLines, HoughSegments, HueLimits, HueRange, HueScale, ImageError, RgbViewMut,
     SegmentParameters, SobelScale, absolute_difference_into, gaussian_into, gray_into, gray_to_rgb_into,
     hsi_into, hsv_into, hue_histogram_into, hue_into, hue_match_into, laplace_into, laplace_saturated_into,
     mean_difference, overlay_gray_into, projections_into, sector_differences, sobel_l1_into, sobel_l2_into,
@@ -32,7 +32,7 @@ pub(crate) struct Sample {
 const THRESHOLDS: CannyThresholds = CannyThresholds { low: 60, high: 150 };
 
 /// All kernels on a pair of images.
-pub(crate) fn measure(pair: &Pair, effort: Effort) -> Result<Vec<Sample>, Error> {
+pub(crate) fn measure(pair: &Pair, effort: Effort) -> Result<Vec<Sample>, ImageError> {
     let mut bench = Bench::new(pair, effort)?;
     bench.colours()?;
     bench.gradients()?;
@@ -58,14 +58,14 @@ struct Bench<'a> {
 const RED: HueRange = HueRange { low: 33, high: 51 };
 const LIMITS: HueLimits = HueLimits { min_saturation: 128, min_intensity: 6 };
 
-fn gray_of(image: &RgbImage) -> Result<GrayImage, Error> {
+fn gray_of(image: &RgbImage) -> Result<GrayImage, ImageError> {
     let mut gray = GrayImage::new(image.width(), image.height());
     gray_into(image.try_into()?, (&mut gray).try_into()?, GrayWeights::Rec601)?;
     Ok(gray)
 }
 
 impl<'a> Bench<'a> {
-    fn new(pair: &'a Pair, effort: Effort) -> Result<Self, Error> {
+    fn new(pair: &'a Pair, effort: Effort) -> Result<Self, ImageError> {
         let (width, height) = pair.first.dimensions();
         let gray = gray_of(&pair.first)?;
         let empty = GrayImage::new(width, height);
@@ -93,8 +93,8 @@ impl<'a> Bench<'a> {
         &mut self,
         kernel: &'static str,
         imageproc: Option<&dyn Fn(&GrayImage)>,
-        mut call: impl FnMut(GrayView<'_>, GrayViewMut<'_>) -> Result<(), Error>,
-    ) -> Result<(), Error> {
+        mut call: impl FnMut(GrayView<'_>, GrayViewMut<'_>) -> Result<(), ImageError>,
+    ) -> Result<(), ImageError> {
         let (gray, output) = (&self.gray, &mut self.output);
         call(gray.try_into()?, (&mut *output).try_into()?)?;
         let seconds = median(self.effort, || {
@@ -113,8 +113,8 @@ impl<'a> Bench<'a> {
         &mut self,
         kernel: &'static str,
         imageproc: Option<&dyn Fn(&RgbImage)>,
-        mut call: impl FnMut(roverlab::vision::RgbView<'_>, GrayViewMut<'_>) -> Result<(), Error>,
-    ) -> Result<(), Error> {
+        mut call: impl FnMut(roverlab::vision::RgbView<'_>, GrayViewMut<'_>) -> Result<(), ImageError>,
+    ) -> Result<(), ImageError> {
         let (image, output) = (&self.pair.first, &mut self.output);
         call(image.try_into()?, (&mut *output).try_into()?)?;
         let seconds = median(self.effort, || {
@@ -132,8 +132,8 @@ impl<'a> Bench<'a> {
     fn colour_to_colour(
         &mut self,
         kernel: &'static str,
-        mut call: impl FnMut(roverlab::vision::RgbView<'_>, RgbViewMut<'_>) -> Result<(), Error>,
-    ) -> Result<(), Error> {
+        mut call: impl FnMut(roverlab::vision::RgbView<'_>, RgbViewMut<'_>) -> Result<(), ImageError>,
+    ) -> Result<(), ImageError> {
         let (image, output) = (&self.pair.first, &mut self.colour);
         call(image.try_into()?, (&mut *output).try_into()?)?;
         let seconds = median(self.effort, || {
@@ -160,7 +160,7 @@ impl<'a> Bench<'a> {
         self.add(kernel, bytes, seconds, peer);
     }
 
-    fn colours(&mut self) -> Result<(), Error> {
+    fn colours(&mut self) -> Result<(), ImageError> {
         let grayscale = |image: &RgbImage| {
             black_box(image::imageops::grayscale(image));
         };
@@ -186,7 +186,7 @@ impl<'a> Bench<'a> {
         })
     }
 
-    fn gradients(&mut self) -> Result<(), Error> {
+    fn gradients(&mut self) -> Result<(), ImageError> {
         let threshold = |image: &GrayImage| {
             let kind = imageproc::contrast::ThresholdType::Binary;
             black_box(imageproc::contrast::threshold(image, 128, kind));
@@ -223,7 +223,7 @@ impl<'a> Bench<'a> {
         self.gray_to_gray("canny", Some(&peer), |a, b| canny.find_into(a, b, THRESHOLDS))
     }
 
-    fn shapes(&mut self) -> Result<(), Error> {
+    fn shapes(&mut self) -> Result<(), ImageError> {
         let (mut columns, mut rows) =
             (vec![0; self.gray.width() as usize], vec![0; self.gray.height() as usize]);
         self.plain("projections", 1, None, |bench| {
@@ -237,7 +237,7 @@ impl<'a> Bench<'a> {
         });
         self.plain("blobs", 1, Some(peer), |bench| {
             let mask: GrayView<'_> = (&bench.mask).try_into()?;
-            Ok::<usize, Error>(components.find(mask, 10).len())
+            Ok::<usize, ImageError>(components.find(mask, 10).len())
         });
         let mut hough = HoughLines::new(1.0, 180)?;
         let peer = median(self.effort, || {
@@ -247,22 +247,22 @@ impl<'a> Bench<'a> {
         });
         self.plain("hough", 1, Some(peer), |bench| {
             let edges: GrayView<'_> = (&bench.edges).try_into()?;
-            Ok::<usize, Error>(hough.find(edges, 60).len())
+            Ok::<usize, ImageError>(hough.find(edges, 60).len())
         });
         let mut segments = HoughSegments::new(180)?;
         self.plain("hough_probabilistic", 1, None, |bench| {
             let edges: GrayView<'_> = (&bench.edges).try_into()?;
-            Ok::<usize, Error>(segments.find(edges, SegmentParameters::default()).len())
+            Ok::<usize, ImageError>(segments.find(edges, SegmentParameters::default()).len())
         });
         let mut hog = Hog::new(HogParameters::default())?;
         self.plain("hog", 1, None, |bench| {
             let gray: GrayView<'_> = (&bench.gray).try_into()?;
-            Ok::<usize, Error>(hog.describe(gray)?.len())
+            Ok::<usize, ImageError>(hog.describe(gray)?.len())
         });
         Ok(())
     }
 
-    fn motion(&mut self) -> Result<(), Error> {
+    fn motion(&mut self) -> Result<(), ImageError> {
         let second = self.second.clone();
         self.gray_to_gray("difference", None, |a, b| absolute_difference_into(a, (&second).try_into()?, b))?;
         self.plain("mean_difference (fused)", 2, None, |bench| {

@@ -15,8 +15,10 @@ use roverlab::io::control::run;
 use roverlab::io::robios::RobiosRobot;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::wrappers::{Quantised, Stamp, Traced};
-use roverlab::io::{ErrorKind, Fill, LidarSettings, Picture, Psd, Resolution, Result, RobotIo, Viewport};
-use roverlab::nav::{DistBug, DistBugParameters};
+use roverlab::io::{
+    DisplayImage, ErrorKind, Fill, LidarSettings, Psd, Resolution, Result, RobotIo, Viewport,
+};
+use roverlab::nav::{BugParameters, DistBug};
 use roverlab::random::Stream;
 use roverlab::world::Colour;
 
@@ -47,7 +49,7 @@ fn work(job: &str, robot: &mut impl RobotIo) {
             let _ = drive.and_then(|mut drive| run(robot, &mut drive, 40.0, |_, _, _| {}));
         }
         _ => {
-            let bug = DistBug::new(Point::new(1.5, 0.9), DistBugParameters::default());
+            let bug = DistBug::new(Point::new(1.5, 0.9), BugParameters::default());
             let _ = bug.and_then(|mut bug| run(robot, &mut bug, 120.0, |_, _, _| {}));
         }
     }
@@ -83,7 +85,7 @@ fn tour(robot: &mut impl RobotIo) {
         let image = robot.image()?;
         robot.set_resolution(Resolution::Qvga)?;
         robot.image()?;
-        robot.draw_image(Picture::Rgb(&image), Viewport::default())?;
+        robot.draw_image(DisplayImage::Rgb(&image), Viewport::default())?;
         robot.print("hello\nworld")?;
         robot.print_at(4, 5, "text")?;
         robot.cursor()?;

@@ -1,6 +1,6 @@
 use std::f64::consts::FRAC_PI_2;
 
-use super::{FollowerParameters, Path, PathFollower, Waypoint};
+use super::{Path, PathFollower, PathFollowerParameters, Waypoint};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::Manoeuvre;
@@ -60,7 +60,7 @@ impl Goal {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AToBParameters {
     /// Speeds and steering along the path.
-    pub follower: FollowerParameters,
+    pub follower: PathFollowerParameters,
     /// The speed of turns on the spot in rad/s.
     pub turn_speed: f64,
     /// The speed of the last centimetres in m/s.
@@ -80,7 +80,7 @@ pub struct AToBParameters {
 impl Default for AToBParameters {
     fn default() -> Self {
         Self {
-            follower: FollowerParameters::default(),
+            follower: PathFollowerParameters::default(),
             turn_speed: 1.0,
             creep_speed: 0.1,
             spline_scale: 1.0,
@@ -376,7 +376,7 @@ impl AToB {
 }
 
 /// The speed of a dog curve for a bearing and a distance of the goal.
-pub(super) fn dog_twist(parameters: &FollowerParameters, bearing: f64, distance: f64) -> Twist {
+pub(super) fn dog_twist(parameters: &PathFollowerParameters, bearing: f64, distance: f64) -> Twist {
     let angular = (bearing / HOMING_TIME).clamp(-parameters.turn_rate, parameters.turn_rate);
     // The circle of this speed and turn passes no farther out than the one through the goal.
     let through_goal = 0.5 * distance / crate::geometry::math::sin(bearing.abs().min(FRAC_PI_2)).max(1e-9);

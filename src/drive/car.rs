@@ -1,7 +1,7 @@
 use std::ops::ControlFlow;
 
 use super::a_to_b::dog_twist;
-use super::{FollowerParameters, Goal, Method, Path, PathFollower, Steering};
+use super::{Goal, Method, Path, PathFollower, PathFollowerParameters, Steering};
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Command, Decision, Senses, halts};
 use crate::io::{Drive, Error, Motors, Result, Servos};
@@ -38,9 +38,9 @@ impl CarDriver {
 
 /// What [`CarToB`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CarParameters {
+pub struct CarToBParameters {
     /// Speeds and steering along the path.
-    pub follower: FollowerParameters,
+    pub follower: PathFollowerParameters,
     /// The least radius of planned paths in terms of the turning radius: more than 1, to leave room for corrections.
     pub margin: f64,
     /// The book's k of splines; more is taken where the spline would bend too tightly.
@@ -57,10 +57,10 @@ pub struct CarParameters {
     pub period: f64,
 }
 
-impl Default for CarParameters {
+impl Default for CarToBParameters {
     fn default() -> Self {
         Self {
-            follower: FollowerParameters {
+            follower: PathFollowerParameters {
                 speed: 0.2,
                 turn_rate: 1.0,
                 deceleration: 0.1,
@@ -123,7 +123,7 @@ pub struct CarToB {
     method: Method,
     goal: Goal,
     driver: CarDriver,
-    parameters: CarParameters,
+    parameters: CarToBParameters,
     phase: Phase,
     corrections: u32,
     /// The pieces of the path that come next, the last one first.
@@ -162,7 +162,7 @@ const DOG_HANDOVER: f64 = 4.0;
 
 impl CarToB {
     /// A drive of a car to a goal in the frame of the poses that will be observed.
-    pub fn new(method: Method, goal: Goal, driver: CarDriver, parameters: CarParameters) -> Result<Self> {
+    pub fn new(method: Method, goal: Goal, driver: CarDriver, parameters: CarToBParameters) -> Result<Self> {
         goal.check()?;
         parameters.follower.validate()?;
         require_positive("full speed", driver.full_speed)?;
@@ -399,7 +399,7 @@ mod tests {
 
     /// A car that does exactly as it is told. Returns where it ends.
     fn drive(method: Method, goal: Goal, start: Pose) -> Pose {
-        let mut behaviour = CarToB::new(method, goal, driver(), CarParameters::default()).unwrap();
+        let mut behaviour = CarToB::new(method, goal, driver(), CarToBParameters::default()).unwrap();
         let mut pose = start;
         for _ in 0..20_000 {
             let Some(state) = behaviour.step(pose).unwrap() else { return pose };
@@ -442,9 +442,9 @@ mod tests {
     #[test]
     fn wrong_numbers_are_refused() {
         let goal = Goal::point(Point::new(1.0, 0.0));
-        let parameters = CarParameters { margin: 0.5, ..CarParameters::default() };
+        let parameters = CarToBParameters { margin: 0.5, ..CarToBParameters::default() };
         assert!(CarToB::new(Method::Arc, goal, driver(), parameters).is_err());
-        let mut car = CarToB::new(Method::Arc, goal, driver(), CarParameters::default()).unwrap();
+        let mut car = CarToB::new(Method::Arc, goal, driver(), CarToBParameters::default()).unwrap();
         assert!(car.step(Pose::new(f64::INFINITY, 0.0, 0.0)).is_err());
     }
 }

@@ -2,7 +2,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::ops::ControlFlow;
 
 use super::a_to_b::dog_twist;
-use super::{FollowerParameters, Hermite, Method};
+use super::{Hermite, Method, PathFollowerParameters};
 use crate::geometry::{Pose, Twist};
 use crate::io::control::{Behaviour, Decision, SensedBy, Senses, halts};
 use crate::io::{Drive, Error, Result};
@@ -12,7 +12,7 @@ use crate::parameter::{require_positive, require_up_to};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChaseParameters {
     /// Speed, turn rate and deceleration.
-    pub follower: FollowerParameters,
+    pub follower: PathFollowerParameters,
     /// The distance to the goal, in metres, at which it is caught.
     pub distance: f64,
     /// The book's k of splines.
@@ -26,7 +26,7 @@ pub struct ChaseParameters {
 impl Default for ChaseParameters {
     fn default() -> Self {
         Self {
-            follower: FollowerParameters::default(),
+            follower: PathFollowerParameters::default(),
             distance: 0.05,
             spline_scale: 1.0,
             turn_threshold: 0.2,
@@ -107,7 +107,7 @@ impl Chase {
             Method::Turn => self.turn_or_drive(bearing, distance),
             // A goal that moves is not braked for.
             Method::Dog => {
-                let follower = FollowerParameters { deceleration: f64::INFINITY, ..*follower };
+                let follower = PathFollowerParameters { deceleration: f64::INFINITY, ..*follower };
                 dog_twist(&follower, bearing, distance)
             }
             // Forward arcs to goals behind are long; the robot turns towards them first.

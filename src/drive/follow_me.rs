@@ -8,7 +8,7 @@ use crate::parameter::{require, require_positive, require_up_to};
 
 /// What [`Follower`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FollowMeParameters {
+pub struct FollowerParameters {
     /// Metres between the middles of the follower and of the robot ahead.
     pub gap: f64,
     /// The fastest speed in m/s.
@@ -27,7 +27,7 @@ pub struct FollowMeParameters {
     pub period: f64,
 }
 
-impl Default for FollowMeParameters {
+impl Default for FollowerParameters {
     /// An S4 behind another robot of about its size.
     fn default() -> Self {
         Self {
@@ -43,7 +43,7 @@ impl Default for FollowMeParameters {
     }
 }
 
-impl FollowMeParameters {
+impl FollowerParameters {
     /// Fails with the name of the parameter that is out of range.
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("speed", self.speed)?;
@@ -61,7 +61,7 @@ impl FollowMeParameters {
 
 /// What a follower sees at a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FollowMeObservation<'a> {
+pub struct FollowerObservation<'a> {
     /// Seconds.
     pub time: f64,
     /// Where odometry takes the robot to be.
@@ -79,7 +79,7 @@ pub struct FollowMeObservation<'a> {
 /// robot ahead, and goes round what stands between.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Follower {
-    parameters: FollowMeParameters,
+    parameters: FollowerParameters,
     /// The robot ahead in the frame of odometry, its velocity, and when it was seen.
     target: Option<Target>,
     /// To which side it looks round for a robot that it has lost, as a bearing.
@@ -113,7 +113,7 @@ const BRAKING: f64 = 0.7;
 
 impl Follower {
     /// A follower that has not seen anybody.
-    pub fn new(parameters: FollowMeParameters) -> Result<Self> {
+    pub fn new(parameters: FollowerParameters) -> Result<Self> {
         parameters.validate()?;
         Ok(Self { parameters, target: None, looking: None })
     }
@@ -134,7 +134,7 @@ impl Follower {
     }
 
     /// The next speed.
-    pub fn step(&mut self, seen: &FollowMeObservation<'_>) -> Result<Twist> {
+    pub fn step(&mut self, seen: &FollowerObservation<'_>) -> Result<Twist> {
         if !(seen.pose.is_finite() && seen.time.is_finite()) {
             let found = format!("{:?} at {} s", seen.pose, seen.time);
             return Err(Error::invalid_input("observed pose", found, "finite numbers"));
@@ -173,7 +173,7 @@ impl Follower {
     }
 
     /// Finds the robot ahead among the candidates.
-    fn track(&mut self, seen: &FollowMeObservation<'_>) {
+    fn track(&mut self, seen: &FollowerObservation<'_>) {
         let nearest_to = |place: Point| {
             let candidates = seen.candidates.iter().map(|&candidate| seen.pose.to_world(candidate));
             candidates.min_by(|a, b| (a - place).norm().total_cmp(&(b - place).norm()))
@@ -277,7 +277,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn follower() -> Follower {
-        Follower::new(FollowMeParameters::default()).unwrap()
+        Follower::new(FollowerParameters::default()).unwrap()
     }
 
     proptest! {
@@ -291,7 +291,7 @@ mod tests {
                 let place = robot.to_local(leader.position());
                 let others = [Point::new(-0.5, 0.3), Point::new(1.5, -1.4)];
                 let candidates = [others[0], place, others[1]];
-                let seen = FollowMeObservation {
+                let seen = FollowerObservation {
                     time: 0.1 * f64::from(step), pose: robot, candidates: &candidates, obstacles: &[],
                 };
                 let twist = follower.step(&seen).unwrap();
@@ -308,7 +308,7 @@ mod tests {
     fn it_does_not_take_another_thing_for_the_robot_ahead() {
         let mut follower = follower();
         let step = |follower: &mut Follower, time: f64, candidates: &[Point]| {
-            let seen = FollowMeObservation { time, pose: Pose::default(), candidates, obstacles: &[] };
+            let seen = FollowerObservation { time, pose: Pose::default(), candidates, obstacles: &[] };
             follower.step(&seen).unwrap()
         };
         step(&mut follower, 0.0, &[Point::new(0.8, 0.0), Point::new(0.5, 0.9)]);
@@ -321,7 +321,7 @@ mod tests {
         assert!(follower.is_lost(5.0) && twist.linear > 0.0, "it drives to where the robot was");
         // Once there, it looks round.
         let there = Pose::new(0.75, 0.0, 0.0);
-        let seen = FollowMeObservation { time: 9.0, pose: there, candidates: &[], obstacles: &[] };
+        let seen = FollowerObservation { time: 9.0, pose: there, candidates: &[], obstacles: &[] };
         let twist = follower.step(&seen).unwrap();
         assert!(follower.is_lost(9.0) && twist.linear == 0.0 && twist.angular != 0.0);
         // It is found again.
@@ -354,7 +354,7 @@ mod tests {
     fn obstacles_are_passed_and_not_driven_at() {
         let mut follower = follower();
         let obstacles: Vec<Point> = (-2..3).map(|i| Point::new(0.35, 0.03 * f64::from(i))).collect();
-        let seen = FollowMeObservation {
+        let seen = FollowerObservation {
             time: 0.0,
             pose: Pose::default(),
             candidates: &[Point::new(1.5, 0.0)],
@@ -363,22 +363,22 @@ mod tests {
         let twist = follower.step(&seen).unwrap();
         assert!(twist.angular.abs() > 0.2, "{twist:?}");
         let wall: Vec<Point> = (-20..21).map(|i| Point::new(0.12, 0.03 * f64::from(i))).collect();
-        let blocked = follower.step(&FollowMeObservation { time: 0.1, obstacles: &wall, ..seen }).unwrap();
+        let blocked = follower.step(&FollowerObservation { time: 0.1, obstacles: &wall, ..seen }).unwrap();
         assert!(blocked.linear < 0.05, "{blocked:?}");
     }
 
     #[test]
     fn nonsense_is_refused() {
-        let good = FollowMeParameters::default();
+        let good = FollowerParameters::default();
         for bad in [
-            FollowMeParameters { gap: 0.1, ..good },
-            FollowMeParameters { speed: -1.0, ..good },
-            FollowMeParameters { patience: f64::NAN, ..good },
+            FollowerParameters { gap: 0.1, ..good },
+            FollowerParameters { speed: -1.0, ..good },
+            FollowerParameters { patience: f64::NAN, ..good },
         ] {
             assert!(Follower::new(bad).is_err());
         }
         let lost = Pose::new(f64::NAN, 0.0, 0.0);
-        let seen = FollowMeObservation { time: 0.0, pose: lost, candidates: &[], obstacles: &[] };
+        let seen = FollowerObservation { time: 0.0, pose: lost, candidates: &[], obstacles: &[] };
         assert!(follower().step(&seen).is_err());
         assert!(robots_in(&LidarScan::default(), 0.07).is_empty());
     }

@@ -25,7 +25,7 @@ pub enum Steering {
 
 /// What a [`PathFollower`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FollowerParameters {
+pub struct PathFollowerParameters {
     /// The fastest speed in m/s.
     pub speed: f64,
     /// The fastest turn in rad/s: bends are taken more slowly.
@@ -40,7 +40,7 @@ pub struct FollowerParameters {
     pub steering: Steering,
 }
 
-impl Default for FollowerParameters {
+impl Default for PathFollowerParameters {
     /// 0.25 m/s, by heading and cross-track error, for a robot as fast in its turns as an S4.
     fn default() -> Self {
         Self {
@@ -54,7 +54,7 @@ impl Default for FollowerParameters {
     }
 }
 
-impl FollowerParameters {
+impl PathFollowerParameters {
     /// Fails with the name of the parameter that is out of range.
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_positive("speed", self.speed)?;
@@ -72,11 +72,11 @@ impl FollowerParameters {
 /// Drives along a path with feedback: from the pose at each step to a speed.
 ///
 /// ```
-/// use roverlab::drive::{FollowerParameters, Path, PathFollower};
+/// use roverlab::drive::{PathFollowerParameters, Path, PathFollower};
 /// use roverlab::geometry::{Point, Pose};
 /// use roverlab::kinematics::{Displacement, advance};
 /// let path = Path::arc(Pose::default(), Point::new(1.0, 0.5))?;
-/// let mut follower = PathFollower::new(path, FollowerParameters::default())?;
+/// let mut follower = PathFollower::new(path, PathFollowerParameters::default())?;
 /// // A robot that does as it is told, starting beside the path.
 /// let mut pose = Pose::new(0.0, 0.03, 0.0);
 /// while follower.rest() > 0.01 {
@@ -89,7 +89,7 @@ impl FollowerParameters {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathFollower {
     path: Path,
-    parameters: FollowerParameters,
+    parameters: PathFollowerParameters,
     /// The fastest speed at each point of the path.
     speeds: Vec<f64>,
     reverse: bool,
@@ -109,7 +109,7 @@ const LEAST_SHARE: f64 = 0.1;
 
 impl PathFollower {
     /// A follower at the start of a path.
-    pub fn new(path: Path, parameters: FollowerParameters) -> Result<Self> {
+    pub fn new(path: Path, parameters: PathFollowerParameters) -> Result<Self> {
         parameters.validate()?;
         let speeds = speed_profile(&path, &parameters);
         let rest = path.length();
@@ -219,7 +219,7 @@ impl PathFollower {
 }
 
 /// The fastest speed at each point, so that bends and the end are met slowly enough.
-fn speed_profile(path: &Path, parameters: &FollowerParameters) -> Vec<f64> {
+fn speed_profile(path: &Path, parameters: &PathFollowerParameters) -> Vec<f64> {
     let points = path.points();
     let mut speeds = vec![0.0; points.len()];
     let (mut next, mut at) = (0.0_f64, path.length());
@@ -241,7 +241,7 @@ mod tests {
 
     /// A robot that turns 0.2 s after it is told to. Returns the worst distance to the path after its first 0.5 m.
     fn drive(path: Path, start: Pose, steering: Steering, reverse: bool) -> (Pose, f64) {
-        let parameters = FollowerParameters { steering, ..FollowerParameters::default() };
+        let parameters = PathFollowerParameters { steering, ..PathFollowerParameters::default() };
         let mut follower = PathFollower::new(path, parameters).unwrap();
         if reverse {
             follower = follower.reversed();
@@ -296,7 +296,7 @@ mod tests {
     #[test]
     fn bends_and_ends_are_met_slowly() {
         let path = Path::of_arcs(Pose::default(), &[(1.0, 0.0), (0.2, 10.0), (1.0, 0.0)]).unwrap();
-        let parameters = FollowerParameters::default();
+        let parameters = PathFollowerParameters::default();
         let speeds = speed_profile(&path, &parameters);
         for (point, speed) in path.points().iter().zip(&speeds) {
             assert!(speed * point.curvature.abs().min(TIGHTEST) <= parameters.turn_rate + 1e-9);
@@ -309,10 +309,10 @@ mod tests {
     fn parameters_that_make_no_sense_are_refused() {
         let path = Path::straight(Point::origin(), Point::new(1.0, 0.0)).unwrap();
         for parameters in [
-            FollowerParameters { speed: 0.0, ..FollowerParameters::default() },
-            FollowerParameters {
+            PathFollowerParameters { speed: 0.0, ..PathFollowerParameters::default() },
+            PathFollowerParameters {
                 steering: Steering::PurePursuit { lookahead: -1.0 },
-                ..FollowerParameters::default()
+                ..PathFollowerParameters::default()
             },
         ] {
             assert!(PathFollower::new(path.clone(), parameters).is_err());

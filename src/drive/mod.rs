@@ -41,12 +41,12 @@ mod wall_following;
 mod way;
 
 pub use a_to_b::{AToB, AToBObservation, AToBOutcome, AToBParameters, Goal, Method};
-pub use car::{CarCommand, CarDriver, CarObservation, CarOutcome, CarParameters, CarToB};
+pub use car::{CarCommand, CarDriver, CarObservation, CarOutcome, CarToB, CarToBParameters};
 pub use chase::{Chase, ChaseObservation, ChaseOutcome, ChaseParameters};
-pub use coverage::{CoverageMap, CoverageParameters, CoveragePlan, Tour, TourOutcome, TourParameters};
+pub use coverage::{CoverageMap, CoverageMapParameters, CoveragePlan, Tour, TourOutcome, TourParameters};
 pub use cruise::{Cruise, CruiseParameters};
-pub use follow_me::{FollowMeObservation, FollowMeParameters, Follower, robots_in};
-pub use follower::{FollowerParameters, PathFollower, Steering};
+pub use follow_me::{Follower, FollowerObservation, FollowerParameters, robots_in};
+pub use follower::{PathFollower, PathFollowerParameters, Steering};
 pub use formation::Formation;
 pub use omni::{
     OmniDriver, OmniOutcome, OmniParameters, OmniPilot, OmniReference, OmniTracker, WheelCommand,
@@ -57,7 +57,7 @@ pub use random_drive::{RandomDrive, RandomDriveObservation, RandomDriveParameter
 pub use relay::{RelayTuner, UltimateGain};
 pub use spline::Hermite;
 pub use wall_following::{
-    AlongWall, AlongWallObservation, FollowsWalls, LidarWallFollower, LidarWallParameters, PidWallFollower,
-    PidWallParameters, TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallObservation,
-    WallOutcome, WallPhase, WallReading, WallSensors, WallSide,
+    AlongWall, AlongWallObservation, FollowsWalls, LidarWallFollower, LidarWallFollowerParameters,
+    PidWallFollower, PidWallFollowerParameters, TwoLevelWallFollower, WallFollower, WallFollowerParameters,
+    WallObservation, WallOutcome, WallPhase, WallReading, WallSensors, WallSide,
 };

@@ -7,11 +7,13 @@ mod line;
 pub mod math;
 mod pose;
 mod shapes;
+mod side;
 pub mod units;
 
 pub use line::FittedLine;
 pub use pose::{Pose, Twist, angle_difference, normalize_angle};
 pub use shapes::{Aabb, Segment};
+pub use side::WallSide;
 
 /// A point in the plane, in metres.
 pub type Point = nalgebra::Point2<f64>;

@@ -37,8 +37,8 @@
 
 // A macro names the types of its capability's methods as the trait does, so they have to be in scope where it is used.
 pub use super::{
-    DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Picture, Pixel, Psd, RadioMessage, Resolution,
-    Result, Viewport,
+    DisplayImage, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Pixel, Psd, RadioMessage,
+    Resolution, Result, Viewport,
 };
 pub use crate::geometry::{Pose, Twist};
 pub use crate::world::Colour;

@@ -98,7 +98,7 @@ impl Default for Viewport {
 
 /// An image for the display.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Picture<'a> {
+pub enum DisplayImage<'a> {
     /// In colour.
     Rgb(&'a RgbImage),
     /// In shades of gray, 0 black to 255 white.
@@ -107,38 +107,38 @@ pub enum Picture<'a> {
     Binary(&'a GrayImage),
 }
 
-impl Picture<'_> {
+impl DisplayImage<'_> {
     /// Columns and rows.
     pub fn dimensions(&self) -> (u32, u32) {
         match self {
-            Picture::Rgb(image) => image.dimensions(),
-            Picture::Gray(image) | Picture::Binary(image) => image.dimensions(),
+            DisplayImage::Rgb(image) => image.dimensions(),
+            DisplayImage::Gray(image) | DisplayImage::Binary(image) => image.dimensions(),
         }
     }
 
     /// The colour of a pixel; `None` outside the image.
     pub fn colour(&self, x: u32, y: u32) -> Option<Colour> {
         match self {
-            Picture::Rgb(image) => {
+            DisplayImage::Rgb(image) => {
                 image.get_pixel_checked(x, y).map(|&Rgb([red, green, blue])| Colour::new(red, green, blue))
             }
-            Picture::Gray(image) => image.get_pixel_checked(x, y).map(|p| Colour::new(p[0], p[0], p[0])),
-            Picture::Binary(image) => {
+            DisplayImage::Gray(image) => image.get_pixel_checked(x, y).map(|p| Colour::new(p[0], p[0], p[0])),
+            DisplayImage::Binary(image) => {
                 image.get_pixel_checked(x, y).map(|p| if p[0] == 0 { Colour::WHITE } else { Colour::BLACK })
             }
         }
     }
 }
 
-impl<'a> From<&'a RgbImage> for Picture<'a> {
+impl<'a> From<&'a RgbImage> for DisplayImage<'a> {
     fn from(image: &'a RgbImage) -> Self {
-        Picture::Rgb(image)
+        DisplayImage::Rgb(image)
     }
 }
 
-impl<'a> From<&'a GrayImage> for Picture<'a> {
+impl<'a> From<&'a GrayImage> for DisplayImage<'a> {
     fn from(image: &'a GrayImage) -> Self {
-        Picture::Gray(image)
+        DisplayImage::Gray(image)
     }
 }
 
@@ -193,7 +193,7 @@ pub trait Display {
     fn draw_circle(&mut self, centre: Pixel, diameter: i32, colour: Colour, fill: Fill) -> Result<()>;
 
     /// Draws an image, scaled to fill a window; every pixel of the window shows the image's nearest.
-    fn draw_image(&mut self, picture: Picture<'_>, viewport: Viewport) -> Result<()>;
+    fn draw_image(&mut self, picture: DisplayImage<'_>, viewport: Viewport) -> Result<()>;
 
     /// Labels a soft key in the bar at the bottom of the display, and shows the bar.
     fn set_menu_label(&mut self, key: Key, label: &str, foreground: Colour, background: Colour)

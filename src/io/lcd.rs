@@ -10,7 +10,7 @@ use image::RgbImage;
 
 use canvas::Canvas;
 
-use crate::io::{Display, DisplayOption, Fill, Font, Key, Picture, Pixel, Result, Viewport};
+use crate::io::{Display, DisplayImage, DisplayOption, Fill, Font, Key, Pixel, Result, Viewport};
 use crate::world::Colour;
 
 /// Pixels above the first row of text. With them and the default font, row 18 is the first one wholly below a QVGA
@@ -280,7 +280,7 @@ impl Display for Lcd {
         Ok(())
     }
 
-    fn draw_image(&mut self, picture: Picture<'_>, viewport: Viewport) -> Result<()> {
+    fn draw_image(&mut self, picture: DisplayImage<'_>, viewport: Viewport) -> Result<()> {
         self.canvas.picture(picture, viewport);
         Ok(())
     }

@@ -20,28 +20,28 @@ mod psd;
 mod radio;
 #[macro_use]
 pub mod wrappers;
+mod fleet;
 #[cfg(feature = "log")]
 pub mod log;
 #[cfg(feature = "robios")]
 pub mod robios;
 pub mod sim;
-mod troop;
 mod truth;
 
 pub use actuators::{Encoders, Motors, Servos};
 pub use camera::{Camera, Resolution};
 pub use clock::Clock;
-pub use display::{Display, DisplayOption, Fill, Font, FontFamily, FontStyle, Picture, Pixel, Viewport};
+pub use display::{Display, DisplayImage, DisplayOption, Fill, Font, FontFamily, FontStyle, Pixel, Viewport};
 pub use drive::Drive;
 pub use error::{Error, ErrorKind, Result};
+pub use fleet::{FleetIo, FleetStep};
 pub use keys::{Key, Keys};
 pub use lcd::Lcd;
 pub use lidar::{Lidar, LidarScan, LidarSettings};
 pub use mock::{Call, MockRobot, Script};
 pub use psd::{DistanceSensors, Psd};
 pub use radio::{Radio, RadioMessage};
-pub use troop::{Troop, TroopStep};
-pub use truth::{RobotTruth, TrailPoint, Witness};
+pub use truth::{GroundTruth, RobotTruth, TrailPoint};
 
 /// A full robot: every capability at once.
 pub trait RobotIo:

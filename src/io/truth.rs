@@ -2,7 +2,7 @@ use super::Result;
 use crate::geometry::{Point, Pose};
 
 /// Who knows what is true in a world: a simulator, or the recording of what one said.
-pub trait Witness {
+pub trait GroundTruth {
     /// Seconds since the start of the world.
     fn time(&mut self) -> Result<f64>;
 
@@ -16,7 +16,7 @@ pub trait Witness {
     fn object(&mut self, object: usize) -> Result<Pose>;
 }
 
-impl<T: Witness + ?Sized> Witness for Box<T> {
+impl<T: GroundTruth + ?Sized> GroundTruth for Box<T> {
     fn time(&mut self) -> Result<f64> {
         (**self).time()
     }

@@ -1,7 +1,7 @@
 use std::fmt;
 
 use super::flood::distances_from_start;
-use super::{Cell, Direction, Maze, Unknown, Wall};
+use super::{Cell, Direction, Maze, Unknown, WallState};
 
 /// Something wrong with a maze or its file, and what was made of it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -50,7 +50,7 @@ pub fn defects(maze: &Maze) -> Vec<Defect> {
 
 fn gaps(maze: &Maze, side: Direction) -> Option<Defect> {
     let (right, top) = (maze.width() as u16 - 1, maze.height() as u16 - 1);
-    let open = |cell: &Cell| maze.wall(*cell, side) == Wall::Absent;
+    let open = |cell: &Cell| maze.wall(*cell, side) == WallState::Absent;
     let edge: Vec<Cell> = match side {
         Direction::North => (0..=right).map(|x| Cell::new(x, top)).filter(open).collect(),
         Direction::South => (0..=right).map(|x| Cell::new(x, 0)).filter(open).collect(),
@@ -78,9 +78,9 @@ mod tests {
     #[test]
     fn each_defect_is_named() {
         let mut maze = Maze::open(5, 5).unwrap();
-        maze.set_wall(Cell::new(2, 4), Direction::North, Wall::Absent);
-        maze.set_wall(Cell::new(0, 0), Direction::East, Wall::Unknown);
-        maze.set_wall(Cell::new(0, 0), Direction::North, Wall::Present);
+        maze.set_wall(Cell::new(2, 4), Direction::North, WallState::Absent);
+        maze.set_wall(Cell::new(0, 0), Direction::East, WallState::Unknown);
+        maze.set_wall(Cell::new(0, 0), Direction::North, WallState::Present);
         let texts: Vec<String> = defects(&maze).iter().map(ToString::to_string).collect();
         assert_eq!(
             texts,

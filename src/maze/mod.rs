@@ -39,17 +39,19 @@ mod scale;
 
 pub use compass::{Cell, Direction};
 pub use defect::{Defect, defects};
-pub use explore::{Explorer, Goals, RecursiveExplorer, Step, TwoPhaseExplorer, Verdict};
+pub use explore::{
+    ExplorationOutcome, ExplorationStep, Explorer, Goals, RecursiveExplorer, TwoPhaseExplorer,
+};
 pub use fast::{FastPlan, FastPlanner, Piece, RunLimits, Trajectory, TrajectoryPoint, TurnKind};
 pub use flood::{Distances, FloodFill, IncrementalFlood, Passages, distances_from_start, distances_to_goal};
 pub use follow::{
     CellDrive, CellDriveParameters, LeftHand, LeftHandObservation, LeftHandOutcome, LeftHandParameters,
     LidarLeft, LidarLeftObservation, LidarLeftParameters, Straight,
 };
-pub use model::{Maze, Unknown, Wall};
+pub use model::{Maze, Unknown, WallState};
 pub use route::{Preference, Route, shortest_route, shortest_route_between};
 pub use run::{
-    Calibration, Exploration, MazeLocaliser, MazeRunner, Rig, RunnerParameters, Sensor, Tracker,
-    TrackerParameters, mouse,
+    Calibration, Exploration, MazeLocaliser, MazeRunner, MazeRunnerParameters, Rig, RigSensor,
+    TrajectoryTracker, TrajectoryTrackerParameters, mouse,
 };
 pub use scale::Scale;

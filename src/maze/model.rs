@@ -5,7 +5,7 @@ use crate::parameter::require;
 
 /// What is known about a place where a wall may stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Wall {
+pub enum WallState {
     /// There is none.
     Absent,
     /// There is one.
@@ -29,11 +29,11 @@ pub enum Unknown {
 /// rows lie in words of their own. No route leaves the rectangle, even where its outer wall is open.
 ///
 /// ```
-/// use roverlab::maze::{Cell, Direction, Maze, Wall};
+/// use roverlab::maze::{Cell, Direction, Maze, WallState};
 ///
 /// let mut maze = Maze::open(3, 2)?;
-/// maze.set_wall(Cell::new(0, 0), Direction::East, Wall::Present);
-/// assert_eq!(maze.wall(Cell::new(1, 0), Direction::West), Wall::Present);
+/// maze.set_wall(Cell::new(0, 0), Direction::East, WallState::Present);
+/// assert_eq!(maze.wall(Cell::new(1, 0), Direction::West), WallState::Present);
 /// # Ok::<(), roverlab::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -61,13 +61,13 @@ impl Layer {
         Self { present: BitGrid::new(columns, rows), unknown: BitGrid::new(columns, rows) }
     }
 
-    fn get(&self, (column, row): (usize, usize)) -> Wall {
+    fn get(&self, (column, row): (usize, usize)) -> WallState {
         if self.unknown.get(column, row) {
-            Wall::Unknown
+            WallState::Unknown
         } else if self.present.get(column, row) {
-            Wall::Present
+            WallState::Present
         } else {
-            Wall::Absent
+            WallState::Absent
         }
     }
 
@@ -78,9 +78,9 @@ impl Layer {
         self.present.row(row) | doubtful
     }
 
-    fn set(&mut self, (column, row): (usize, usize), wall: Wall) {
-        self.unknown.set(column, row, wall == Wall::Unknown);
-        self.present.set(column, row, wall == Wall::Present);
+    fn set(&mut self, (column, row): (usize, usize), wall: WallState) {
+        self.unknown.set(column, row, wall == WallState::Unknown);
+        self.present.set(column, row, wall == WallState::Present);
     }
 }
 
@@ -91,16 +91,16 @@ impl Maze {
     /// A maze with walls all round in which nothing else is known, as a robot finds it. The start is the lower left cell,
     /// facing north, and the goal is the centre.
     pub fn unexplored(width: usize, height: usize) -> Result<Self, ParameterError> {
-        Self::filled(width, height, Wall::Unknown)
+        Self::filled(width, height, WallState::Unknown)
     }
 
     /// A maze with walls all round and none within.
     pub fn open(width: usize, height: usize) -> Result<Self, ParameterError> {
-        Self::filled(width, height, Wall::Absent)
+        Self::filled(width, height, WallState::Absent)
     }
 
     /// A maze of walls all round, and of one state within.
-    pub fn filled(width: usize, height: usize, within: Wall) -> Result<Self, ParameterError> {
+    pub fn filled(width: usize, height: usize, within: WallState) -> Result<Self, ParameterError> {
         for (name, side) in [("width", width), ("height", height)] {
             require(name, side as f64, (1..=Self::MAX_SIDE).contains(&side), "1 to 256 cells")?;
         }
@@ -115,7 +115,7 @@ impl Maze {
         };
         for row in 0..=height {
             for column in 0..=width {
-                let wall = |edge: bool| if edge { Wall::Present } else { within };
+                let wall = |edge: bool| if edge { WallState::Present } else { within };
                 if row < height {
                     maze.vertical.set((column, row), wall(column == 0 || column == width));
                 }
@@ -180,9 +180,9 @@ impl Maze {
 
     /// What is known about a wall of a cell. Outside of the maze there is nothing.
     #[inline]
-    pub fn wall(&self, cell: Cell, direction: Direction) -> Wall {
+    pub fn wall(&self, cell: Cell, direction: Direction) -> WallState {
         if !self.contains(cell) {
-            return Wall::Absent;
+            return WallState::Absent;
         }
         let (layer, place) = self.place(cell, direction);
         layer.get(place)
@@ -190,7 +190,7 @@ impl Maze {
 
     /// Enters what is known about a wall of a cell, which is its neighbour's wall too. Outside of the maze nothing
     /// happens.
-    pub fn set_wall(&mut self, cell: Cell, direction: Direction, wall: Wall) {
+    pub fn set_wall(&mut self, cell: Cell, direction: Direction, wall: WallState) {
         if self.contains(cell) {
             let place = self.place(cell, direction).1;
             let vertical = matches!(direction, Direction::East | Direction::West);
@@ -212,9 +212,9 @@ impl Maze {
     #[inline]
     pub fn passage(&self, cell: Cell, direction: Direction, unknown: Unknown) -> Option<Cell> {
         let open = match self.wall(cell, direction) {
-            Wall::Absent => true,
-            Wall::Present => false,
-            Wall::Unknown => unknown == Unknown::Open,
+            WallState::Absent => true,
+            WallState::Present => false,
+            WallState::Unknown => unknown == Unknown::Open,
         };
         self.neighbour(cell, direction).filter(|_| open)
     }
@@ -233,7 +233,7 @@ impl Maze {
 
     /// Whether all four walls of a cell are known.
     pub fn is_known(&self, cell: Cell) -> bool {
-        Direction::ALL.iter().all(|&direction| self.wall(cell, direction) != Wall::Unknown)
+        Direction::ALL.iter().all(|&direction| self.wall(cell, direction) != WallState::Unknown)
     }
 
     /// How many walls are unknown.
@@ -318,7 +318,7 @@ mod tests {
             let mut maze = Maze::unexplored(width, height).unwrap();
             let middle = Cell::new(width as u16 / 2, height as u16 / 2);
             for direction in Direction::ALL {
-                for wall in [Wall::Absent, Wall::Unknown, Wall::Present] {
+                for wall in [WallState::Absent, WallState::Unknown, WallState::Present] {
                     maze.set_wall(middle, direction, wall);
                     assert_eq!(maze.wall(middle, direction), wall);
                     if let Some(other) = maze.neighbour(middle, direction) {
@@ -352,10 +352,10 @@ mod tests {
         let mut maze = Maze::open(2, 2).unwrap();
         let before = maze.clone();
         let outside = Cell::new(2, 0);
-        maze.set_wall(outside, Direction::North, Wall::Present);
+        maze.set_wall(outside, Direction::North, WallState::Present);
         maze.set_start(outside, Direction::East);
         assert_eq!(maze, before);
-        assert_eq!(maze.wall(outside, Direction::West), Wall::Absent);
+        assert_eq!(maze.wall(outside, Direction::West), WallState::Absent);
         assert!(!maze.is_goal(outside));
         assert_eq!(maze.neighbour(Cell::new(0, 0), Direction::West), None);
     }

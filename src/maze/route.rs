@@ -159,7 +159,7 @@ fn trace(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::maze::Wall;
+    use crate::maze::WallState;
 
     #[test]
     fn an_empty_maze_needs_one_turn() {
@@ -185,14 +185,14 @@ mod tests {
     #[test]
     fn preferences_differ_where_they_should() {
         // Three ways to the goal: a staircase, one round the lower corner and past the goal, and one round the upper corner.
-        let mut maze = Maze::filled(7, 7, Wall::Present).unwrap();
+        let mut maze = Maze::filled(7, 7, WallState::Present).unwrap();
         maze.set_goals([Cell::new(4, 4)]);
         for way in ["NENENENE", "EEEEENNNNW", "NNNNNNEEEESS"] {
             let mut cell = maze.start();
             for letter in way.chars() {
                 let direction =
                     Direction::ALL.into_iter().find(|side| format!("{side:?}").starts_with(letter)).unwrap();
-                maze.set_wall(cell, direction, Wall::Absent);
+                maze.set_wall(cell, direction, WallState::Absent);
                 cell = maze.neighbour(cell, direction).unwrap();
             }
             assert!(maze.is_goal(cell));

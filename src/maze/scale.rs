@@ -1,4 +1,4 @@
-use super::{Cell, Direction, Maze, Wall};
+use super::{Cell, Direction, Maze, WallState};
 use crate::geometry::{Point, Pose, Segment};
 use crate::world::{self, World};
 
@@ -46,7 +46,7 @@ impl Scale {
         let (right, top) = (width as u16 - 1, height as u16 - 1);
         for y in 0..=height {
             let (row, side) = if y < height { (y as u16, Direction::South) } else { (top, Direction::North) };
-            let stands = |x: usize| maze.wall(Cell::new(x as u16, row), side) != Wall::Absent;
+            let stands = |x: usize| maze.wall(Cell::new(x as u16, row), side) != WallState::Absent;
             for (a, b) in stretches(width, stands) {
                 world.walls.push(self.stretch(self.corner(a, y), self.corner(b, y)));
             }
@@ -54,7 +54,7 @@ impl Scale {
         for x in 0..=width {
             let (column, side) =
                 if x < width { (x as u16, Direction::West) } else { (right, Direction::East) };
-            let stands = |y: usize| maze.wall(Cell::new(column, y as u16), side) != Wall::Absent;
+            let stands = |y: usize| maze.wall(Cell::new(column, y as u16), side) != WallState::Absent;
             for (a, b) in stretches(height, stands) {
                 world.walls.push(self.stretch(self.corner(x, a), self.corner(x, b)));
             }
@@ -116,7 +116,7 @@ fn bare_posts(maze: &Maze) -> impl Iterator<Item = (usize, usize)> + '_ {
             [Direction::West, Direction::North],
             [Direction::East, Direction::North],
         ];
-        let stands = |cell: Cell, side| maze.wall(cell, side) != Wall::Absent;
+        let stands = |cell: Cell, side| maze.wall(cell, side) != WallState::Absent;
         let walls = cells.iter().zip(sides).filter_map(|(cell, sides)| Some(((*cell)?, sides)));
         !walls.into_iter().any(|(cell, sides)| sides.into_iter().any(|side| stands(cell, side)))
     })

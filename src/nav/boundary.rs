@@ -1,35 +1,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::surroundings::Surroundings;
-use crate::geometry::{Point, Pose, direction, math, normalize_angle};
-
-/// On which side of the robot the followed obstacle is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum WallSide {
-    /// The obstacle is to the left, so the robot goes round it clockwise.
-    Left,
-    /// The obstacle is to the right, so the robot goes round it counter-clockwise.
-    Right,
-}
-
-impl WallSide {
-    /// The other side.
-    #[must_use]
-    pub fn other(self) -> Self {
-        match self {
-            WallSide::Left => WallSide::Right,
-            WallSide::Right => WallSide::Left,
-        }
-    }
-
-    /// The sense in which headings are tried from the obstacle outwards: +1 counter-clockwise, -1 clockwise.
-    pub(super) fn sense(self) -> f64 {
-        match self {
-            WallSide::Left => -1.0,
-            WallSide::Right => 1.0,
-        }
-    }
-}
+use crate::geometry::{Point, Pose, WallSide, direction, math, normalize_angle};
 
 /// Distances that a boundary is followed at, from the robot's middle, in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]

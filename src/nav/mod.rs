@@ -9,11 +9,10 @@ mod navigate;
 mod reachability;
 mod surroundings;
 
-pub use boundary::WallSide;
+pub use crate::geometry::WallSide;
 pub use bug::{
     Alg1, Alg2, Bug, Bug1, Bug2, BugEvent, BugKind, BugOutcome, BugParameters, BugPhase, Class1, DistBug,
-    DistBugEvent, DistBugOutcome, DistBugParameters, DistBugPhase, Guarantee, LeaveBug, OneBug, PathBound,
-    Rev1, Rev2, TangentBug, UnknownBug,
+    Guarantee, LeaveBug, OneBug, PathBound, Rev1, Rev2, TangentBug, UnknownBug,
 };
-pub use navigate::{NavigateEvent, NavigateOutcome, NavigateParameters, NavigatePhase, Navigator};
-pub use reachability::Reachability;
+pub use navigate::{Navigator, NavigatorEvent, NavigatorOutcome, NavigatorParameters, NavigatorPhase};
+pub use reachability::{CellPath, Reachability};

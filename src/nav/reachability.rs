@@ -39,7 +39,7 @@ pub struct Reachability {
 
 /// A way between two points through the middles of free cells.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Path {
+pub struct CellPath {
     /// The start, the middles of the cells on the way, and the goal.
     pub points: Vec<Point>,
     /// Metres along the points.
@@ -99,7 +99,7 @@ impl Reachability {
     ///
     /// P. E. Hart, N. J. Nilsson, B. Raphael, *A Formal Basis for the Heuristic Determination of Minimum Cost
     /// Paths*, IEEE Trans. Systems Science and Cybernetics 4(2), 1968. O(n log n) for n cells.
-    pub fn shortest_path(&self, a: Point, b: Point) -> Option<Path> {
+    pub fn shortest_path(&self, a: Point, b: Point) -> Option<CellPath> {
         if !self.connected(a, b) {
             return None;
         }
@@ -109,14 +109,14 @@ impl Reachability {
         found.then(|| self.path(a, b, &search.trace(start), search.expanded))
     }
 
-    fn path(&self, a: Point, b: Point, cells: &[usize], expanded: usize) -> Path {
+    fn path(&self, a: Point, b: Point, cells: &[usize], expanded: usize) -> CellPath {
         let mut points = vec![a];
         // The first and the last cell are those of the given points, which stand for their middles.
         let inner = cells.get(1..cells.len().saturating_sub(1)).unwrap_or_default();
         points.extend(inner.iter().map(|&cell| self.raster.centre(cell)));
         points.push(b);
         let length = points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
-        Path { points, length, expanded }
+        CellPath { points, length, expanded }
     }
 
     fn region_at(&self, point: Point) -> Option<u32> {

@@ -1,7 +1,7 @@
 use image::RgbImage;
 
 use super::cone::ConeColour;
-use super::sight::Sighting;
+use super::sight::ConeSighting;
 use crate::geometry::{Point, math};
 use crate::vision::{Components, GrayView, Hsi, rgb_to_hsi};
 
@@ -95,7 +95,7 @@ impl CameraSight {
     }
 
     /// The cones in an image, in the car's frame.
-    pub fn find(&mut self, image: &RgbImage) -> Vec<Sighting> {
+    pub fn find(&mut self, image: &RgbImage) -> Vec<ConeSighting> {
         let (width, height) = (image.width() as usize, image.height() as usize);
         let mut found = Vec::new();
         self.size = [width as f64, height as f64];
@@ -117,7 +117,7 @@ impl CameraSight {
                 found.extend(self.mount.place(column, row, width as f64, height as f64).map(
                     |(position, range, error)| {
                         let size = (blob.max.0 - blob.min.0) as f64 * range / self.mount.focal(width as f64);
-                        Sighting { position, size, confidence: 1.0, range, error, colour: *colour }
+                        ConeSighting { position, size, confidence: 1.0, range, error, colour: *colour }
                     },
                 ));
             }
@@ -130,10 +130,11 @@ impl CameraSight {
     ///
     /// What would be large in the image and has no cone's colour there gets a confidence of 0: most likely it is no cone. Only
     /// where the image shows the colours of as many others, as a camera that is blind, or late, shows none.
-    pub fn fuse(&self, lidar: &[Sighting], found: &[Sighting]) -> Vec<Sighting> {
-        let colour = |seen: &Sighting| Sighting { colour: colour_of(seen, found), ..*seen };
-        let mut fused: Vec<Sighting> = lidar.iter().map(colour).collect();
-        let is_pale = |seen: &Sighting| seen.colour == ConeColour::Unknown && self.would_show(seen.position);
+    pub fn fuse(&self, lidar: &[ConeSighting], found: &[ConeSighting]) -> Vec<ConeSighting> {
+        let colour = |seen: &ConeSighting| ConeSighting { colour: colour_of(seen, found), ..*seen };
+        let mut fused: Vec<ConeSighting> = lidar.iter().map(colour).collect();
+        let is_pale =
+            |seen: &ConeSighting| seen.colour == ConeColour::Unknown && self.would_show(seen.position);
         let painted = fused.iter().filter(|seen| seen.colour != ConeColour::Unknown).count();
         if painted >= fused.iter().filter(|seen| is_pale(seen)).count() {
             fused.iter_mut().filter(|seen| is_pale(seen)).for_each(|seen| seen.confidence = 0.0);
@@ -157,9 +158,9 @@ impl CameraSight {
 }
 
 /// The colour of what a camera found where a lidar sees something.
-fn colour_of(seen: &Sighting, found: &[Sighting]) -> ConeColour {
-    let bearing = |sighting: &Sighting| math::atan2(sighting.position.y, sighting.position.x);
-    let away = |other: &Sighting| (seen.position - other.position).norm();
+fn colour_of(seen: &ConeSighting, found: &[ConeSighting]) -> ConeColour {
+    let bearing = |sighting: &ConeSighting| math::atan2(sighting.position.y, sighting.position.x);
+    let away = |other: &ConeSighting| (seen.position - other.position).norm();
     let near = found.iter().filter(|other| {
         (bearing(seen) - bearing(other)).abs() < 0.03 && away(other) < 0.4 + 3.0 * other.error
     });
@@ -257,7 +258,14 @@ mod tests {
     fn colours_come_to_the_places_of_the_lidar() {
         let at = |x, y, error, colour| {
             let position = Point::new(x, y);
-            Sighting { position, size: 0.1, confidence: 1.0, range: position.coords.norm(), error, colour }
+            ConeSighting {
+                position,
+                size: 0.1,
+                confidence: 1.0,
+                range: position.coords.norm(),
+                error,
+                colour,
+            }
         };
         let lidar = [at(5.0, 1.0, 0.03, ConeColour::Unknown), at(5.0, -1.0, 0.03, ConeColour::Unknown)];
         let camera = [at(5.3, 1.05, 0.2, ConeColour::Blue), at(9.0, -1.8, 0.3, ConeColour::Yellow)];
@@ -274,12 +282,12 @@ mod tests {
         let at = |x: f64, y: f64, colour| {
             let position = Point::new(x, y);
             let range = position.coords.norm();
-            Sighting { position, size: 0.1, confidence: 0.7, range, error: 0.03, colour }
+            ConeSighting { position, size: 0.1, confidence: 0.7, range, error: 0.03, colour }
         };
         let blue = at(6.0, -3.0, ConeColour::Blue);
         let lidar = |x, y| [at(6.0, -3.0, ConeColour::Unknown), at(x, y, ConeColour::Unknown)];
         let confidence =
-            |sight: &CameraSight, x, y, found: &[Sighting]| sight.fuse(&lidar(x, y), found)[1].confidence;
+            |sight: &CameraSight, x, y, found: &[ConeSighting]| sight.fuse(&lidar(x, y), found)[1].confidence;
         assert!(
             confidence(&sight(), 5.0, 1.0, &[blue]) < 1e-9 && confidence(&sight(), 9.0, -6.0, &[blue]) < 1e-9
         );
@@ -316,7 +324,7 @@ mod tests {
             car.set_resolution(resolution).unwrap();
             let found = sight.find(&car.image().unwrap());
             assert_eq!(found.len(), seen, "{resolution:?}");
-            let away = |one: &Sighting| (one.position - cones[0].position).norm();
+            let away = |one: &ConeSighting| (one.position - cones[0].position).norm();
             assert!(found.iter().all(|one| away(one) < 3.0 * one.error), "{found:?}");
         }
     }

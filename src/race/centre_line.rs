@@ -1,11 +1,11 @@
+use super::beam_search::BeamSearch;
 use super::cone::Cone;
 use super::corridor::Corridor;
-use super::error::PlanError;
+use super::error::LineError;
 use super::generate::LONGEST;
 use super::mesh::Mesh;
 use super::pair::{CentreLineParameters, Pair, Way};
 use super::sides::sides;
-use super::walk::Walker;
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Segment, Vector, cross, math};
 
@@ -42,13 +42,13 @@ impl CentreLine {
     /// let line = CentreLine::from_cones(&cones, Pose::new(0.0, 1.4, 0.1), &CentreLineParameters::default())?;
     /// assert_eq!((line.left.len(), line.right.len()), (7, 7));
     /// assert!(line.corridor.stations().iter().all(|s| (s.position.y - 1.5).abs() < 0.01));
-    /// # Ok::<(), roverlab::race::PlanError>(())
+    /// # Ok::<(), roverlab::race::LineError>(())
     /// ```
     pub fn from_cones(
         cones: &[Cone],
         car: Pose,
         parameters: &CentreLineParameters,
-    ) -> Result<Self, PlanError> {
+    ) -> Result<Self, LineError> {
         Self::along(cones, car, &[], parameters)
     }
 
@@ -59,11 +59,11 @@ impl CentreLine {
         car: Pose,
         driven: &[Point],
         parameters: &CentreLineParameters,
-    ) -> Result<Self, PlanError> {
+    ) -> Result<Self, LineError> {
         parameters.validate()?;
         let mut kept = cones.to_vec();
         let (mut mesh, mut beside) = (Mesh::new(cones)?, sides(cones, driven));
-        let mut way = walk(cones, &mesh, &beside, car, parameters).ok_or(PlanError::NoWay)?;
+        let mut way = walk(cones, &mesh, &beside, car, parameters).ok_or(LineError::NoWay)?;
         for round in 0..ROUNDS {
             // Cones that stick out of an edge are left out, and the way is looked for again.
             let strays = strays(&kept, &way.pairs, way.closed, parameters);
@@ -96,7 +96,7 @@ impl CentreLine {
         pairs: &[Pair],
         closed: bool,
         parameters: &CentreLineParameters,
-    ) -> Result<Self, PlanError> {
+    ) -> Result<Self, LineError> {
         let (pairs, chains) = complete(cones, pairs, closed, parameters);
         check_gaps(&pairs, closed)?;
         let middles = middle(&pairs, closed, parameters.step);
@@ -124,14 +124,14 @@ fn walk(
     from: Pose,
     parameters: &CentreLineParameters,
 ) -> Option<Way> {
-    Walker { cones, parameters, mesh, sides }.walk(from)
+    BeamSearch { cones, parameters, mesh, sides }.run(from)
 }
 
 /// Metres from pair to pair beyond which cones belong to no track.
 const FARTHEST: f64 = 50.0;
 
 /// Fails where pairs are too far from each other to be those of one track.
-fn check_gaps(pairs: &[Opposite], closed: bool) -> Result<(), PlanError> {
+fn check_gaps(pairs: &[Opposite], closed: bool) -> Result<(), LineError> {
     let n = pairs.len();
     let middle = |k: usize| nalgebra::center(&pairs[k % n].points[0], &pairs[k % n].points[1]);
     let mut length = 0.0;

@@ -1,10 +1,10 @@
-use super::error::PlanError;
+use super::error::LineError;
 use crate::geometry::{Point, Segment, Vector};
 use crate::parameter::{require_not_negative, require_positive};
 
 /// A place on the centre line, and how far the track reaches to both sides of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Station {
+pub struct CrossSection {
     /// Where it is.
     pub position: Point,
     /// The unit vector to the left.
@@ -15,7 +15,7 @@ pub struct Station {
     pub right: f64,
 }
 
-impl Station {
+impl CrossSection {
     /// The point so many metres to the left of the centre line.
     pub fn aside(&self, offset: f64) -> Point {
         self.position + self.normal * offset
@@ -25,26 +25,26 @@ impl Station {
 /// A track as a centre line with widths, closed to a loop or open.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Corridor {
-    stations: Vec<Station>,
+    stations: Vec<CrossSection>,
     closed: bool,
 }
 
 impl Corridor {
     /// A loop from points in the order in which they are driven, each with the metres to the left and to the right edge.
-    pub fn closed(points: &[(Point, f64, f64)]) -> Result<Self, PlanError> {
+    pub fn closed(points: &[(Point, f64, f64)]) -> Result<Self, LineError> {
         Self::new(points, true)
     }
 
     /// The same for a track with two ends.
-    pub fn open(points: &[(Point, f64, f64)]) -> Result<Self, PlanError> {
+    pub fn open(points: &[(Point, f64, f64)]) -> Result<Self, LineError> {
         Self::new(points, false)
     }
 
-    fn new(points: &[(Point, f64, f64)], closed: bool) -> Result<Self, PlanError> {
+    fn new(points: &[(Point, f64, f64)], closed: bool) -> Result<Self, LineError> {
         let n = points.len();
         let needed = if closed { 5 } else { 2 };
         if n < needed {
-            return Err(PlanError::TooFew { found: n, needed });
+            return Err(LineError::TooFew { found: n, needed });
         }
         let at = |i: usize| points[i % n].0;
         let mut stations = Vec::with_capacity(n);
@@ -60,16 +60,16 @@ impl Corridor {
             let length = along.norm();
             let last = !closed && index + 1 == n;
             if !(length > 1e-9 && length.is_finite() && (last || next.norm() > 1e-9)) {
-                return Err(PlanError::Degenerate { index });
+                return Err(LineError::Degenerate { index });
             }
             let normal = Vector::new(-along.y, along.x) / length;
-            stations.push(Station { position, normal, left, right });
+            stations.push(CrossSection { position, normal, left, right });
         }
         Ok(Self { stations, closed })
     }
 
     /// The stations in the order of driving.
-    pub fn stations(&self) -> &[Station] {
+    pub fn stations(&self) -> &[CrossSection] {
         &self.stations
     }
 
@@ -100,7 +100,7 @@ impl Corridor {
     }
 
     /// Stations with their next ones.
-    fn pairs(&self) -> impl Iterator<Item = (&Station, &Station)> {
+    fn pairs(&self) -> impl Iterator<Item = (&CrossSection, &CrossSection)> {
         let n = self.stations.len();
         let count = if self.closed { n } else { n - 1 };
         (0..count).map(move |i| (&self.stations[i], &self.stations[(i + 1) % n]))
@@ -109,7 +109,7 @@ impl Corridor {
     /// For each station the offsets to the left, from least to most, at which a line keeps `margin` metres from both edges.
     ///
     /// Fails where nothing is left between them. O(n) as long as stations are not much closer than the margin.
-    pub fn free(&self, margin: f64) -> Result<Vec<[f64; 2]>, PlanError> {
+    pub fn free(&self, margin: f64) -> Result<Vec<[f64; 2]>, LineError> {
         require_not_negative("margin", margin)?;
         let margins = vec![[margin; 2]; self.stations.len()];
         let ranges = self.ranges(&margins);
@@ -117,7 +117,7 @@ impl Corridor {
         narrow.map_or(Ok(ranges), |index| {
             let station = &self.stations[index];
             let free = (station.left + station.right).max(0.0);
-            Err(PlanError::TooNarrow { index, free, needed: 2.0 * margin })
+            Err(LineError::TooNarrow { index, free, needed: 2.0 * margin })
         })
     }
 
@@ -180,7 +180,7 @@ impl Corridor {
 
     /// The same corridor with stations about every `step` metres: on a spline through the present ones where it is a loop, on
     /// its chords where it is open.
-    pub fn resampled(&self, step: f64) -> Result<Self, PlanError> {
+    pub fn resampled(&self, step: f64) -> Result<Self, LineError> {
         require_positive("step", step)?;
         let n = self.stations.len();
         if !self.closed {

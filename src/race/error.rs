@@ -4,7 +4,7 @@ use crate::parameter::debug_as_sentence;
 /// Why no line could be planned.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum PlanError {
+pub enum LineError {
     /// Too few points for a line.
     #[error("{found} points; expected at least {needed}")]
     TooFew {
@@ -37,4 +37,4 @@ pub enum PlanError {
     Parameter(#[from] ParameterError),
 }
 
-debug_as_sentence!(PlanError);
+debug_as_sentence!(LineError);

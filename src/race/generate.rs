@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
 use super::corridor::Corridor;
-use super::error::PlanError;
+use super::error::LineError;
 use super::racing_line::curvature;
 use super::{ClosedSpline, Cone, ConeColour, ConeTrack};
 use crate::ParameterError;
@@ -95,9 +95,9 @@ const APART: f64 = 2.5;
 /// use roverlab::race::{TrackOptions, generate};
 /// let generated = generate(3, &TrackOptions::default())?;
 /// assert!((200.0..500.0).contains(&generated.corridor.length()));
-/// # Ok::<(), roverlab::race::PlanError>(())
+/// # Ok::<(), roverlab::race::LineError>(())
 /// ```
-pub fn generate(seed: u64, options: &TrackOptions) -> Result<GeneratedTrack, PlanError> {
+pub fn generate(seed: u64, options: &TrackOptions) -> Result<GeneratedTrack, LineError> {
     options.validate()?;
     for attempt in 0..400 {
         let mut random = Stream::new(seed).child("track", attempt);
@@ -126,9 +126,9 @@ pub fn generate(seed: u64, options: &TrackOptions) -> Result<GeneratedTrack, Pla
 /// assert!(lined(&ring(50.0)?, 5.0)?.track.cones.len() > 2 * 60);
 /// let error = lined(&ring(4.0)?, 5.0).unwrap_err().to_string();
 /// assert!(error.ends_with("expected a closed corridor of 30 to 50000 m"), "{error}");
-/// # Ok::<(), roverlab::race::PlanError>(())
+/// # Ok::<(), roverlab::race::LineError>(())
 /// ```
-pub fn lined(corridor: &Corridor, spacing: f64) -> Result<GeneratedTrack, PlanError> {
+pub fn lined(corridor: &Corridor, spacing: f64) -> Result<GeneratedTrack, LineError> {
     let length = corridor.length();
     if !(corridor.is_closed() && (SHORTEST..=LONGEST).contains(&length)) {
         let expected = "a closed corridor of 30 to 50000 m";

@@ -1,7 +1,7 @@
 //! A cone of a map, and what was seen of it.
 
 use super::cone::ConeColour;
-use super::sight::Sighting;
+use super::sight::ConeSighting;
 use crate::geometry::Point;
 
 /// Times that a cone was seen in one colour, or in none, that are counted.
@@ -63,7 +63,7 @@ impl Landmark {
             && self.pale > 2 * self.colours.iter().sum::<u16>()
     }
 
-    fn vote(&mut self, sighting: &Sighting) {
+    fn vote(&mut self, sighting: &ConeSighting) {
         let index = match sighting.colour {
             ConeColour::Blue => 0,
             ConeColour::Yellow => 1,
@@ -81,7 +81,7 @@ impl Landmark {
     }
 
     /// A cone that is seen for the first time.
-    pub(super) fn new(position: Point, sighting: &Sighting, way: f64) -> Self {
+    pub(super) fn new(position: Point, sighting: &ConeSighting, way: f64) -> Self {
         let mut new = Self {
             position,
             seen: 1,
@@ -98,7 +98,7 @@ impl Landmark {
     }
 
     /// Takes in that it was seen again.
-    pub(super) fn see(&mut self, place: Point, sighting: &Sighting, way: f64) {
+    pub(super) fn see(&mut self, place: Point, sighting: &ConeSighting, way: f64) {
         self.seen = (self.seen + 1).min(MEMORY);
         self.missed = 0;
         self.vote(sighting);

@@ -1,7 +1,7 @@
 //! The corridor of a lap that was driven without one.
 
 use super::corridor::Corridor;
-use super::error::PlanError;
+use super::error::LineError;
 use super::lane_model::LaneParameters;
 use super::spline::ClosedSpline;
 use crate::geometry::{Point, Pose, math};
@@ -14,7 +14,7 @@ const SPEAKS: f64 = 6.5;
 const ALIKE: usize = 10;
 
 /// The corridor around a lap that was driven in the middle, between the cones beside it.
-pub(super) fn around_lap(cones: &[Point], lap: &[Point], p: &LaneParameters) -> Result<Corridor, PlanError> {
+pub(super) fn around_lap(cones: &[Point], lap: &[Point], p: &LaneParameters) -> Result<Corridor, LineError> {
     let stations: Vec<Pose> = ClosedSpline::through(lap)?
         .resample(1.0)
         .iter()
@@ -93,7 +93,7 @@ mod tests {
         let wrong = |a: f64, b: f64| (a - b).abs();
         for station in found.stations() {
             let truth = generated.corridor.stations().iter().min_by(|a, b| {
-                let squared = |s: &crate::race::Station| (s.position - station.position).norm_squared();
+                let squared = |s: &crate::race::CrossSection| (s.position - station.position).norm_squared();
                 squared(a).total_cmp(&squared(b))
             });
             let truth = truth.unwrap();

@@ -3,7 +3,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::cone::{Cone, ConeColour};
 use super::landmark::Landmark;
 use super::registration::{Expected, register, spread};
-use super::sight::Sighting;
+use super::sight::ConeSighting;
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Vector, cross, math, normalize_angle};
 use crate::parameter::{require_finite, require_not_negative, require_positive};
@@ -204,13 +204,13 @@ impl ConeMap {
     }
 
     /// Takes in where odometry is and what a scan showed there.
-    pub fn update(&mut self, odometry: Pose, sightings: &[Sighting]) {
+    pub fn update(&mut self, odometry: Pose, sightings: &[ConeSighting]) {
         let step =
             self.odometry.replace(odometry).map_or(Pose::default(), |last| last.inverse().compose(&odometry));
         self.pose = self.pose.compose(&step);
         let way = step.position().coords.norm();
         self.way += way;
-        let seen: Vec<&Sighting> = sightings.iter().filter(|s| s.is_cone()).collect();
+        let seen: Vec<&ConeSighting> = sightings.iter().filter(|s| s.is_cone()).collect();
         // Matched again after the first correction, which brings what was just outside of the gate into it.
         for _ in 0..2 {
             let matches = self.matches(&seen);
@@ -235,7 +235,7 @@ impl ConeMap {
     }
 
     /// Compares sightings with the cones that the map had when it was closed: later ones may be there for a wrong pose's sake.
-    fn compare(&self, seen: &[&Sighting], matches: &[Option<usize>]) -> Option<bool> {
+    fn compare(&self, seen: &[&ConeSighting], matches: &[Option<usize>]) -> Option<bool> {
         if !self.closed {
             return None;
         }
@@ -364,7 +364,7 @@ impl ConeMap {
     }
 
     /// The cone of the map that each sighting is, no cone twice: the nearest ones first.
-    fn matches(&self, seen: &[&Sighting]) -> Vec<Option<usize>> {
+    fn matches(&self, seen: &[&ConeSighting]) -> Vec<Option<usize>> {
         let gate = self.parameters.gate * self.parameters.gate;
         let mut near: Vec<(f64, usize, usize)> = Vec::new();
         for (index, sighting) in seen.iter().enumerate() {
@@ -389,7 +389,7 @@ impl ConeMap {
     }
 
     /// Moves the pose to where sightings and odometry agree best.
-    fn correct(&mut self, seen: &[&Sighting], matches: &[Option<usize>], way: f64) {
+    fn correct(&mut self, seen: &[&ConeSighting], matches: &[Option<usize>], way: f64) {
         let p = &self.parameters;
         let prior = [0.004 + p.drift[0] * way, 0.001 + p.drift[1] * way].map(|error| 1.0 / (error * error));
         let mut matrix = Matrix3::from_diagonal(&Vector3::new(prior[0], prior[0], prior[1]));
@@ -423,7 +423,7 @@ impl ConeMap {
     }
 
     /// Moves and adds cones.
-    fn learn(&mut self, seen: &[&Sighting], matches: &[Option<usize>]) {
+    fn learn(&mut self, seen: &[&ConeSighting], matches: &[Option<usize>]) {
         for (at, (sighting, landmark)) in seen.iter().zip(matches).enumerate() {
             if sighting.range > self.parameters.farthest {
                 continue;
@@ -440,7 +440,7 @@ impl ConeMap {
     }
 
     /// Forgets what should have been seen and was not, of so many cones that were known before. What is new stands at the end.
-    fn forget(&mut self, known: usize, matches: &[Option<usize>], sightings: &[Sighting]) {
+    fn forget(&mut self, known: usize, matches: &[Option<usize>], sightings: &[ConeSighting]) {
         let mut matched = vec![false; self.landmarks.len()];
         matches.iter().flatten().for_each(|&landmark| matched[landmark] = true);
         let eye = self.pose.compose(&Pose::new(self.parameters.sensor, 0.0, 0.0));
@@ -462,7 +462,7 @@ impl ConeMap {
 }
 
 /// Whether something new that was seen is a part of another one: no two cones stand so near each other.
-fn is_part(new: &Sighting, other: &Sighting) -> bool {
+fn is_part(new: &ConeSighting, other: &ConeSighting) -> bool {
     let away = (new.position - other.position).norm();
     away > 0.0 && away < APART
 }
@@ -479,7 +479,7 @@ fn in_view(place: Vector) -> bool {
 }
 
 /// Whether a thing stands before a place, both seen by a sensor, the thing in the frame of the car.
-fn hides(thing: &Sighting, sensor: f64, place: Vector) -> bool {
+fn hides(thing: &ConeSighting, sensor: f64, place: Vector) -> bool {
     let beside = SHADOW + if thing.is_cone() { 0.0 } else { 0.5 * thing.size };
     let thing = thing.position.coords - Vector::new(sensor, 0.0);
     let (distance, along) = (place.norm(), thing.dot(&place) / place.norm());

@@ -1,7 +1,7 @@
 //! The triangles between cones.
 
 use super::cone::Cone;
-use super::error::PlanError;
+use super::error::LineError;
 use super::pair::Pair;
 use crate::geometry::{Point, Vector, cross};
 
@@ -51,21 +51,21 @@ pub(super) struct Leg {
 }
 
 impl Mesh {
-    pub(super) fn new(cones: &[Cone]) -> Result<Self, PlanError> {
+    pub(super) fn new(cones: &[Cone]) -> Result<Self, LineError> {
         if cones.len() < 3 {
-            return Err(PlanError::TooFew { found: cones.len(), needed: 3 });
+            return Err(LineError::TooFew { found: cones.len(), needed: 3 });
         }
         if let Some(index) =
             cones.iter().position(|c| !(c.position.x.is_finite() && c.position.y.is_finite()))
         {
-            return Err(PlanError::Degenerate { index });
+            return Err(LineError::Degenerate { index });
         }
         let points: Vec<_> =
             cones.iter().map(|c| delaunator::Point { x: c.position.x, y: c.position.y }).collect();
         let triangulation = delaunator::triangulate(&points);
         let triangles = triangulation.triangles;
         if triangles.is_empty() {
-            return Err(PlanError::NoWay);
+            return Err(LineError::NoWay);
         }
         let at = |k: usize| cones[triangles[k]].position;
         let counter_clockwise = cross(at(1) - at(0), at(2) - at(0)) > 0.0;

@@ -11,9 +11,10 @@
 //! - [`EventRacer`]: drives an acceleration or a skidpad, whose layouts are known, by the cones that it sees; an
 //!   [`EventReferee`] takes their times;
 //! - [`minimum_curvature`]: the racing line within a [`Corridor`], and [`SpeedProfile`]: how fast a car goes along it,
-//!   within what its tyres [`Hold`].
+//!   within what its tyres [`GripLimit`].
 
 mod banded;
+mod beam_search;
 mod box_qp;
 mod camera_sight;
 mod centre_line;
@@ -27,7 +28,7 @@ mod finder;
 mod fit;
 mod gap;
 mod generate;
-mod hold;
+mod grip;
 mod landmark;
 mod lane;
 mod lane_model;
@@ -53,14 +54,13 @@ mod spline;
 mod tests;
 mod tracker;
 mod tyres;
-mod walk;
 mod ways;
 
 pub use camera_sight::{CameraMount, CameraSight};
 pub use centre_line::CentreLine;
 pub use cone::{Cone, ConeColour, ConeTrack, Event};
-pub use corridor::{Corridor, Station};
-pub use error::PlanError;
+pub use corridor::{Corridor, CrossSection};
+pub use error::LineError;
 pub use event::{
     EventCourse, EventLayout, EventParameters, EventPhase, EventRacer, EventReferee, EventShape,
 };
@@ -71,7 +71,7 @@ pub use files::{
 pub use finder::LaneFinder;
 pub use gap::{GapCommand, GapDriver};
 pub use generate::{GeneratedTrack, TrackOptions, generate, lined};
-pub use hold::Hold;
+pub use grip::GripLimit;
 pub use lane::lane;
 pub use lane_model::{Lane, LaneParameters};
 pub use map::{ConeMap, ConeMapParameters};
@@ -79,9 +79,9 @@ pub use pair::CentreLineParameters;
 pub use profile::{CarLimits, SpeedProfile};
 pub use racer::{RacePhase, Racer, RacerParameters};
 pub use racing_line::{CarOutline, LineSolver, RacingLine, RacingLineParameters, minimum_curvature};
-pub use referee::{Referee, Verdict};
+pub use referee::{RaceScore, Referee};
 pub use run::RaceOutcome;
-pub use sight::{Sighting, sightings};
+pub use sight::{ConeSighting, sightings};
 pub use spline::{ClosedSpline, SplinePoint};
-pub use tracker::{LineTracker, TrackerParameters};
+pub use tracker::{LineTracker, LineTrackerParameters};
 pub use tyres::Tyres;

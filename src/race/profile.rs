@@ -1,5 +1,5 @@
-use super::error::PlanError;
-use super::hold::Hold;
+use super::error::LineError;
+use super::grip::GripLimit;
 use super::racing_line::curvature;
 use super::tyres::Tyres;
 use crate::ParameterError;
@@ -13,7 +13,7 @@ const GRAVITY: f64 = 9.81;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarLimits {
     /// What its tyres give at most.
-    pub hold: Hold,
+    pub hold: GripLimit,
     /// The greatest acceleration of the motors, in m/s².
     pub drive: f64,
     /// The greatest deceleration of the brakes, in m/s².
@@ -27,7 +27,7 @@ pub struct CarLimits {
 impl CarLimits {
     /// A car whose tyres hold as well in all directions: those of a friction circle.
     pub const fn circle(grip: f64, drive: f64, brake: f64, top_speed: f64) -> Self {
-        let hold = Hold::Ellipse { across: grip, turned: 0.0, along: grip };
+        let hold = GripLimit::Ellipse { across: grip, turned: 0.0, along: grip };
         Self { hold, drive, brake, top_speed, turning: f64::INFINITY }
     }
 
@@ -50,7 +50,7 @@ impl CarLimits {
             lock: max_steering,
         };
         Some(Self {
-            hold: Hold::Balance(tyres),
+            hold: GripLimit::Balance(tyres),
             drive: car.motor.max_acceleration,
             brake: dynamics.brake,
             top_speed: car.drive.top_speed(),
@@ -94,12 +94,12 @@ impl SpeedProfile {
     /// let profile = SpeedProfile::closed(&circle, &limits)?;
     /// // The root of grip times radius.
     /// assert!((profile.speeds[50] - 90.0_f64.sqrt()).abs() < 0.01);
-    /// # Ok::<(), roverlab::race::PlanError>(())
+    /// # Ok::<(), roverlab::race::LineError>(())
     /// ```
-    pub fn closed(points: &[Point], limits: &CarLimits) -> Result<Self, PlanError> {
+    pub fn closed(points: &[Point], limits: &CarLimits) -> Result<Self, LineError> {
         let n = points.len();
         if n < 4 {
-            return Err(PlanError::TooFew { found: n, needed: 4 });
+            return Err(LineError::TooFew { found: n, needed: 4 });
         }
         let curvatures: Vec<f64> =
             (0..n).map(|i| curvature([points[(i + n - 1) % n], points[i], points[(i + 1) % n]])).collect();
@@ -107,10 +107,10 @@ impl SpeedProfile {
     }
 
     /// The same for a line with two ends, from a speed at the first point to at most another one at the last.
-    pub fn open(points: &[Point], limits: &CarLimits, first: f64, last: f64) -> Result<Self, PlanError> {
+    pub fn open(points: &[Point], limits: &CarLimits, first: f64, last: f64) -> Result<Self, LineError> {
         let n = points.len();
         if n < 3 {
-            return Err(PlanError::TooFew { found: n, needed: 3 });
+            return Err(LineError::TooFew { found: n, needed: 3 });
         }
         let curvatures: Vec<f64> = (0..n)
             .map(|i| {
@@ -130,13 +130,13 @@ impl SpeedProfile {
         curvatures: Vec<f64>,
         limits: &CarLimits,
         closed: bool,
-    ) -> Result<Self, PlanError> {
+    ) -> Result<Self, LineError> {
         limits.validate()?;
         let n = points.len();
         let lengths: Vec<f64> = (0..n).map(|i| (points[(i + 1) % n] - points[i]).norm()).collect();
         let lengths_used = if closed { &lengths[..] } else { &lengths[..n - 1] };
         if let Some(index) = lengths_used.iter().position(|&length| !(length > 1e-9 && length.is_finite())) {
-            return Err(PlanError::Degenerate { index });
+            return Err(LineError::Degenerate { index });
         }
         let speed = |i: usize| {
             let around = if closed {
@@ -257,8 +257,8 @@ mod tests {
 
     #[test]
     fn tighter_circles_are_slower_in_the_balance() {
-        use crate::race::{Hold, Tyres};
-        let limits = CarLimits { hold: Hold::Balance(Tyres::default()), ..LIMITS };
+        use crate::race::{GripLimit, Tyres};
+        let limits = CarLimits { hold: GripLimit::Balance(Tyres::default()), ..LIMITS };
         let speeds = [5.0, 9.0, 20.0, 40.0]
             .map(|radius| SpeedProfile::closed(&ellipse(120, radius, radius), &limits).unwrap().speeds[60]);
         assert!(speeds.windows(2).all(|pair| pair[0] < pair[1]), "{speeds:?}");

@@ -1,9 +1,9 @@
 use super::ClosedSpline;
 use super::centre_line::CentreLine;
 use super::cone::Cone;
-use super::corridor::{Corridor, Station};
-use super::error::PlanError;
-use super::hold::Hold;
+use super::corridor::{Corridor, CrossSection};
+use super::error::LineError;
+use super::grip::GripLimit;
 use super::lane::lane_where;
 use super::lane_model::{Lane, LaneParameters, Way};
 use super::lap::around_lap;
@@ -12,8 +12,8 @@ use super::pair::CentreLineParameters;
 use super::profile::{CarLimits, SpeedProfile};
 use super::racing_line::{CarOutline, LineSolver, RacingLineParameters};
 use super::reckoning::Reckoning;
-use super::sight::{Sighting, sightings};
-use super::tracker::{LineTracker, TrackerParameters};
+use super::sight::{ConeSighting, sightings};
+use super::tracker::{LineTracker, LineTrackerParameters};
 use super::tyres::Tyres;
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist};
@@ -41,7 +41,7 @@ pub struct RacerParameters {
     /// How the lane ahead is found in the first lap.
     pub lane: LaneParameters,
     /// How lines are followed.
-    pub tracker: TrackerParameters,
+    pub tracker: LineTrackerParameters,
     /// Seconds from decision to decision.
     pub period: f64,
 }
@@ -52,7 +52,7 @@ impl Default for RacerParameters {
             laps: 10,
             limits: CarLimits {
                 // A thirtieth of the grip and a fifteenth of the steering are left for what the controller is wrong by.
-                hold: Hold::Balance(Tyres { grip: 11.6, lock: 0.58, ..Tyres::default() }),
+                hold: GripLimit::Balance(Tyres { grip: 11.6, lock: 0.58, ..Tyres::default() }),
                 drive: 8.0,
                 brake: 9.5,
                 top_speed: 30.0,
@@ -60,14 +60,14 @@ impl Default for RacerParameters {
             },
             // What is seen late is driven slowly: tight bends, in which a car answers late as well.
             first_lap: CarLimits {
-                hold: Hold::Ellipse { across: 5.0, turned: 1.0, along: 5.0 },
+                hold: GripLimit::Ellipse { across: 5.0, turned: 1.0, along: 5.0 },
                 ..CarLimits::circle(5.0, 3.0, 5.0, 6.0)
             },
             outline: CarOutline { half_width: 0.7, nose: 2.15, ahead: 0.9, room: 0.5 },
             centre_line: CentreLineParameters::default(),
             map: ConeMapParameters::default(),
             lane: LaneParameters::default(),
-            tracker: TrackerParameters::default(),
+            tracker: LineTrackerParameters::default(),
             period: 0.05,
         }
     }
@@ -88,7 +88,7 @@ impl RacerParameters {
 
     /// For a car whose tyres do not slip.
     pub fn rolling() -> Self {
-        Self { tracker: TrackerParameters::rolling(), ..Self::default() }
+        Self { tracker: LineTrackerParameters::rolling(), ..Self::default() }
     }
 }
 
@@ -233,7 +233,7 @@ impl Racer {
     }
 
     /// The same for what was found already. Where odometry is no number, the car brakes, and goes on from where it was.
-    pub fn decide(&mut self, odometry: Pose, speed: Twist, seen: &[Sighting]) -> Twist {
+    pub fn decide(&mut self, odometry: Pose, speed: Twist, seen: &[ConeSighting]) -> Twist {
         if !(odometry.is_finite() && speed.is_finite()) {
             return Twist::STOP;
         }
@@ -251,7 +251,7 @@ impl Racer {
     }
 
     /// A command that leaves room for what is too large for a cone, another car, on the way ahead.
-    fn behind_others(&self, command: Twist, seen: &[Sighting]) -> Twist {
+    fn behind_others(&self, command: Twist, seen: &[ConeSighting]) -> Twist {
         let Some(line) = &self.tracker else { return command };
         let others = seen.iter().filter(|sighting| !sighting.is_cone());
         let places = others.map(|sighting| self.map.pose().to_world(sighting.position));
@@ -427,7 +427,7 @@ impl Racer {
     }
 
     /// The middle of the lane ahead.
-    fn lane_ahead(&mut self, near: &[Cone], pose: Pose) -> Result<LineTracker, PlanError> {
+    fn lane_ahead(&mut self, near: &[Cone], pose: Pose) -> Result<LineTracker, LineError> {
         let middle = Pose::new(self.parameters.tracker.ahead, 0.0, 0.0);
         let trail: Vec<Pose> = self.map.trail().collect();
         let behind = trail.iter().rev().take(BEHIND_POSES).rev().map(|pose| pose.compose(&middle));
@@ -437,7 +437,7 @@ impl Racer {
         let near_it = |place: &Point| (place - own.position()).norm() < NEAR;
         let others: Vec<Point> = self.map.fresh_others().filter(near_it).collect();
         let way = Way { behind: &behind, car: own, earlier: &earlier, others: &others };
-        let found = lane_where(near, &way, &self.lane, &self.parameters.lane).ok_or(PlanError::NoWay)?;
+        let found = lane_where(near, &way, &self.lane, &self.parameters.lane).ok_or(LineError::NoWay)?;
         for (edge, side) in found.edges.iter().zip([1, -1]) {
             let places = edge.iter().map(|&cone| near[cone].position);
             self.map.vote_side(places.filter(|place| (place - own.position()).norm() < VOTES), side);
@@ -448,7 +448,7 @@ impl Racer {
         Ok(LineTracker::new(self.lane.points.clone(), profile, false, self.parameters.tracker)?)
     }
 
-    fn whole_track(&mut self) -> Result<LineTracker, PlanError> {
+    fn whole_track(&mut self) -> Result<LineTracker, LineError> {
         let cones: Vec<Cone> = self.map.cones().collect();
         let ahead = Point::new(self.parameters.tracker.ahead, 0.0);
         let driven: Vec<Point> = self.map.trail().map(|pose| pose.to_world(ahead)).collect();
@@ -471,7 +471,7 @@ impl Racer {
         let profile = SpeedProfile::closed(&points, &p.limits)?;
         // What the steering cannot follow comes of cones on the wrong side.
         if profile.curvatures.iter().any(|bend| bend.abs() > p.tracker.curvature) {
-            return Err(PlanError::NoWay);
+            return Err(LineError::NoWay);
         }
         Ok(LineTracker::new(points, profile, true, p.tracker)?)
     }
@@ -485,7 +485,8 @@ fn holds(corridor: &Corridor, lap: &[Point]) -> bool {
     let stations = corridor.stations();
     let near = |a: Point, b: Point, most: f64| (a - b).norm_squared() < most * most;
     let inside = |place: &Point| stations.iter().any(|station| near(station.position, *place, BESIDE));
-    let driven = |station: &Station| lap.iter().any(|place| near(station.position, *place, BESIDE + 1.0));
+    let driven =
+        |station: &CrossSection| lap.iter().any(|place| near(station.position, *place, BESIDE + 1.0));
     corridor.is_closed()
         && corridor.length() > SHORTEST
         && lap.iter().all(inside)

@@ -8,7 +8,7 @@ use crate::random::Stream;
 /// What came of a race on a generated track.
 #[derive(Debug)]
 struct Raced {
-    verdict: Verdict,
+    verdict: RaceScore,
     phase: RacePhase,
     laps: usize,
     /// Cones hit in the first lap.
@@ -61,8 +61,9 @@ fn race_on(track: &ConeTrack, corridor: Corridor, seed: u64, laps: usize) -> Rac
 fn a_line_that_moves_aside_is_come_to_without_weaving() {
     let straight = |y: f64| -> Vec<Point> { (0..1000).map(|k| Point::new(f64::from(k), y)).collect() };
     let profile = SpeedProfile::open(&straight(0.0), &RacerParameters::default().limits, 30.0, 0.0).unwrap();
-    let tracker =
-        |y: f64| LineTracker::new(straight(y), profile.clone(), false, TrackerParameters::default()).unwrap();
+    let tracker = |y: f64| {
+        LineTracker::new(straight(y), profile.clone(), false, LineTrackerParameters::default()).unwrap()
+    };
     let scene = ConeTrack::default().scene(&[Pose::default()]);
     let world = Simulation::new(&scene, SimOptions::ideal()).unwrap();
     let mut car = world.robot(0).unwrap();
@@ -94,7 +95,7 @@ fn the_first_lap_makes_the_map() {
 }
 
 fn assert_clean(seed: u64, laps: usize, raced: &Raced) {
-    let Verdict { lap_times, off_course, cones_hit } = &raced.verdict;
+    let RaceScore { lap_times, off_course, cones_hit } = &raced.verdict;
     assert_eq!((lap_times.len(), *off_course, *cones_hit), (laps, 0, 0), "{seed}: {raced:?}");
     assert!(laps < 2 || lap_times[laps - 1] < 0.7 * lap_times[0], "{seed}: {raced:?}");
 }
@@ -131,7 +132,7 @@ fn dirty(seeds: std::ops::Range<u64>, shares: [f64; 2]) -> Vec<(u64, Raced)> {
         (seed, race_on(&track, corridor, seed, 2))
     };
     let is_clean = |raced: &Raced| {
-        let Verdict { lap_times, off_course, cones_hit } = &raced.verdict;
+        let RaceScore { lap_times, off_course, cones_hit } = &raced.verdict;
         (lap_times.len(), *off_course, *cones_hit) == (2, 0, 0)
     };
     seeds.map(raced).filter(|(_, raced)| !is_clean(raced)).collect()

@@ -1,7 +1,7 @@
 use super::banded::CyclicBand;
 use super::box_qp::BoxSolver;
-use super::corridor::{Corridor, Station};
-use super::error::PlanError;
+use super::corridor::{Corridor, CrossSection};
+use super::error::LineError;
 use crate::ParameterError;
 use crate::geometry::{Point, cross};
 use crate::parameter::{require_finite, require_not_negative, require_positive};
@@ -63,12 +63,12 @@ pub struct RacingLine {
 ///     (0..90).map(|i| (Point::origin() + direction(f64::from(i) * 0.0698) * 20.0, 2.0, 3.0)).collect();
 /// let line = minimum_curvature(&Corridor::closed(&ring)?, &RacingLineParameters::default())?;
 /// assert!(line.offsets.iter().all(|offset| (offset + 2.0).abs() < 0.05));
-/// # Ok::<(), roverlab::race::PlanError>(())
+/// # Ok::<(), roverlab::race::LineError>(())
 /// ```
 pub fn minimum_curvature(
     corridor: &Corridor,
     parameters: &RacingLineParameters,
-) -> Result<RacingLine, PlanError> {
+) -> Result<RacingLine, LineError> {
     LineSolver::default().solve(corridor, parameters)
 }
 
@@ -84,7 +84,7 @@ impl LineSolver {
         &mut self,
         corridor: &Corridor,
         parameters: &RacingLineParameters,
-    ) -> Result<RacingLine, PlanError> {
+    ) -> Result<RacingLine, LineError> {
         parameters.validate()?;
         check(corridor)?;
         Ok(self.solve_within(corridor, &corridor.free(parameters.margin)?, parameters))
@@ -97,7 +97,7 @@ impl LineSolver {
         corridor: &Corridor,
         outline: &CarOutline,
         parameters: &RacingLineParameters,
-    ) -> Result<RacingLine, PlanError> {
+    ) -> Result<RacingLine, LineError> {
         check(corridor)?;
         let n = corridor.stations().len();
         let mut margins = vec![outline.sides(0.0); n];
@@ -137,7 +137,13 @@ impl LineSolver {
     }
 
     /// The change of the offsets that is best for the linear model.
-    fn linear_step(&mut self, stations: &[Station], offsets: &[f64], free: &[[f64; 2]], step: &mut [f64]) {
+    fn linear_step(
+        &mut self,
+        stations: &[CrossSection],
+        offsets: &[f64],
+        free: &[[f64; 2]],
+        step: &mut [f64],
+    ) {
         const H: f64 = 1e-4;
         let n = stations.len();
         let mut matrix = CyclicBand::zeros(n);
@@ -173,9 +179,9 @@ impl LineSolver {
 /// Rounds of lines and of the margins that a car needs along them.
 const BENDS: usize = 2;
 
-fn check(corridor: &Corridor) -> Result<(), PlanError> {
+fn check(corridor: &Corridor) -> Result<(), LineError> {
     let n = if corridor.is_closed() { corridor.stations().len() } else { 0 };
-    if n < 5 { Err(PlanError::TooFew { found: n, needed: 5 }) } else { Ok(()) }
+    if n < 5 { Err(LineError::TooFew { found: n, needed: 5 }) } else { Ok(()) }
 }
 
 /// The curvature at each point of a loop, in the mean with its neighbours.
@@ -228,7 +234,7 @@ impl CarOutline {
 
 /// Goes along a step as far as the energy falls: all the way, or a half, a quarter, ... The share; `None` if nowhere.
 fn improve(
-    stations: &[Station],
+    stations: &[CrossSection],
     free: &[[f64; 2]],
     offsets: &mut [f64],
     step: &[f64],
@@ -264,7 +270,7 @@ fn residual(points: [Point; 3]) -> f64 {
     curvature(points) * length.sqrt()
 }
 
-fn energy(stations: &[Station], offsets: &[f64]) -> f64 {
+fn energy(stations: &[CrossSection], offsets: &[f64]) -> f64 {
     let n = stations.len();
     let at = |i: usize| stations[i % n].aside(offsets[i % n]);
     let sum = |i: usize| residual([at(i + n - 1), at(i), at(i + 1)]);
@@ -329,6 +335,6 @@ mod tests {
     #[test]
     fn a_car_that_is_too_wide() {
         let error = minimum_curvature(&ring(3.0, 2.0, 0.9), &RacingLineParameters::default()).unwrap_err();
-        assert!(matches!(error, PlanError::TooNarrow { needed: 2.0, .. }), "{error}");
+        assert!(matches!(error, LineError::TooNarrow { needed: 2.0, .. }), "{error}");
     }
 }

@@ -3,7 +3,7 @@ use crate::geometry::{Point, Pose};
 
 /// The times of a race, by the rules of Formula Student: two seconds more for every cone, ten for leaving the course.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Verdict {
+pub struct RaceScore {
     /// Seconds of each lap that was completed.
     pub lap_times: Vec<f64>,
     /// Times that the car left the course: all four wheels were outside.
@@ -12,7 +12,7 @@ pub struct Verdict {
     pub cones_hit: usize,
 }
 
-impl Verdict {
+impl RaceScore {
     /// Seconds for a cone, and for leaving the course.
     pub const PENALTIES: [f64; 2] = [2.0, 10.0];
 
@@ -28,7 +28,7 @@ impl Verdict {
 pub struct Referee {
     corridor: Corridor,
     wheels: [Point; 4],
-    verdict: Verdict,
+    verdict: RaceScore,
     nearest: Option<usize>,
     outside: bool,
     /// When the line was crossed last.
@@ -42,12 +42,12 @@ impl Referee {
     /// A referee for a closed track whose line is at the first station, and for a car with wheels at these places of its
     /// frame.
     pub fn new(corridor: Corridor, wheels: [Point; 4]) -> Self {
-        let verdict = Verdict::default();
+        let verdict = RaceScore::default();
         Self { corridor, wheels, verdict, nearest: None, outside: false, started: None, passed: 0, last: 0.0 }
     }
 
     /// What was seen so far.
-    pub fn verdict(&self) -> &Verdict {
+    pub fn verdict(&self) -> &RaceScore {
         &self.verdict
     }
 
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn penalties() {
-        let verdict = Verdict { lap_times: vec![20.0, 21.0], off_course: 1, cones_hit: 3 };
+        let verdict = RaceScore { lap_times: vec![20.0, 21.0], off_course: 1, cones_hit: 3 };
         assert_eq!(verdict.total(), 57.0);
     }
 }

@@ -4,7 +4,7 @@ use crate::io::LidarScan;
 
 /// Something that a scan shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sighting {
+pub struct ConeSighting {
     /// Its middle in the robot's frame.
     pub position: Point,
     /// Metres from its first point to its last.
@@ -20,7 +20,7 @@ pub struct Sighting {
     pub colour: ConeColour,
 }
 
-impl Sighting {
+impl ConeSighting {
     /// Metres that no cone is wide.
     pub const WIDEST_CONE: f64 = 0.45;
 
@@ -54,7 +54,7 @@ const STEP: f64 = 0.3;
 /// let found = sightings(&scan);
 /// assert!(found.len() == 1 && found[0].is_cone() && (found[0].position.x - 5.05).abs() < 0.02);
 /// ```
-pub fn sightings(scan: &LidarScan) -> Vec<Sighting> {
+pub fn sightings(scan: &LidarScan) -> Vec<ConeSighting> {
     let mut found = Vec::new();
     let mut run: Vec<usize> = Vec::new();
     let mut misses = 0;
@@ -75,7 +75,7 @@ pub fn sightings(scan: &LidarScan) -> Vec<Sighting> {
     found
 }
 
-fn finish(scan: &LidarScan, run: &[usize]) -> Option<Sighting> {
+fn finish(scan: &LidarScan, run: &[usize]) -> Option<ConeSighting> {
     let (&first, &last) = (run.first()?, run.last()?);
     let count = run.len() as f64;
     let angle = run.iter().map(|&beam| scan.angle(beam)).sum::<f64>() / count;
@@ -83,7 +83,7 @@ fn finish(scan: &LidarScan, run: &[usize]) -> Option<Sighting> {
     let place = |beam: usize| direction(scan.angle(beam)) * scan.ranges[beam];
     let size = (place(last) - place(first)).norm();
     let before = first.checked_sub(1).is_some_and(|beside| is_nearer(scan, beside, first));
-    if size < Sighting::WIDEST_CONE && (before || is_nearer(scan, last + 1, last)) {
+    if size < ConeSighting::WIDEST_CONE && (before || is_nearer(scan, last + 1, last)) {
         return None;
     }
     // Beams meet a disc at a quarter of pi of its radius before its middle, in the mean.
@@ -91,7 +91,7 @@ fn finish(scan: &LidarScan, run: &[usize]) -> Option<Sighting> {
     let half = math::asin((RADIUS / range).min(1.0));
     let expected = (2.0 * half / scan.angle_increment.abs().max(1e-9)).floor().max(1.0);
     let local = Point::origin() + direction(angle) * range;
-    Some(Sighting {
+    Some(ConeSighting {
         position: scan.mount.to_world(local),
         size,
         confidence: (count / expected).min(1.0),

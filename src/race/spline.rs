@@ -1,5 +1,5 @@
 use super::banded::CyclicBand;
-use super::error::PlanError;
+use super::error::LineError;
 use crate::geometry::{Point, Vector, cross};
 
 /// A cubic spline through points, closed to a loop, over the lengths of the chords between them: curvature is continuous.
@@ -33,14 +33,14 @@ pub struct SplinePoint {
 
 impl ClosedSpline {
     /// The spline through at least 4 points; the last one is joined to the first. O(n).
-    pub fn through(points: &[Point]) -> Result<Self, PlanError> {
+    pub fn through(points: &[Point]) -> Result<Self, LineError> {
         let n = points.len();
         if n < 4 {
-            return Err(PlanError::TooFew { found: n, needed: 4 });
+            return Err(LineError::TooFew { found: n, needed: 4 });
         }
         let chords: Vec<f64> = (0..n).map(|i| (points[(i + 1) % n] - points[i]).norm()).collect();
         if let Some(index) = chords.iter().position(|&chord| !(chord > 1e-9 && chord.is_finite())) {
-            return Err(PlanError::Degenerate { index });
+            return Err(LineError::Degenerate { index });
         }
         let mut system = CyclicBand::zeros(n);
         let mut right = vec![[0.0; 2]; n];
@@ -205,9 +205,9 @@ mod tests {
     fn points_that_are_none() {
         let mut points = ellipse(10, 3.0, 3.0);
         points[3] = points[2];
-        assert_eq!(ClosedSpline::through(&points), Err(PlanError::Degenerate { index: 2 }));
+        assert_eq!(ClosedSpline::through(&points), Err(LineError::Degenerate { index: 2 }));
         points[3] = Point::new(f64::NAN, 0.0);
-        assert_eq!(ClosedSpline::through(&points), Err(PlanError::Degenerate { index: 2 }));
-        assert_eq!(ClosedSpline::through(&points[..3]), Err(PlanError::TooFew { found: 3, needed: 4 }));
+        assert_eq!(ClosedSpline::through(&points), Err(LineError::Degenerate { index: 2 }));
+        assert_eq!(ClosedSpline::through(&points[..3]), Err(LineError::TooFew { found: 3, needed: 4 }));
     }
 }

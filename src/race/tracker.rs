@@ -6,7 +6,7 @@ use crate::parameter::{require, require_positive, require_up_to};
 
 /// How a car is kept on a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrackerParameters {
+pub struct LineTrackerParameters {
     /// Metres from the rear axle to the point of the car that is kept on the line.
     pub ahead: f64,
     /// Metres in which an error dies out, standing.
@@ -32,7 +32,7 @@ pub struct TrackerParameters {
     pub curvature: f64,
 }
 
-impl Default for TrackerParameters {
+impl Default for LineTrackerParameters {
     fn default() -> Self {
         Self {
             ahead: 0.9,
@@ -50,7 +50,7 @@ impl Default for TrackerParameters {
     }
 }
 
-impl TrackerParameters {
+impl LineTrackerParameters {
     /// For a car whose tyres do not slip.
     pub fn rolling() -> Self {
         Self {
@@ -68,7 +68,7 @@ impl TrackerParameters {
     }
 }
 
-impl TrackerParameters {
+impl LineTrackerParameters {
     /// Fails with the name of the parameter that is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require("ahead", self.ahead, self.ahead.abs() <= MOST, "-1000 to 1000 m")?;
@@ -92,7 +92,7 @@ impl TrackerParameters {
 /// A line with its speeds, and how far along it the car is.
 #[derive(Debug, Clone)]
 pub struct LineTracker {
-    parameters: TrackerParameters,
+    parameters: LineTrackerParameters,
     points: Vec<Point>,
     profile: SpeedProfile,
     closed: bool,
@@ -123,7 +123,7 @@ impl LineTracker {
         points: Vec<Point>,
         profile: SpeedProfile,
         closed: bool,
-        parameters: TrackerParameters,
+        parameters: LineTrackerParameters,
     ) -> Result<Self, ParameterError> {
         parameters.validate()?;
         Ok(Self { parameters, points, profile, closed, nearest: 0, started: false, reached: !closed })
@@ -314,7 +314,7 @@ mod tests {
         let points: Vec<Point> = (0..40).map(|k| Point::new(0.5 * f64::from(k), 0.0)).collect();
         let limits = CarLimits::circle(5.0, 3.0, 5.0, 10.0);
         let profile = SpeedProfile::open(&points, &limits, 5.0, 2.0).unwrap();
-        let mut tracker = LineTracker::new(points, profile, false, TrackerParameters::rolling()).unwrap();
+        let mut tracker = LineTracker::new(points, profile, false, LineTrackerParameters::rolling()).unwrap();
         for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300] {
             assert_eq!(tracker.step(Pose::new(1.0, wrong, 0.0), Twist::new(3.0, 0.0)), None);
             assert_eq!(tracker.step(Pose::new(1.0, 0.0, 0.0), Twist::new(wrong, 0.0)), None);
@@ -327,7 +327,7 @@ mod tests {
         let points: Vec<Point> = (0..400).map(|k| Point::new(0.5 * f64::from(k), 0.0)).collect();
         let limits = CarLimits::circle(5.0, 3.0, 5.0, 10.0);
         let profile = SpeedProfile::open(&points, &limits, 10.0, 2.0).unwrap();
-        let mut tracker = LineTracker::new(points, profile, false, TrackerParameters::rolling()).unwrap();
+        let mut tracker = LineTracker::new(points, profile, false, LineTrackerParameters::rolling()).unwrap();
         let (mut rear, mut moving) = (Pose::new(0.0, 5.0, 0.0), Twist::new(8.0, 0.0));
         let mut steepest = 0.0_f64;
         while rear.x < 100.0 {

@@ -37,7 +37,7 @@ fn faulty(fault: &str) -> Faulty<MockRobot> {
 #[test]
 fn wheels_are_told_within_a_period_of_what_can_be_noticed() {
     type Change = fn(f64, &mut Panel);
-    let parameters = SupervisorParameters::default();
+    let parameters = SupervisedParameters::default();
     let period = parameters.period;
     let panels: [(&str, Change, f64, Causes); 7] = [
         ("button", |now, panel| panel.emergency_button = now >= 1.0, 0.0, Causes::EMERGENCY_BUTTON),
@@ -92,7 +92,7 @@ fn wheels_are_told_within_a_period_of_what_can_be_noticed() {
 #[test]
 fn wheels_are_told_within_a_period_of_the_debounced_fence() {
     let fence = [(-1.0, -1.0), (0.7, -1.0), (0.7, 1.0), (-1.0, 1.0)].map(|(x, y)| Point::new(x, y)).to_vec();
-    let parameters = SupervisorParameters { fence, ..SupervisorParameters::default() };
+    let parameters = SupervisedParameters { fence, ..SupervisedParameters::default() };
     let robot = Faulty::new(mock(), Vec::new());
     let mut car = Supervised::new(robot, station(|_, _| {}), parameters.clone()).unwrap();
     let (_, pose) = brakes(&mut car).unwrap();
@@ -105,19 +105,19 @@ fn wheels_are_told_within_a_period_of_the_debounced_fence() {
 #[test]
 fn a_link_that_is_gone_is_noticed_within_a_period() {
     let mut car =
-        Supervised::new(faulty("link@1"), station(|_, _| {}), SupervisorParameters::default()).unwrap();
+        Supervised::new(faulty("link@1"), station(|_, _| {}), SupervisedParameters::default()).unwrap();
     drive(&mut car, 3.0);
     let stop = car.last_stop().unwrap();
     assert!(stop.causes.has(Causes::LINK) && stop.time <= 1.0 + 0.02 + 1e-6, "{stop:?}");
 }
 
-type Exchange = Box<dyn FnMut(f64, Beat) -> Panel>;
+type Exchange = Box<dyn FnMut(f64, Heartbeat) -> Panel>;
 
 /// Seconds at which a program is stopped that begins to drive and then only reads its sensors.
 fn stopped_reading(begin: impl FnOnce(&mut Supervised<MockRobot, Exchange>)) -> Option<f64> {
     let other_end: Exchange = Box::new(station(|_, _| {}));
     let robot = mock().with_distance(Psd::FRONT, Script::function(|time| Ok(2.0 - 0.1 * time)));
-    let mut car = Supervised::new(robot, other_end, SupervisorParameters::default()).unwrap();
+    let mut car = Supervised::new(robot, other_end, SupervisedParameters::default()).unwrap();
     car.wait(0.2).unwrap();
     begin(&mut car);
     for _ in 0..100 {
@@ -206,7 +206,7 @@ fn stopping_way(hard: bool, brake: f64) -> (f64, f64) {
     let scene = Scene::with_robot(World::empty(1.0, 1.0), spec, Pose::default());
     let simulation = Simulation::new(&scene, SimOptions::default()).unwrap();
     let race = simulation.truth();
-    let parameters = SupervisorParameters::default();
+    let parameters = SupervisedParameters::default();
     let ordered = station(move |now, panel| {
         panel.emergency_button = hard && now > 4.0;
         panel.heartbeat = panel.heartbeat.filter(|_| hard || now < 4.0);
@@ -241,7 +241,7 @@ fn safe_and_emergency_stops_have_their_own_bounds() {
     assert!(hard_bound < 0.5 * soft, "{hard_bound} {soft}");
     let (weak, _) = stopping_way(true, 0.5 * brake);
     assert!(weak > hard_bound, "half a brake: {weak} of {hard_bound}");
-    let (weak, _) = stopping_way(false, 0.5 * SupervisorParameters::default().gentle);
+    let (weak, _) = stopping_way(false, 0.5 * SupervisedParameters::default().gentle);
     assert!(weak > soft_bound, "half of a gentle brake: {weak} of {soft_bound}");
 }
 
@@ -268,7 +268,7 @@ fn a_sensor_at_fault_is_not_trusted_again_by_itself() {
             }
             panel.sensors_checked = now > 8.0;
         });
-        let mut car = Supervised::new(robot, people, SupervisorParameters::default()).unwrap();
+        let mut car = Supervised::new(robot, people, SupervisedParameters::default()).unwrap();
         let mut scan = LidarScan::default();
         let mut drives = Vec::new();
         while car.peek_time().unwrap() < 11.0 {
@@ -289,7 +289,7 @@ fn a_sensor_at_fault_is_not_trusted_again_by_itself() {
 /// Clocks that show any time are no time that passes.
 #[test]
 fn a_clock_that_leaps_to_the_end_of_time_is_waited_for_no_longer() {
-    let parameters = SupervisorParameters::default();
+    let parameters = SupervisedParameters::default();
     let mut car = Supervised::new(faulty("clock=1e300@1"), station(|_, _| {}), parameters).unwrap();
     drive(&mut car, 3.0);
     let stop = car.last_stop().unwrap();

@@ -6,7 +6,7 @@ use crate::parameter::{require, require_finite, require_not_negative, require_po
 
 /// What a vehicle is supervised by.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SupervisorParameters {
+pub struct SupervisedParameters {
     /// Seconds between two looks at everything, 0.1 ms at least.
     pub period: f64,
     /// Seconds without a heartbeat of the base station that are allowed.
@@ -33,7 +33,7 @@ pub struct SupervisorParameters {
 /// The shortest control period, in seconds: a wait is no more looks than can be made.
 const SHORTEST: f64 = 1e-4;
 
-impl Default for SupervisorParameters {
+impl Default for SupervisedParameters {
     fn default() -> Self {
         Self {
             period: 0.02,
@@ -50,7 +50,7 @@ impl Default for SupervisorParameters {
     }
 }
 
-impl SupervisorParameters {
+impl SupervisedParameters {
     /// How a vehicle comes to a safe stop that follows speeds with a lag in seconds and a greatest deceleration in m/s²: it reacts
     /// within one control period, and brakes as gently as is allowed from the speed that it measures. A stop that becomes an
     /// emergency on its way is shorter.

@@ -27,7 +27,7 @@ pub struct Panel {
 
 /// What a vehicle tells its base station in each control period: the heartbeat's other direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Beat {
+pub struct Heartbeat {
     /// Counts up.
     pub count: u64,
     /// The state of the safety system.
@@ -39,12 +39,12 @@ pub struct Beat {
 /// Whoever sits at the other end: people, buttons, the base station.
 pub trait Station {
     /// Hears the vehicle's heartbeat and answers. `now` is the time in seconds.
-    fn exchange(&mut self, now: f64, beat: Beat) -> Panel;
+    fn exchange(&mut self, now: f64, heartbeat: Heartbeat) -> Panel;
 }
 
-impl<F: FnMut(f64, Beat) -> Panel> Station for F {
-    fn exchange(&mut self, now: f64, beat: Beat) -> Panel {
-        self(now, beat)
+impl<F: FnMut(f64, Heartbeat) -> Panel> Station for F {
+    fn exchange(&mut self, now: f64, heartbeat: Heartbeat) -> Panel {
+        self(now, heartbeat)
     }
 }
 
@@ -55,17 +55,17 @@ impl<F: FnMut(f64, Beat) -> Panel> Station for F {
 /// its own, from where the people are who should know; from the first look on, that clock alone counts.
 ///
 /// ```
-/// use roverlab::safety::{BaseStation, Beat, Causes, SafetyState, Station};
+/// use roverlab::safety::{BaseStation, Heartbeat, Causes, SafetyState, Station};
 /// let mut station = BaseStation::new(0.5);
-/// let beat = |count| Beat { count, state: SafetyState::Auto, causes: Causes::NONE };
+/// let heartbeat = |count| Heartbeat { count, state: SafetyState::Auto, causes: Causes::NONE };
 /// station.look(10.0);
-/// assert!(!station.exchange(0.0, beat(1)).remote_stop);
+/// assert!(!station.exchange(0.0, heartbeat(1)).remote_stop);
 /// assert!(!station.look(10.4));
-/// // No beat for too long: nobody is there.
+/// // No heartbeat for too long: nobody is there.
 /// assert!(station.look(10.6));
-/// assert!(station.exchange(0.7, beat(2)).remote_stop, "an order stays");
+/// assert!(station.exchange(0.7, heartbeat(2)).remote_stop, "an order stays");
 /// station.take_back();
-/// assert!(!station.look(10.7) && !station.exchange(0.8, beat(3)).remote_stop);
+/// assert!(!station.look(10.7) && !station.exchange(0.8, heartbeat(3)).remote_stop);
 /// ```
 #[derive(Debug, Clone)]
 pub struct BaseStation {
@@ -138,10 +138,10 @@ impl BaseStation {
 }
 
 impl Station for BaseStation {
-    fn exchange(&mut self, now: f64, beat: Beat) -> Panel {
+    fn exchange(&mut self, now: f64, heartbeat: Heartbeat) -> Panel {
         let now = self.time.unwrap_or(now);
-        if self.hears && self.last != Some(beat.count) {
-            self.last = Some(beat.count);
+        if self.hears && self.last != Some(heartbeat.count) {
+            self.last = Some(heartbeat.count);
             self.vehicle.feed(now);
         }
         self.judge(now);
@@ -161,16 +161,16 @@ mod tests {
     #[test]
     fn nothing_of_a_station_comes_through_a_broken_link() {
         let mut station = BaseStation::new(0.5);
-        let beat = |count| Beat { count, state: SafetyState::Auto, causes: Causes::NONE };
+        let heartbeat = |count| Heartbeat { count, state: SafetyState::Auto, causes: Causes::NONE };
         station.panel = Panel { remote_stop: true, heartbeat: Some(7), brake: 0.5, ..Panel::default() };
         station.panel.emergency_button = true;
         station.stop();
         station.connect(false);
-        let heard = station.exchange(0.0, beat(1));
+        let heard = station.exchange(0.0, heartbeat(1));
         assert!(!heard.remote_stop && heard.heartbeat.is_none(), "{heard:?}");
         assert!(heard.emergency_button && heard.brake == 0.5, "what is on board needs no link: {heard:?}");
         station.connect(true);
-        let heard = station.exchange(0.1, beat(2));
+        let heard = station.exchange(0.1, heartbeat(2));
         assert!(heard.remote_stop && heard.heartbeat == Some(1), "{heard:?}");
     }
 }

@@ -1,7 +1,7 @@
 use super::health::{OdometryHealth, ReadingHealth, Trust};
 use super::{
-    Beat, Causes, Deadline, Debounce, Panel, SafetyCore, SafetyInputs, SafetyState, Station,
-    SupervisorParameters, is_inside,
+    Causes, Deadline, Debounce, Heartbeat, Panel, SafetyCore, SafetyInputs, SafetyState, Station,
+    SupervisedParameters, is_inside,
 };
 use crate::geometry::{Pose, Twist};
 use crate::io::{Clock, Drive, Error, ErrorKind, Result};
@@ -31,7 +31,7 @@ pub struct StopRecord {
 /// # What it notices, and how soon
 ///
 /// What can be noticed is answered by the look after that, so within one control period; during a call of the robot inside that
-/// takes longer, when the call has ended. With the [parameters](SupervisorParameters) it can be noticed
+/// takes longer, when the call has ended. With the [parameters](SupervisedParameters) it can be noticed
 ///
 /// | what | seconds after it began |
 /// |---|---|
@@ -69,20 +69,20 @@ pub struct StopRecord {
 /// and the station do is their own. A wait of more than a day fails with [`ErrorKind::InvalidInput`].
 ///
 /// ```
-/// use roverlab::safety::{Beat, Panel, Requests, SafetyState, Supervised, SupervisorParameters};
+/// use roverlab::safety::{Heartbeat, Panel, Requests, SafetyState, Supervised, SupervisedParameters};
 /// use roverlab::geometry::Twist;
 /// use roverlab::io::{Clock, Drive, MockRobot};
 ///
 /// # fn main() -> roverlab::io::Result<()> {
 /// // Armed and started at once; the stop button is pressed after a second.
-/// let station = |now: f64, beat: Beat| Panel {
-///     heartbeat: Some(beat.count),
+/// let station = |now: f64, heartbeat: Heartbeat| Panel {
+///     heartbeat: Some(heartbeat.count),
 ///     requests: Requests { arm: now > 0.01, start: now > 0.05, disarm: false },
 ///     remote_stop: now > 1.0,
 ///     ..Panel::default()
 /// };
 /// let robot = MockRobot::new().with_ideal_drive();
-/// let mut car = Supervised::new(robot, station, SupervisorParameters::default())?;
+/// let mut car = Supervised::new(robot, station, SupervisedParameters::default())?;
 /// car.wait(0.1)?;
 /// for _ in 0..20 {
 ///     car.set_speed(Twist::new(0.5, 0.0))?;
@@ -96,13 +96,13 @@ pub struct StopRecord {
 pub struct Supervised<R, S> {
     pub(super) inner: R,
     station: S,
-    pub(super) parameters: SupervisorParameters,
+    pub(super) parameters: SupervisedParameters,
     pub(super) core: SafetyCore,
     /// What calls of the program have shown since the last look.
     pub(super) seen: Causes,
     heartbeat: Deadline,
     heard: Option<u64>,
-    beat: u64,
+    sent: u64,
     /// Seconds that have passed: those of the clock, and at least those that were waited, as a clock may stop.
     pub(super) waited: f64,
     /// What the clock showed when nothing had passed.
@@ -165,7 +165,7 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
     /// A robot in the hands of a person, with somebody at the other end.
     ///
     /// Fails with the name of the parameter that is out of range.
-    pub fn new(inner: R, station: S, parameters: SupervisorParameters) -> Result<Self> {
+    pub fn new(inner: R, station: S, parameters: SupervisedParameters) -> Result<Self> {
         parameters.validate()?;
         let mut watchdog = Deadline::new(parameters.watchdog);
         watchdog.feed(0.0);
@@ -176,7 +176,7 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
             seen: Causes::NONE,
             heartbeat: Deadline::new(parameters.heartbeat),
             heard: None,
-            beat: 0,
+            sent: 0,
             waited: 0.0,
             origin: None,
             due: 0.0,
@@ -287,9 +287,9 @@ impl<R: Clock + Drive, S: Station> Supervised<R, S> {
         let (odometry, standing) = self.read_odometry();
         causes = causes.with(odometry);
         causes = causes.with_if(self.watchdog.is_over(self.waited), Causes::WATCHDOG);
-        self.beat += 1;
-        let beat = Beat { count: self.beat, state: self.core.state(), causes: self.causes };
-        let panel = self.station.exchange(self.waited, beat);
+        self.sent += 1;
+        let heartbeat = Heartbeat { count: self.sent, state: self.core.state(), causes: self.causes };
+        let panel = self.station.exchange(self.waited, heartbeat);
         causes = causes.with(self.read_panel(&panel));
         causes = causes.with(self.distrusted(causes, panel.sensors_checked));
         let before = self.core.state();

@@ -12,10 +12,10 @@ use crate::race::GapDriver;
 use crate::world::{RobotSpec, Scene, World};
 
 /// Armed and started at once, a heartbeat, and what else is asked for.
-pub(super) fn station(change: impl Fn(f64, &mut Panel)) -> impl FnMut(f64, Beat) -> Panel {
-    move |now, beat| {
+pub(super) fn station(change: impl Fn(f64, &mut Panel)) -> impl FnMut(f64, Heartbeat) -> Panel {
+    move |now, heartbeat| {
         let requests = Requests { arm: now > 0.03, start: now > 0.07, disarm: false };
-        let mut panel = Panel { heartbeat: Some(beat.count), requests, ..Panel::default() };
+        let mut panel = Panel { heartbeat: Some(heartbeat.count), requests, ..Panel::default() };
         change(now, &mut panel);
         panel
     }
@@ -35,7 +35,7 @@ pub(super) fn mock() -> MockRobot {
 
 /// A car with a base station, armed and started.
 pub(super) fn stationed() -> Supervised<MockRobot, BaseStation> {
-    let mut car = Supervised::new(mock(), BaseStation::new(0.5), SupervisorParameters::default()).unwrap();
+    let mut car = Supervised::new(mock(), BaseStation::new(0.5), SupervisedParameters::default()).unwrap();
     drive(&mut car, 0.1);
     car.station_mut().panel.requests.arm = true;
     drive(&mut car, 0.2);
@@ -47,8 +47,8 @@ pub(super) fn stationed() -> Supervised<MockRobot, BaseStation> {
 
 #[test]
 fn nothing_drives_before_it_is_armed_and_started() {
-    let never = |_: f64, beat: Beat| Panel { heartbeat: Some(beat.count), ..Panel::default() };
-    let mut car = Supervised::new(mock(), never, SupervisorParameters::default()).unwrap();
+    let never = |_: f64, heartbeat: Heartbeat| Panel { heartbeat: Some(heartbeat.count), ..Panel::default() };
+    let mut car = Supervised::new(mock(), never, SupervisedParameters::default()).unwrap();
     drive(&mut car, 1.0);
     assert_eq!((car.state(), car.pose().unwrap()), (SafetyState::Manual, Pose::default()));
     assert!(car.drive_by_hand(Twist::new(0.2, 0.0)).unwrap(), "a person drives");
@@ -78,7 +78,7 @@ fn every_cause_stops_it_within_a_period() {
         ),
     ];
     for (change, state, cause) in causes {
-        let mut car = Supervised::new(mock(), station(change), SupervisorParameters::default()).unwrap();
+        let mut car = Supervised::new(mock(), station(change), SupervisedParameters::default()).unwrap();
         drive(&mut car, 0.9);
         assert_eq!(car.state(), SafetyState::Auto);
         drive(&mut car, 2.0);
@@ -103,7 +103,7 @@ fn the_driver_takes_over_by_pedals_and_wheel() {
         |now, panel| panel.brake = if now > 1.0 { f64::NAN } else { 0.0 },
     ];
     for touch in touches {
-        let mut car = Supervised::new(mock(), station(touch), SupervisorParameters::default()).unwrap();
+        let mut car = Supervised::new(mock(), station(touch), SupervisedParameters::default()).unwrap();
         drive(&mut car, 1.5);
         assert_eq!(car.state(), SafetyState::Manual);
         assert!(car.drive_by_hand(Twist::new(0.1, 0.0)).unwrap());
@@ -113,7 +113,7 @@ fn the_driver_takes_over_by_pedals_and_wheel() {
 #[test]
 fn the_fence_holds_and_is_not_jumpy() {
     let fence = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Point::new(x, y)).to_vec();
-    let parameters = SupervisorParameters { fence, ..SupervisorParameters::default() };
+    let parameters = SupervisedParameters { fence, ..SupervisedParameters::default() };
     let mut car = Supervised::new(mock(), station(|_, _| {}), parameters.clone()).unwrap();
     drive(&mut car, 8.0);
     let stop = car.last_stop().unwrap();
@@ -125,7 +125,7 @@ fn the_fence_holds_and_is_not_jumpy() {
 
 #[test]
 fn a_program_that_hangs_is_stopped() {
-    let mut car = Supervised::new(mock(), station(|_, _| {}), SupervisorParameters::default()).unwrap();
+    let mut car = Supervised::new(mock(), station(|_, _| {}), SupervisedParameters::default()).unwrap();
     drive(&mut car, 1.0);
     car.wait(5.0).unwrap();
     let stop = car.last_stop().unwrap();
@@ -138,7 +138,7 @@ fn a_program_that_lives_steers_while_it_brakes_but_never_drives() {
     let silent: fn(f64, &mut Panel) = |now, panel| panel.heartbeat = panel.heartbeat.filter(|_| now < 1.0);
     let ordered: fn(f64, &mut Panel) = |now, panel| panel.remote_stop = now > 1.0;
     for (change, steers) in [(silent, true), (ordered, false)] {
-        let parameters = SupervisorParameters::default();
+        let parameters = SupervisedParameters::default();
         let mut car = Supervised::new(mock(), station(change), parameters.clone()).unwrap();
         let mut from = Pose::default();
         for _ in 0..200 {
@@ -194,7 +194,7 @@ fn a_robot_in_the_simulator_stands_after_every_fault() {
         let scene = Scene::with_robot(World::walled(8.0, 8.0), RobotSpec::s4(), Pose::new(2.0, 4.0, 0.0));
         let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, index as u64)).unwrap();
         let robot = Faulty::new(simulation.robot(0).unwrap(), vec![text.parse::<Fault>().unwrap()]);
-        let mut car = Supervised::new(robot, station(|_, _| {}), SupervisorParameters::default()).unwrap();
+        let mut car = Supervised::new(robot, station(|_, _| {}), SupervisedParameters::default()).unwrap();
         for _ in 0..60 {
             let _ = car.set_speed(Twist::new(0.3, 0.2));
             let _ = car.wait(0.1);
@@ -234,7 +234,7 @@ fn a_racing_car_brakes_on_its_line() {
     for text in ["stuck:lidar@4", "lost:lidar@4", "nan:lidar@4", "nan:odometry@4", "clock@4"] {
         let simulation = race(&cones, 1.0);
         let race = simulation.truth();
-        let parameters = SupervisorParameters::default();
+        let parameters = SupervisedParameters::default();
         let bound = parameters.stopping(1.0 / 12.0, 11.0).distance(10.1);
         let robot = Faulty::new(simulation.robot(0).unwrap(), vec![text.parse::<Fault>().unwrap()]);
         let mut car = Supervised::new(robot, station(|_, _| {}), parameters).unwrap();
@@ -267,7 +267,7 @@ fn programs_run_supervised_as_they_are() {
     let mut car = Supervised::new(
         race.robot(0).unwrap(),
         station(|now, panel| panel.remote_stop = now > 10.0),
-        SupervisorParameters::default(),
+        SupervisedParameters::default(),
     )
     .unwrap();
     car.wait(0.2).unwrap();
@@ -284,7 +284,7 @@ fn a_program_that_tells_nonsense_is_stopped_all_the_same() {
         let ordered = station(|now, panel| panel.emergency_button = now > 1.0);
         let race = race(&[], 1.0);
         let mut car =
-            Supervised::new(race.robot(0).unwrap(), ordered, SupervisorParameters::default()).unwrap();
+            Supervised::new(race.robot(0).unwrap(), ordered, SupervisedParameters::default()).unwrap();
         drive(&mut car, 0.9);
         let _ = car.set_speed(Twist::new(0.01, angular));
         assert!(car.wait(f64::INFINITY).is_err() && car.wait(f64::NAN).is_err());
@@ -302,7 +302,7 @@ fn a_program_that_tells_nonsense_is_stopped_all_the_same() {
 fn brakes_that_are_on_stay_on() {
     let simulation = race(&[], 0.0);
     let race = simulation.truth();
-    let parameters = SupervisorParameters::default();
+    let parameters = SupervisedParameters::default();
     let model = parameters.stopping(1.0 / 12.0, 11.0);
     let faults = vec!["stuck:odometry@4.2".parse::<Fault>().unwrap()];
     let robot = Faulty::new(simulation.robot(0).unwrap(), faults);
@@ -329,7 +329,7 @@ fn brakes_that_are_on_stay_on() {
 fn the_bend_of_a_servo_is_kept() {
     let race = race(&[], 0.0);
     let ordered = station(|now, panel| panel.emergency_button = now > 3.0);
-    let mut car = Supervised::new(race.robot(0).unwrap(), ordered, SupervisorParameters::default()).unwrap();
+    let mut car = Supervised::new(race.robot(0).unwrap(), ordered, SupervisedParameters::default()).unwrap();
     car.wait(0.2).unwrap();
     while car.state() != SafetyState::EmergencyStop {
         assert!(race.truth().time() < 4.0);
@@ -352,7 +352,7 @@ fn reading_takes_time_in_which_it_is_looked_at() {
     let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 7)).unwrap();
     let ordered = station(|now, panel| panel.emergency_button = now > 0.5);
     let mut car =
-        Supervised::new(simulation.robot(0).unwrap(), ordered, SupervisorParameters::default()).unwrap();
+        Supervised::new(simulation.robot(0).unwrap(), ordered, SupervisedParameters::default()).unwrap();
     car.wait(0.1).unwrap();
     car.straight(2.0, 0.3).unwrap();
     while car.peek_time().unwrap() < 1.5 {
@@ -375,7 +375,7 @@ fn waiting_for_a_key_takes_time_in_which_it_is_looked_at() {
     simulation.press_key(0, 3.0, Key::Key2).unwrap();
     let ordered = station(|now, panel| panel.emergency_button = now > 1.0);
     let mut car =
-        Supervised::new(simulation.robot(0).unwrap(), ordered, SupervisorParameters::default()).unwrap();
+        Supervised::new(simulation.robot(0).unwrap(), ordered, SupervisedParameters::default()).unwrap();
     car.wait(0.1).unwrap();
     car.straight(2.0, 0.3).unwrap();
     assert_eq!(car.wait_key().unwrap(), Key::Key2);
@@ -391,7 +391,7 @@ fn late_readings_stop_it() {
         let scene = Scene::with_robot(World::walled(8.0, 8.0), RobotSpec::s4(), Pose::new(2.0, 4.0, 0.0));
         let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 7)).unwrap();
         let robot = Faulty::new(simulation.robot(0).unwrap(), vec![text.parse::<Fault>().unwrap()]);
-        let mut car = Supervised::new(robot, station(|_, _| {}), SupervisorParameters::default()).unwrap();
+        let mut car = Supervised::new(robot, station(|_, _| {}), SupervisedParameters::default()).unwrap();
         let (mut scan, mut image) = (LidarScan::default(), image::RgbImage::default());
         while car.last_stop().is_none() && car.peek_time().unwrap() < 5.0 {
             let _ = car.set_speed(Twist::new(0.3, 0.2));
@@ -413,7 +413,7 @@ fn a_pose_that_is_set_all_the_time_hides_no_jump() {
         let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 7)).unwrap();
         let faults = vec!["jump=400,200,40@3".parse::<Fault>().unwrap()];
         let robot = Faulty::new(simulation.robot(0).unwrap(), faults);
-        let mut car = Supervised::new(robot, station(|_, _| {}), SupervisorParameters::default()).unwrap();
+        let mut car = Supervised::new(robot, station(|_, _| {}), SupervisedParameters::default()).unwrap();
         for _ in 0..200 {
             let _ = car.set_speed(Twist::new(0.3, 0.0));
             if car.peek_time().unwrap() < 2.9 || !pose.is_finite() {
@@ -427,10 +427,10 @@ fn a_pose_that_is_set_all_the_time_hides_no_jump() {
 
 #[test]
 fn parameters_that_are_none() {
-    let parameters = SupervisorParameters { watchdog: 0.0, ..SupervisorParameters::default() };
+    let parameters = SupervisedParameters { watchdog: 0.0, ..SupervisedParameters::default() };
     let error = Supervised::new(mock(), station(|_, _| {}), parameters).err().unwrap();
     assert_eq!(error.to_string(), "watchdog is 0; expected a positive, finite number");
-    let parameters = SupervisorParameters { period: 1e-9, ..SupervisorParameters::default() };
+    let parameters = SupervisedParameters { period: 1e-9, ..SupervisedParameters::default() };
     let error = Supervised::new(mock(), station(|_, _| {}), parameters).err().unwrap();
     assert_eq!(error.to_string(), "control period is 0.000000001; expected at least 0.0001 s");
 }

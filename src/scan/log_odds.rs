@@ -6,7 +6,7 @@ use crate::world::OccupancyGrid;
 
 /// How much a single beam says about the cells that it crosses and hits.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LogOddsParameters {
+pub struct LogOddsMapParameters {
     /// Probability that a cell which a beam ends in is occupied: more than 0.5 and less than 1.
     pub hit: f64,
     /// Probability that a cell which a beam passes is occupied: more than 0 and less than 0.5.
@@ -15,7 +15,7 @@ pub struct LogOddsParameters {
     pub most: f64,
 }
 
-impl Default for LogOddsParameters {
+impl Default for LogOddsMapParameters {
     fn default() -> Self {
         Self { hit: 0.7, miss: 0.4, most: 0.97 }
     }
@@ -31,15 +31,15 @@ impl Default for LogOddsParameters {
 /// ```
 /// use roverlab::geometry::Pose;
 /// use roverlab::io::LidarScan;
-/// use roverlab::scan::{LogOddsMap, LogOddsParameters};
-/// use roverlab::world::Cell;
-/// let mut map = LogOddsMap::new(20, 10, 0.1, Pose::default(), LogOddsParameters::default()).unwrap();
+/// use roverlab::scan::{LogOddsMap, LogOddsMapParameters};
+/// use roverlab::world::Occupancy;
+/// let mut map = LogOddsMap::new(20, 10, 0.1, Pose::default(), LogOddsMapParameters::default()).unwrap();
 /// let scan = LidarScan { range_max: 3.0, angle_increment: 0.01, ranges: vec![1.0], ..LidarScan::default() };
 /// for _ in 0..5 {
 ///     map.add(Pose::new(0.55, 0.55, 0.0), &scan);
 /// }
 /// let grid = map.to_occupancy(0.3, 0.7);
-/// assert_eq!((grid.cell(15, 5), grid.cell(10, 5), grid.cell(17, 5)), (Cell::Occupied, Cell::Free, Cell::Unknown));
+/// assert_eq!((grid.cell(15, 5), grid.cell(10, 5), grid.cell(17, 5)), (Occupancy::Occupied, Occupancy::Free, Occupancy::Unknown));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogOddsMap {
@@ -60,7 +60,7 @@ impl LogOddsMap {
         height: usize,
         resolution: f64,
         origin: Pose,
-        parameters: LogOddsParameters,
+        parameters: LogOddsMapParameters,
     ) -> Result<Self, ParameterError> {
         let checked = |parameter, value: f64, low: f64, high: f64, expected: &'static str| {
             require(parameter, value, value > low && value < high, expected)
@@ -200,7 +200,7 @@ fn within(a: Point, b: Point, width: f64, height: f64) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::Cell;
+    use crate::world::Occupancy;
     use proptest::prelude::*;
 
     fn scan(ranges: Vec<f64>) -> LidarScan {
@@ -215,19 +215,19 @@ mod tests {
     }
 
     fn map() -> LogOddsMap {
-        LogOddsMap::new(60, 60, 0.1, Pose::new(-3.0, -3.0, 0.0), LogOddsParameters::default()).unwrap()
+        LogOddsMap::new(60, 60, 0.1, Pose::new(-3.0, -3.0, 0.0), LogOddsMapParameters::default()).unwrap()
     }
 
     #[test]
     fn parameters_out_of_range_are_named() {
         let error =
             |parameters| LogOddsMap::new(2, 2, 0.1, Pose::default(), parameters).unwrap_err().to_string();
-        let standard = LogOddsParameters::default();
+        let standard = LogOddsMapParameters::default();
         assert_eq!(
-            error(LogOddsParameters { hit: 0.5, ..standard }),
+            error(LogOddsMapParameters { hit: 0.5, ..standard }),
             "hit is 0.5; expected more than 0.5 and less than 1"
         );
-        assert!(error(LogOddsParameters { miss: f64::NAN, ..standard }).starts_with("miss is NaN"));
+        assert!(error(LogOddsMapParameters { miss: f64::NAN, ..standard }).starts_with("miss is NaN"));
         assert!(LogOddsMap::new(2, 2, 0.0, Pose::default(), standard).is_err());
     }
 
@@ -240,15 +240,15 @@ mod tests {
             for column in 0..60 {
                 let distance = (grid.centre(column, row) - Point::origin()).norm();
                 match grid.cell(column, row) {
-                    Cell::Free => assert!(distance < 2.08, "{distance}"),
-                    Cell::Occupied => assert!((distance - 2.0).abs() < 0.08, "{distance}"),
-                    Cell::Unknown => assert!(distance > 1.9, "{distance}"),
+                    Occupancy::Free => assert!(distance < 2.08, "{distance}"),
+                    Occupancy::Occupied => assert!((distance - 2.0).abs() < 0.08, "{distance}"),
+                    Occupancy::Unknown => assert!(distance > 1.9, "{distance}"),
                 }
             }
         }
         // What was seen can change: the room is opened.
         (0..20).for_each(|_| map.add(Pose::default(), &scan(vec![f64::INFINITY; 720])));
-        assert_eq!(map.to_occupancy(0.3, 0.7).count(Cell::Occupied), 0);
+        assert_eq!(map.to_occupancy(0.3, 0.7).count(Occupancy::Occupied), 0);
     }
 
     proptest! {

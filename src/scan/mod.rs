@@ -20,9 +20,9 @@ pub use filter::ScanFilter;
 pub(crate) use filter::check_measured;
 pub use landmark::{Landmark, LandmarkFilter};
 pub use lidar::{
-    ExtractionParameters, Extremum, ExtremumKind, ScanCorner, ScanFeatures, ScanObject, ScanWall,
+    Extremum, ExtremumKind, ScanCorner, ScanFeatures, ScanFeaturesParameters, ScanObject, ScanWall,
     extract_features, local_extrema, plot_scan,
 };
 pub use localisation::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
-pub use log_odds::{LogOddsMap, LogOddsParameters};
+pub use log_odds::{LogOddsMap, LogOddsMapParameters};
 pub use matcher::ScanMatcher;

@@ -77,7 +77,7 @@ fn filled(width: usize, height: usize, is_free: impl FnMut(usize, usize) -> bool
 
 /// A maze with one way between every two places, and the way between two of them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Maze {
+pub struct GridMaze {
     /// The maze: passages one cell wide, between walls one cell thick.
     pub grid: BitGrid,
     /// Where the way begins.
@@ -90,7 +90,7 @@ pub struct Maze {
 
 /// Mazes of some numbers of places in both directions, at least one, with the answer known from how they were made. The grid
 /// has twice as many columns and rows, less one. No diagonal step is possible in them.
-pub fn mazes(widths: Range<usize>, heights: Range<usize>) -> impl Strategy<Value = Maze> {
+pub fn mazes(widths: Range<usize>, heights: Range<usize>) -> impl Strategy<Value = GridMaze> {
     (widths, heights, any::<u64>()).prop_map(|(width, height, seed)| {
         let (width, height) = (width.max(1), height.max(1));
         let mut stream = Stream::new(seed);
@@ -98,7 +98,7 @@ pub fn mazes(widths: Range<usize>, heights: Range<usize>) -> impl Strategy<Value
     })
 }
 
-fn maze(width: usize, height: usize, stream: &mut Stream) -> Maze {
+fn maze(width: usize, height: usize, stream: &mut Stream) -> GridMaze {
     let mut grid = filled(2 * width - 1, 2 * height - 1, |_, _| false);
     let [start, goal] = [(); 2].map(|()| (stream.below(width), stream.below(height)));
     // Depth first from the start: the way to the goal is what lies on the stack when it is met.
@@ -129,7 +129,7 @@ fn maze(width: usize, height: usize, stream: &mut Stream) -> Maze {
         cells.push(GridCell::new(pair[0].0 + pair[1].0, pair[0].1 + pair[1].1));
         cells.push(place(pair[1]));
     }
-    Maze { grid, start: place(start), goal: place(goal), way: cells }
+    GridMaze { grid, start: place(start), goal: place(goal), way: cells }
 }
 
 /// Worlds of obstacles with a start and a goal, and the answer whether a way leads there, as

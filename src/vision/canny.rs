@@ -1,6 +1,6 @@
 use super::blocks::in_blocks;
 use super::dispatch::vectorised;
-use super::{Error, GrayView, GrayViewMut};
+use super::{GrayView, GrayViewMut, ImageError};
 use crate::ParameterError;
 
 /// The gradients that make edges of Canny's detector.
@@ -70,7 +70,7 @@ impl Canny {
         input: GrayView<'_>,
         mut output: GrayViewMut<'_>,
         thresholds: CannyThresholds,
-    ) -> Result<(), Error> {
+    ) -> Result<(), ImageError> {
         output.require_size(input.size())?;
         let CannyThresholds { low, high } = thresholds;
         if low > high {

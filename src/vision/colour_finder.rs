@@ -1,6 +1,6 @@
 use super::{
-    CameraGeometry, Components, Error, GrayView, GrayViewMut, HueLimits, HueRange, HueScale, NO_HUE, RgbView,
-    hue, hue_histogram_into, hue_match_into, maximum,
+    CameraGeometry, Components, GrayView, GrayViewMut, HueLimits, HueRange, HueScale, ImageError, NO_HUE,
+    RgbView, hue, hue_histogram_into, hue_match_into, maximum,
 };
 use crate::geometry::Point;
 
@@ -54,7 +54,12 @@ impl ColourFinder {
     pub const LIMITS: HueLimits = HueLimits { min_saturation: 128, min_intensity: 6 };
 
     /// A finder of the hues less than `tolerance` away from one, on RoBIOS's scale.
-    pub fn new(hue: u8, tolerance: u8, method: FindMethod, camera: CameraGeometry) -> Result<Self, Error> {
+    pub fn new(
+        hue: u8,
+        tolerance: u8,
+        method: FindMethod,
+        camera: CameraGeometry,
+    ) -> Result<Self, ImageError> {
         Ok(Self {
             range: HueRange::around(hue, tolerance, HueScale::Robios)?,
             limits: Self::LIMITS,
@@ -71,8 +76,8 @@ impl ColourFinder {
     /// image without pixels.
     pub fn find<'a>(
         &mut self,
-        image: impl TryInto<RgbView<'a>, Error: Into<Error>>,
-    ) -> Result<Option<Sighting>, Error> {
+        image: impl TryInto<RgbView<'a>, Error: Into<ImageError>>,
+    ) -> Result<Option<Sighting>, ImageError> {
         let image = image.try_into().map_err(Into::into)?;
         match self.method {
             FindMethod::Histogram => self.by_histogram(image),
@@ -80,7 +85,7 @@ impl ColourFinder {
         }
     }
 
-    fn by_histogram(&mut self, image: RgbView<'_>) -> Result<Option<Sighting>, Error> {
+    fn by_histogram(&mut self, image: RgbView<'_>) -> Result<Option<Sighting>, ImageError> {
         self.columns.resize(image.width(), 0);
         hue_histogram_into(image, &mut self.columns, self.range, self.limits)?;
         let Some((peak, most)) = maximum(&self.columns).filter(|&(_, most)| 8 * most >= self.min_pixels)
@@ -105,7 +110,7 @@ impl ColourFinder {
         (0..image.height()).rev().find(matches).unwrap_or(0)
     }
 
-    fn by_blob(&mut self, image: RgbView<'_>) -> Result<Option<Sighting>, Error> {
+    fn by_blob(&mut self, image: RgbView<'_>) -> Result<Option<Sighting>, ImageError> {
         let (width, height) = image.size();
         self.mask.resize(width * height, 0);
         let mask = GrayViewMut::new(&mut self.mask, width, height)?;
@@ -137,9 +142,9 @@ impl ColourFinder {
 /// The hue that most pixels in the middle of an image have, if there are enough: what is held before the camera to
 /// teach it. Neighbouring hues help each other.
 pub fn teach_hue<'a>(
-    image: impl TryInto<RgbView<'a>, Error: Into<Error>>,
+    image: impl TryInto<RgbView<'a>, Error: Into<ImageError>>,
     limits: HueLimits,
-) -> Result<Option<u8>, Error> {
+) -> Result<Option<u8>, ImageError> {
     // Hues of RoBIOS's circle, and how far those may be that help one.
     const CIRCLE: usize = 252;
     const REACH: usize = 4;

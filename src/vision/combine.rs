@@ -1,9 +1,9 @@
 use super::dispatch::{vectorised, vectorised_filter};
 use super::view::{flatten, require_size};
-use super::{Error, GrayView, GrayViewMut, RgbView, RgbViewMut};
+use super::{GrayView, GrayViewMut, ImageError, RgbView, RgbViewMut};
 
 /// 255 where a pixel is above the threshold, 0 elsewhere (book, Program 11.7).
-pub fn threshold_into(input: GrayView<'_>, output: GrayViewMut<'_>, threshold: u8) -> Result<(), Error> {
+pub fn threshold_into(input: GrayView<'_>, output: GrayViewMut<'_>, threshold: u8) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);
     above(input, &mut output, threshold);
@@ -18,7 +18,7 @@ pub fn overlay_gray_into(
     marks: GrayView<'_>,
     colour: impl Into<[u8; 3]>,
     mut output: RgbViewMut<'_>,
-) -> Result<(), Error> {
+) -> Result<(), ImageError> {
     require_size("second image", marks.size(), base.size())?;
     output.require_size(base.size())?;
     mark(base, marks, colour.into(), &mut output);
@@ -26,7 +26,11 @@ pub fn overlay_gray_into(
 }
 
 /// The second image, and the first wherever the second is black (RoBIOS's `IPOverlay`).
-pub fn overlay_into(base: RgbView<'_>, top: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), Error> {
+pub fn overlay_into(
+    base: RgbView<'_>,
+    top: RgbView<'_>,
+    mut output: RgbViewMut<'_>,
+) -> Result<(), ImageError> {
     require_size("second image", top.size(), base.size())?;
     output.require_size(base.size())?;
     cover(base, top, &mut output);

@@ -1,13 +1,13 @@
 use super::dispatch::vectorised;
 use super::view::{flatten, require_size};
-use super::{Error, GrayView, GrayViewMut};
+use super::{GrayView, GrayViewMut, ImageError};
 
 /// `|first - second|`, pixel by pixel (book, Program 11.13).
 pub fn absolute_difference_into(
     first: GrayView<'_>,
     second: GrayView<'_>,
     output: GrayViewMut<'_>,
-) -> Result<(), Error> {
+) -> Result<(), ImageError> {
     require_size("second image", second.size(), first.size())?;
     output.require_size(first.size())?;
     let (second, mut output) = if first.is_flat() { flatten(second, output) } else { (second, output) };
@@ -18,7 +18,7 @@ pub fn absolute_difference_into(
 }
 
 /// The mean of `|first - second|` over all pixels, in one pass (book, Program 11.13, without rounding).
-pub fn mean_difference(first: GrayView<'_>, second: GrayView<'_>) -> Result<f64, Error> {
+pub fn mean_difference(first: GrayView<'_>, second: GrayView<'_>) -> Result<f64, ImageError> {
     require_size("second image", second.size(), first.size())?;
     let (width, height) = first.size();
     // As one long row both, or none of them.
@@ -33,7 +33,7 @@ pub fn mean_difference(first: GrayView<'_>, second: GrayView<'_>) -> Result<f64,
 pub fn sector_differences<const N: usize>(
     first: GrayView<'_>,
     second: GrayView<'_>,
-) -> Result<[f64; N], Error> {
+) -> Result<[f64; N], ImageError> {
     require_size("second image", second.size(), first.size())?;
     let (width, height) = first.size();
     let mut means = [0.0; N];

@@ -6,7 +6,7 @@ use crate::parameter::debug_as_sentence;
 /// What is wrong with an image or a parameter.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Error {
+pub enum ImageError {
     /// An image without pixels.
     #[error("the image is {width} x {height} pixels; expected at least one pixel")]
     Empty {
@@ -54,10 +54,10 @@ pub enum Error {
     Parameter(#[from] ParameterError),
 }
 
-debug_as_sentence!(Error);
+debug_as_sentence!(ImageError);
 
 /// What takes an image takes a view of one too, which always is one.
-impl From<Infallible> for Error {
+impl From<Infallible> for ImageError {
     fn from(never: Infallible) -> Self {
         match never {}
     }

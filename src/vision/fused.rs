@@ -2,7 +2,7 @@ use super::dispatch::vectorised;
 use super::hue_match::Sectors;
 use super::planes::{PIECE, split};
 use super::view::require_size;
-use super::{Error, HueLimits, HueRange, RgbView};
+use super::{HueLimits, HueRange, ImageError, RgbView};
 
 /// How many pixels of each column have a hue of the range (book, Program 11.9): from the colours to the histogram in
 /// one pass. Hues are on RoBIOS's scale. Fails unless there is one count for each column.
@@ -11,7 +11,7 @@ pub fn hue_histogram_into(
     columns: &mut [u32],
     range: HueRange,
     limits: HueLimits,
-) -> Result<(), Error> {
+) -> Result<(), ImageError> {
     require_size("histogram", (columns.len(), 1), (input.width(), 1))?;
     histogram(input, columns, &Sectors::new(range, limits));
     Ok(())

@@ -1,7 +1,7 @@
 use super::blocks::in_blocks;
 use super::border::{Border, mirrored, stencil};
 use super::dispatch::{vectorised, vectorised_filter};
-use super::{Error, GrayView, GrayViewMut};
+use super::{GrayView, GrayViewMut, ImageError};
 use crate::ParameterError;
 use crate::geometry::math;
 
@@ -26,7 +26,7 @@ impl GaussianKernel {
 
     /// The kernel of a size and a standard deviation in pixels. Weights are rounded to the nearest from the outermost
     /// inwards, each with the rounding error of the one before; the middle one makes up for the rest.
-    pub fn new(size: usize, sigma: f64) -> Result<Self, Error> {
+    pub fn new(size: usize, sigma: f64) -> Result<Self, ImageError> {
         if ![3, 5, 7].contains(&size) {
             let found = size as f64;
             return Err(ParameterError::new("Gaussian size", found, "3, 5 or 7").into());
@@ -66,7 +66,7 @@ pub fn gaussian_into(
     input: GrayView<'_>,
     mut output: GrayViewMut<'_>,
     kernel: GaussianKernel,
-) -> Result<(), Error> {
+) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     match kernel {
         GaussianKernel::THREE => smooth_three(input, &mut output),

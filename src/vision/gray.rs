@@ -1,6 +1,6 @@
 use super::dispatch::vectorised_filter;
 use super::view::flatten;
-use super::{Error, GrayView, GrayViewMut, RgbView, RgbViewMut, planes};
+use super::{GrayView, GrayViewMut, ImageError, RgbView, RgbViewMut, planes};
 
 /// How much each colour adds to the brightness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -14,7 +14,11 @@ pub enum GrayWeights {
 }
 
 /// Colour to shades of gray.
-pub fn gray_into(input: RgbView<'_>, output: GrayViewMut<'_>, weights: GrayWeights) -> Result<(), Error> {
+pub fn gray_into(
+    input: RgbView<'_>,
+    output: GrayViewMut<'_>,
+    weights: GrayWeights,
+) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);
     gray(input, &mut output, weights);
@@ -22,7 +26,7 @@ pub fn gray_into(input: RgbView<'_>, output: GrayViewMut<'_>, weights: GrayWeigh
 }
 
 /// Shades of gray to colour: each byte three times.
-pub fn gray_to_rgb_into(input: GrayView<'_>, output: RgbViewMut<'_>) -> Result<(), Error> {
+pub fn gray_to_rgb_into(input: GrayView<'_>, output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);
     triple(input, &mut output);

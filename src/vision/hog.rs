@@ -2,7 +2,7 @@ use crate::parameter::require;
 use std::f64::consts::PI;
 
 use super::dispatch::vectorised;
-use super::{Error, GrayView};
+use super::{GrayView, ImageError};
 use crate::geometry::math;
 
 /// How histograms of oriented gradients are taken.
@@ -48,7 +48,7 @@ pub struct Hog {
 impl Hog {
     /// A describer that has yet to allocate its memory. Fails unless cells have 2 to 64 pixels on each side, blocks 1
     /// to 8 cells, and there are 2 to 36 bins.
-    pub fn new(parameters: HogParameters) -> Result<Self, Error> {
+    pub fn new(parameters: HogParameters) -> Result<Self, ImageError> {
         let HogParameters { cell, block, bins } = parameters;
         for (parameter, found, range, expected) in [
             ("cell of the histograms", cell, 2..=64, "2 to 64"),
@@ -79,11 +79,11 @@ impl Hog {
     }
 
     /// Describes an image: `bins` numbers for each cell of each block. Fails if not one block fits the image.
-    pub fn describe(&mut self, input: GrayView<'_>) -> Result<&[f32], Error> {
+    pub fn describe(&mut self, input: GrayView<'_>) -> Result<&[f32], ImageError> {
         let blocks = self.blocks(input.size());
         if blocks.0 == 0 || blocks.1 == 0 {
             let side = self.parameters.cell * self.parameters.block;
-            return Err(Error::Size { what: "image", found: input.size(), expected: (side, side) });
+            return Err(ImageError::Size { what: "image", found: input.size(), expected: (side, side) });
         }
         self.fill_cells(input);
         self.fill_descriptor(input.width() / self.parameters.cell, blocks);

@@ -2,7 +2,7 @@ use crate::ParameterError;
 use std::f64::consts::PI;
 
 use super::dispatch::vectorised;
-use super::{Error, GrayView};
+use super::{GrayView, ImageError};
 use crate::geometry::math;
 
 /// A straight line: all points with `x cos(theta) + y sin(theta) = rho`, in pixels from the centre of the upper left
@@ -37,7 +37,7 @@ pub struct HoughLines {
 
 impl HoughLines {
     /// Lines at multiples of `rho_step` pixels from the origin, and at so many angles in half a turn.
-    pub fn new(rho_step: f64, angles: usize) -> Result<Self, Error> {
+    pub fn new(rho_step: f64, angles: usize) -> Result<Self, ImageError> {
         if !(rho_step >= 0.1 && rho_step.is_finite()) {
             let expected = "at least 0.1 and finite";
             return Err(ParameterError::new("step of rho", rho_step, expected).into());

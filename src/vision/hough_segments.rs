@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 
 use super::dispatch::vectorised;
 use super::segment_order::Draw;
-use super::{Error, GrayView, SegmentDefinition};
+use super::{GrayView, ImageError, SegmentDefinition};
 use crate::geometry::math;
 
 /// A straight line between two pixels, both included.
@@ -65,7 +65,7 @@ const FRACTION: u32 = 16;
 
 impl HoughSegments {
     /// Lines at so many angles in half a turn.
-    pub fn new(angles: usize) -> Result<Self, Error> {
+    pub fn new(angles: usize) -> Result<Self, ImageError> {
         if !(1..=3600).contains(&angles) {
             let found = angles as f64;
             return Err(ParameterError::new("angles", found, "1 to 3600").into());

@@ -1,6 +1,6 @@
 use std::f64::consts::{FRAC_PI_3, TAU};
 
-use super::{Error, NO_HUE, RgbView, RgbViewMut};
+use super::{ImageError, NO_HUE, RgbView, RgbViewMut};
 use crate::geometry::math;
 
 /// Hue, saturation and intensity by the book's formulas (section 11.4).
@@ -65,7 +65,7 @@ pub fn hsi_to_rgb(Hsi { hue, saturation, intensity }: Hsi) -> [u8; 3] {
 }
 
 /// Hue, saturation and intensity of an image; the output has them in the place of red, green and blue.
-pub fn hsi_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), Error> {
+pub fn hsi_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     for y in 0..input.height() {
         let out = output.row_mut(y).as_chunks_mut::<3>().0;
@@ -78,7 +78,7 @@ pub fn hsi_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), Er
 }
 
 /// Red, green and blue of an image that has hue, saturation and intensity in their place; see [`hsi_to_rgb`].
-pub fn hsi_to_rgb_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), Error> {
+pub fn hsi_to_rgb_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     for y in 0..input.height() {
         let out = output.row_mut(y).as_chunks_mut::<3>().0;

@@ -2,7 +2,7 @@ use super::dispatch::vectorised_filter;
 use super::hue::{fixed_point, opencv};
 use super::planes::{PIECE, merge, split};
 use super::view::flatten;
-use super::{Error, RgbView, RgbViewMut};
+use super::{ImageError, RgbView, RgbViewMut};
 
 /// Hue, saturation and value as OpenCV has them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -26,7 +26,7 @@ pub fn rgb_to_hsv([red, green, blue]: [u8; 3]) -> Hsv {
 }
 
 /// The same for an image; the output has hue, saturation and value in the place of red, green and blue.
-pub fn hsv_into(input: RgbView<'_>, output: RgbViewMut<'_>) -> Result<(), Error> {
+pub fn hsv_into(input: RgbView<'_>, output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);
     convert(input, &mut output);
@@ -58,7 +58,7 @@ pub fn hsv_to_rgb(Hsv { hue, saturation, value }: Hsv) -> [u8; 3] {
 }
 
 /// The same for an image that has hue, saturation and value in the place of red, green and blue.
-pub fn hsv_to_rgb_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), Error> {
+pub fn hsv_to_rgb_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     for y in 0..input.height() {
         let out = output.row_mut(y).as_chunks_mut::<3>().0;

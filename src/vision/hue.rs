@@ -1,6 +1,6 @@
 use super::dispatch::vectorised_filter;
 use super::view::flatten;
-use super::{Error, GrayViewMut, RgbView, planes};
+use super::{GrayViewMut, ImageError, RgbView, planes};
 
 /// The hue of a pixel that has none.
 pub const NO_HUE: u8 = 255;
@@ -115,7 +115,7 @@ pub fn hue_into(
     output: GrayViewMut<'_>,
     scale: HueScale,
     limits: HueLimits,
-) -> Result<(), Error> {
+) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);
     hues(input, &mut output, scale, limits);

@@ -1,7 +1,7 @@
 use super::dispatch::vectorised_filter;
 use super::hue::hue;
 use super::view::flatten;
-use super::{Error, GrayView, GrayViewMut, HueLimits, HueScale, NO_HUE, RgbView, planes};
+use super::{GrayView, GrayViewMut, HueLimits, HueScale, ImageError, NO_HUE, RgbView, planes};
 use crate::ParameterError;
 
 /// Hues from one to another, both included, wrapping round the end of the circle if the first is larger.
@@ -16,7 +16,7 @@ pub struct HueRange {
 impl HueRange {
     /// The hues from `low` to `high`, round the end of the circle if `low` is larger. Fails for a number that is no hue:
     /// 255, or 180 and above on OpenCV's scale.
-    pub fn new(low: u8, high: u8, scale: HueScale) -> Result<Self, Error> {
+    pub fn new(low: u8, high: u8, scale: HueScale) -> Result<Self, ImageError> {
         for (parameter, hue) in [("low hue", low), ("high hue", high)] {
             require_hue(parameter, hue, scale)?;
         }
@@ -25,7 +25,7 @@ impl HueRange {
 
     /// The hues less than `threshold` away from one, on a circle of 255 as the book's Program 11.9 reckons, or of 180
     /// on OpenCV's scale.
-    pub fn around(hue: u8, threshold: u8, scale: HueScale) -> Result<Self, Error> {
+    pub fn around(hue: u8, threshold: u8, scale: HueScale) -> Result<Self, ImageError> {
         require_hue("hue", hue, scale)?;
         let circle = circle(scale);
         let (middle, reach) = (i32::from(hue), i32::from(threshold) - 1);
@@ -55,7 +55,7 @@ fn circle(scale: HueScale) -> i32 {
     }
 }
 
-fn require_hue(parameter: &'static str, hue: u8, scale: HueScale) -> Result<(), Error> {
+fn require_hue(parameter: &'static str, hue: u8, scale: HueScale) -> Result<(), ImageError> {
     if i32::from(hue) < circle(scale) {
         return Ok(());
     }
@@ -69,7 +69,7 @@ pub fn hue_match_into(
     range: HueRange,
     scale: HueScale,
     limits: HueLimits,
-) -> Result<(), Error> {
+) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);
     match scale {
@@ -84,7 +84,7 @@ pub fn match_hue_image_into(
     input: GrayView<'_>,
     output: GrayViewMut<'_>,
     range: HueRange,
-) -> Result<(), Error> {
+) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);
     matches_hues(input, &mut output, range);

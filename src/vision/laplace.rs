@@ -1,10 +1,14 @@
 use super::border::stencil;
 use super::dispatch::vectorised_filter;
-use super::{Border, Error, GrayView, GrayViewMut};
+use super::{Border, GrayView, GrayViewMut, ImageError};
 
 /// The Laplace operator's absolute value (book, Program 11.3): `min(255, |4 c - n - s - e - w|)` of a pixel and its
 /// four neighbours.
-pub fn laplace_into(input: GrayView<'_>, mut output: GrayViewMut<'_>, border: Border) -> Result<(), Error> {
+pub fn laplace_into(
+    input: GrayView<'_>,
+    mut output: GrayViewMut<'_>,
+    border: Border,
+) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     absolute(input, &mut output, border);
     Ok(())
@@ -16,7 +20,7 @@ pub fn laplace_saturated_into(
     input: GrayView<'_>,
     mut output: GrayViewMut<'_>,
     border: Border,
-) -> Result<(), Error> {
+) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     saturated(input, &mut output, border);
     Ok(())

@@ -7,7 +7,7 @@
 //! ```
 //! use roverlab::vision::{Border, GrayView, GrayViewMut, laplace_into};
 //!
-//! # fn main() -> Result<(), roverlab::vision::Error> {
+//! # fn main() -> Result<(), roverlab::vision::ImageError> {
 //! let image = [0, 0, 0, 0, 90, 0, 0, 0, 0];
 //! let mut edges = [0; 9];
 //! laplace_into(GrayView::new(&image, 3, 3)?, GrayViewMut::new(&mut edges, 3, 3)?, Border::Zero)?;
@@ -71,7 +71,7 @@ pub use colour_finder::{ColourFinder, FindMethod, Sighting, teach_hue};
 pub use combine::{overlay_gray_into, overlay_into, threshold_into};
 pub use components::{Blob, Components};
 pub use difference::{absolute_difference_into, mean_difference, sector_differences};
-pub use error::Error;
+pub use error::ImageError;
 pub use fused::hue_histogram_into;
 pub use gaussian::{GaussianKernel, gaussian_into};
 pub use gray::{GrayWeights, gray_into, gray_to_rgb_into};

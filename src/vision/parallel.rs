@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::Error;
+use super::ImageError;
 use super::view::{View, ViewMut};
 
 /// Rows of a band, at least: shorter ones cost more to hand out than they save.
@@ -17,7 +17,7 @@ const LEAST_ROWS: usize = 16;
 /// ```
 /// use roverlab::vision::{Border, GrayView, GrayViewMut, in_bands, laplace_into};
 ///
-/// # fn main() -> Result<(), roverlab::vision::Error> {
+/// # fn main() -> Result<(), roverlab::vision::ImageError> {
 /// let image: Vec<u8> = (0..640 * 480).map(|i| (i / 97 * 13) as u8).collect();
 /// let (mut edges, mut expected) = (vec![0; image.len()], vec![0; image.len()]);
 /// let input = GrayView::new(&image, 640, 480)?;
@@ -33,8 +33,8 @@ pub fn in_bands<const C: usize, const D: usize>(
     input: View<'_, C>,
     output: ViewMut<'_, D>,
     reach: usize,
-    kernel: impl Fn(View<'_, C>, ViewMut<'_, D>) -> Result<(), Error> + Sync,
-) -> Result<(), Error> {
+    kernel: impl Fn(View<'_, C>, ViewMut<'_, D>) -> Result<(), ImageError> + Sync,
+) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (width, height) = input.size();
     let bands = rayon::current_num_threads().min(height / (LEAST_ROWS + 2 * reach)).max(1);

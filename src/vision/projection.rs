@@ -1,11 +1,15 @@
 use super::dispatch::vectorised;
 use super::view::require_size;
-use super::{Error, GrayView};
+use super::{GrayView, ImageError};
 
 /// The sums of all columns and of all rows (book, section 11.4, where the image is one of matches).
 ///
 /// Fails unless there is one sum for each column and row.
-pub fn projections_into(input: GrayView<'_>, columns: &mut [u32], rows: &mut [u32]) -> Result<(), Error> {
+pub fn projections_into(
+    input: GrayView<'_>,
+    columns: &mut [u32],
+    rows: &mut [u32],
+) -> Result<(), ImageError> {
     require_size("pair of projections", (columns.len(), rows.len()), input.size())?;
     project(input, columns, rows);
     Ok(())

@@ -1,6 +1,6 @@
 use super::border::stencil;
 use super::dispatch::vectorised_filter;
-use super::{Border, Error, GrayView, GrayViewMut};
+use super::{Border, GrayView, GrayViewMut, ImageError};
 
 /// How the magnitude of a gradient becomes a byte.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -20,7 +20,7 @@ pub fn sobel_l1_into(
     mut output: GrayViewMut<'_>,
     scale: SobelScale,
     border: Border,
-) -> Result<(), Error> {
+) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     match scale {
         SobelScale::Full => sums_in_full(input, &mut output, border),
@@ -36,7 +36,7 @@ pub fn sobel_l2_into(
     mut output: GrayViewMut<'_>,
     scale: SobelScale,
     border: Border,
-) -> Result<(), Error> {
+) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     match scale {
         SobelScale::Full => roots_in_full(input, &mut output, border),

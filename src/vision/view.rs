@@ -1,4 +1,4 @@
-use super::Error;
+use super::ImageError;
 
 /// A borrowed image of `C` bytes a pixel. It has at least one pixel.
 #[derive(Debug, Clone, Copy)]
@@ -33,17 +33,23 @@ pub(super) struct Shape {
 
 impl Shape {
     /// The shape and its bytes, if they are no more than `found`.
-    fn new(width: usize, height: usize, stride: usize, channels: usize, found: usize) -> Result<Self, Error> {
+    fn new(
+        width: usize,
+        height: usize,
+        stride: usize,
+        channels: usize,
+        found: usize,
+    ) -> Result<Self, ImageError> {
         if width == 0 || height == 0 {
-            return Err(Error::Empty { width, height });
+            return Err(ImageError::Empty { width, height });
         }
         let row = width.saturating_mul(channels);
         if stride < row {
-            return Err(Error::Stride { stride, row });
+            return Err(ImageError::Stride { stride, row });
         }
         let expected = stride.saturating_mul(height - 1).saturating_add(row);
         if found < expected {
-            return Err(Error::Truncated { found, expected });
+            return Err(ImageError::Truncated { found, expected });
         }
         Ok(Self { width, height, stride })
     }
@@ -55,13 +61,13 @@ impl Shape {
         width: usize,
         height: usize,
         channels: usize,
-    ) -> Result<(usize, Self), Error> {
+    ) -> Result<(usize, Self), ImageError> {
         if width == 0 || height == 0 {
-            return Err(Error::Empty { width, height });
+            return Err(ImageError::Empty { width, height });
         }
         let end = (x.saturating_add(width), y.saturating_add(height));
         if end.0 > self.width || end.1 > self.height {
-            return Err(Error::Region { end, size: (self.width, self.height) });
+            return Err(ImageError::Region { end, size: (self.width, self.height) });
         }
         Ok((y * self.stride + x * channels, Self { width, height, stride: self.stride }))
     }
@@ -79,18 +85,23 @@ impl Shape {
 
 impl<'a, const C: usize> View<'a, C> {
     /// An image whose rows follow each other without a gap.
-    pub fn new(data: &'a [u8], width: usize, height: usize) -> Result<Self, Error> {
+    pub fn new(data: &'a [u8], width: usize, height: usize) -> Result<Self, ImageError> {
         Self::with_stride(data, width, height, width.saturating_mul(C))
     }
 
     /// An image with `stride` bytes from the start of one row to that of the next. What follows the last row in
     /// `data` is left alone.
-    pub fn with_stride(data: &'a [u8], width: usize, height: usize, stride: usize) -> Result<Self, Error> {
+    pub fn with_stride(
+        data: &'a [u8],
+        width: usize,
+        height: usize,
+        stride: usize,
+    ) -> Result<Self, ImageError> {
         Ok(Self { data, shape: Shape::new(width, height, stride, C, data.len())? })
     }
 
     /// A part of the image, from its upper left pixel (column, row).
-    pub fn region(&self, corner: (usize, usize), width: usize, height: usize) -> Result<Self, Error> {
+    pub fn region(&self, corner: (usize, usize), width: usize, height: usize) -> Result<Self, ImageError> {
         let (start, shape) = self.shape.region(corner, width, height, C)?;
         Ok(Self { data: &self.data[start..], shape })
     }
@@ -147,7 +158,7 @@ impl<'a, const C: usize> View<'a, C> {
 
 impl<'a, const C: usize> ViewMut<'a, C> {
     /// An image whose rows follow each other without a gap.
-    pub fn new(data: &'a mut [u8], width: usize, height: usize) -> Result<Self, Error> {
+    pub fn new(data: &'a mut [u8], width: usize, height: usize) -> Result<Self, ImageError> {
         Self::with_stride(data, width, height, width.saturating_mul(C))
     }
 
@@ -158,13 +169,13 @@ impl<'a, const C: usize> ViewMut<'a, C> {
         width: usize,
         height: usize,
         stride: usize,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self, ImageError> {
         let shape = Shape::new(width, height, stride, C, data.len())?;
         Ok(Self { data, shape })
     }
 
     /// A part of the image, from its upper left pixel (column, row).
-    pub fn region(self, corner: (usize, usize), width: usize, height: usize) -> Result<Self, Error> {
+    pub fn region(self, corner: (usize, usize), width: usize, height: usize) -> Result<Self, ImageError> {
         let (start, shape) = self.shape.region(corner, width, height, C)?;
         Ok(Self { data: &mut self.data[start..], shape })
     }
@@ -227,7 +238,7 @@ impl<'a, const C: usize> ViewMut<'a, C> {
     }
 
     /// Fails unless the output has the size of the input.
-    pub(super) fn require_size(&self, expected: (usize, usize)) -> Result<(), Error> {
+    pub(super) fn require_size(&self, expected: (usize, usize)) -> Result<(), ImageError> {
         require_size("output", self.size(), expected)
     }
 }
@@ -237,8 +248,8 @@ pub(super) fn require_size(
     what: &'static str,
     found: (usize, usize),
     expected: (usize, usize),
-) -> Result<(), Error> {
-    if found == expected { Ok(()) } else { Err(Error::Size { what, found, expected }) }
+) -> Result<(), ImageError> {
+    if found == expected { Ok(()) } else { Err(ImageError::Size { what, found, expected }) }
 }
 
 /// Input and output as one long row each if both can be: for kernels that look at single pixels.

@@ -1,4 +1,4 @@
-use super::{Cell, OccupancyGrid};
+use super::{Occupancy, OccupancyGrid};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose};
 use crate::parameter::debug_as_sentence;
@@ -125,7 +125,7 @@ impl BitGrid {
 
     /// The free cells of an occupancy grid, in the same columns and rows. Unknown cells are blocked.
     pub fn from_occupancy(grid: &OccupancyGrid) -> Self {
-        let free = |column, row| grid.cell(column, row) == Cell::Free;
+        let free = |column, row| grid.cell(column, row) == Occupancy::Free;
         Self::from_fn(grid.width(), grid.height(), free).unwrap_or_else(|_| Self::empty())
     }
 
@@ -136,7 +136,7 @@ impl BitGrid {
         for row in 0..self.height {
             for column in 0..self.width {
                 let free = self.is_free(GridCell::new(column, row));
-                grid.set(column, row, if free { Cell::Free } else { Cell::Occupied });
+                grid.set(column, row, if free { Occupancy::Free } else { Occupancy::Occupied });
             }
         }
         Ok(grid)
@@ -341,12 +341,12 @@ mod tests {
     #[test]
     fn occupancy_keeps_free_cells() {
         let mut map = OccupancyGrid::unknown(3, 2, 0.1, Pose::default()).unwrap();
-        map.set(1, 0, Cell::Free);
-        map.set(2, 1, Cell::Occupied);
+        map.set(1, 0, Occupancy::Free);
+        map.set(2, 1, Occupancy::Occupied);
         let grid = BitGrid::from_occupancy(&map);
         assert_eq!(grid.free_cells().collect::<Vec<_>>(), [GridCell::new(1, 0)]);
         let back = grid.to_occupancy(0.1, Pose::default()).unwrap();
-        assert_eq!((back.count(Cell::Free), back.count(Cell::Occupied)), (1, 5));
+        assert_eq!((back.count(Occupancy::Free), back.count(Occupancy::Occupied)), (1, 5));
     }
 
     #[test]

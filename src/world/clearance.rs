@@ -297,7 +297,7 @@ mod tests {
 
     use super::*;
     use crate::geometry::Pose;
-    use crate::world::{Cell, ObjectKind, OccupancyGrid};
+    use crate::world::{ObjectKind, Occupancy, OccupancyGrid};
     use proptest::prelude::*;
 
     fn point() -> impl Strategy<Value = Point> {
@@ -346,7 +346,7 @@ mod tests {
     fn the_inside_of_a_block_of_a_map_is_solid() {
         let mut map = OccupancyGrid::unknown(10, 10, 0.5, Pose::new(2.0, -1.0, 0.4)).unwrap();
         for (row, column) in (2..8).flat_map(|row| (2..8).map(move |column| (row, column))) {
-            map.set(column, row, Cell::Occupied);
+            map.set(column, row, Occupancy::Occupied);
         }
         let world = map.to_world();
         let field = Clearance::new(&world, 0.1, 0.2).unwrap();

@@ -6,7 +6,7 @@ use crate::world::{Wall, World};
 
 /// What a cell of an occupancy grid holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Cell {
+pub enum Occupancy {
     /// Nothing.
     Free,
     /// An obstacle.
@@ -77,11 +77,11 @@ impl OccupancyGrid {
     }
 
     /// What a cell holds: 0 % is free, 100 % occupied, all else unknown, and so is what lies outside.
-    pub fn cell(&self, column: usize, row: usize) -> Cell {
+    pub fn cell(&self, column: usize, row: usize) -> Occupancy {
         match self.occupancy(column, row) {
-            Some(0) => Cell::Free,
-            Some(100) => Cell::Occupied,
-            _ => Cell::Unknown,
+            Some(0) => Occupancy::Free,
+            Some(100) => Occupancy::Occupied,
+            _ => Occupancy::Unknown,
         }
     }
 
@@ -98,22 +98,22 @@ impl OccupancyGrid {
     }
 
     /// Sets what a cell holds. Outside the grid nothing happens.
-    pub fn set(&mut self, column: usize, row: usize, cell: Cell) {
+    pub fn set(&mut self, column: usize, row: usize, cell: Occupancy) {
         let percent = match cell {
-            Cell::Free => Some(0),
-            Cell::Occupied => Some(100),
-            Cell::Unknown => None,
+            Occupancy::Free => Some(0),
+            Occupancy::Occupied => Some(100),
+            Occupancy::Unknown => None,
         };
         self.set_occupancy(column, row, percent);
     }
 
     /// How many cells hold something.
-    pub fn count(&self, cell: Cell) -> usize {
+    pub fn count(&self, cell: Occupancy) -> usize {
         let value = match cell {
-            Cell::Free => 0,
-            Cell::Occupied => 100,
-            Cell::Unknown => {
-                return self.values.len() - self.count(Cell::Free) - self.count(Cell::Occupied);
+            Occupancy::Free => 0,
+            Occupancy::Occupied => 100,
+            Occupancy::Unknown => {
+                return self.values.len() - self.count(Occupancy::Free) - self.count(Occupancy::Occupied);
             }
         };
         self.values.iter().filter(|&&v| v == value).count()
@@ -231,9 +231,9 @@ mod tests {
         for (row, text) in rows.iter().rev().enumerate() {
             for (column, c) in text.chars().enumerate() {
                 let cell = match c {
-                    '#' => Cell::Occupied,
-                    '.' => Cell::Free,
-                    _ => Cell::Unknown,
+                    '#' => Occupancy::Occupied,
+                    '.' => Occupancy::Free,
+                    _ => Occupancy::Unknown,
                 };
                 grid.set(column, row, cell);
             }
@@ -288,7 +288,7 @@ mod tests {
         ) {
             let mut grid = OccupancyGrid::unknown(6, 4, 0.5, Pose::new(3.0, -1.0, heading)).unwrap();
             for (i, &occupied) in cells.iter().enumerate() {
-                grid.set(i % 6, i / 6, if occupied { Cell::Occupied } else { Cell::Free });
+                grid.set(i % 6, i / 6, if occupied { Occupancy::Occupied } else { Occupancy::Free });
             }
             let at = |x: i32, y: i32| {
                 (0..6).contains(&x) && (0..4).contains(&y) && cells[(y * 6 + x) as usize]

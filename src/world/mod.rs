@@ -23,7 +23,7 @@ pub use bit_grid::{BitGrid, BitGridError, GridCell};
 pub use body::{Axis, Body, Collider, Place3};
 pub use clearance::{Clearance, Raster};
 pub use colour::Colour;
-pub use grid::{Cell, OccupancyGrid};
+pub use grid::{Occupancy, OccupancyGrid};
 pub use mesh::{Face, Material, Mesh};
 pub use object::{Billboard, Marker, Object, ObjectKind, Shape};
 pub use robot::{

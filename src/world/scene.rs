@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use super::{Billboard, Cell, Marker, Object, OccupancyGrid, RobotSpec, Texture, Wall};
+use super::{Billboard, Marker, Object, Occupancy, OccupancyGrid, RobotSpec, Texture, Wall};
 use crate::geometry::{Aabb, Point, Pose, Vector};
 
 /// A place without robots: floor, walls, objects and marks.
@@ -74,7 +74,7 @@ impl World {
     /// Whether a point lies in an occupied cell of the map that the walls outline.
     pub fn is_inside_walls(&self, point: Point) -> bool {
         self.map.as_ref().is_some_and(|map| {
-            map.cell_at(point).is_some_and(|(column, row)| map.cell(column, row) == Cell::Occupied)
+            map.cell_at(point).is_some_and(|(column, row)| map.cell(column, row) == Occupancy::Occupied)
         })
     }
 

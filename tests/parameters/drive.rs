@@ -1,11 +1,12 @@
-use roverlab::drive::colour::{ColourTracker, HomeParameters, PushHome, TrackerParameters};
-use roverlab::drive::motion_watch::{MotionWatch, WatchParameters};
+use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
+use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::{
-    AToB, AToBParameters, AlongWall, CarDriver, CarParameters, CarToB, Chase, ChaseParameters, CoverageMap,
-    CoverageParameters, Cruise, CruiseParameters, FollowMeParameters, Follower, FollowerParameters,
-    Formation, Goal, LidarWallFollower, LidarWallParameters, Method, OmniParameters, OmniTracker, Path,
-    PathFollower, Pid, PidParameters, PidWallFollower, PidWallParameters, RandomDrive, RandomDriveParameters,
-    Tour, TourParameters, TwoLevelWallFollower, WallFollower, WallFollowerParameters,
+    AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters,
+    CoverageMap, CoverageMapParameters, Cruise, CruiseParameters, Follower, FollowerParameters, Formation,
+    Goal, LidarWallFollower, LidarWallFollowerParameters, Method, OmniParameters, OmniTracker, Path,
+    PathFollower, PathFollowerParameters, Pid, PidParameters, PidWallFollower, PidWallFollowerParameters,
+    RandomDrive, RandomDriveParameters, Tour, TourParameters, TwoLevelWallFollower, WallFollower,
+    WallFollowerParameters,
 };
 use roverlab::geometry::{Point, Pose};
 use roverlab::kinematics::Ackermann;
@@ -25,26 +26,26 @@ fn finder() -> ColourFinder {
 
 #[test]
 fn colours_and_motion() {
-    check!(TrackerParameters = TrackerParameters::default(),
+    check!(ColourTrackerParameters = ColourTrackerParameters::default(),
         |p| ends(RobotSpec::s4(), ColourTracker::new(finder(), p)?),
         { Positive: speed, turn_speed, radius, leg, period; NotNegative: margin, gap, memory; });
-    let home = HomeParameters::default;
-    check!(TrackerParameters = home().tracker,
-        |p| PushHome::new(finder(), GOAL, HomeParameters { tracker: p, ..home() })?,
+    let home = PushHomeParameters::default;
+    check!(ColourTrackerParameters = home().tracker,
+        |p| PushHome::new(finder(), GOAL, PushHomeParameters { tracker: p, ..home() })?,
         { Positive: speed, turn_speed, radius, leg, period; NotNegative: margin, gap, memory; });
-    check!(HomeParameters = home(), |p| ends(RobotSpec::s4(), PushHome::new(finder(), GOAL, p)?),
+    check!(PushHomeParameters = home(), |p| ends(RobotSpec::s4(), PushHome::new(finder(), GOAL, p)?),
         { Positive: round, push_speed, correction, near; NotNegative: clearance, foresight; } but tracker);
-    check!(WatchParameters = WatchParameters::new(1.0), |p| ends(RobotSpec::s4(), MotionWatch::new(p)?),
+    check!(MotionWatchParameters = MotionWatchParameters::new(1.0), |p| ends(RobotSpec::s4(), MotionWatch::new(p)?),
         { Bounded: field_of_view; Positive: turn_speed, period; NotNegative: parallax, patience; }
         but standing, turning);
     check!(MotionParameters = MotionParameters::default(),
-        |p| ends(RobotSpec::s4(), MotionWatch::new(WatchParameters { turning: p, ..WatchParameters::new(1.0) })?),
+        |p| ends(RobotSpec::s4(), MotionWatch::new(MotionWatchParameters { turning: p, ..MotionWatchParameters::new(1.0) })?),
         { Bounded: block; NotNegative: threshold; Positive: least_noise; });
 }
 
 #[test]
 fn from_a_to_b() {
-    check!(FollowerParameters = FollowerParameters::default(), |p| {
+    check!(PathFollowerParameters = PathFollowerParameters::default(), |p| {
             let path = Path::straight(Point::origin(), GOAL)?;
             let mut follower = PathFollower::new(path, p)?;
             let _ = follower.step(Pose::default());
@@ -57,7 +58,7 @@ fn from_a_to_b() {
     check!(ChaseParameters = ChaseParameters::default(), |p| Chase::new(Method::Dog, p)?.step(Pose::new(1.0, 0.5, 0.0))?,
         { Positive: distance, turn_threshold, period; Bounded: spline_scale; } but follower);
     let driver = CarDriver { kinematics: Ackermann::new(0.12, 0.1, 0.5).unwrap(), full_speed: 0.5 };
-    check!(CarParameters = CarParameters::default(),
+    check!(CarToBParameters = CarToBParameters::default(),
         |p| ends(RobotSpec::car(), CarToB::new(Method::Arc, Goal::point(GOAL), driver, p)?),
         { Positive: tolerance, heading_tolerance, steering_time, period, margin; Bounded: spline_scale;
           AnyCount: corrections; } but follower);
@@ -70,7 +71,7 @@ fn from_a_to_b() {
 
 #[test]
 fn floors_and_swarms() {
-    check!(CoverageParameters = CoverageParameters::default(),
+    check!(CoverageMapParameters = CoverageMapParameters::default(),
         |p| CoverageMap::new(&World::walled(1.0, 1.0), Point::new(0.5, 0.5), p)?,
         { Bounded: radius, margin, resolution; BoundedFromZero: overlap; });
     check!(TourParameters = TourParameters::default(), |p| ends(RobotSpec::s4(), Tour::new(&[Point::origin(), GOAL], p)?),
@@ -78,7 +79,7 @@ fn floors_and_swarms() {
     check!(CruiseParameters = CruiseParameters::default(),
         |p| Cruise::new(vec![GOAL], p)?.step(Pose::default(), &[Point::new(0.3, 0.0)])?,
         { Positive: speed, turn_rate, radius, margin, ahead, arrival; });
-    check!(FollowMeParameters = FollowMeParameters::default(), |p| Follower::new(p)?,
+    check!(FollowerParameters = FollowerParameters::default(), |p| Follower::new(p)?,
         { Positive: speed, turn_rate, patience, period, gap; Bounded: radius, margin, leader_radius; });
     check!(Formation = Formation::at(Point::new(-0.3, 0.2)), |p| p.validate()?,
         { Positive: speed, turn_rate, margin; Bounded: radius; } but offset);
@@ -93,10 +94,10 @@ fn walls() {
         |p| ends(RobotSpec::s4(), AlongWall::new(WallFollower::new(p)?)),
         { Positive: speed, turn_rate, reach, lag, period; Bounded: distance, radius; BoundedFromZero: range_error; }
         but side, sensors);
-    check!(PidWallParameters = PidWallParameters::default(),
+    check!(PidWallFollowerParameters = PidWallFollowerParameters::default(),
         |p| ends(RobotSpec::s4(), AlongWall::new(PidWallFollower::new(p)?)),
         { Positive: distance, speed, turn_rate, period; } but side, gains, sensors);
-    check!(LidarWallParameters = LidarWallParameters::default(),
+    check!(LidarWallFollowerParameters = LidarWallFollowerParameters::default(),
         |p| ends(RobotSpec::s4(), AlongWall::new(LidarWallFollower::new(p)?)),
         { Positive: distance, speed, turn_rate, reach, lag, period; } but side);
     for (safe, speed) in [(f64::NAN, 0.2), (0.0, 0.2), (0.3, -1.0), (0.3, f64::INFINITY)] {

@@ -2,12 +2,13 @@ use roverlab::geometry::{Point, Pose};
 use roverlab::kinematics::OdometryErrors;
 use roverlab::maze::{
     CellDrive, CellDriveParameters, Direction, FastPlanner, LeftHand, LeftHandParameters, LidarLeft,
-    LidarLeftParameters, Maze, MazeRunner, Rig, RunLimits, RunnerParameters, Scale, TrackerParameters,
+    LidarLeftParameters, Maze, MazeRunner, MazeRunnerParameters, Rig, RunLimits, Scale,
+    TrajectoryTrackerParameters,
 };
-use roverlab::nav::{BugParameters, DistBug, NavigateParameters, Navigator};
+use roverlab::nav::{BugParameters, DistBug, Navigator, NavigatorParameters};
 use roverlab::scan::{
-    ExtractionParameters, LocalisationMap, Localiser, LocaliserParameters, LogOddsMap, LogOddsParameters,
-    extract_features,
+    LocalisationMap, Localiser, LocaliserParameters, LogOddsMap, LogOddsMapParameters,
+    ScanFeaturesParameters, extract_features,
 };
 use roverlab::world::{RobotSpec, World};
 
@@ -32,15 +33,15 @@ fn mazes() {
         { Positive: cell, speed, aside, ahead, reading_error; Finite: wall, coast, sensors_ahead; } but steering);
     check!(RunLimits = RunLimits::EYEBOT, |p| FastPlanner::new(Scale::DOUBLED, p)?,
         { Bounded: speed, diagonal_speed, acceleration, lateral_acceleration, pivot_speed, angular_acceleration; });
-    let runner = |parameters: RunnerParameters| {
+    let runner = |parameters: MazeRunnerParameters| {
         let maze = Maze::unexplored(4, 4).expect("a maze");
         let mut robot = simulation(RobotSpec::s4()).robot(0)?;
         MazeRunner::new(&mut robot, rig(), maze, Scale::DOUBLED, parameters, 1.0).map(|_| ())
     };
-    check!(RunnerParameters = RunnerParameters::EYEBOT, |p| runner(p)?, { Count: readings; }
+    check!(MazeRunnerParameters = MazeRunnerParameters::EYEBOT, |p| runner(p)?, { Count: readings; }
         but exploring, racing, tracker);
-    check!(TrackerParameters = TrackerParameters::EYEBOT,
-        |p| runner(RunnerParameters { tracker: p, ..RunnerParameters::EYEBOT })?,
+    check!(TrajectoryTrackerParameters = TrajectoryTrackerParameters::EYEBOT,
+        |p| runner(MazeRunnerParameters { tracker: p, ..MazeRunnerParameters::EYEBOT })?,
         { Positive: reach, heading, period; NotNegative: along; });
 }
 
@@ -50,7 +51,7 @@ fn navigation() {
         { Positive: robot_radius, step, goal_tolerance, cruise_speed, follow_speed, lag, period, clearance;
           Bounded: least_clearance; } but side, match_scans);
     let world = World::walled(3.0, 2.0);
-    check!(NavigateParameters = NavigateParameters::default(),
+    check!(NavigatorParameters = NavigatorParameters::default(),
         |p| ends(RobotSpec::s4(), Navigator::new(&world, Pose::new(1.0, 1.0, 0.0), GOAL, p)?),
         { Positive: resolution, goal_tolerance, cruise_speed, turn_rate, period; Bounded: clearance, least_clearance; }
         but footprint, match_scans);
@@ -59,15 +60,17 @@ fn navigation() {
 #[test]
 fn scans() {
     let scan = roverlab::io::LidarScan { ranges: vec![1.0; 90], angle_increment: 0.05, ..Default::default() };
-    check!(ExtractionParameters = ExtractionParameters::default(), |p| extract_features(&scan, &p)?,
+    check!(ScanFeaturesParameters = ScanFeaturesParameters::default(), |p| extract_features(&scan, &p)?,
         { NotNegative: range_error; Positive: least_wall, largest_object, corner_gap; } but least_points);
     for least_points in 0..3 {
-        assert!(ExtractionParameters { least_points, ..ExtractionParameters::default() }.validate().is_err());
+        assert!(
+            ScanFeaturesParameters { least_points, ..ScanFeaturesParameters::default() }.validate().is_err()
+        );
     }
     check!(LocaliserParameters = LocaliserParameters::default(),
         |p| Localiser::new(LocalisationMap::new(&World::walled(2.0, 1.0))?, p)?,
         { NotNegative: range_error; Positive: radius, grid, view, odometry_error; Count: candidates;
           Bounded: least_probability; });
-    check!(LogOddsParameters = LogOddsParameters::default(), |p| LogOddsMap::new(10, 10, 0.1, Pose::default(), p)?,
+    check!(LogOddsMapParameters = LogOddsMapParameters::default(), |p| LogOddsMap::new(10, 10, 0.1, Pose::default(), p)?,
         { Bounded: hit, miss, most; });
 }

@@ -2,9 +2,9 @@ use roverlab::ParameterError;
 use roverlab::geometry::{Point, Pose, direction};
 use roverlab::race::{
     CarLimits, CarOutline, CentreLine, CentreLineParameters, Cone, ConeMap, ConeMapParameters, Corridor,
-    EventParameters, EventRacer, GapDriver, Hold, LaneFinder, LaneParameters, LineTracker, Racer,
-    RacerParameters, RacingLineParameters, SpeedProfile, TrackOptions, TrackerParameters, Tyres, generate,
-    minimum_curvature,
+    EventParameters, EventRacer, GapDriver, GripLimit, LaneFinder, LaneParameters, LineTracker,
+    LineTrackerParameters, Racer, RacerParameters, RacingLineParameters, SpeedProfile, TrackOptions, Tyres,
+    generate, minimum_curvature,
 };
 use roverlab::world::RobotSpec;
 
@@ -46,7 +46,7 @@ fn racers() {
     check!(CarLimits = racer().first_lap, |p| Racer::new(RacerParameters { first_lap: p, ..racer() })?,
         { Positive: drive, brake, top_speed; Above: turning; } but hold);
     check!(Tyres = Tyres::default(), |p| {
-            let limits = CarLimits { hold: Hold::Balance(p), ..racer().limits };
+            let limits = CarLimits { hold: GripLimit::Balance(p), ..racer().limits };
             Racer::new(RacerParameters { limits, ..racer() })?;
             let _ = SpeedProfile::closed(&ring(9.0), &limits)?;
         },
@@ -96,7 +96,7 @@ fn centre_lines() {
 #[test]
 fn followed_lines() {
     let profile = SpeedProfile::closed(&ring(9.0), &RacerParameters::default().limits).unwrap();
-    check!(TrackerParameters = TrackerParameters::default(), |p| {
+    check!(LineTrackerParameters = LineTrackerParameters::default(), |p| {
             let mut tracker = LineTracker::new(ring(9.0), profile.clone(), true, p)?;
             let _ = tracker.step(Pose::new(9.0, 0.0, 1.6), roverlab::geometry::Twist::new(3.0, 0.3));
         },

@@ -2,7 +2,7 @@ use roverlab::geometry::Pose;
 use roverlab::io::MockRobot;
 use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
 use roverlab::random::Stream;
-use roverlab::safety::{BaseStation, HealthLimits, SpeedError, Supervised, SupervisorParameters};
+use roverlab::safety::{BaseStation, HealthLimits, SpeedError, Supervised, SupervisedParameters};
 use roverlab::vision::{Hog, HogParameters};
 use roverlab::world::generate::{CourseOptions, RoomOptions, obstacle_course, room};
 use roverlab::world::{CameraSpec, LidarSpec, MotorSpec, PsdSpec, RobotSpec, Scene, World};
@@ -44,16 +44,16 @@ fn robots() {
 
 #[test]
 fn safety() {
-    let parameters = SupervisorParameters::default;
-    let supervised = |parameters: SupervisorParameters| {
+    let parameters = SupervisedParameters::default;
+    let supervised = |parameters: SupervisedParameters| {
         Supervised::new(MockRobot::new(), BaseStation::new(1.0), parameters).map(|_| ())
     };
-    check!(SupervisorParameters = parameters(), |p| supervised(p)?,
+    check!(SupervisedParameters = parameters(), |p| supervised(p)?,
         { Positive: period, heartbeat, watchdog, override_threshold, gentle, standing; AnyCount: fence_debounce; }
         but fence, speed_error, health);
-    check!(SpeedError = SpeedError::default(), |p| supervised(SupervisorParameters { speed_error: p, ..parameters() })?,
+    check!(SpeedError = SpeedError::default(), |p| supervised(SupervisedParameters { speed_error: p, ..parameters() })?,
         { NotNegative: share, offset; });
-    check!(HealthLimits = HealthLimits::default(), |p| supervised(SupervisorParameters { health: p, ..parameters() })?,
+    check!(HealthLimits = HealthLimits::default(), |p| supervised(SupervisedParameters { health: p, ..parameters() })?,
         { Positive: acceleration, speed_step, age; Count: repeats; });
 }
 

@@ -1,5 +1,5 @@
 use nalgebra::Matrix2;
-use roverlab::drive::{AToBOutcome, AToBParameters, FollowerParameters, Goal};
+use roverlab::drive::{AToBOutcome, AToBParameters, Goal, PathFollowerParameters};
 use roverlab::geometry::{Point, Pose, angle_difference, normalize_angle, units};
 use roverlab::io::sim::NoiseModel;
 use roverlab::kinematics::Differential;
@@ -63,7 +63,10 @@ fn way(args: &Args, trip: &Trip) -> f64 {
 pub(crate) fn options(args: &Args, trip: &Trip, heading: Option<f64>, conditions: &Conditions) -> Options {
     let start = trip.start();
     let parameters = AToBParameters {
-        follower: FollowerParameters { steering: args.follower.steering(), ..FollowerParameters::default() },
+        follower: PathFollowerParameters {
+            steering: args.follower.steering(),
+            ..PathFollowerParameters::default()
+        },
         spline_scale: args.scale,
         ..AToBParameters::default()
     };

@@ -1,6 +1,6 @@
 //! The command `ackermann`.
 
-use roverlab::drive::{CarDriver, CarOutcome, CarParameters, CarToB, Goal, Method, Path};
+use roverlab::drive::{CarDriver, CarOutcome, CarToB, CarToBParameters, Goal, Method, Path};
 use roverlab::geometry::{Pose, angle_difference, normalize_angle, units};
 use roverlab::io::control::run;
 use roverlab::io::{self, Clock, Drive, Motors, Servos};
@@ -64,7 +64,8 @@ pub(crate) fn drive<R: Clock + Drive + Motors + Servos + ?Sized>(
     options: &Options,
     mut watch: impl FnMut(),
 ) -> io::Result<Arrival> {
-    let mut behaviour = CarToB::new(options.method, options.goal, options.driver, CarParameters::default())?;
+    let mut behaviour =
+        CarToB::new(options.method, options.goal, options.driver, CarToBParameters::default())?;
     let plan = behaviour.plan(robot.pose()?)?;
     let outcome = run(robot, &mut behaviour, options.time_limit, |_, _, _| watch())?;
     Ok(Arrival { outcome, plan })

@@ -1,6 +1,6 @@
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::control::run;
-use roverlab::io::log::Witness;
+use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::SimOptions;
 use roverlab::io::{self, ErrorKind};
 use roverlab::nav::{BugEvent, BugKind, BugOutcome, BugParameters, Guarantee};

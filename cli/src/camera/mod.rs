@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use image::RgbImage;
-use roverlab::io::{self, Camera, Clock, Display, Picture, Resolution, Servos, Viewport};
-use roverlab::picture::Picture as Drawing;
-use roverlab::vision::{Error, GrayView, GrayViewMut, GrayWeights, gray_into};
+use roverlab::io::{self, Camera, Clock, Display, DisplayImage, Resolution, Servos, Viewport};
+use roverlab::picture::Picture;
+use roverlab::vision::{GrayView, GrayViewMut, GrayWeights, ImageError, gray_into};
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, Stopwatch, rounded, write_image};
 use crate::driving::{Conditions, Run, drawn, paced};
@@ -109,7 +109,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         conditions.run(&scene, paced(common), |robot, step| look(robot, size, head, args.images, step))?;
     let output = save(args, &run)?;
     let (file, trouble) = drawn(common, "camera.svg", || {
-        let mut drawing = Drawing::new(&scene.world);
+        let mut drawing = Picture::new(&scene.world);
         drawing.title("What the camera has before it");
         for other in &scene.robots[1..] {
             drawing.robot(other.pose, &other.spec.footprint);
@@ -181,12 +181,12 @@ fn look(
         robot.wait(FRAME)?;
     }
     let seconds = stopwatch.seconds();
-    robot.draw_image(Picture::Rgb(&image), Viewport::default())?;
+    robot.draw_image(DisplayImage::Rgb(&image), Viewport::default())?;
     step();
     Ok(Seen { image, seconds })
 }
 
-fn brightness(image: &RgbImage) -> Result<f64, Error> {
+fn brightness(image: &RgbImage) -> Result<f64, ImageError> {
     let (width, height) = (image.width() as usize, image.height() as usize);
     let mut gray = vec![0; width * height];
     gray_into(image.try_into()?, GrayViewMut::new(&mut gray, width, height)?, GrayWeights::Rec601)?;

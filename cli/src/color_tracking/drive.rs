@@ -1,10 +1,10 @@
 use image::RgbImage;
 use roverlab::drive::colour::{
-    ColourOutcome, ColourTracker, HomeParameters, PushHome, PushOutcome, TrackerParameters,
+    ColourOutcome, ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters, PushOutcome,
 };
 use roverlab::geometry::Point;
 use roverlab::io::control::run;
-use roverlab::io::{self, Camera, Clock, Display, Drive, ErrorKind, Lidar, Picture, Pixel, Viewport};
+use roverlab::io::{self, Camera, Clock, Display, DisplayImage, Drive, ErrorKind, Lidar, Pixel, Viewport};
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod, Sighting, teach_hue};
 use roverlab::world::Colour;
 
@@ -36,11 +36,11 @@ pub(crate) fn teach(robot: &mut (impl Camera + Display + io::Keys)) -> io::Resul
     robot.set_menu(["TEACH", "", "", ""])?;
     robot.wait_key()?;
     let image = robot.image()?;
-    robot.draw_image(Picture::Rgb(&image), Viewport::default())?;
+    robot.draw_image(DisplayImage::Rgb(&image), Viewport::default())?;
     teach_hue(&image, ColourFinder::LIMITS).map_err(|error| failure(&error))
 }
 
-fn failure(error: &roverlab::vision::Error) -> io::Error {
+fn failure(error: &roverlab::vision::ImageError) -> io::Error {
     io::Error::new(ErrorKind::Other, error.to_string())
 }
 
@@ -55,7 +55,8 @@ pub(crate) fn drive<R: Camera + Clock + Display + Drive + Lidar + ?Sized>(
         .map_err(|error| failure(&error))?;
     match options.job {
         Job::Reach => {
-            let parameters = TrackerParameters { radius: options.radius, ..TrackerParameters::default() };
+            let parameters =
+                ColourTrackerParameters { radius: options.radius, ..ColourTrackerParameters::default() };
             let mut tracker = ColourTracker::new(finder, parameters)?;
             let outcome = run(robot, &mut tracker, options.time_limit, |robot, tracker, step| {
                 watch();
@@ -68,10 +69,10 @@ pub(crate) fn drive<R: Camera + Clock + Display + Drive + Lidar + ?Sized>(
             })
         }
         Job::Home => {
-            let defaults = HomeParameters::default();
-            let tracker = TrackerParameters { radius: options.radius, ..defaults.tracker };
+            let defaults = PushHomeParameters::default();
+            let tracker = ColourTrackerParameters { radius: options.radius, ..defaults.tracker };
             let home = robot.pose()?.position();
-            let mut push = PushHome::new(finder, home, HomeParameters { tracker, ..defaults })?;
+            let mut push = PushHome::new(finder, home, PushHomeParameters { tracker, ..defaults })?;
             let outcome = run(robot, &mut push, options.time_limit, |_, _, _| watch())?;
             Ok(match outcome {
                 PushOutcome::Home => Ended::Home,
@@ -84,7 +85,7 @@ pub(crate) fn drive<R: Camera + Clock + Display + Drive + Lidar + ?Sized>(
 
 /// The image on the display, with a line at the column of the object.
 fn show<R: Display + ?Sized>(robot: &mut R, image: &RgbImage, seen: Option<Sighting>) -> io::Result<()> {
-    robot.draw_image(Picture::Rgb(image), Viewport::default())?;
+    robot.draw_image(DisplayImage::Rgb(image), Viewport::default())?;
     let Some(seen) = seen else { return Ok(()) };
     let column = (seen.column * 320.0 / f64::from(image.width().max(1))) as i32;
     let at = |row: i32| -> Pixel { (column, row) };

@@ -84,7 +84,7 @@ pub(crate) struct CommonArgs {
     pub(crate) fault: Vec<String>,
 
     /// Put robots under the safety system, armed and started; what it does is told. Robots of campaigns and
-    /// those that are stepped as a troop have none.
+    /// those that are stepped as a fleet have none.
     #[arg(long)]
     pub(crate) supervised: bool,
 

@@ -38,7 +38,7 @@
 //! a recording, and without either it is the simulator alone. Several robots in threads: take all of them before the
 //! first one drives, and give each thread a truth of its own, `stage.truth(index)`. What goes wrong with a recording
 //! reaches the report by itself. Runs that nobody records, as those of a campaign, use `Stage::simulated`. Robots that are
-//! stepped in one thread come from `common.troop(&scene, options)`, which is used as a `Fleet` is.
+//! stepped in one thread come from `common.fleet(&scene, options)`, which is used as a `Fleet` is.
 //!
 //! `replay check` finds the command of a recording in `commands`.
 //!

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use roverlab::geometry::Pose;
-use roverlab::io::log::{Attachment, Header, LogError, LogWriter, Player, Troop, Witness};
+use roverlab::io::log::{Attachment, FleetIo, GroundTruth, Header, LogError, LogWriter, Player};
 use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, Simulation, Watcher};
 use roverlab::io::wrappers::{Deadman, Fault, Faulty, Quantised};
 use roverlab::io::{self, Key, RobotIo};
@@ -25,7 +25,7 @@ const MOST_AHEAD: usize = 1 << 20;
 pub(crate) type Driven = Box<dyn RobotIo + Send>;
 
 /// What is true about a command's robots.
-pub(crate) type StageTruth = Box<dyn Witness + Send>;
+pub(crate) type StageTruth = Box<dyn GroundTruth + Send>;
 
 /// Where a command gets its robots from: a simulator, or a recording; and where it records them.
 ///
@@ -74,23 +74,23 @@ struct Recording {
 
 /// Robots that are stepped in one thread: simulated or replayed, and recorded if the options ask for it. For all else as
 /// a [`Stage`].
-pub(crate) struct StagedTroop<'a> {
+pub(crate) struct StagedFleet<'a> {
     // Let go before the recording is finished.
-    troop: Box<dyn Troop<'a> + 'a>,
+    fleet: Box<dyn FleetIo<'a> + 'a>,
     _recording: Recording,
 }
 
-impl<'a> Deref for StagedTroop<'a> {
-    type Target = dyn Troop<'a> + 'a;
+impl<'a> Deref for StagedFleet<'a> {
+    type Target = dyn FleetIo<'a> + 'a;
 
     fn deref(&self) -> &Self::Target {
-        self.troop.as_ref()
+        self.fleet.as_ref()
     }
 }
 
-impl DerefMut for StagedTroop<'_> {
+impl DerefMut for StagedFleet<'_> {
     fn deref_mut(&mut self) -> &mut Self::Target {
-        self.troop.as_mut()
+        self.fleet.as_mut()
     }
 }
 
@@ -117,7 +117,7 @@ impl DerefMut for StagedRobot {
     }
 }
 
-/// A witness that several programs ask.
+/// Ground truth that several programs ask for.
 #[derive(Clone)]
 struct SharedTruth(Arc<Mutex<StageTruth>>);
 
@@ -133,9 +133,9 @@ impl fmt::Debug for SharedTruth {
     }
 }
 
-impl Witness for SharedTruth {
+impl GroundTruth for SharedTruth {
     fn time(&mut self) -> io::Result<f64> {
-        self.ask(Witness::time)
+        self.ask(GroundTruth::time)
     }
 
     fn pose(&mut self, robot: usize) -> io::Result<Pose> {
@@ -220,7 +220,7 @@ impl CommonArgs {
     }
 
     /// As [`stage`](Self::stage), with all robots stepped in one thread.
-    pub(crate) fn troop<'a>(&self, scene: &Scene, options: SimOptions) -> Result<StagedTroop<'a>, Failure> {
+    pub(crate) fn fleet<'a>(&self, scene: &Scene, options: SimOptions) -> Result<StagedFleet<'a>, Failure> {
         self.check_no_library()?;
         let player = self.player();
         if self.quantised && player.is_none() {
@@ -228,8 +228,8 @@ impl CommonArgs {
                 "--quantised: found several robots that are stepped together; expected a run of one robot",
             ));
         }
-        let troop: Box<dyn Troop<'a> + 'a> = match &player {
-            Some(player) => Box::new(player.troop()),
+        let fleet: Box<dyn FleetIo<'a> + 'a> = match &player {
+            Some(player) => Box::new(player.fleet()),
             None => {
                 let (scene, watcher) = onlooker::watched(scene);
                 let mut fleet = Fleet::new(&scene, options).map_err(Failure::input)?;
@@ -240,11 +240,11 @@ impl CommonArgs {
             }
         };
         let recording = self.recording(scene, player)?;
-        let troop = match &recording.writer {
-            Some(writer) => Box::new(writer.troop(troop)),
-            None => troop,
+        let fleet = match &recording.writer {
+            Some(writer) => Box::new(writer.fleet(fleet)),
+            None => fleet,
         };
-        Ok(StagedTroop { troop, _recording: recording })
+        Ok(StagedFleet { fleet, _recording: recording })
     }
 
     /// A robot that no scene describes: `own`, or that of the recording which `--replay` names. The scene is what
@@ -398,27 +398,27 @@ impl Stage {
     }
 
     /// What is true, for the program that drives or watches a robot. Of robots apart, each is the first one of its world.
-    /// All who ask about a robot share one witness: a recording keeps one order of questions.
+    /// All who ask about a robot share one handle: a recording keeps one order of questions.
     pub(crate) fn truth(&self, index: usize) -> Result<StageTruth, Failure> {
         let mut truths = self.truths.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = truths.get(&index) {
             return Ok(Box::new(known.clone()));
         }
-        let witness = SharedTruth(Arc::new(Mutex::new(self.witness(index)?)));
-        truths.insert(index, witness.clone());
-        Ok(Box::new(witness))
+        let truth = SharedTruth(Arc::new(Mutex::new(self.unshared_truth(index)?)));
+        truths.insert(index, truth.clone());
+        Ok(Box::new(truth))
     }
 
-    fn witness(&self, index: usize) -> Result<StageTruth, Failure> {
-        let witness: StageTruth = match &self.play {
+    fn unshared_truth(&self, index: usize) -> Result<StageTruth, Failure> {
+        let truth: StageTruth = match &self.play {
             Play::Simulation(simulation) => Box::new(simulation.truth()),
             Play::Apart(simulations) => Box::new(simulations[index].truth()),
             Play::Recording(player) => Box::new(player.truth(index).map_err(|error| foreign(&error))?),
             Play::Library(library) => library.truth()?,
         };
         Ok(match &self.recording.writer {
-            Some(writer) => Box::new(writer.witness(witness, index)),
-            None => witness,
+            Some(writer) => Box::new(writer.truth(truth, index)),
+            None => truth,
         })
     }
 

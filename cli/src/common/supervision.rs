@@ -10,12 +10,13 @@ use roverlab::io::delegate::{
     ambassador_impl_Lidar, ambassador_impl_Motors, ambassador_impl_Radio, ambassador_impl_Servos,
 };
 use roverlab::io::{
-    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys, Lidar,
-    LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos,
-    Viewport,
+    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key,
+    Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage, Resolution, Result,
+    Servos, Viewport,
 };
 use roverlab::safety::{
-    Beat, Causes, Panel, Requests, SafetyState, StopRecord, StoppingModel, Supervised, SupervisorParameters,
+    Causes, Heartbeat, Panel, Requests, SafetyState, StopRecord, StoppingModel, Supervised,
+    SupervisedParameters,
 };
 use roverlab::world::Colour;
 use serde_json::{Value, json};
@@ -160,7 +161,7 @@ impl Odometer {
     }
 }
 
-type Exchange = Box<dyn FnMut(f64, Beat) -> Panel + Send>;
+type Exchange = Box<dyn FnMut(f64, Heartbeat) -> Panel + Send>;
 
 /// A robot under the safety system, which is armed and started before the program gets it, and left standing, if there was a stop,
 /// when the program lets go of it.
@@ -181,7 +182,7 @@ struct Guarded {
     inner: Supervised<Driven, Exchange>,
     index: usize,
     odometer: Arc<Mutex<Odometer>>,
-    parameters: SupervisorParameters,
+    parameters: SupervisedParameters,
     model: StoppingModel,
     stops: Stops,
 }
@@ -205,20 +206,20 @@ pub(crate) fn guarded(
 ) -> Result<Driven> {
     let odometer = Arc::new(Mutex::new(Odometer { fault, ..Odometer::default() }));
     let read = Arc::clone(&odometer);
-    let exchange: Exchange = Box::new(move |_, beat| {
+    let exchange: Exchange = Box::new(move |_, heartbeat| {
         if let (Ok(time), Ok(robot)) = (truth.time(), truth.robot(index)) {
             let mut odometer = read.lock().unwrap_or_else(PoisonError::into_inner);
-            odometer.read(time, (robot.path_length, robot.pose.heading), beat.state);
+            odometer.read(time, (robot.path_length, robot.pose.heading), heartbeat.state);
         }
         // Armed, then started, each for as long as it takes.
         let requests = Requests {
-            arm: beat.count > 1 && beat.state == SafetyState::Manual,
-            start: beat.state == SafetyState::Armed,
+            arm: heartbeat.count > 1 && heartbeat.state == SafetyState::Manual,
+            start: heartbeat.state == SafetyState::Armed,
             disarm: false,
         };
-        Panel { heartbeat: Some(beat.count), requests, ..Panel::default() }
+        Panel { heartbeat: Some(heartbeat.count), requests, ..Panel::default() }
     });
-    let parameters = SupervisorParameters { speed_error: model.error, ..SupervisorParameters::default() };
+    let parameters = SupervisedParameters { speed_error: model.error, ..SupervisedParameters::default() };
     let mut inner = Supervised::new(robot, exchange, parameters.clone())?;
     inner.wait(0.1)?;
     Ok(Box::new(Guarded { inner, index, odometer, parameters, model, stops }))

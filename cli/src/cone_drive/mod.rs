@@ -6,7 +6,7 @@ use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::{RobotTruth, SimOptions};
 use roverlab::io::{self, LidarScan, LidarSettings, RobotIo};
 use roverlab::picture::{Picture, Style};
-use roverlab::race::{GapDriver, Verdict};
+use roverlab::race::{GapDriver, RaceScore};
 use roverlab::world::RobotSpec;
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, Stage, rounded};
@@ -54,7 +54,7 @@ crate::common::shares_options!(Args, common: CommonArgs);
 
 /// What came out of a drive.
 struct Driven {
-    verdict: Verdict,
+    verdict: RaceScore,
     /// Why it ended early, if the car failed.
     error: Option<String>,
     truth: RobotTruth,

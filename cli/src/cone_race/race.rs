@@ -7,8 +7,8 @@ use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::sim::{RobotTruth, SimOptions};
 use roverlab::io::{self, LidarScan, RobotIo};
 use roverlab::race::{
-    CameraMount, CameraSight, CarLimits, Cone, ConeMap, LaneFinder, LineTracker, RacePhase, Racer, Sighting,
-    SpeedProfile, Verdict, sightings,
+    CameraMount, CameraSight, CarLimits, Cone, ConeMap, ConeSighting, LaneFinder, LineTracker, RacePhase,
+    RaceScore, Racer, SpeedProfile, sightings,
 };
 use roverlab::world::{RobotSpec, Scene};
 
@@ -145,7 +145,7 @@ pub(crate) enum Ending {
 /// What came out of a race.
 #[derive(Debug, Clone)]
 pub(crate) struct Outcome {
-    pub(crate) verdict: Verdict,
+    pub(crate) verdict: RaceScore,
     /// How far it came, or what failed.
     pub(crate) ending: Result<Ending, String>,
     pub(crate) truth: RobotTruth,
@@ -190,7 +190,7 @@ impl Eyes {
     }
 
     /// The cones around a car.
-    pub(super) fn look<R: RobotIo + ?Sized>(&mut self, car: &mut R) -> io::Result<Vec<Sighting>> {
+    pub(super) fn look<R: RobotIo + ?Sized>(&mut self, car: &mut R) -> io::Result<Vec<ConeSighting>> {
         let mut seen = Vec::new();
         if self.sensors != Sensors::Camera {
             car.scan_into(&mut self.scan)?;

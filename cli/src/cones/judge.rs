@@ -3,7 +3,7 @@
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::{RobotTruth, TICK};
 use roverlab::io::{self, Clock};
-use roverlab::race::{EventReferee, Referee, Verdict};
+use roverlab::race::{EventReferee, RaceScore, Referee};
 
 use super::course::Course;
 use crate::common::StageTruth;
@@ -23,7 +23,7 @@ impl Whistle {
         Self::Event(EventReferee::new(event.clone(), Course::wheels(), nose))
     }
 
-    fn verdict(&self) -> &Verdict {
+    fn verdict(&self) -> &RaceScore {
         match self {
             Self::Laps(referee) => referee.verdict(),
             Self::Event(referee) => referee.verdict(),
@@ -73,7 +73,7 @@ impl Judge {
     }
 
     /// What the referee has seen.
-    pub(crate) fn verdict(&self) -> &Verdict {
+    pub(crate) fn verdict(&self) -> &RaceScore {
         self.referee.verdict()
     }
 

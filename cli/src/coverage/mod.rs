@@ -10,7 +10,7 @@ pub(crate) use campaign::{row, text};
 use std::sync::Arc;
 
 use roverlab::drive::{
-    CoverageMap, CoverageParameters, CoveragePlan, RandomDrive, RandomDriveParameters, Tour, TourOutcome,
+    CoverageMap, CoverageMapParameters, CoveragePlan, RandomDrive, RandomDriveParameters, Tour, TourOutcome,
     TourParameters,
 };
 use roverlab::geometry::{Point, Pose, units};
@@ -114,7 +114,7 @@ pub(crate) fn cover(
     pace: impl FnMut(f64),
 ) -> Result<Covered, Failure> {
     let (start, radius) = (scene.robots[0].pose, scene.robots[0].spec.footprint.bounding_radius());
-    let parameters = CoverageParameters { radius, ..CoverageParameters::default() };
+    let parameters = CoverageMapParameters { radius, ..CoverageMapParameters::default() };
     let world = world_with_others(scene);
     let mut map = CoverageMap::new(&world, start.position(), parameters).map_err(Failure::input)?;
     let plan = CoveragePlan::new(&map, start.position()).map_err(Failure::input)?;

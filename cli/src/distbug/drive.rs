@@ -1,9 +1,9 @@
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::control::run;
-use roverlab::io::log::Witness;
+use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::{RobotTruth, SimOptions};
 use roverlab::io::{self, ErrorKind};
-use roverlab::nav::{DistBug, DistBugEvent, DistBugOutcome, DistBugParameters, WallSide};
+use roverlab::nav::{BugEvent, BugOutcome, BugParameters, DistBug, WallSide};
 
 use crate::common::{Failure, Stage, StageTruth, Trip};
 
@@ -20,7 +20,7 @@ pub(crate) struct Options {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Ending {
     /// With a verdict, or because the time was over.
-    Verdict(DistBugOutcome),
+    Verdict(BugOutcome),
     /// The robot failed.
     Failed(String),
 }
@@ -93,7 +93,7 @@ pub(crate) fn drive(
 ) -> Result<Drive, Failure> {
     let start = trip.start();
     let radius = trip.spec().footprint.bounding_radius();
-    let parameters = DistBugParameters::for_radius(radius);
+    let parameters = BugParameters::for_radius(radius);
     let mut bug = DistBug::new(start.to_local(trip.goal), parameters).map_err(Failure::input)?;
     let mut robot = stage.robot(0)?;
     let mut log = Log::new(stage.truth(0)?, start);
@@ -116,10 +116,10 @@ pub(crate) fn sim_options(options: &Options) -> SimOptions {
     }
 }
 
-fn ending(result: io::Result<DistBugOutcome>) -> Ending {
+fn ending(result: io::Result<BugOutcome>) -> Ending {
     match result {
         Ok(outcome) => Ending::Verdict(outcome),
-        Err(error) if error.kind() == ErrorKind::TimedOut => Ending::Verdict(DistBugOutcome::TimedOut),
+        Err(error) if error.kind() == ErrorKind::TimedOut => Ending::Verdict(BugOutcome::TimedOut),
         Err(error) => Ending::Failed(Failure::from(error).to_string()),
     }
 }
@@ -160,10 +160,10 @@ impl Log {
         let distance = bug.goal_distance();
         for event in bug.take_events() {
             let happening = match event {
-                DistBugEvent::Hit { point, side } => {
+                BugEvent::Hit { point, side } => {
                     Happening::Hit { point: self.start.to_world(point), side, distance }
                 }
-                DistBugEvent::Leave { point, free } => {
+                BugEvent::Leave { point, free } => {
                     Happening::Leave { point: self.start.to_world(point), free, distance }
                 }
                 _ => continue,

@@ -2,7 +2,7 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use roverlab::geometry::{Point, units};
-use roverlab::nav::{DistBugOutcome, WallSide};
+use roverlab::nav::{BugOutcome, WallSide};
 
 use super::{Args, Drive, Ending, Event, Happening, Options, campaign, drive, picture, scene, sim_options};
 use crate::common::{CommonArgs, Failure, Outcome, Pacer, Progress, Report, Trip, millimetres, onlooker, point_in_mm};
@@ -99,11 +99,11 @@ fn told(event: &Event, hits: &mut usize, leaves: &mut usize) -> String {
 fn verdict(drive: &Drive) -> String {
     let off = mm(drive.goal_distance);
     match &drive.ending {
-        Ending::Verdict(DistBugOutcome::Reached) => format!("at the goal, {off} mm from it in truth"),
-        Ending::Verdict(DistBugOutcome::Unreachable) => {
+        Ending::Verdict(BugOutcome::Reached) => format!("at the goal, {off} mm from it in truth"),
+        Ending::Verdict(BugOutcome::Unreachable) => {
             "all round the obstacle without a place to leave it: the goal cannot be reached".into()
         }
-        Ending::Verdict(DistBugOutcome::TimedOut | DistBugOutcome::Stopped) => {
+        Ending::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped) => {
             format!("the time is over, {off} mm from the goal")
         }
         Ending::Failed(error) => format!("the robot failed: {error}"),
@@ -128,11 +128,9 @@ fn drawn(
 
 fn report(trip: &Trip, drive: &Drive, options: &Options, picture: Option<&Path>) -> Report {
     let (outcome, error) = match &drive.ending {
-        Ending::Verdict(DistBugOutcome::Reached) => (Outcome::verdict("reached"), None),
-        Ending::Verdict(DistBugOutcome::Unreachable) => (Outcome::verdict("unreachable"), None),
-        Ending::Verdict(DistBugOutcome::TimedOut | DistBugOutcome::Stopped) => {
-            (Outcome::failure("timed_out"), None)
-        }
+        Ending::Verdict(BugOutcome::Reached) => (Outcome::verdict("reached"), None),
+        Ending::Verdict(BugOutcome::Unreachable) => (Outcome::verdict("unreachable"), None),
+        Ending::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped) => (Outcome::failure("timed_out"), None),
         Ending::Failed(error) => (Outcome::failure("failed"), Some(error.clone())),
     };
     let points = |points: &[Point]| points.iter().copied().map(point_in_mm).collect::<Vec<_>>();

@@ -1,5 +1,5 @@
 use roverlab::geometry::units;
-use roverlab::nav::DistBugOutcome;
+use roverlab::nav::BugOutcome;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::Colour;
 
@@ -34,9 +34,9 @@ pub(crate) fn of(trip: &Trip, drive: &Drive, options: &Options) -> Picture {
 
 fn title(drive: &Drive) -> String {
     let ending = match &drive.ending {
-        Ending::Verdict(DistBugOutcome::Reached) => "goal reached",
-        Ending::Verdict(DistBugOutcome::Unreachable) => "the goal cannot be reached",
-        Ending::Verdict(DistBugOutcome::TimedOut | DistBugOutcome::Stopped) => "the time is over",
+        Ending::Verdict(BugOutcome::Reached) => "goal reached",
+        Ending::Verdict(BugOutcome::Unreachable) => "the goal cannot be reached",
+        Ending::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped) => "the time is over",
         Ending::Failed(_) => "the robot failed",
     };
     let contacts = match drive.truth.contacts {

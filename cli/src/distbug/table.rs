@@ -1,7 +1,7 @@
 use std::fmt::Write as _;
 
 use roverlab::geometry::units;
-use roverlab::nav::DistBugOutcome;
+use roverlab::nav::BugOutcome;
 use serde_json::{Value, json};
 
 use super::trial::{Judgement, Run, Trial};
@@ -27,7 +27,7 @@ impl<'a> Row<'a> {
         self.count(|run| run.judgement == judgement)
     }
 
-    fn ended(&self, outcome: DistBugOutcome) -> usize {
+    fn ended(&self, outcome: BugOutcome) -> usize {
         self.count(|run| run.ending == Ending::Verdict(outcome))
     }
 
@@ -48,7 +48,7 @@ impl<'a> Row<'a> {
 
     /// The worst distance to the goal, in metres, of the runs that took themselves to be there.
     fn worst_distance(&self) -> Option<f64> {
-        let reached = Ending::Verdict(DistBugOutcome::Reached);
+        let reached = Ending::Verdict(BugOutcome::Reached);
         let arrived = self.runs.iter().filter(|run| run.ending == reached);
         arrived.map(|run| run.goal_distance).reduce(f64::max)
     }
@@ -85,9 +85,9 @@ fn line(row: &Row<'_>) -> String {
         row.noise,
         row.runs.len(),
         row.percent(),
-        row.ended(DistBugOutcome::Reached),
-        row.ended(DistBugOutcome::Unreachable),
-        row.ended(DistBugOutcome::TimedOut),
+        row.ended(BugOutcome::Reached),
+        row.ended(BugOutcome::Unreachable),
+        row.ended(BugOutcome::TimedOut),
     );
     for (judgement, _) in Judgement::WRONG {
         write!(line, "  {:>8}", row.judged(judgement)).expect("writing to a string does not fail");
@@ -150,9 +150,9 @@ fn level(row: &Row<'_>, index: usize, trials: &[Trial]) -> Value {
         "runs": row.runs.len(),
         "correct": row.judged(Judgement::Correct),
         "correct_percent": row.percent(),
-        "reached": row.ended(DistBugOutcome::Reached),
-        "unreachable": row.ended(DistBugOutcome::Unreachable),
-        "timed_out": row.ended(DistBugOutcome::TimedOut),
+        "reached": row.ended(BugOutcome::Reached),
+        "unreachable": row.ended(BugOutcome::Unreachable),
+        "timed_out": row.ended(BugOutcome::TimedOut),
         "runs_with_contact": row.contacts(),
         "mean_path_ratio": row.path_ratio().map(rounded),
         "worst_goal_distance_mm": row.worst_distance().map(|distance| rounded(units::to_mm(distance))),

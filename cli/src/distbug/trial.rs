@@ -1,4 +1,4 @@
-use roverlab::nav::{DistBugOutcome, Reachability};
+use roverlab::nav::{BugOutcome, Reachability};
 use roverlab::random::Stream;
 use roverlab::world::generate::{Course, CourseOptions, obstacle_course};
 use roverlab::world::{Colour, Marker, RobotSpec, Scene};
@@ -56,7 +56,7 @@ impl Judgement {
     ];
 
     fn of(ending: &Ending, reachable: bool, goal_distance: f64, noise: f64) -> Self {
-        use DistBugOutcome as Outcome;
+        use BugOutcome as Outcome;
         match (ending, reachable) {
             (Ending::Failed(_), _) => Self::Failed,
             (Ending::Verdict(Outcome::TimedOut | Outcome::Stopped), _) => Self::TimedOut,

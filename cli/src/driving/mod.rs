@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use roverlab::geometry::{Point, Pose, Twist};
-use roverlab::io::log::Witness;
+use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::{NoiseModel, RobotTruth, SimOptions};
 use roverlab::io::{self, Drive, Key};
 use roverlab::kinematics::OdometryErrors;

@@ -1,6 +1,6 @@
 //! Options that do not go together, and errors of the kernels in the words of the command line.
 
-use roverlab::vision::Error;
+use roverlab::vision::ImageError;
 
 use super::{Args, Definition, Kernel};
 use crate::common::Failure;
@@ -40,10 +40,10 @@ pub(crate) fn check(args: &Args) -> Result<(), Failure> {
 }
 
 /// An error of a kernel, with the option that it comes from.
-pub(crate) fn refused(error: &Error) -> Failure {
+pub(crate) fn refused(error: &ImageError) -> Failure {
     let option = match error {
-        Error::Parameter(error) => option_of(error.name()),
-        Error::Size { what: "second image", .. } => Some("--second"),
+        ImageError::Parameter(error) => option_of(error.name()),
+        ImageError::Size { what: "second image", .. } => Some("--second"),
         _ => None,
     };
     match option {

@@ -1,6 +1,6 @@
 use image::{DynamicImage, GrayImage, RgbImage};
 use roverlab::vision::{
-    Canny, Error, Hog, HogParameters, HoughLines, HoughSegments, SegmentDefinition, SegmentParameters,
+    Canny, Hog, HogParameters, HoughLines, HoughSegments, ImageError, SegmentDefinition, SegmentParameters,
     absolute_difference_into, gaussian_into, gray_into, gray_to_rgb_into, laplace_into,
     laplace_saturated_into, overlay_gray_into, overlay_into, projections_into, sobel_l1_into, sobel_l2_into,
     threshold_into,
@@ -120,13 +120,17 @@ pub(crate) struct Runner {
 }
 
 impl Runner {
-    pub(crate) fn new(args: &Args) -> Result<Self, Error> {
+    pub(crate) fn new(args: &Args) -> Result<Self, ImageError> {
         let parameters = Parameters::new(args)?;
         Ok(Self { kernel: args.kernel, args: args.clone(), parameters, canny: Canny::new() })
     }
 
     /// Runs the kernel.
-    pub(crate) fn run(&mut self, input: &RgbImage, second: Option<&RgbImage>) -> Result<Processed, Error> {
+    pub(crate) fn run(
+        &mut self,
+        input: &RgbImage,
+        second: Option<&RgbImage>,
+    ) -> Result<Processed, ImageError> {
         let p = self.parameters;
         Ok(match self.kernel {
             Kernel::Gray => self.gray(input)?.into(),
@@ -198,7 +202,7 @@ impl Runner {
     }
 
     /// The image in shades of gray, smoothed if the options ask for it.
-    fn gray(&self, input: &RgbImage) -> Result<GrayImage, Error> {
+    fn gray(&self, input: &RgbImage) -> Result<GrayImage, ImageError> {
         let mut gray = GrayImage::new(input.width(), input.height());
         gray_into(input.try_into()?, (&mut gray).try_into()?, self.parameters.weights)?;
         let Some(kernel) = self.parameters.smooth else { return Ok(gray) };
@@ -213,20 +217,20 @@ impl Runner {
         kernel: impl FnOnce(
             roverlab::vision::GrayView<'_>,
             roverlab::vision::GrayViewMut<'_>,
-        ) -> Result<(), Error>,
-    ) -> Result<GrayImage, Error> {
+        ) -> Result<(), ImageError>,
+    ) -> Result<GrayImage, ImageError> {
         let gray = self.gray(input)?;
         let mut output = GrayImage::new(gray.width(), gray.height());
         kernel((&gray).try_into()?, (&mut output).try_into()?)?;
         Ok(output)
     }
 
-    fn gaussian(&self, input: &RgbImage, size: usize) -> Result<GrayImage, Error> {
+    fn gaussian(&self, input: &RgbImage, size: usize) -> Result<GrayImage, ImageError> {
         let kernel = gaussian(size, self.args.sigma)?;
         self.on_gray(input, |a, b| gaussian_into(a, b, kernel))
     }
 
-    fn edges(&mut self, input: &RgbImage) -> Result<GrayImage, Error> {
+    fn edges(&mut self, input: &RgbImage) -> Result<GrayImage, ImageError> {
         let gray = self.gray(input)?;
         let mut output = GrayImage::new(gray.width(), gray.height());
         let thresholds = self.parameters.thresholds;
@@ -234,11 +238,11 @@ impl Runner {
         Ok(output)
     }
 
-    fn edges_or_input(&mut self, input: &RgbImage) -> Result<GrayImage, Error> {
+    fn edges_or_input(&mut self, input: &RgbImage) -> Result<GrayImage, ImageError> {
         if self.args.binary { self.gray(input) } else { self.edges(input) }
     }
 
-    fn overlay(&self, input: &RgbImage, second: Option<&RgbImage>) -> Result<RgbImage, Error> {
+    fn overlay(&self, input: &RgbImage, second: Option<&RgbImage>) -> Result<RgbImage, ImageError> {
         let mut output = RgbImage::new(input.width(), input.height());
         if let Some(top) = second {
             overlay_into(input.try_into()?, top.try_into()?, (&mut output).try_into()?)?;
@@ -255,7 +259,7 @@ impl Runner {
         Ok(output)
     }
 
-    fn difference(&self, input: &RgbImage, second: Option<&RgbImage>) -> Result<GrayImage, Error> {
+    fn difference(&self, input: &RgbImage, second: Option<&RgbImage>) -> Result<GrayImage, ImageError> {
         let first = self.gray(input)?;
         let second = second.map_or(Ok(first.clone()), |second| self.gray(second))?;
         let mut output = GrayImage::new(first.width(), first.height());
@@ -264,7 +268,7 @@ impl Runner {
     }
 }
 
-fn projections(mask: GrayImage) -> Result<Processed, Error> {
+fn projections(mask: GrayImage) -> Result<Processed, ImageError> {
     let (mut columns, mut rows) = (vec![0; mask.width() as usize], vec![0; mask.height() as usize]);
     projections_into((&mask).try_into()?, &mut columns, &mut rows)?;
     // Counts of matching pixels, as the book draws them.

@@ -2,7 +2,7 @@
 
 use image::{DynamicImage, RgbImage};
 use roverlab::geometry::Twist;
-use roverlab::io::{self, Camera, Clock, Display, Drive, Picture, Resolution, Viewport};
+use roverlab::io::{self, Camera, Clock, Display, DisplayImage, Drive, Resolution, Viewport};
 
 use super::checks::refused;
 use super::kernel::{Kernel, Runner};
@@ -66,9 +66,9 @@ fn show(
             .map_err(|error| io::Error::new(io::ErrorKind::Other, error.to_string()).with_source(error))?;
         match &processed.image {
             DynamicImage::ImageLuma8(gray) if runner.kernel != Kernel::Hog => {
-                robot.draw_image(Picture::Gray(gray), Viewport::default())?;
+                robot.draw_image(DisplayImage::Gray(gray), Viewport::default())?;
             }
-            other => robot.draw_image(Picture::Rgb(&other.to_rgb8()), Viewport::default())?,
+            other => robot.draw_image(DisplayImage::Rgb(&other.to_rgb8()), Viewport::default())?,
         }
         robot.wait(PERIOD)?;
         step();

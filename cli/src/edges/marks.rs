@@ -2,7 +2,7 @@
 
 use image::{GrayImage, Rgb, RgbImage};
 use roverlab::geometry::{math, units};
-use roverlab::vision::{Blob, Components, Error, Hog, HoughLine, LineSegment, gray_to_rgb_into};
+use roverlab::vision::{Blob, Components, Hog, HoughLine, ImageError, LineSegment, gray_to_rgb_into};
 use serde_json::{Value, json};
 
 use super::Processed;
@@ -72,7 +72,7 @@ fn put(image: &mut RgbImage, x: u32, y: u32) {
 }
 
 /// Connected pixels, with their boxes drawn over the image.
-pub(crate) fn blobs(input: &RgbImage, mask: &GrayImage, min_area: usize) -> Result<Processed, Error> {
+pub(crate) fn blobs(input: &RgbImage, mask: &GrayImage, min_area: usize) -> Result<Processed, ImageError> {
     let mut components = Components::new();
     let blobs = components.find(mask.try_into()?, min_area);
     let mut image = input.clone();
@@ -100,7 +100,7 @@ pub(crate) fn blobs(input: &RgbImage, mask: &GrayImage, min_area: usize) -> Resu
 }
 
 /// The descriptor's length and digest, and the whole of it if asked for; the picture shows how strong each cell's strongest direction is.
-pub(crate) fn hog(gray: &GrayImage, hog: &mut Hog, whole: bool) -> Result<Processed, Error> {
+pub(crate) fn hog(gray: &GrayImage, hog: &mut Hog, whole: bool) -> Result<Processed, ImageError> {
     let view: roverlab::vision::GrayView<'_> = gray.try_into()?;
     let (across, down) = hog.blocks(view.size());
     let descriptor = hog.describe(view)?;

@@ -1,5 +1,6 @@
 use roverlab::vision::{
-    Border, CannyThresholds, Error, GaussianKernel, GrayWeights, HueLimits, HueRange, HueScale, SobelScale,
+    Border, CannyThresholds, GaussianKernel, GrayWeights, HueLimits, HueRange, HueScale, ImageError,
+    SobelScale,
 };
 
 use super::{Args, Definition};
@@ -21,7 +22,7 @@ pub(crate) struct Parameters {
 }
 
 impl Parameters {
-    pub(crate) fn new(args: &Args) -> Result<Self, Error> {
+    pub(crate) fn new(args: &Args) -> Result<Self, ImageError> {
         let book = args.definition == Definition::Book;
         let scale = if book { HueScale::Robios } else { HueScale::OpenCv };
         let limits = if book { HueLimits::default() } else { HueLimits::NONE };
@@ -48,7 +49,7 @@ impl Parameters {
 }
 
 /// A Gaussian of a size, with a width of one's own or without.
-pub(crate) fn gaussian(size: usize, sigma: Option<f64>) -> Result<GaussianKernel, Error> {
+pub(crate) fn gaussian(size: usize, sigma: Option<f64>) -> Result<GaussianKernel, ImageError> {
     match (size, sigma) {
         (_, Some(sigma)) => GaussianKernel::new(size, sigma),
         (3, None) => Ok(GaussianKernel::THREE),
@@ -57,7 +58,7 @@ pub(crate) fn gaussian(size: usize, sigma: Option<f64>) -> Result<GaussianKernel
     }
 }
 
-fn smoothing(args: &Args, book: bool) -> Result<Option<GaussianKernel>, Error> {
+fn smoothing(args: &Args, book: bool) -> Result<Option<GaussianKernel>, ImageError> {
     match args.smooth {
         Some(0) => Ok(None),
         Some(size) => gaussian(size, args.sigma).map(Some),

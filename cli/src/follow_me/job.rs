@@ -86,9 +86,9 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let mode = args.mode.unwrap_or(Mode::for_followers(followers));
     let seconds = common.time_limit.unwrap_or(SECONDS);
     let options = SimOptions::with_noise(common.noise, common.seed);
-    let mut troop = common.troop(&scene, options)?;
-    let run = run(&mut *troop, &scene, &waypoints, mode, seconds, paced(common))?;
-    drop(troop);
+    let mut fleet = common.fleet(&scene, options)?;
+    let run = run(&mut *fleet, &scene, &waypoints, mode, seconds, paced(common))?;
+    drop(fleet);
     let (file, trouble) = drawn(common, "follow_me.svg", || picture(args, &scene, &run, mode));
     let outcome = if run.lost.is_empty() { Outcome::verdict("followed") } else { Outcome::failure("lost") };
     let leader = run.paths[0].last().copied();

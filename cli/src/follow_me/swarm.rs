@@ -4,10 +4,10 @@ use std::ops::ControlFlow;
 use std::rc::Rc;
 
 use roverlab::drive::{
-    Cruise, CruiseParameters, FollowMeObservation, FollowMeParameters, Follower, Formation, robots_in,
+    Cruise, CruiseParameters, Follower, FollowerObservation, FollowerParameters, Formation, robots_in,
 };
 use roverlab::geometry::{Point, Pose, direction};
-use roverlab::io::log::Troop;
+use roverlab::io::log::FleetIo;
 use roverlab::io::{self, LidarScan, Psd, RobotIo};
 use roverlab::world::{Footprint, Scene};
 
@@ -116,7 +116,7 @@ pub(crate) fn gap_of(scene: &Scene, mode: Mode, follower: usize) -> f64 {
 
 /// Lets a leader drive past waypoints and the others follow, for so many seconds.
 pub(crate) fn run<'a>(
-    fleet: &mut (dyn Troop<'a> + 'a),
+    fleet: &mut (dyn FleetIo<'a> + 'a),
     scene: &Scene,
     waypoints: &[Point],
     mode: Mode,
@@ -188,7 +188,7 @@ fn gap_now(paths: &[Vec<Pose>], mode: Mode, follower: usize) -> f64 {
 }
 
 fn control_leader<'a>(
-    fleet: &mut (dyn Troop<'a> + 'a),
+    fleet: &mut (dyn FleetIo<'a> + 'a),
     scene: &Scene,
     waypoints: &[Point],
     mode: Mode,
@@ -218,18 +218,18 @@ fn control_leader<'a>(
 }
 
 fn control_follower<'a>(
-    fleet: &mut (dyn Troop<'a> + 'a),
+    fleet: &mut (dyn FleetIo<'a> + 'a),
     scene: &Scene,
     mode: Mode,
     follower: usize,
     last_seen: Rc<Cell<f64>>,
 ) -> io::Result<()> {
     let leader_radius = radius_of(scene, ahead_of(mode, follower));
-    let parameters = FollowMeParameters {
+    let parameters = FollowerParameters {
         gap: gap_of(scene, mode, follower),
         leader_radius,
         radius: radius_of(scene, follower),
-        ..FollowMeParameters::default()
+        ..FollowerParameters::default()
     };
     let mut behaviour = Follower::new(parameters)?;
     let rays = rays_of(scene, follower);
@@ -242,7 +242,7 @@ fn control_follower<'a>(
             eyes.look_round(robot)?;
         }
         let candidates = robots_in(&eyes.scan, leader_radius);
-        let seen = FollowMeObservation { time, pose, candidates: &candidates, obstacles: &eyes.points };
+        let seen = FollowerObservation { time, pose, candidates: &candidates, obstacles: &eyes.points };
         let twist = behaviour.step(&seen)?;
         robot.set_speed(twist)?;
         last_seen.set(time - behaviour.unseen(time).min(time));
@@ -251,7 +251,11 @@ fn control_follower<'a>(
     fleet.control(follower, PERIOD, Box::new(step))
 }
 
-fn control_by_radio<'a>(fleet: &mut (dyn Troop<'a> + 'a), scene: &Scene, follower: usize) -> io::Result<()> {
+fn control_by_radio<'a>(
+    fleet: &mut (dyn FleetIo<'a> + 'a),
+    scene: &Scene,
+    follower: usize,
+) -> io::Result<()> {
     let start = scene.robots[follower].pose;
     let place = scene.robots[0].pose.to_local(start.position());
     let formation = Formation { radius: radius_of(scene, follower), ..Formation::at(place) };

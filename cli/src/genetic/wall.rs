@@ -1,8 +1,8 @@
-use roverlab::drive::{AlongWall, PidParameters, PidWallFollower, PidWallParameters};
+use roverlab::drive::{AlongWall, PidParameters, PidWallFollower, PidWallFollowerParameters};
 use roverlab::evolve::Trial;
 use roverlab::geometry::{Point, Pose, math};
 use roverlab::io::control::run;
-use roverlab::io::log::Witness;
+use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::{Clock, DistanceSensors, Drive, Result};
 use roverlab::picture::{Mark, Picture};
@@ -33,10 +33,10 @@ impl Wall {
         Self { noise: common.noise }
     }
 
-    fn parameters(genes: &[f64]) -> PidWallParameters {
-        let base = PidWallParameters::default();
+    fn parameters(genes: &[f64]) -> PidWallFollowerParameters {
+        let base = PidWallFollowerParameters::default();
         let [proportional, integral, derivative] = gains(genes);
-        PidWallParameters {
+        PidWallFollowerParameters {
             gains: PidParameters { proportional, integral, derivative, ..base.gains },
             ..base
         }
@@ -82,7 +82,7 @@ fn scene() -> Scene {
 fn drive<R: Clock + DistanceSensors + Drive>(
     genes: &[f64],
     robot: &mut R,
-    truth: &mut impl Witness,
+    truth: &mut impl GroundTruth,
 ) -> Result<(f64, Vec<Point>)> {
     let parameters = Wall::parameters(genes);
     let mut along = AlongWall::new(PidWallFollower::new(parameters)?);

@@ -9,7 +9,7 @@ use roverlab::io::sim::NoiseModel;
 use roverlab::io::{self, Clock, Display, Lidar, LidarScan};
 use roverlab::picture::{Picture, Style};
 use roverlab::scan::{
-    ExtractionParameters, Extremum, ExtremumKind, ScanFeatures, extract_features, local_extrema, plot_scan,
+    Extremum, ExtremumKind, ScanFeatures, ScanFeaturesParameters, extract_features, local_extrema, plot_scan,
 };
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, World};
 use serde_json::{Value, json};
@@ -63,7 +63,7 @@ const PROMINENCE: f64 = 0.08;
 /// Takes a scan and shows it.
 pub(crate) fn scan<R: Clock + Lidar + Display + ?Sized>(
     robot: &mut R,
-    parameters: &ExtractionParameters,
+    parameters: &ScanFeaturesParameters,
 ) -> io::Result<Seen> {
     let scan = robot.scan()?;
     let features = extract_features(&scan, parameters)?;
@@ -81,9 +81,9 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let scene = common.placed_without_goal("the robot stands still", scene)?;
     check_lidar(&scene)?;
     let conditions = Conditions::new(common, 5.0)?;
-    let parameters = ExtractionParameters {
+    let parameters = ScanFeaturesParameters {
         range_error: NoiseModel::real().scaled(conditions.noise).range,
-        ..ExtractionParameters::default()
+        ..ScanFeaturesParameters::default()
     };
     let run = conditions.run(&scene, paced(common), |robot, step| {
         let seen = scan(robot, &parameters);

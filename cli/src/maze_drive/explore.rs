@@ -1,7 +1,7 @@
 use roverlab::geometry::Pose;
 use roverlab::io::sim::NoiseModel;
 use roverlab::maze::{
-    Exploration, Maze, MazeRunner, Preference, RecursiveExplorer, Rig, Route, RunnerParameters, Unknown,
+    Exploration, Maze, MazeRunner, MazeRunnerParameters, Preference, RecursiveExplorer, Rig, Route, Unknown,
     shortest_route,
 };
 
@@ -61,7 +61,8 @@ pub(crate) fn work(args: &ExploreArgs) -> Result<Report, Failure> {
     let place = Place::new(&args.common, args.micromouse)?;
     let maze = place.maze();
     let conditions = Conditions::new(&args.common, 600.0 + 40.0 * maze.cell_count() as f64)?;
-    let parameters = if args.micromouse { RunnerParameters::MICROMOUSE } else { RunnerParameters::EYEBOT };
+    let parameters =
+        if args.micromouse { MazeRunnerParameters::MICROMOUSE } else { MazeRunnerParameters::EYEBOT };
     let run = conditions.run_watched(&place.scene(), paced(&args.common), |robot, step| {
         let range = NoiseModel::real().scaled(conditions.noise).range;
         let rig = Rig::new(&place.spec, conditions.odometry_errors(), range)?;
@@ -115,11 +116,12 @@ pub(crate) fn work(args: &ExploreArgs) -> Result<Report, Failure> {
 }
 
 fn wrong_walls(known: &Maze, truth: &Maze) -> usize {
-    use roverlab::maze::{Direction, Wall};
+    use roverlab::maze::{Direction, WallState};
     let sides = truth.cells().flat_map(|cell| Direction::ALL.map(|side| (cell, side)));
     let wrong = |&(cell, side): &(_, _)| {
         let wall = known.wall(cell, side);
-        wall != Wall::Unknown && (wall == Wall::Present) != (truth.wall(cell, side) != Wall::Absent)
+        wall != WallState::Unknown
+            && (wall == WallState::Present) != (truth.wall(cell, side) != WallState::Absent)
     };
     sides.filter(wrong).count()
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use roverlab::maze::files::{self, MazeFile};
-use roverlab::maze::{Direction, FastPlanner, Unknown, Verdict, Wall};
+use roverlab::maze::{Direction, ExplorationOutcome, FastPlanner, Unknown, WallState};
 use serde_json::{Value, json};
 
 use super::Args;
@@ -158,8 +158,9 @@ fn judged(args: &Args, name: &str, file: &MazeFile, seed: u64, run: &Run<()>, to
         side: truth.width().max(truth.height()),
         seed,
         ideal: args.common.noise == 0.0,
-        proved: told
-            .is_some_and(|told| matches!(told.exploration.verdict, Verdict::Optimal | Verdict::Unreachable)),
+        proved: told.is_some_and(|told| {
+            matches!(told.exploration.verdict, ExplorationOutcome::Optimal | ExplorationOutcome::Unreachable)
+        }),
         contacts: run.truth.contacts,
         wrong_walls: told.map_or(0, |told| {
             let sides = truth.cells().flat_map(|cell| Direction::ALL.map(|side| (cell, side)));
@@ -168,8 +169,8 @@ fn judged(args: &Args, name: &str, file: &MazeFile, seed: u64, run: &Run<()>, to
             let wrong = |&(cell, side): &(_, _)| {
                 let known = told.known.wall(cell, side);
                 // An unknown wall of the file stands in the world.
-                let stands = truth.wall(cell, side) != Wall::Absent;
-                known != Wall::Unknown && (known == Wall::Present) != stands
+                let stands = truth.wall(cell, side) != WallState::Absent;
+                known != WallState::Unknown && (known == WallState::Present) != stands
             };
             sides.filter(wrong).count()
         }),

@@ -5,8 +5,8 @@ use roverlab::io;
 use roverlab::io::sim::NoiseModel;
 use roverlab::maze::files::MazeFile;
 use roverlab::maze::{
-    Exploration, FastPlan, Goals, Maze, MazeRunner, Rig, RunnerParameters, Scale, TwoPhaseExplorer, Verdict,
-    mouse,
+    Exploration, ExplorationOutcome, FastPlan, Goals, Maze, MazeRunner, MazeRunnerParameters, Rig, Scale,
+    TwoPhaseExplorer, mouse,
 };
 use roverlab::picture::Picture;
 use roverlab::world::{RobotSpec, Scene};
@@ -32,11 +32,11 @@ pub(crate) struct Told {
 }
 
 /// The robot, and the maze in its size.
-pub(crate) fn kit(doubled: bool) -> (RobotSpec, Scale, RunnerParameters) {
+pub(crate) fn kit(doubled: bool) -> (RobotSpec, Scale, MazeRunnerParameters) {
     if doubled {
-        (RobotSpec::s4(), Scale::DOUBLED, RunnerParameters::EYEBOT)
+        (RobotSpec::s4(), Scale::DOUBLED, MazeRunnerParameters::EYEBOT)
     } else {
-        (mouse(), Scale::MICROMOUSE, RunnerParameters::MICROMOUSE)
+        (mouse(), Scale::MICROMOUSE, MazeRunnerParameters::MICROMOUSE)
     }
 }
 
@@ -56,7 +56,7 @@ pub(crate) fn explore(args: &Args) -> Result<Report, Failure> {
     let told = told.as_ref();
     let (drawing, trouble) = drawn(&args.common, "micromouse.svg", || picture_of(&file, &run, told, scale));
     let report = run.report(|()| match told {
-        Some(Told { exploration: Exploration { verdict: Verdict::Unreachable, .. }, .. }) => {
+        Some(Told { exploration: Exploration { verdict: ExplorationOutcome::Unreachable, .. }, .. }) => {
             Outcome::verdict("unreachable")
         }
         Some(Told { race: Some(_), .. }) => Outcome::verdict("raced"),
@@ -121,8 +121,9 @@ pub(crate) fn drive(
 }
 
 fn with_run(report: Report, told: Option<&Told>, truth: Pose, scale: Scale) -> Report {
-    let proved =
-        told.is_some_and(|told| matches!(told.exploration.verdict, Verdict::Optimal | Verdict::Unreachable));
+    let proved = told.is_some_and(|told| {
+        matches!(told.exploration.verdict, ExplorationOutcome::Optimal | ExplorationOutcome::Unreachable)
+    });
     let seconds = |time: Option<f64>| time.map(rounded);
     let error = told.map(|told| truth.distance_to(told.pose.position()));
     report

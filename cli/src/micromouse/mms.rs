@@ -7,8 +7,8 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync
 use std::thread;
 use std::time::Duration;
 
-use roverlab::maze::mms::{MmsMouse, Move, Referee};
-use roverlab::maze::{Cell, Direction, Maze, Verdict};
+use roverlab::maze::mms::{MmsMouse, MmsReferee, Move};
+use roverlab::maze::{Cell, Direction, ExplorationOutcome, Maze};
 
 use super::plan::with_maze;
 use super::{Args, scene};
@@ -34,7 +34,7 @@ pub(crate) fn drive_for_another(words: &[OsString]) -> Option<u8> {
         let (mouse, verdict) = converse(&mut io::stdin().lock(), &mut io::stdout())?;
         let unknown = mouse.maze().map_or(0, Maze::unknown_walls);
         let text = match verdict {
-            Verdict::Unreachable => "no way leads to the goal".into(),
+            ExplorationOutcome::Unreachable => "no way leads to the goal".into(),
             _ => format!("the best route is proved with {unknown} walls unknown, and driven"),
         };
         Ok(Printed { text, message: None, status: 0 })
@@ -45,7 +45,7 @@ pub(crate) fn drive_for_another(words: &[OsString]) -> Option<u8> {
 pub(crate) fn converse(
     input: &mut dyn BufRead,
     output: &mut dyn Write,
-) -> Result<(MmsMouse, Verdict), Failure> {
+) -> Result<(MmsMouse, ExplorationOutcome), Failure> {
     let broken = |error: io::Error| Failure::run(format!("the simulator cannot be reached: {error}"));
     let mut mouse = MmsMouse::new();
     let mut answer = None;
@@ -97,7 +97,7 @@ pub(crate) fn run_program(args: &Args, command: &str) -> Result<Report, Failure>
     file.maze.set_start(Cell::default(), Direction::North);
     file.maze.set_goals(file.maze.centre());
     let mut program = Program::start(command)?;
-    let mut referee = Referee::new(file.maze.clone());
+    let mut referee = MmsReferee::new(file.maze.clone());
     let trouble = program.serve(&mut referee, args).and_then(|()| program.stop(args.patience)).err();
     let score = *referee.score();
     let outcome = match (score.solved, &trouble) {
@@ -170,7 +170,7 @@ impl Program {
     }
 
     /// Answers until the program ends, or until something is wrong with it.
-    fn serve(&mut self, referee: &mut Referee, args: &Args) -> Result<(), String> {
+    fn serve(&mut self, referee: &mut MmsReferee, args: &Args) -> Result<(), String> {
         let clock = Stopwatch::start();
         let name = self.name.clone();
         loop {

@@ -133,11 +133,11 @@ fn measure(
     detector: &mut MotionDetector,
     first: &GrayImage,
     second: &GrayImage,
-) -> Result<[f64; 2], roverlab::vision::Error> {
+) -> Result<[f64; 2], roverlab::vision::ImageError> {
     let motion = detector.compare(first.try_into()?, second.try_into()?)?;
     Ok([motion.largest(), motion.mean_difference])
 }
 
-fn wrong(error: &roverlab::vision::Error) -> io::Error {
+fn wrong(error: &roverlab::vision::ImageError) -> io::Error {
     io::Error::new(io::ErrorKind::Other, error.to_string())
 }

@@ -1,7 +1,7 @@
-use roverlab::drive::motion_watch::{MotionWatch, WatchParameters};
+use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::geometry::{Twist, angle_difference, math, units};
-use roverlab::io::{self, Display, Picture, Viewport, control};
-use roverlab::picture::Picture as Drawing;
+use roverlab::io::{self, Display, DisplayImage, Viewport, control};
+use roverlab::picture::Picture;
 
 use super::{Args, campaign, scene};
 use crate::common::{Failure, Outcome, Report, rounded};
@@ -48,7 +48,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         ..Conditions::new(common, TIME_LIMIT)?
     };
     let seconds = conditions.time_limit;
-    let parameters = WatchParameters::new(camera.field_of_view);
+    let parameters = MotionWatchParameters::new(camera.field_of_view);
     let mut watch = MotionWatch::new(parameters).map_err(Failure::input)?;
     let run = conditions.run(&scene, paced(common), |robot, step| {
         let mut seen = Seen::default();
@@ -65,7 +65,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         Ok(seen)
     })?;
     let (file, trouble) = drawn(common, "motion.svg", || {
-        let mut drawing = Drawing::new(&scene.world);
+        let mut drawing = Picture::new(&scene.world);
         drawing.title("Watching for motion");
         for other in &scene.robots[1..] {
             drawing.robot(other.pose, &other.spec.footprint);
@@ -89,7 +89,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
 
 /// The image on the display, with a bar under the sector where something moves.
 fn show<R: Display + ?Sized>(robot: &mut R, watch: &MotionWatch, image: &image::GrayImage) -> io::Result<()> {
-    robot.draw_image(Picture::Gray(image), Viewport::default())?;
+    robot.draw_image(DisplayImage::Gray(image), Viewport::default())?;
     let Some(sector) = watch.motion().and_then(|motion| motion.strongest) else { return Ok(()) };
     let left = (sector as i32) * 320 / 3;
     let colour = roverlab::world::Colour::RED;

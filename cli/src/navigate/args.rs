@@ -71,10 +71,10 @@ impl Args {
     pub(crate) fn parameters(
         &self,
         footprint: roverlab::world::Footprint,
-    ) -> Result<roverlab::nav::NavigateParameters, Failure> {
-        let usual = roverlab::nav::NavigateParameters::for_footprint(footprint);
+    ) -> Result<roverlab::nav::NavigatorParameters, Failure> {
+        let usual = roverlab::nav::NavigatorParameters::for_footprint(footprint);
         let wished = self.clearance.unwrap_or(usual.clearance.max(self.least_clearance.unwrap_or(0.0)));
-        let parameters = roverlab::nav::NavigateParameters {
+        let parameters = roverlab::nav::NavigatorParameters {
             clearance: wished,
             least_clearance: self.least_clearance.unwrap_or(usual.least_clearance.min(wished)),
             ..usual

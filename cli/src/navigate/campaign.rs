@@ -1,5 +1,5 @@
 use roverlab::geometry::units;
-use roverlab::nav::NavigateOutcome;
+use roverlab::nav::NavigatorOutcome;
 
 use super::Args;
 use super::course;
@@ -12,7 +12,7 @@ use crate::driving::Conditions;
 pub(crate) struct Trial {
     pub(crate) seed: u64,
     /// The verdict, or none if the robot failed.
-    pub(crate) outcome: Option<NavigateOutcome>,
+    pub(crate) outcome: Option<NavigatorOutcome>,
     pub(crate) contacts: u32,
     /// Metres, in truth.
     pub(crate) goal_distance: f64,
@@ -31,7 +31,7 @@ const SHARE: f64 = 0.99;
 impl Trial {
     /// Whether the robot really is at the goal.
     pub(crate) fn is_reached(&self) -> bool {
-        self.outcome == Some(NavigateOutcome::Reached) && self.goal_distance <= NEAR
+        self.outcome == Some(NavigatorOutcome::Reached) && self.goal_distance <= NEAR
     }
 }
 

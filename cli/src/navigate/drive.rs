@@ -1,13 +1,13 @@
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::{self, Clock, Drive, Lidar, control};
-use roverlab::nav::{NavigateEvent, NavigateOutcome, NavigateParameters, Navigator};
+use roverlab::nav::{Navigator, NavigatorEvent, NavigatorOutcome, NavigatorParameters};
 use roverlab::world::World;
 
 /// How a drive ended, as the robot takes it.
 #[derive(Debug, Clone)]
 pub(crate) struct Arrival {
-    pub(crate) outcome: NavigateOutcome,
-    pub(crate) events: Vec<NavigateEvent>,
+    pub(crate) outcome: NavigatorOutcome,
+    pub(crate) events: Vec<NavigatorEvent>,
     /// Where the robot takes itself to be.
     pub(crate) believed: Pose,
     /// The first plan.
@@ -20,22 +20,22 @@ impl Arrival {
     /// Length and clearance of the first plan.
     pub(crate) fn planned(&self) -> Option<(f64, f64)> {
         self.events.iter().find_map(|event| match event {
-            NavigateEvent::Planned { length, clearance } => Some((*length, *clearance)),
+            NavigatorEvent::Planned { length, clearance } => Some((*length, *clearance)),
             _ => None,
         })
     }
 
     /// How many events are of a kind.
-    pub(crate) fn count(&self, is: impl Fn(&NavigateEvent) -> bool) -> usize {
+    pub(crate) fn count(&self, is: impl Fn(&NavigatorEvent) -> bool) -> usize {
         self.events.iter().filter(|event| is(event)).count()
     }
 
     pub(crate) fn replans(&self) -> usize {
-        self.count(|event| matches!(event, NavigateEvent::Replanned { .. }))
+        self.count(|event| matches!(event, NavigatorEvent::Replanned { .. }))
     }
 
     pub(crate) fn recoveries(&self) -> usize {
-        self.count(|event| matches!(event, NavigateEvent::Blocked { .. } | NavigateEvent::Doubted { .. }))
+        self.count(|event| matches!(event, NavigatorEvent::Blocked { .. } | NavigatorEvent::Doubted { .. }))
     }
 }
 
@@ -43,9 +43,9 @@ impl Arrival {
 pub(crate) fn drive<R: Clock + Drive + Lidar + ?Sized>(
     robot: &mut R,
     (known, start, goal): (&World, Pose, Point),
-    parameters: NavigateParameters,
+    parameters: NavigatorParameters,
     time_limit: f64,
-    mut watch: impl FnMut(&[NavigateEvent]),
+    mut watch: impl FnMut(&[NavigatorEvent]),
 ) -> io::Result<Arrival> {
     let mut navigator = Navigator::new(known, start, goal, parameters)?;
     let plan = navigator.path().to_vec();

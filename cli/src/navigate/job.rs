@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 
 use roverlab::geometry::{Point, units};
-use roverlab::nav::{NavigateEvent, NavigateOutcome};
+use roverlab::nav::{NavigatorEvent, NavigatorOutcome};
 use roverlab::random::Stream;
 
 use super::course::{self, Course};
@@ -48,29 +48,29 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     Ok(Report { trouble, ..report(&course, &run, conditions.time_limit, file) })
 }
 
-fn told(event: &NavigateEvent) -> String {
+fn told(event: &NavigatorEvent) -> String {
     let mm = |metres: f64| units::to_mm(metres).round() + 0.0;
     match event {
-        NavigateEvent::Planned { length, clearance } => {
+        NavigatorEvent::Planned { length, clearance } => {
             format!("planned: {} mm, {} mm beside the robot", mm(*length), mm(*clearance))
         }
-        NavigateEvent::Replanned { point, length } => {
+        NavigatorEvent::Replanned { point, length } => {
             format!("something unmapped, seen from {} mm: now {} mm are left", in_words(*point), mm(*length))
         }
-        NavigateEvent::Blocked { point } => format!("blocked at {} mm: backing off", in_words(*point)),
-        NavigateEvent::Doubted { point } => format!("no way left at {} mm: looking again", in_words(*point)),
-        NavigateEvent::End(outcome) => verdict(*outcome).into(),
+        NavigatorEvent::Blocked { point } => format!("blocked at {} mm: backing off", in_words(*point)),
+        NavigatorEvent::Doubted { point } => format!("no way left at {} mm: looking again", in_words(*point)),
+        NavigatorEvent::End(outcome) => verdict(*outcome).into(),
         _ => String::new(),
     }
 }
 
 /// An outcome in words.
-pub(super) fn verdict(outcome: NavigateOutcome) -> &'static str {
+pub(super) fn verdict(outcome: NavigatorOutcome) -> &'static str {
     match outcome {
-        NavigateOutcome::Reached => "goal reached",
-        NavigateOutcome::Unreachable => "the goal cannot be reached",
-        NavigateOutcome::Stuck => "the robot does not get on",
-        NavigateOutcome::TimedOut | NavigateOutcome::Stopped => "the time is over",
+        NavigatorOutcome::Reached => "goal reached",
+        NavigatorOutcome::Unreachable => "the goal cannot be reached",
+        NavigatorOutcome::Stuck => "the robot does not get on",
+        NavigatorOutcome::TimedOut | NavigatorOutcome::Stopped => "the time is over",
     }
 }
 
@@ -80,10 +80,10 @@ fn report(course: &Course, run: &Run<Arrival>, limit: f64, file: Option<PathBuf>
     let error = arrival.map(|arrival| run.truth.pose.distance_to(arrival.believed.position()));
     let contacts: Vec<_> = run.truth.contact_places.iter().copied().map(point_in_mm).collect();
     run.report(|arrival| match arrival.outcome {
-        NavigateOutcome::Reached => Outcome::verdict("reached"),
-        NavigateOutcome::Unreachable => Outcome::verdict("unreachable"),
-        NavigateOutcome::Stuck => Outcome::failure("stuck"),
-        NavigateOutcome::TimedOut | NavigateOutcome::Stopped => Outcome::failure("timed_out"),
+        NavigatorOutcome::Reached => Outcome::verdict("reached"),
+        NavigatorOutcome::Unreachable => Outcome::verdict("unreachable"),
+        NavigatorOutcome::Stuck => Outcome::failure("stuck"),
+        NavigatorOutcome::TimedOut | NavigatorOutcome::Stopped => Outcome::failure("timed_out"),
     })
     .field("goal", point_in_mm(course.trip.goal))
     .field("goal_distance_mm", millimetres(run.truth.pose.distance_to(course.trip.goal)))

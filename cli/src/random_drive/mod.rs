@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use roverlab::drive::{CoverageMap, CoverageParameters, RandomDrive, RandomDriveParameters};
+use roverlab::drive::{CoverageMap, CoverageMapParameters, RandomDrive, RandomDriveParameters};
 use roverlab::geometry::{Point, Pose, units};
 use roverlab::io::RobotIo;
 use roverlab::io::control::{self, Behaviour};
@@ -172,7 +172,7 @@ fn together(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure>
     }
     let options = SimOptions::with_noise(common.noise, common.seed);
     let turns: Vec<Rc<Cell<u32>>> = scene.robots.iter().map(|_| Rc::default()).collect();
-    let mut fleet = common.troop(scene, options)?;
+    let mut fleet = common.fleet(scene, options)?;
     for (robot, turns) in turns.iter().cloned().enumerate() {
         let mut drive = behaviour(scene, robot, common.seed)?;
         let (period, mut run) =
@@ -213,7 +213,7 @@ fn together(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure>
 /// The share of the floor that the robots have passed over.
 fn covered(scene: &Scene, paths: &[Vec<Pose>]) -> Option<f64> {
     let radius = scene.robots[0].spec.footprint.bounding_radius();
-    let parameters = CoverageParameters { radius, ..CoverageParameters::default() };
+    let parameters = CoverageMapParameters { radius, ..CoverageMapParameters::default() };
     let mut map = CoverageMap::new(&scene.world, scene.robots[0].pose.position(), parameters).ok()?;
     paths.iter().flatten().for_each(|pose| map.cover(pose.position()));
     Some(map.share())

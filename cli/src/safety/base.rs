@@ -1,7 +1,7 @@
 //! The other end of the radio link: the base station with its crew, and a camera that sees how far the car truly goes.
 
 use roverlab::geometry::Pose;
-use roverlab::safety::{BaseStation, Beat, Causes, Panel, SafetyState, Station};
+use roverlab::safety::{BaseStation, Causes, Heartbeat, Panel, SafetyState, Station};
 
 use super::crew::{Crew, Event};
 use crate::common::{DEADMAN, StageTruth};
@@ -93,15 +93,15 @@ impl Base {
     }
 
     /// Takes in the state that the car has had since the last look.
-    fn note(&mut self, beat: Beat, look: Look) {
+    fn note(&mut self, heartbeat: Heartbeat, look: Look) {
         let before = self.states.last().map_or(SafetyState::Manual, |(_, state)| *state);
-        if beat.state != before {
-            self.states.push((self.last.time, beat.state));
+        if heartbeat.state != before {
+            self.states.push((self.last.time, heartbeat.state));
         }
-        if beat.state.severity() > before.severity() {
-            self.note_stop(beat);
-        } else if (before, beat.state) == (SafetyState::Auto, SafetyState::Manual) {
-            let answer = self.answer(beat);
+        if heartbeat.state.severity() > before.severity() {
+            self.note_stop(heartbeat);
+        } else if (before, heartbeat.state) == (SafetyState::Auto, SafetyState::Manual) {
+            let answer = self.answer(heartbeat);
             self.takeovers.push(answer);
         }
         if let Some(stop) = self.stops.last_mut().filter(|_| self.open) {
@@ -110,15 +110,15 @@ impl Base {
         }
     }
 
-    fn note_stop(&mut self, beat: Beat) {
+    fn note_stop(&mut self, heartbeat: Heartbeat) {
         let alone = self.last.time - self.before.time >= DEADMAN;
         let Look { pose, metres, speed, .. } = if alone { self.before } else { self.last };
-        let answer = self.answer(beat);
+        let answer = self.answer(heartbeat);
         self.stops.push(SeenStop { answer, speed, alone, places: [pose; 2], metres: [metres; 2] });
         self.open = true;
     }
 
-    fn answer(&mut self, Beat { state, causes, .. }: Beat) -> Answer {
+    fn answer(&mut self, Heartbeat { state, causes, .. }: Heartbeat) -> Answer {
         let event = self.crew.now.filter(|now| self.answered != Some(*now));
         self.answered = event.or(self.answered);
         Answer { event, time: self.asked, state, causes }
@@ -126,16 +126,16 @@ impl Base {
 }
 
 impl Station for Base {
-    fn exchange(&mut self, now: f64, beat: Beat) -> Panel {
+    fn exchange(&mut self, now: f64, heartbeat: Heartbeat) -> Panel {
         let look = self.look();
-        self.note(beat, look);
+        self.note(heartbeat, look);
         self.asked = now;
         let passed = look.time - self.last.time;
         if passed > 0.0 {
             self.before = self.last;
         }
         self.last = look;
-        self.crew.act(&mut self.station, beat.state, look.speed < STANDING, (now, passed));
-        self.station.exchange(now, beat)
+        self.crew.act(&mut self.station, heartbeat.state, look.speed < STANDING, (now, passed));
+        self.station.exchange(now, heartbeat)
     }
 }

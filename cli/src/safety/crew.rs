@@ -1,6 +1,6 @@
 //! The people around the car: they arm and start it, let something happen, and set it going again.
 
-use roverlab::safety::{BaseStation, SafetyState, SupervisorParameters};
+use roverlab::safety::{BaseStation, SafetyState, SupervisedParameters};
 
 /// Something that happens while the car drives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -35,7 +35,7 @@ impl Event {
     }
 
     /// Seconds after which the car has to answer it: one control period after it can be noticed.
-    pub(crate) fn allowed(self, parameters: &SupervisorParameters) -> f64 {
+    pub(crate) fn allowed(self, parameters: &SupervisedParameters) -> f64 {
         let noticed = match self {
             Self::Button | Self::Remote | Self::Pedal | Self::Wheel => 0.0,
             Self::Radio => parameters.heartbeat,

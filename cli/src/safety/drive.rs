@@ -7,7 +7,7 @@ use roverlab::geometry::{Point, Pose};
 use roverlab::io::wrappers::{Fault, FaultKind};
 use roverlab::io::{Clock, Drive, Lidar, LidarScan};
 use roverlab::race::{Racer, RacerParameters, sightings};
-use roverlab::safety::{Causes, SafetyState, SpeedError, StoppingModel, Supervised, SupervisorParameters};
+use roverlab::safety::{Causes, SafetyState, SpeedError, StoppingModel, Supervised, SupervisedParameters};
 use roverlab::world::RobotSpec;
 use serde_json::{Value, json};
 
@@ -96,10 +96,10 @@ pub(crate) fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Drive
     let mut judge = Judge::new(course, stage.truth(0)?, 0).map_err(Failure::run)?;
     let events = if args.event.is_empty() { Event::ALL.to_vec() } else { args.event.clone() };
     let limit = args.common.time_limit.unwrap_or(20.0 + 15.0 * events.len() as f64);
-    let parameters = SupervisorParameters {
+    let parameters = SupervisedParameters {
         fence: fence(args.fence),
         speed_error: SpeedError::default().scaled(args.common.noise),
-        ..SupervisorParameters::default()
+        ..SupervisedParameters::default()
     };
     let crew = Crew::new(events, well(&args.common.faults()?));
     let base = Base::new(crew, stage.truth(0)?, parameters.heartbeat);
@@ -115,7 +115,7 @@ pub(crate) fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Drive
 }
 
 /// Metres that the car may go in a stop.
-fn bound(parameters: &SupervisorParameters, seen: &SeenStop) -> f64 {
+fn bound(parameters: &SupervisedParameters, seen: &SeenStop) -> f64 {
     let spec = RobotSpec::race_car();
     let stopping = parameters.stopping_in(seen.answer.state, spec.motor.time_constant, spec.deceleration());
     // Without a link, or while a call hangs, the brake is in the hands of the car's own watchdog.
@@ -125,7 +125,7 @@ fn bound(parameters: &SupervisorParameters, seen: &SeenStop) -> f64 {
 }
 
 /// Whether an event was answered in time, to the microsecond.
-fn is_prompt(answer: &Answer, parameters: &SupervisorParameters) -> bool {
+fn is_prompt(answer: &Answer, parameters: &SupervisedParameters) -> bool {
     answer.event.is_none_or(|(event, time)| answer.time - time <= event.allowed(parameters) + 1e-6)
 }
 

@@ -165,7 +165,7 @@ fn commands_without_a_supervised_robot_say_so() {
     let programs: [(&str, Drive); 4] = [
         // Many robots, each in a world of its own.
         ("bug_compare", |options| run("bug_compare", options)),
-        // Stepped as a troop, all in one thread.
+        // Stepped as a fleet, all in one thread.
         ("follow_me", |options| run("follow_me", options)),
         ("random_drive", |options| run("random_drive", &[&["--robots", "3"], options].concat())),
         // Many runs, on all cores.

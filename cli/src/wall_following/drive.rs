@@ -1,9 +1,9 @@
 use std::ops::ControlFlow;
 
 use roverlab::drive::{
-    AlongWall, FollowsWalls, LidarWallFollower, LidarWallParameters, PidWallFollower, PidWallParameters,
-    TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallOutcome, WallReading, WallSensors,
-    WallSide,
+    AlongWall, FollowsWalls, LidarWallFollower, LidarWallFollowerParameters, PidWallFollower,
+    PidWallFollowerParameters, TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallOutcome,
+    WallReading, WallSensors, WallSide,
 };
 use roverlab::io::control::run;
 use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar};
@@ -64,20 +64,24 @@ pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
             Ok(Walk { outcome, side: follower.side() })
         }
         Controller::Pid => {
-            let parameters = PidWallParameters {
+            let parameters = PidWallFollowerParameters {
                 side: one_side,
                 distance,
                 speed,
                 sensors,
-                ..PidWallParameters::default()
+                ..PidWallFollowerParameters::default()
             };
             let mut follower = PidWallFollower::new(parameters)?;
             let outcome = walk(robot, &mut follower, time_limit, watch)?;
             Ok(Walk { outcome, side: Some(one_side) })
         }
         Controller::Lidar => {
-            let parameters =
-                LidarWallParameters { side: one_side, distance, speed, ..LidarWallParameters::default() };
+            let parameters = LidarWallFollowerParameters {
+                side: one_side,
+                distance,
+                speed,
+                ..LidarWallFollowerParameters::default()
+            };
             let mut follower = LidarWallFollower::new(parameters)?;
             let outcome = walk(robot, &mut follower, time_limit, watch)?;
             Ok(Walk { outcome, side: Some(one_side) })

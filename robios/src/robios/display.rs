@@ -1,7 +1,7 @@
 use image::{GrayImage, RgbImage};
 use roverlab::io::sim::Lcd;
 use roverlab::io::{
-    Display, DisplayOption, Fill, Font, FontFamily, FontStyle, Key, Picture, Result, Viewport,
+    Display, DisplayImage, DisplayOption, Fill, Font, FontFamily, FontStyle, Key, Result, Viewport,
 };
 
 use super::{ImageSize, Robios, images, invalid};
@@ -232,15 +232,15 @@ impl Robios {
         match frame {
             Frame::Colour(data) => {
                 let image = RgbImage::from_raw(w, h, data).ok_or_else(short)?;
-                self.screen.lcd.draw_image(Picture::Rgb(&image), window)?;
+                self.screen.lcd.draw_image(DisplayImage::Rgb(&image), window)?;
             }
             Frame::Gray(data) => {
                 let image = GrayImage::from_raw(w, h, data).ok_or_else(short)?;
-                self.screen.lcd.draw_image(Picture::Gray(&image), window)?;
+                self.screen.lcd.draw_image(DisplayImage::Gray(&image), window)?;
             }
             Frame::Binary(data) => {
                 let image = GrayImage::from_raw(w, h, data).ok_or_else(short)?;
-                self.screen.lcd.draw_image(Picture::Binary(&image), window)?;
+                self.screen.lcd.draw_image(DisplayImage::Binary(&image), window)?;
             }
         }
         self.charge_image(width * height)

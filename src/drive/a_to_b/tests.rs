@@ -91,7 +91,7 @@ fn who_is_there_stays() {
 
 #[test]
 fn a_dog_curve_bends_less_and_less() {
-    let parameters = FollowerParameters::default();
+    let parameters = PathFollowerParameters::default();
     let turns = [1.0, 0.5, 0.1, 0.0].map(|bearing| dog_twist(&parameters, bearing, 1.0).angular);
     assert!(turns.windows(2).all(|pair| pair[0] > pair[1]) && turns[3] == 0.0, "{turns:?}");
     assert_eq!(dog_twist(&parameters, 0.0, 1.0).linear, parameters.speed);

@@ -5,7 +5,7 @@ use super::observation::{ColourObservation, Sight};
 use super::scan_memory::ScanMemory;
 use super::steering::{Exempt, Steering, directions, nearest, obstacles};
 use super::tracker::OBJECT;
-use super::{ColourTracker, TrackerParameters};
+use super::{ColourTracker, ColourTrackerParameters};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, Vector, angle_difference, direction, math, normalize_angle};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
@@ -16,9 +16,9 @@ use crate::vision::ColourFinder;
 
 /// How a [`PushHome`] drives.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HomeParameters {
+pub struct PushHomeParameters {
     /// How it finds the object and drives to it.
-    pub tracker: TrackerParameters,
+    pub tracker: ColourTrackerParameters,
     /// Metres from the object's middle at which the robot goes round it.
     pub round: f64,
     /// Metres per second while it pushes.
@@ -33,10 +33,10 @@ pub struct HomeParameters {
     pub foresight: f64,
 }
 
-impl Default for HomeParameters {
+impl Default for PushHomeParameters {
     fn default() -> Self {
         // Farther from the object than for reaching it alone: there has to be room to go round.
-        let tracker = TrackerParameters { gap: 0.14, ..TrackerParameters::default() };
+        let tracker = ColourTrackerParameters { gap: 0.14, ..ColourTrackerParameters::default() };
         Self {
             tracker,
             round: 0.24,
@@ -49,7 +49,7 @@ impl Default for HomeParameters {
     }
 }
 
-impl HomeParameters {
+impl PushHomeParameters {
     /// Fails with the name of the parameter that is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         self.tracker.validate().map_err(|error| error.of("tracker"))?;
@@ -99,7 +99,7 @@ pub enum PushOutcome {
 /// told by matching scans, since odometry is lost on a robot that turns and pushes so much.
 #[derive(Debug, Clone)]
 pub struct PushHome {
-    parameters: HomeParameters,
+    parameters: PushHomeParameters,
     tracker: ColourTracker,
     home: Point,
     phase: HomePhase,
@@ -119,7 +119,7 @@ impl PushHome {
     pub fn new(
         finder: ColourFinder,
         home: Point,
-        parameters: HomeParameters,
+        parameters: PushHomeParameters,
     ) -> Result<Self, ParameterError> {
         parameters.validate()?;
         home.coords.iter().try_for_each(|&metres| require_finite("home", metres))?;
@@ -148,7 +148,7 @@ impl PushHome {
     }
 
     /// The speed for an observation; `None` when the object is home.
-    pub(super) fn steer(&mut self, seen: &Sight<'_>) -> Result<Option<Twist>, crate::vision::Error> {
+    pub(super) fn steer(&mut self, seen: &Sight<'_>) -> Result<Option<Twist>, crate::vision::ImageError> {
         let seen = &Sight { pose: self.localise(seen), ..*seen };
         if self.phase == HomePhase::Finding {
             let twist = self.tracker.steer(seen)?;
@@ -208,7 +208,7 @@ impl PushHome {
     }
 
     fn steering(&self) -> Steering {
-        let TrackerParameters { radius, margin, speed, turn_speed, .. } = self.parameters.tracker;
+        let ColourTrackerParameters { radius, margin, speed, turn_speed, .. } = self.parameters.tracker;
         Steering { radius, margin, speed, turn_speed }
     }
 
@@ -259,7 +259,7 @@ impl PushHome {
 
     /// Drives to the object and pushes it.
     fn push(&mut self, seen: &Sight<'_>) -> Twist {
-        let HomeParameters { push_speed, correction, .. } = self.parameters;
+        let PushHomeParameters { push_speed, correction, .. } = self.parameters;
         let place = seen.pose.to_local(self.object);
         let (distance, bearing) = (place.coords.norm(), math::atan2(place.y, place.x));
         let line = normalize_angle(seen.pose.heading + bearing);

@@ -10,6 +10,6 @@ mod steering;
 mod tests;
 mod tracker;
 
-pub use home::{HomeParameters, HomePhase, PushHome, PushOutcome};
+pub use home::{HomePhase, PushHome, PushHomeParameters, PushOutcome};
 pub use observation::ColourObservation;
-pub use tracker::{ColourOutcome, ColourPhase, ColourTracker, TrackerParameters};
+pub use tracker::{ColourOutcome, ColourPhase, ColourTracker, ColourTrackerParameters};

@@ -47,7 +47,7 @@ fn the_can_is_reached_in_any_light() {
         let options = SimOptions { light, ..SimOptions::with_noise(1.0, 5) };
         let simulation = Simulation::new(&room(x, y), options).unwrap();
         let mut robot = simulation.robot(0).unwrap();
-        let mut tracker = ColourTracker::new(finder(method), TrackerParameters::default()).unwrap();
+        let mut tracker = ColourTracker::new(finder(method), ColourTrackerParameters::default()).unwrap();
         let outcome = run(&mut robot, &mut tracker, 120.0, |_, _, _| {}).unwrap();
         let truth = simulation.truth().robot(0).unwrap();
         assert_eq!((outcome, truth.contacts), (ColourOutcome::Reached, 0), "{method:?} {x} {y} {light}");
@@ -67,7 +67,7 @@ fn the_can_is_pushed_home() {
         let simulation = Simulation::new(&scene, options).unwrap();
         let mut robot = simulation.robot(0).unwrap();
         let mut behaviour =
-            PushHome::new(finder(FindMethod::Blob), Point::origin(), HomeParameters::default()).unwrap();
+            PushHome::new(finder(FindMethod::Blob), Point::origin(), PushHomeParameters::default()).unwrap();
         let outcome = run(&mut robot, &mut behaviour, 240.0, |_, _, _| {}).unwrap();
         let truth = simulation.truth();
         let home = truth.object(0).unwrap().distance_to(start.position());
@@ -85,7 +85,7 @@ fn what_is_gone_is_searched_for() {
     let simulation = Simulation::new(&scene, SimOptions { pushing: true, ..SimOptions::ideal() }).unwrap();
     let mut robot = simulation.robot(0).unwrap();
     let mut behaviour =
-        PushHome::new(finder(FindMethod::Blob), Point::origin(), HomeParameters::default()).unwrap();
+        PushHome::new(finder(FindMethod::Blob), Point::origin(), PushHomeParameters::default()).unwrap();
     for _ in 0..20 {
         if behaviour.phase() == HomePhase::Finding {
             run(&mut robot, &mut behaviour, 2.0, |_, _, _| {}).unwrap();

@@ -12,7 +12,7 @@ use crate::vision::{ColourFinder, Sighting};
 
 /// How a [`ColourTracker`] drives.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrackerParameters {
+pub struct ColourTrackerParameters {
     /// Metres per second.
     pub speed: f64,
     /// Radians per second.
@@ -31,7 +31,7 @@ pub struct TrackerParameters {
     pub period: f64,
 }
 
-impl Default for TrackerParameters {
+impl Default for ColourTrackerParameters {
     fn default() -> Self {
         Self {
             speed: 0.25,
@@ -46,7 +46,7 @@ impl Default for TrackerParameters {
     }
 }
 
-impl TrackerParameters {
+impl ColourTrackerParameters {
     /// Fails with the name of the parameter that is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require_positive("speed", self.speed)?;
@@ -92,7 +92,7 @@ pub enum ColourOutcome {
 #[derive(Debug, Clone)]
 pub struct ColourTracker {
     finder: ColourFinder,
-    parameters: TrackerParameters,
+    parameters: ColourTrackerParameters,
     phase: ColourPhase,
     /// Where the object is, in odometry's frame, and when it was seen last.
     target: Option<(Point, f64)>,
@@ -112,12 +112,12 @@ pub(super) const OBJECT: f64 = 0.09;
 
 impl ColourTracker {
     /// A tracker that begins with a search. Fails with the name of the parameter that is out of range.
-    pub fn new(finder: ColourFinder, parameters: TrackerParameters) -> Result<Self, ParameterError> {
+    pub fn new(finder: ColourFinder, parameters: ColourTrackerParameters) -> Result<Self, ParameterError> {
         parameters.validate()?;
         Ok(Self::searching(finder, parameters))
     }
 
-    fn searching(finder: ColourFinder, parameters: TrackerParameters) -> Self {
+    fn searching(finder: ColourFinder, parameters: ColourTrackerParameters) -> Self {
         Self {
             finder,
             parameters,
@@ -155,7 +155,7 @@ impl ColourTracker {
     }
 
     /// The speed for an observation; `None` when the object is reached.
-    pub(super) fn steer(&mut self, seen: &Sight<'_>) -> Result<Option<Twist>, crate::vision::Error> {
+    pub(super) fn steer(&mut self, seen: &Sight<'_>) -> Result<Option<Twist>, crate::vision::ImageError> {
         self.sighting = self.finder.find(seen.image)?;
         if let Some(sighting) = self.sighting {
             let place = self.place_of(&sighting, seen.scan);
@@ -215,7 +215,7 @@ impl ColourTracker {
     }
 
     fn steering(&self) -> Steering {
-        let TrackerParameters { radius, margin, speed, turn_speed, .. } = self.parameters;
+        let ColourTrackerParameters { radius, margin, speed, turn_speed, .. } = self.parameters;
         Steering { radius, margin, speed, turn_speed }
     }
 

@@ -6,7 +6,7 @@ use crate::world::{Clearance, Raster, World};
 
 /// What a robot covers, and how near it may come to things.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CoverageParameters {
+pub struct CoverageMapParameters {
     /// The radius of the robot in metres. It covers the floor under it.
     pub radius: f64,
     /// Metres that it keeps away from everything.
@@ -17,14 +17,14 @@ pub struct CoverageParameters {
     pub resolution: f64,
 }
 
-impl Default for CoverageParameters {
+impl Default for CoverageMapParameters {
     /// An S4.
     fn default() -> Self {
         Self { radius: 0.06, margin: 0.015, overlap: 0.01, resolution: 0.01 }
     }
 }
 
-impl CoverageParameters {
+impl CoverageMapParameters {
     /// Fails with the name of the parameter that is out of range.
     pub fn validate(&self) -> std::result::Result<(), ParameterError> {
         require_up_to("radius", self.radius, 1000.0)?;
@@ -47,7 +47,7 @@ pub struct CoverageMap {
     pub(super) places: Vec<bool>,
     floor: Vec<bool>,
     covered: Vec<bool>,
-    parameters: CoverageParameters,
+    parameters: CoverageMapParameters,
     /// Cells of the floor, and those that are covered.
     cells: usize,
     done: usize,
@@ -62,9 +62,9 @@ const TILE: usize = 16;
 impl CoverageMap {
     /// The map of a world for a robot at a start. Fails for a start where the robot cannot be, and for a world that is too
     /// large.
-    pub fn new(world: &World, start: Point, parameters: CoverageParameters) -> Result<Self> {
+    pub fn new(world: &World, start: Point, parameters: CoverageMapParameters) -> Result<Self> {
         parameters.validate()?;
-        let CoverageParameters { radius, margin, resolution, .. } = parameters;
+        let CoverageMapParameters { radius, margin, resolution, .. } = parameters;
         let reach = radius + margin;
         let clearance = Clearance::new(world, resolution, reach + 2.0 * resolution).map_err(|error| {
             Error::new(ErrorKind::InvalidInput, "the world cannot be mapped").with_source(error)
@@ -192,7 +192,7 @@ impl CoverageMap {
     }
 
     /// What it was made for.
-    pub fn parameters(&self) -> &CoverageParameters {
+    pub fn parameters(&self) -> &CoverageMapParameters {
         &self.parameters
     }
 

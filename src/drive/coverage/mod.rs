@@ -6,6 +6,6 @@ mod plan;
 mod route;
 mod tour;
 
-pub use map::{CoverageMap, CoverageParameters};
+pub use map::{CoverageMap, CoverageMapParameters};
 pub use plan::CoveragePlan;
 pub use tour::{Tour, TourOutcome, TourParameters};

@@ -9,11 +9,11 @@ use crate::io::Result;
 /// A way over the whole floor, in lanes as a lawn mower's (book, sections 3.1 and 6.3), and to what the lanes leave out.
 ///
 /// ```
-/// use roverlab::drive::{CoverageMap, CoverageParameters, CoveragePlan};
+/// use roverlab::drive::{CoverageMap, CoverageMapParameters, CoveragePlan};
 /// use roverlab::geometry::Point;
 /// use roverlab::world::World;
 /// let world = World::walled(1.5, 1.0);
-/// let mut map = CoverageMap::new(&world, Point::new(0.2, 0.2), CoverageParameters::default())?;
+/// let mut map = CoverageMap::new(&world, Point::new(0.2, 0.2), CoverageMapParameters::default())?;
 /// let plan = CoveragePlan::new(&map, Point::new(0.2, 0.2))?;
 /// plan.points().windows(2).for_each(|two| map.cover_line(two[0], two[1], 0.0));
 /// assert!(map.share() > 0.98 && plan.length() < 1.5 * map.area() / 0.12);
@@ -155,7 +155,7 @@ fn visit_the_rest(
 
 #[cfg(test)]
 mod tests {
-    use super::super::CoverageParameters;
+    use super::super::CoverageMapParameters;
     use super::*;
     use crate::geometry::Pose;
     use crate::world::{Object, ObjectKind, Wall, World};
@@ -174,7 +174,7 @@ mod tests {
             world.walls.push(Wall::new(middle, Point::new(middle.x, wall * depth)));
             let kind = std::sync::Arc::new(ObjectKind::predefined("crate").unwrap());
             world.objects.push(Object::new(kind, Pose::new(x * width, y * depth, turn)));
-            let Ok(mut map) = CoverageMap::new(&world, START, CoverageParameters::default()) else { return Ok(()) };
+            let Ok(mut map) = CoverageMap::new(&world, START, CoverageMapParameters::default()) else { return Ok(()) };
             let plan = CoveragePlan::new(&map, START).unwrap();
             // The plan itself takes the robot to err by some millimetres.
             prop_assert!(plan.share() >= 0.94, "{}", plan.share());
@@ -190,7 +190,7 @@ mod tests {
     #[test]
     fn what_is_covered_is_what_was_passed_over() {
         let mut map =
-            CoverageMap::new(&World::walled(1.0, 1.0), START, CoverageParameters::default()).unwrap();
+            CoverageMap::new(&World::walled(1.0, 1.0), START, CoverageMapParameters::default()).unwrap();
         assert_eq!((map.share(), map.cells(true).count()), (0.0, 0));
         map.cover(Point::new(0.5, 0.5));
         let disc = std::f64::consts::PI * 0.06 * 0.06;
@@ -204,13 +204,13 @@ mod tests {
 
     #[test]
     fn nonsense_is_refused() {
-        let good = CoverageParameters::default();
+        let good = CoverageMapParameters::default();
         let world = World::walled(1.0, 1.0);
         for bad in [
-            CoverageParameters { radius: 0.0, ..good },
-            CoverageParameters { resolution: 0.05, ..good },
-            CoverageParameters { overlap: 0.1, ..good },
-            CoverageParameters { margin: f64::NAN, ..good },
+            CoverageMapParameters { radius: 0.0, ..good },
+            CoverageMapParameters { resolution: 0.05, ..good },
+            CoverageMapParameters { overlap: 0.1, ..good },
+            CoverageMapParameters { margin: f64::NAN, ..good },
         ] {
             assert!(CoverageMap::new(&world, START, bad).is_err());
         }

@@ -4,4 +4,4 @@
 mod tests;
 mod watch;
 
-pub use watch::{MotionWatch, WatchObservation, WatchParameters};
+pub use watch::{MotionWatch, MotionWatchObservation, MotionWatchParameters};

@@ -65,7 +65,7 @@ fn watcher(options: SimOptions, other: Twist) -> SimRobot {
 fn alarms_while_turning(moves: bool, noise: f64, light: f64, seed: u64) -> (usize, usize) {
     let options = SimOptions { light, ..SimOptions::with_noise(noise, seed) };
     let mut robot = watcher(options, if moves { Twist::new(0.25, 2.0) } else { Twist::STOP });
-    let parameters = WatchParameters::new(RobotSpec::s4().camera.unwrap().field_of_view);
+    let parameters = MotionWatchParameters::new(RobotSpec::s4().camera.unwrap().field_of_view);
     let mut watch = MotionWatch::new(parameters).unwrap();
     let (mut alarms, mut images) = (0, 0);
     // To and fro with pauses, in radians per second, each for half a second.
@@ -146,7 +146,7 @@ fn the_robot_turns_to_what_moves_and_stands_when_nothing_does() {
                 }
                 other.wait(3.0).unwrap();
             });
-            let parameters = WatchParameters::new(RobotSpec::s4().camera.unwrap().field_of_view);
+            let parameters = MotionWatchParameters::new(RobotSpec::s4().camera.unwrap().field_of_view);
             let mut watch = MotionWatch::new(parameters).unwrap();
             run(&mut robot, &mut watch, 3.0, |_, _, _| {}).unwrap();
         });

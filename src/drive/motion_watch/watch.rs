@@ -7,11 +7,11 @@ use crate::io::control::{Behaviour, Decision, Halt, Senses};
 use crate::io::{self, Camera, Drive, Resolution};
 use crate::parameter::{require_not_negative, require_positive};
 use crate::vision::motion::{Motion, MotionDetector, MotionParameters, TurnCompensator};
-use crate::vision::{Error, GrayView};
+use crate::vision::{GrayView, ImageError};
 
 /// How a [`MotionWatch`] looks and turns.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WatchParameters {
+pub struct MotionWatchParameters {
     /// What makes motion while the robot stands.
     pub standing: MotionParameters,
     /// What makes motion while it turns.
@@ -29,7 +29,7 @@ pub struct WatchParameters {
     pub patience: f64,
 }
 
-impl WatchParameters {
+impl MotionWatchParameters {
     /// For a camera with a horizontal field of view in radians.
     pub fn new(field_of_view: f64) -> Self {
         let turning = MotionParameters { threshold: 8.0, least_noise: 4.0, ..MotionParameters::default() };
@@ -48,7 +48,7 @@ impl WatchParameters {
 /// Turns to where something moves (book, section 11.5), and sees motion while it turns as well (section 11.6).
 #[derive(Debug, Clone)]
 pub struct MotionWatch {
-    parameters: WatchParameters,
+    parameters: MotionWatchParameters,
     standing: MotionDetector,
     turning: MotionDetector,
     compensator: TurnCompensator,
@@ -63,7 +63,7 @@ pub struct MotionWatch {
 
 impl MotionWatch {
     /// A watch that has seen nothing yet.
-    pub fn new(parameters: WatchParameters) -> Result<Self, Error> {
+    pub fn new(parameters: MotionWatchParameters) -> Result<Self, ImageError> {
         require_positive("turn speed", parameters.turn_speed)?;
         require_positive("control period", parameters.period)?;
         require_not_negative("parallax", parameters.parallax)?;
@@ -88,7 +88,7 @@ impl MotionWatch {
     }
 
     /// The speed for an image that was taken at a pose of odometry.
-    pub fn step(&mut self, time: f64, image: &GrayImage, pose: Pose) -> Result<Twist, Error> {
+    pub fn step(&mut self, time: f64, image: &GrayImage, pose: Pose) -> Result<Twist, ImageError> {
         self.motion = match self.before.take() {
             Some((before, at)) => {
                 Some(self.compare(&before, image, angle_difference(pose.heading, at.heading))?)
@@ -106,7 +106,7 @@ impl MotionWatch {
         Ok(Twist::new(0.0, turn))
     }
 
-    fn compare(&mut self, before: &GrayImage, image: &GrayImage, turned: f64) -> Result<Motion, Error> {
+    fn compare(&mut self, before: &GrayImage, image: &GrayImage, turned: f64) -> Result<Motion, ImageError> {
         /// Less is below what the camera can tell.
         const STILL: f64 = 3e-4;
         /// What whole pixels and the registration may put edges off by.
@@ -135,7 +135,7 @@ impl MotionWatch {
 
 /// What a [`MotionWatch`] sees at a step.
 #[derive(Debug, Clone, Default)]
-pub struct WatchObservation {
+pub struct MotionWatchObservation {
     /// The camera's image.
     pub image: GrayImage,
     /// Where odometry takes the robot to be.
@@ -143,7 +143,7 @@ pub struct WatchObservation {
 }
 
 impl Behaviour for MotionWatch {
-    type Observation = WatchObservation;
+    type Observation = MotionWatchObservation;
     type Command = Twist;
     type Outcome = Halt;
 
@@ -151,7 +151,7 @@ impl Behaviour for MotionWatch {
         self.parameters.period
     }
 
-    fn step(&mut self, time: f64, seen: &WatchObservation) -> Decision<Self> {
+    fn step(&mut self, time: f64, seen: &MotionWatchObservation) -> Decision<Self> {
         let twist = MotionWatch::step(self, time, &seen.image, seen.pose).map_err(io::Error::caused_by)?;
         Ok(ControlFlow::Continue(twist))
     }
@@ -162,8 +162,8 @@ impl<R: Camera + Drive + ?Sized> Senses<R> for MotionWatch {
         robot.set_resolution(Resolution::Qqvga)
     }
 
-    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut WatchObservation) -> io::Result<()> {
-        *seen = WatchObservation { image: robot.gray_image()?, pose: robot.pose()? };
+    fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut MotionWatchObservation) -> io::Result<()> {
+        *seen = MotionWatchObservation { image: robot.gray_image()?, pose: robot.pose()? };
         Ok(())
     }
 }

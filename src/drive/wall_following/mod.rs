@@ -12,9 +12,10 @@ mod tests;
 mod tracker;
 mod two_level;
 
-pub use parameters::{WallFollowerParameters, WallObservation, WallSensors, WallSide};
-pub use pid::{PidWallFollower, PidWallParameters};
+pub use crate::geometry::WallSide;
+pub use parameters::{WallFollowerParameters, WallObservation, WallSensors};
+pub use pid::{PidWallFollower, PidWallFollowerParameters};
 pub use psd::{WallFollower, WallPhase};
 pub use run::{AlongWall, AlongWallObservation, FollowsWalls, WallOutcome, WallReading};
-pub use scan::{LidarWallFollower, LidarWallParameters};
+pub use scan::{LidarWallFollower, LidarWallFollowerParameters};
 pub use two_level::TwoLevelWallFollower;

@@ -1,19 +1,10 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::ParameterError;
-use crate::geometry::{Pose, normalize_angle};
+use crate::geometry::{Pose, WallSide, normalize_angle};
 use crate::io::{Error, Result};
 use crate::parameter::{require, require_positive};
 use crate::world::RobotSpec;
-
-/// On which side of the robot the followed wall is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum WallSide {
-    /// To the left, as in the book.
-    Left,
-    /// To the right.
-    Right,
-}
 
 /// Where the distance sensors sit on the robot and where they point.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,7 +7,7 @@ use crate::parameter::{require, require_positive};
 
 /// What [`PidWallFollower`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PidWallParameters {
+pub struct PidWallFollowerParameters {
     /// On which side the wall is to be.
     pub side: WallSide,
     /// Metres between the wall and the robot's middle.
@@ -24,7 +24,7 @@ pub struct PidWallParameters {
     pub period: f64,
 }
 
-impl Default for PidWallParameters {
+impl Default for PidWallFollowerParameters {
     /// A wall to the left at 0.2 m, passed at 0.2 m/s.
     fn default() -> Self {
         Self {
@@ -50,7 +50,7 @@ impl Default for PidWallParameters {
 /// it drives an arc.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PidWallFollower {
-    parameters: PidWallParameters,
+    parameters: PidWallFollowerParameters,
     pid: Pid,
     front: Median,
     turning: bool,
@@ -66,7 +66,7 @@ const LAG: f64 = 0.2;
 
 impl PidWallFollower {
     /// A follower that has not met a wall.
-    pub fn new(parameters: PidWallParameters) -> Result<Self> {
+    pub fn new(parameters: PidWallFollowerParameters) -> Result<Self> {
         require_positive("speed", parameters.speed)?;
         require_positive("turn rate", parameters.turn_rate)?;
         require_positive("control period", parameters.period)?;
@@ -81,7 +81,7 @@ impl PidWallFollower {
     /// The next speed, `seconds` after the last one.
     pub fn step(&mut self, observation: &WallObservation, seconds: f64) -> Result<Twist> {
         observation.check()?;
-        let PidWallParameters { side, distance, speed, turn_rate, sensors, .. } = self.parameters;
+        let PidWallFollowerParameters { side, distance, speed, turn_rate, sensors, .. } = self.parameters;
         let (range, mount, towards) = match side {
             WallSide::Left => (observation.left, sensors.left, 1.0),
             WallSide::Right => (observation.right, sensors.right, -1.0),
@@ -140,8 +140,11 @@ mod tests {
     #[test]
     fn it_steers_towards_its_line_on_either_side() {
         for side in [WallSide::Left, WallSide::Right] {
-            let mut follower =
-                PidWallFollower::new(PidWallParameters { side, ..PidWallParameters::default() }).unwrap();
+            let mut follower = PidWallFollower::new(PidWallFollowerParameters {
+                side,
+                ..PidWallFollowerParameters::default()
+            })
+            .unwrap();
             let mut beside = |range: f64| {
                 let (left, right) = if side == WallSide::Left { (range, 9.0) } else { (9.0, range) };
                 (0..50).map(|_| follower.step(&seen(9.0, left, right), 0.02).unwrap()).last().unwrap().angular
@@ -154,14 +157,14 @@ mod tests {
 
     #[test]
     fn it_turns_before_a_wall_ahead() {
-        let mut follower = PidWallFollower::new(PidWallParameters::default()).unwrap();
+        let mut follower = PidWallFollower::new(PidWallFollowerParameters::default()).unwrap();
         for _ in 0..5 {
             follower.step(&seen(0.15, 0.155, 9.0), 0.02).unwrap();
         }
         let twist = follower.step(&seen(0.15, 0.155, 9.0), 0.02).unwrap();
         assert!(twist.linear == 0.0 && twist.angular < 0.0);
         assert!(follower.step(&seen(f64::NAN, 0.155, 9.0), 0.02).is_err());
-        let near = PidWallParameters { distance: 0.01, ..PidWallParameters::default() };
+        let near = PidWallFollowerParameters { distance: 0.01, ..PidWallFollowerParameters::default() };
         assert!(PidWallFollower::new(near).is_err());
     }
 }

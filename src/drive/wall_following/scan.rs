@@ -7,7 +7,7 @@ use crate::parameter::require_positive;
 
 /// What [`LidarWallFollower`] goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LidarWallParameters {
+pub struct LidarWallFollowerParameters {
     /// On which side the wall is to be.
     pub side: WallSide,
     /// Metres between the wall and the robot's middle.
@@ -24,7 +24,7 @@ pub struct LidarWallParameters {
     pub period: f64,
 }
 
-impl Default for LidarWallParameters {
+impl Default for LidarWallFollowerParameters {
     /// A wall to the left at 0.2 m, passed at 0.2 m/s.
     fn default() -> Self {
         Self {
@@ -45,7 +45,7 @@ impl Default for LidarWallParameters {
 /// place. A wall ahead counts as nearer by the way that the robot needs to stop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LidarWallFollower {
-    parameters: LidarWallParameters,
+    parameters: LidarWallFollowerParameters,
     met: bool,
     aligned: bool,
 }
@@ -60,7 +60,7 @@ const DIRECTIONS: [f64; 2] = [-0.35, 2.6];
 
 impl LidarWallFollower {
     /// A follower that has not met a wall.
-    pub fn new(parameters: LidarWallParameters) -> Result<Self> {
+    pub fn new(parameters: LidarWallFollowerParameters) -> Result<Self> {
         require_positive("distance", parameters.distance)?;
         require_positive("speed", parameters.speed)?;
         require_positive("turn rate", parameters.turn_rate)?;
@@ -72,7 +72,7 @@ impl LidarWallFollower {
 
     /// The next speed. Fails for a scan that does not reach from ahead to the wall's side.
     pub fn step(&mut self, scan: &LidarScan) -> Result<Twist> {
-        let LidarWallParameters { side, distance, speed, .. } = self.parameters;
+        let LidarWallFollowerParameters { side, distance, speed, .. } = self.parameters;
         let span = scan.angle_increment * scan.ranges.len() as f64;
         if span.is_nan() || span < PI - 1e-6 || scan.ranges.len() < 60 {
             let found = format!("{} beams over {span:.2} rad", scan.ranges.len());
@@ -100,7 +100,7 @@ impl LidarWallFollower {
 
     /// Distance and direction of the wall.
     fn nearest(&self, points: &[Option<Point>]) -> Option<(f64, f64)> {
-        let LidarWallParameters { speed, lag, .. } = self.parameters;
+        let LidarWallFollowerParameters { speed, lag, .. } = self.parameters;
         let stop = lag * speed;
         let direction = |point: &Point| math::atan2(point.y, point.x);
         let candidates: Vec<Point> = points
@@ -128,7 +128,7 @@ impl LidarWallFollower {
     }
 
     fn steer(&mut self, error: f64, angle: f64) -> Twist {
-        let LidarWallParameters { speed, turn_rate, reach, .. } = self.parameters;
+        let LidarWallFollowerParameters { speed, turn_rate, reach, .. } = self.parameters;
         self.aligned = angle.abs() < 0.3;
         let pull = (error / reach).clamp(-1.2, 1.2);
         let bend = (2.0 * math::sin(angle.clamp(-FRAC_PI_2, FRAC_PI_2)) + pull) / reach;

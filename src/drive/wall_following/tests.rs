@@ -106,10 +106,10 @@ fn the_lidar_and_the_pid_controller_follow_plain_walls() {
     let world = World::walled(2.5, 2.0);
     for side in [WallSide::Left, WallSide::Right] {
         let start = Pose::new(1.0, 1.0, 0.5);
-        let parameters = LidarWallParameters { side, ..LidarWallParameters::default() };
+        let parameters = LidarWallFollowerParameters { side, ..LidarWallFollowerParameters::default() };
         let lidar = drive(&world, start, &mut LidarWallFollower::new(parameters).unwrap(), 60.0, 1.0, 1);
         assert!(lidar.contacts == 0 && lidar.length > 7.0 && lidar.rms() < 0.012, "{}", lidar.rms());
-        let parameters = PidWallParameters { side, ..PidWallParameters::default() };
+        let parameters = PidWallFollowerParameters { side, ..PidWallFollowerParameters::default() };
         let pid = drive(&world, start, &mut PidWallFollower::new(parameters).unwrap(), 60.0, 1.0, 1);
         assert!(pid.contacts == 0 && pid.length > 7.0 && pid.rms() < 0.04, "{}", pid.rms());
     }

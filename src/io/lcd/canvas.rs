@@ -7,7 +7,7 @@ use embedded_graphics::pixelcolor::{Rgb888, RgbColor};
 use embedded_graphics::primitives::{Line, PointsIter, Rectangle};
 use image::{Rgb, RgbImage};
 
-use crate::io::{Fill, Picture, Pixel, Viewport};
+use crate::io::{DisplayImage, Fill, Pixel, Viewport};
 use crate::world::Colour;
 
 /// Lines are cut to this many pixels around the origin before they are drawn, which bounds the time that a line
@@ -110,7 +110,7 @@ impl Canvas {
         }
     }
 
-    pub(super) fn picture(&mut self, picture: Picture<'_>, viewport: Viewport) {
+    pub(super) fn picture(&mut self, picture: DisplayImage<'_>, viewport: Viewport) {
         let Viewport { corner: (left, top), width, height } = viewport;
         let (columns, rows) = picture.dimensions();
         let visible =
@@ -321,7 +321,7 @@ mod tests {
     fn pictures_scale_by_the_nearest_pixel() {
         let source = RgbImage::from_fn(2, 1, |x, _| Rgb([10 * x as u8 + 1; 3]));
         let mut drawn = canvas();
-        drawn.picture(Picture::Rgb(&source), Viewport::new((10, 10), 6, 2));
+        drawn.picture(DisplayImage::Rgb(&source), Viewport::new((10, 10), 6, 2));
         for (x, value) in [(9, 0), (10, 1), (12, 1), (13, 11), (15, 11), (16, 0)] {
             assert_eq!(drawn.get((x, 11)), Some(Colour::new(value, value, value)), "{x}");
         }

@@ -122,7 +122,7 @@ fn without_auto_refresh_drawing_waits_for_refresh() {
 fn a_binary_image_shows_zero_as_white() {
     let mut lcd = Lcd::new();
     let image = GrayImage::from_fn(2, 1, |x, _| Luma([x as u8]));
-    lcd.draw_image(Picture::Binary(&image), Viewport::new((0, 0), 2, 1)).unwrap();
+    lcd.draw_image(DisplayImage::Binary(&image), Viewport::new((0, 0), 2, 1)).unwrap();
     assert_eq!(lcd.pixel((0, 0)).unwrap(), Some(Colour::WHITE));
     assert_eq!(lcd.pixel((1, 0)).unwrap(), Some(Colour::BLACK));
 }

@@ -10,8 +10,8 @@ use super::values::{self, Put, Values};
 use super::wire;
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    Camera, Display, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys, Lidar,
-    LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos,
+    Camera, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys,
+    Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos,
     Viewport,
 };
 use crate::world::Colour;

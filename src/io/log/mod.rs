@@ -28,6 +28,7 @@ mod determinism;
 mod difference;
 mod entry;
 mod error;
+mod fleet;
 mod header;
 mod messages;
 mod open_loop;
@@ -45,7 +46,6 @@ mod schema;
 mod shadow;
 mod stamp;
 mod topics;
-mod troop;
 mod truth;
 mod values;
 mod wire;
@@ -55,18 +55,18 @@ pub use determinism::{Indeterminate, check_determinism};
 pub use difference::Difference;
 pub use entry::Entry;
 pub use error::LogError;
+pub use fleet::{RecordedFleet, ReplayFleet};
 pub use header::{Attachment, Compression, Header, SCHEMA_VERSION};
-pub use open_loop::{Command, OpenLoop, OpenLoopReport};
+pub use open_loop::{OpenLoop, OpenLoopReport, RecordedCommand};
 pub use player::Player;
 pub use recorder::Recorder;
 pub use recording::Log;
 pub use recover::{Recovery, recover};
 pub use replay::Replay;
-pub use troop::{RecordedTroop, ReplayTroop};
 pub use truth::{RecordedTruth, ReplayTruth};
 pub use writer::LogWriter;
 
-pub use super::{Troop, TroopStep, Witness};
+pub use super::{FleetIo, FleetStep, GroundTruth};
 
 #[cfg(test)]
 mod tests;

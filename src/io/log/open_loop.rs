@@ -24,8 +24,8 @@ pub struct OpenLoop {
     end: u64,
     /// The recorded answers to each question: where they are, in the order of their time.
     answers: BTreeMap<String, Vec<Answer>>,
-    recorded: Vec<Command>,
-    commands: Vec<Command>,
+    recorded: Vec<RecordedCommand>,
+    commands: Vec<RecordedCommand>,
 }
 
 /// A recorded answer: its event and the one that holds its bulk.
@@ -38,7 +38,7 @@ struct Answer {
 
 /// A command that a program gave.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Command {
+pub struct RecordedCommand {
     /// Seconds of the robot's time.
     pub time: f64,
     /// The call: `set_speed`, say.
@@ -59,7 +59,7 @@ pub struct OpenLoopReport {
     /// How many commands at the beginning are the same to the bit, whatever their time.
     pub same: usize,
     /// The first two commands that differ, as recorded and as given; one may be missing.
-    pub first_difference: Option<(Option<Command>, Option<Command>)>,
+    pub first_difference: Option<(Option<RecordedCommand>, Option<RecordedCommand>)>,
     /// The largest difference of a number between commands of the same kind at the same place in the order, by method.
     pub largest: BTreeMap<String, f64>,
 }
@@ -118,8 +118,9 @@ impl OpenLoop {
 
     /// How the commands so far compare with those that were recorded.
     pub fn report(&self) -> OpenLoopReport {
-        let alike = |a: &Command, b: &Command| {
-            let bits = |command: &Command| command.numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        let alike = |a: &RecordedCommand, b: &RecordedCommand| {
+            let bits =
+                |command: &RecordedCommand| command.numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
             a.method == b.method && a.arguments == b.arguments && bits(a) == bits(b)
         };
         let pairs = || self.recorded.iter().zip(&self.commands);
@@ -141,7 +142,7 @@ impl OpenLoop {
     }
 
     /// The commands that the program has given.
-    pub fn commands(&self) -> &[Command] {
+    pub fn commands(&self) -> &[RecordedCommand] {
         &self.commands
     }
 
@@ -265,8 +266,8 @@ fn is_command(method: &str) -> bool {
     !QUESTIONS.contains(&method) && !EVENTS.contains(&method) && !matches!(method, "now" | "wait")
 }
 
-fn command(time: u64, method: &str, arguments: &Values) -> Command {
-    Command {
+fn command(time: u64, method: &str, arguments: &Values) -> RecordedCommand {
+    RecordedCommand {
         time: seconds(time),
         method: method.into(),
         numbers: arguments.numbers.clone(),

@@ -1,8 +1,8 @@
 //! Recordings as wholes: what is written is read, and what is damaged is found out.
 
 mod damage;
+mod fleets;
 mod packed;
-mod troops;
 
 use std::io::{self, Write};
 use std::ops::ControlFlow;
@@ -55,7 +55,7 @@ fn recorded(seconds: f64) -> Vec<u8> {
     let writer = LogWriter::new(Vec::new(), &header()).unwrap();
     writer.show(&scene());
     let mut robot = writer.recorder(simulation.robot(0).unwrap(), 0);
-    let mut truth = writer.witness(simulation.truth(), 0);
+    let mut truth = writer.truth(simulation.truth(), 0);
     tour(&mut robot, seconds).unwrap();
     drop(robot);
     truth.robot(0).unwrap();
@@ -70,7 +70,7 @@ fn replayed(
     let writer = LogWriter::new(Vec::new(), log.header()).unwrap();
     writer.show(&scene());
     let mut robot = writer.recorder(player.robot(0).unwrap(), 0);
-    let mut truth = writer.witness(player.truth(0).unwrap(), 0);
+    let mut truth = writer.truth(player.truth(0).unwrap(), 0);
     let result = run(&mut robot);
     drop(robot);
     let _ = truth.robot(0);

@@ -11,9 +11,9 @@ use super::topics::TRUTH;
 use super::values::{Put, Take, Taking, Values};
 use super::{LogError, LogWriter};
 use crate::geometry::{Point, Pose};
-use crate::io::{Error, ErrorKind, Result, RobotTruth, TrailPoint, Witness};
+use crate::io::{Error, ErrorKind, GroundTruth, Result, RobotTruth, TrailPoint};
 
-/// A witness whose answers are recorded, made by [`LogWriter::witness`](super::LogWriter::witness).
+/// Ground truth that is recorded, made by [`LogWriter::truth`](super::LogWriter::truth).
 #[derive(Debug)]
 pub struct RecordedTruth<T, W: Write> {
     inner: T,
@@ -21,19 +21,19 @@ pub struct RecordedTruth<T, W: Write> {
 }
 
 impl<W: Write> LogWriter<W> {
-    /// Records what a witness says who watches a robot, by the robot's index.
-    pub fn witness<T: Witness>(&self, witness: T, robot: usize) -> RecordedTruth<T, W> {
-        RecordedTruth::new(witness, Port::beside(self.clone(), robot))
+    /// Records what is true about a robot, by the robot's index.
+    pub fn truth<T: GroundTruth>(&self, truth: T, robot: usize) -> RecordedTruth<T, W> {
+        RecordedTruth::new(truth, Port::beside(self.clone(), robot))
     }
 }
 
-impl<T: Witness, W: Write> RecordedTruth<T, W> {
+impl<T: GroundTruth, W: Write> RecordedTruth<T, W> {
     pub(super) fn new(inner: T, port: Port<W>) -> Self {
         Self { inner, notes: Notes::new(port) }
     }
 }
 
-impl<T: Witness, W: Write> Witness for RecordedTruth<T, W> {
+impl<T: GroundTruth, W: Write> GroundTruth for RecordedTruth<T, W> {
     fn time(&mut self) -> Result<f64> {
         let result = self.inner.time();
         self.notes.note("time", &(), &result);
@@ -187,7 +187,7 @@ impl Take for News {
     }
 }
 
-/// A witness made of a recording: it says what the recorded one said, as far as the replayed robot has come.
+/// Ground truth from a recording: it says what the recorded one said, as far as the replayed robot has come.
 ///
 /// A question that was not recorded at this place is answered as the last one of its kind.
 #[derive(Debug, Clone)]
@@ -275,7 +275,7 @@ fn untold(what: &str) -> Error {
     Error::new(ErrorKind::Unsupported, format!("the recording does not say {what}"))
 }
 
-impl Witness for ReplayTruth {
+impl GroundTruth for ReplayTruth {
     fn time(&mut self) -> Result<f64> {
         self.catch_up(("time", None));
         self.time.ok_or_else(|| untold("what time it was in the world"))

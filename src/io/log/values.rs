@@ -3,7 +3,7 @@ use image::RgbImage;
 use super::wire::{self, Field, Fields, Reading};
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    DisplayOption, Fill, Font, FontFamily, FontStyle, Key, LidarSettings, Picture, Psd, RadioMessage,
+    DisplayImage, DisplayOption, Fill, Font, FontFamily, FontStyle, Key, LidarSettings, Psd, RadioMessage,
     Resolution, Viewport,
 };
 use crate::world::Colour;
@@ -343,13 +343,13 @@ enumerations! {
     ];
 }
 
-impl Put for Picture<'_> {
+impl Put for DisplayImage<'_> {
     /// The kind of image, its size and its bytes.
     fn put(&self, out: &mut Values) {
         let (kind, data) = match self {
-            Picture::Rgb(image) => (0, image.as_raw()),
-            Picture::Gray(image) => (1, image.as_raw()),
-            Picture::Binary(image) => (2, image.as_raw()),
+            DisplayImage::Rgb(image) => (0, image.as_raw()),
+            DisplayImage::Gray(image) => (1, image.as_raw()),
+            DisplayImage::Binary(image) => (2, image.as_raw()),
         };
         let (width, height) = self.dimensions();
         out.integers.extend([kind, i64::from(width), i64::from(height)]);

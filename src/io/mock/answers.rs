@@ -5,9 +5,9 @@ use super::ideal::IdealDrive;
 use super::robot::{MockRobot, take_due, unscripted};
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
-    Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution,
-    Result, Servos, Viewport,
+    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
+    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage,
+    Resolution, Result, Servos, Viewport,
 };
 use crate::kinematics::Displacement;
 use crate::parameter::require_finite;
@@ -282,7 +282,7 @@ impl Display for MockRobot {
         self.display.draw_circle(centre, diameter, colour, fill)
     }
 
-    fn draw_image(&mut self, picture: Picture<'_>, viewport: Viewport) -> Result<()> {
+    fn draw_image(&mut self, picture: DisplayImage<'_>, viewport: Viewport) -> Result<()> {
         self.command(Call::DrawImage(picture.dimensions(), viewport));
         self.display.draw_image(picture, viewport)
     }

@@ -10,8 +10,8 @@ use super::numbers::{NOTHING, degrees, metres, millimetres, radians, range, whol
 use super::truth::{RobiosTruth, Told};
 use crate::geometry::{Pose, Twist, normalize_angle};
 use crate::io::{
-    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
-    FontFamily, FontStyle, Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio,
+    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
+    Fill, Font, FontFamily, FontStyle, Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio,
     RadioMessage, Resolution, Result, Servos, Viewport,
 };
 use crate::world::Colour;
@@ -339,16 +339,16 @@ impl Display for RobiosRobot {
     }
 
     /// Fails for images that have none of RoBIOS's sizes.
-    fn draw_image(&mut self, picture: Picture<'_>, viewport: Viewport) -> Result<()> {
+    fn draw_image(&mut self, picture: DisplayImage<'_>, viewport: Viewport) -> Result<()> {
         let resolution = Resolution::of(picture.dimensions())?;
         let size = Resolution::ALL.iter().position(|&r| r == resolution).unwrap_or_default();
         order!(self, LCDImageSize(size as c_int))?;
         let Viewport { corner: (x, y), width, height } = viewport;
         order!(self, LCDImageStart(x, y, width, height))?;
         match picture {
-            Picture::Rgb(image) => order!(self, LCDImage(image.as_raw().as_ptr())),
-            Picture::Gray(image) => order!(self, LCDImageGray(image.as_raw().as_ptr())),
-            Picture::Binary(image) => order!(self, LCDImageBinary(image.as_raw().as_ptr())),
+            DisplayImage::Rgb(image) => order!(self, LCDImage(image.as_raw().as_ptr())),
+            DisplayImage::Gray(image) => order!(self, LCDImageGray(image.as_raw().as_ptr())),
+            DisplayImage::Binary(image) => order!(self, LCDImageBinary(image.as_raw().as_ptr())),
         }
     }
 

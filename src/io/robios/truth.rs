@@ -3,7 +3,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::library::Functions;
 use super::numbers::{metres, radians};
 use crate::geometry::Pose;
-use crate::io::{Error, ErrorKind, Result, RobotTruth, Witness};
+use crate::io::{Error, ErrorKind, GroundTruth, Result, RobotTruth};
 
 /// What a library has said last.
 #[derive(Debug, Clone, Copy, Default)]
@@ -56,7 +56,7 @@ fn only_one(robot: usize) -> Result<()> {
     if robot == 0 { Ok(()) } else { Err(Error::invalid_input("robot", robot, "0: a library has one robot")) }
 }
 
-impl Witness for RobiosTruth {
+impl GroundTruth for RobiosTruth {
     /// What the clock said when the program looked last.
     fn time(&mut self) -> Result<f64> {
         Ok(self.told().time)

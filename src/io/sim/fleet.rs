@@ -8,8 +8,8 @@ use super::lockstep::{check_duration, no_robot, time_is_over};
 use super::options::ticks_in;
 use super::truth::robot_truth;
 use crate::geometry::Pose;
-use crate::io::troop;
-use crate::io::{Error, ErrorKind, Key, Result, RobotTruth, Troop};
+use crate::io::fleet;
+use crate::io::{Error, ErrorKind, FleetIo, Key, Result, RobotTruth};
 use crate::parameter::require_positive;
 use crate::world::Scene;
 
@@ -196,12 +196,12 @@ fn cannot_wait() -> Error {
     )
 }
 
-impl<'a> Troop<'a> for Fleet<'a> {
+impl<'a> FleetIo<'a> for Fleet<'a> {
     fn robots(&self) -> usize {
         self.len()
     }
 
-    fn control(&mut self, robot: usize, period: f64, mut behaviour: troop::TroopStep<'a>) -> Result<()> {
+    fn control(&mut self, robot: usize, period: f64, mut behaviour: fleet::FleetStep<'a>) -> Result<()> {
         Fleet::control(self, robot, period, move |robot| behaviour(robot))
     }
 
@@ -214,7 +214,7 @@ impl<'a> Troop<'a> for Fleet<'a> {
     }
 
     fn pose(&mut self, robot: usize) -> Result<Pose> {
-        Fleet::pose(self, robot).ok_or_else(|| troop::no_robot(robot, self.len()))
+        Fleet::pose(self, robot).ok_or_else(|| fleet::no_robot(robot, self.len()))
     }
 
     fn truth(&mut self, robot: usize) -> Result<RobotTruth> {

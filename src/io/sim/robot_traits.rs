@@ -4,9 +4,9 @@ use super::engine::Engine;
 use super::{FleetRobot, SimRobot};
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind, Fill, Font,
-    Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution,
-    Result, Servos, Viewport,
+    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
+    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage,
+    Resolution, Result, Servos, Viewport,
 };
 use crate::kinematics::Displacement;
 use crate::world::Colour;
@@ -183,7 +183,7 @@ macro_rules! robot_through_engine {
                 self.call(|engine, i| engine.bodies[i].lcd().draw_circle(centre, diameter, colour, fill))
             }
 
-            fn draw_image(&mut self, picture: Picture<'_>, viewport: Viewport) -> Result<()> {
+            fn draw_image(&mut self, picture: DisplayImage<'_>, viewport: Viewport) -> Result<()> {
                 self.call(|engine, i| engine.bodies[i].lcd().draw_image(picture, viewport))
             }
 

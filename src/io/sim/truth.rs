@@ -3,7 +3,7 @@ use std::sync::Arc;
 use super::engine::{Engine, Thing};
 use super::lockstep::Lockstep;
 use crate::geometry::Pose;
-use crate::io::{Error, Result, RobotTruth, Witness};
+use crate::io::{Error, GroundTruth, Result, RobotTruth};
 
 /// What is true in a simulated world. No robot reaches it; verdicts, pictures and tests do.
 #[derive(Debug, Clone)]
@@ -108,7 +108,7 @@ pub(super) fn robot_truth(engine: &Engine, robot: usize) -> Result<RobotTruth> {
     })
 }
 
-impl Witness for Truth {
+impl GroundTruth for Truth {
     fn time(&mut self) -> Result<f64> {
         Ok(Truth::time(self))
     }

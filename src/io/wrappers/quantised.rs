@@ -2,8 +2,8 @@ use image::RgbImage;
 
 use crate::geometry::{Pose, Twist, math, normalize_angle, units};
 use crate::io::{
-    Camera, Clock, Display, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font, Key, Keys,
-    Lidar, LidarScan, LidarSettings, Motors, Picture, Pixel, Psd, Radio, RadioMessage, Resolution, Result,
+    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font,
+    Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage, Resolution, Result,
     Servos, Viewport,
 };
 use crate::world::Colour;
@@ -285,7 +285,7 @@ impl<R: Display + Clock> Display for Quantised<R> {
     }
 
     /// Fails for images that have none of RoBIOS's sizes. It takes three calls.
-    fn draw_image(&mut self, picture: Picture<'_>, viewport: Viewport) -> Result<()> {
+    fn draw_image(&mut self, picture: DisplayImage<'_>, viewport: Viewport) -> Result<()> {
         Resolution::of(picture.dimensions())?;
         self.inner.wait(0.0)?;
         self.inner.wait(0.0)?;

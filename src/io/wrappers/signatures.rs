@@ -57,7 +57,7 @@ macro_rules! signatures {
             fn draw_line(from: Pixel, to: Pixel, colour: Colour) -> ();
             fn draw_rectangle(corner: Pixel, opposite: Pixel, colour: Colour, fill: Fill) -> ();
             fn draw_circle(centre: Pixel, diameter: i32, colour: Colour, fill: Fill) -> ();
-            fn draw_image(picture: Picture<'_>, viewport: Viewport) -> ();
+            fn draw_image(picture: DisplayImage<'_>, viewport: Viewport) -> ();
             fn set_menu_label(key: Key, label: &str, foreground: Colour, background: Colour) -> ();
             fn set_menu(labels: [&str; 4]) -> ();
             fn set_display_option(option: DisplayOption, on: bool) -> ();

@@ -4,7 +4,7 @@ use image::RgbImage;
 
 use crate::geometry::{Pose, Twist};
 use crate::io::{
-    DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Picture, Psd, RadioMessage, Resolution,
+    DisplayImage, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution,
     Viewport,
 };
 use crate::world::Colour;
@@ -137,17 +137,17 @@ impl Token for &[u8] {
 
 impl Token for RgbImage {
     fn put(&self, out: &mut String) {
-        Picture::Rgb(self).put(out);
+        DisplayImage::Rgb(self).put(out);
     }
 }
 
-impl Token for Picture<'_> {
+impl Token for DisplayImage<'_> {
     /// The kind of image, its size and a digest of its bytes.
     fn put(&self, out: &mut String) {
         let (kind, bytes) = match self {
-            Picture::Rgb(image) => ("rgb", image.as_raw()),
-            Picture::Gray(image) => ("gray", image.as_raw()),
-            Picture::Binary(image) => ("binary", image.as_raw()),
+            DisplayImage::Rgb(image) => ("rgb", image.as_raw()),
+            DisplayImage::Gray(image) => ("gray", image.as_raw()),
+            DisplayImage::Binary(image) => ("binary", image.as_raw()),
         };
         let (width, height) = self.dimensions();
         let mut digest = Digest::EMPTY;

@@ -14,21 +14,21 @@ use super::{Cell, Direction, Maze};
 pub trait Explorer {
     /// The cell to go to next. It can be reached through walls that are known to be absent. The maze must say all that was
     /// seen so far, and the robot must have looked around in the cell where it is.
-    fn next(&mut self, maze: &Maze, at: (Cell, Direction)) -> Step;
+    fn next(&mut self, maze: &Maze, at: (Cell, Direction)) -> ExplorationStep;
 }
 
 /// What an explorer wants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Step {
+pub enum ExplorationStep {
     /// Go there and look around.
     Go(Cell),
     /// Nothing that is unknown matters any more.
-    Finished(Verdict),
+    Finished(ExplorationOutcome),
 }
 
 /// How an exploration ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Verdict {
+pub enum ExplorationOutcome {
     /// The best route is known, and no unknown wall can make it better.
     Optimal,
     /// No route leads to the goal.

@@ -1,4 +1,4 @@
-use super::{Explorer, Step, Verdict};
+use super::{ExplorationOutcome, ExplorationStep, Explorer};
 use crate::maze::{Cell, Direction, Maze, Unknown};
 
 /// Recursive exploration (book, section 9.5): from each cell into every open and unmarked neighbour, straight on first, then
@@ -43,13 +43,15 @@ impl Default for RecursiveExplorer {
 }
 
 impl Explorer for RecursiveExplorer {
-    fn next(&mut self, maze: &Maze, (cell, heading): (Cell, Direction)) -> Step {
+    fn next(&mut self, maze: &Maze, (cell, heading): (Cell, Direction)) -> ExplorationStep {
         self.marked.resize(maze.cell_count(), false);
         self.marked[maze.index(cell)] = true;
         if self.stack.last().is_none_or(|&(last, _)| last != cell) {
             self.stack.push((cell, heading));
         }
-        let Some(&(_, came)) = self.stack.last() else { return Step::Finished(Verdict::Explored) };
+        let Some(&(_, came)) = self.stack.last() else {
+            return ExplorationStep::Finished(ExplorationOutcome::Explored);
+        };
         // What lies behind was left open or is the way back, except at the start.
         for direction in [came, came.left(), came.right(), came.opposite()] {
             let Some(next) = maze.passage(cell, direction, Unknown::Closed) else { continue };
@@ -58,13 +60,13 @@ impl Explorer for RecursiveExplorer {
                 self.marked[index] = true;
             }
             if !self.marked[index] {
-                return Step::Go(next);
+                return ExplorationStep::Go(next);
             }
         }
         self.stack.pop();
         match self.stack.last() {
-            Some(&(back, _)) => Step::Go(back),
-            None => Step::Finished(Verdict::Explored),
+            Some(&(back, _)) => ExplorationStep::Go(back),
+            None => ExplorationStep::Finished(ExplorationOutcome::Explored),
         }
     }
 }

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::maze::generate::{competition, mazes};
 use crate::maze::{
-    FastPlanner, Preference, RunLimits, Scale, Unknown, Wall, distances_from_start, shortest_route,
+    FastPlanner, Preference, RunLimits, Scale, Unknown, WallState, distances_from_start, shortest_route,
 };
 
 /// What a robot knows that has not looked yet.
@@ -17,7 +17,7 @@ fn knowledge(truth: &Maze) -> Maze {
 /// How an exploration by a robot that sees the walls of its cell went.
 struct Walk {
     known: Maze,
-    verdict: Verdict,
+    verdict: ExplorationOutcome,
     looks: usize,
     steps: u32,
 }
@@ -33,8 +33,8 @@ fn walk(truth: &Maze, explorer: &mut dyn Explorer) -> Walk {
         looks += 1;
         assert!(looks <= 4 * truth.cell_count() + 4, "an exploration without end");
         match explorer.next(&known, (cell, heading)) {
-            Step::Finished(verdict) => return Walk { known, verdict, looks, steps },
-            Step::Go(next) => {
+            ExplorationStep::Finished(verdict) => return Walk { known, verdict, looks, steps },
+            ExplorationStep::Go(next) => {
                 let from_here = {
                     let mut flood = crate::maze::FloodFill::default();
                     flood.run(&crate::maze::Passages::new(&known, Unknown::Closed), [cell]);
@@ -60,7 +60,7 @@ proptest! {
         let mut explorer =
             if early { RecursiveExplorer::new() } else { RecursiveExplorer::without_early_marking() };
         let Walk { known, verdict, .. } = walk(&truth, &mut explorer);
-        prop_assert_eq!(verdict, Verdict::Explored);
+        prop_assert_eq!(verdict, ExplorationOutcome::Explored);
         let reached = distances_from_start(&truth, Unknown::Closed);
         for cell in truth.cells().filter(|&cell| reached.get(cell).is_some()) {
             for side in Direction::ALL {
@@ -82,7 +82,7 @@ proptest! {
         let Walk { known, verdict, .. } = walk(&truth, &mut TwoPhaseExplorer::new(goals));
         let best = |maze: &Maze| shortest_route(maze, Unknown::Closed, Preference::Steps).map(|r| r.steps());
         prop_assert_eq!(best(&known), best(&truth));
-        let expected = if best(&truth).is_some() { Verdict::Optimal } else { Verdict::Unreachable };
+        let expected = if best(&truth).is_some() { ExplorationOutcome::Optimal } else { ExplorationOutcome::Unreachable };
         prop_assert_eq!(verdict, expected);
         if timed {
             let time = |maze: &Maze| planner().plan(maze, Unknown::Closed).map(|plan| plan.time);
@@ -100,13 +100,13 @@ fn the_proof_needs_no_complete_maze() {
     for seed in 0..20 {
         let truth = competition(16, seed).unwrap();
         let walk = walk(&truth, &mut TwoPhaseExplorer::new(Goals::Steps));
-        assert_eq!(walk.verdict, Verdict::Optimal);
+        assert_eq!(walk.verdict, ExplorationOutcome::Optimal);
         looks += walk.looks;
         all += 256;
         assert!(
             walk.known
                 .cells()
-                .any(|c| Direction::ALL.iter().any(|&s| walk.known.wall(c, s) == Wall::Unknown))
+                .any(|c| Direction::ALL.iter().any(|&s| walk.known.wall(c, s) == WallState::Unknown))
         );
     }
     assert!(looks < all, "{looks} looks");

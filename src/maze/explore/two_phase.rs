@@ -1,7 +1,7 @@
-use super::{Explorer, Step, Verdict};
+use super::{ExplorationOutcome, ExplorationStep, Explorer};
 use crate::maze::{
-    Cell, Direction, Distances, FastPlanner, FloodFill, Maze, Passages, Preference, Route, Unknown, Wall,
-    shortest_route,
+    Cell, Direction, Distances, FastPlanner, FloodFill, Maze, Passages, Preference, Route, Unknown,
+    WallState, shortest_route,
 };
 
 /// What has to be proved.
@@ -23,7 +23,7 @@ pub enum Goals {
 pub struct TwoPhaseExplorer {
     goals: Goals,
     reached: bool,
-    verdict: Option<Verdict>,
+    verdict: Option<ExplorationOutcome>,
     flood: FloodFill,
 }
 
@@ -34,12 +34,12 @@ impl TwoPhaseExplorer {
     }
 
     /// What is proved so far.
-    pub fn verdict(&self) -> Option<Verdict> {
+    pub fn verdict(&self) -> Option<ExplorationOutcome> {
         self.verdict
     }
 
     /// The first phase: the next cell to look around in on the shortest way that may lead to the goal.
-    fn seek(&mut self, maze: &Maze, cell: Cell) -> Option<Step> {
+    fn seek(&mut self, maze: &Maze, cell: Cell) -> Option<ExplorationStep> {
         if maze.is_goal(cell) {
             self.reached = true;
             return None;
@@ -47,10 +47,10 @@ impl TwoPhaseExplorer {
         let to_goal = self.distances(maze, maze.goals().collect());
         if to_goal.get(cell).is_none() {
             self.reached = true;
-            self.verdict = Some(Verdict::Unreachable);
+            self.verdict = Some(ExplorationOutcome::Unreachable);
             return None;
         }
-        Some(Step::Go(descend(maze, &to_goal, cell)))
+        Some(ExplorationStep::Go(descend(maze, &to_goal, cell)))
     }
 
     /// Steps to some cells, with unknown walls taken for open.
@@ -74,17 +74,21 @@ impl TwoPhaseExplorer {
     }
 
     /// The second phase: the nearest cell from which an unknown wall of a doubtful route can be seen.
-    fn prove(&mut self, maze: &Maze, cell: Cell) -> Option<Step> {
+    fn prove(&mut self, maze: &Maze, cell: Cell) -> Option<ExplorationStep> {
         let Some(route) = self.doubtful(maze) else {
             let sure = shortest_route(maze, Unknown::Closed, Preference::Steps);
-            self.verdict = Some(if sure.is_some() { Verdict::Optimal } else { Verdict::Unreachable });
+            self.verdict = Some(if sure.is_some() {
+                ExplorationOutcome::Optimal
+            } else {
+                ExplorationOutcome::Unreachable
+            });
             return None;
         };
         let mut flood = FloodFill::default();
         let near = flood.run(&Passages::new(maze, Unknown::Closed), [cell]);
         let nearest = vantages(maze, &route).filter_map(|cell| Some((near.get(cell)?, cell))).min();
         // The first unknown wall of the route can always be reached.
-        nearest.map(|(_, cell)| Step::Go(cell))
+        nearest.map(|(_, cell)| ExplorationStep::Go(cell))
     }
 }
 
@@ -93,7 +97,7 @@ const TIE: f64 = 5e-4;
 
 /// The cells on either side of the unknown walls on a route.
 fn vantages<'a>(maze: &'a Maze, route: &'a Route) -> impl Iterator<Item = Cell> + 'a {
-    let unknown = move |&(cell, side): &(Cell, Direction)| maze.wall(cell, side) == Wall::Unknown;
+    let unknown = move |&(cell, side): &(Cell, Direction)| maze.wall(cell, side) == WallState::Unknown;
     let walls = route.cells().zip(route.moves().iter().copied()).filter(unknown);
     walls.flat_map(move |(cell, side)| [Some(cell), maze.neighbour(cell, side)]).flatten()
 }
@@ -117,7 +121,7 @@ fn descend(maze: &Maze, distances: &Distances, from: Cell) -> Cell {
 }
 
 impl Explorer for TwoPhaseExplorer {
-    fn next(&mut self, maze: &Maze, (cell, _): (Cell, Direction)) -> Step {
+    fn next(&mut self, maze: &Maze, (cell, _): (Cell, Direction)) -> ExplorationStep {
         if !self.reached
             && let Some(step) = self.seek(maze, cell)
         {
@@ -129,8 +133,8 @@ impl Explorer for TwoPhaseExplorer {
             return step;
         }
         match self.verdict {
-            Some(verdict) if cell == maze.start() => Step::Finished(verdict),
-            _ => Step::Go(maze.start()),
+            Some(verdict) if cell == maze.start() => ExplorationStep::Finished(verdict),
+            _ => ExplorationStep::Go(maze.start()),
         }
     }
 }

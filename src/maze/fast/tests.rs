@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::geometry::{Aabb, Point, normalize_angle};
 use crate::maze::generate::{braided, competition, mazes, partly_known};
-use crate::maze::{Cell, Direction, Maze, Preference, Scale, Unknown, Wall, shortest_route};
+use crate::maze::{Cell, Direction, Maze, Preference, Scale, Unknown, WallState, shortest_route};
 
 const SCALE: Scale = Scale::MICROMOUSE;
 const LIMITS: RunLimits = RunLimits::MICROMOUSE;
@@ -36,7 +36,7 @@ fn solids(maze: &Maze, cell: Cell) -> Vec<Aabb> {
                 (Direction::South, (0.0, 0.0), (far, 0.0)),
                 (Direction::West, (0.0, 0.0), (0.0, far)),
             ] {
-                if maze.wall(cell, side) == Wall::Present {
+                if maze.wall(cell, side) == WallState::Present {
                     let wall = Aabb::new(Point::new(x + a.0, y + a.1), Point::new(x + b.0, y + b.1));
                     boxes.push(wall.inflated(half));
                 }
@@ -180,12 +180,12 @@ proptest! {
 
 #[test]
 fn a_staircase_is_driven_diagonally() {
-    let mut maze = Maze::filled(10, 10, Wall::Present).unwrap();
+    let mut maze = Maze::filled(10, 10, WallState::Present).unwrap();
     let (mut cell, goal) = (Cell::default(), Cell::new(8, 9));
     maze.set_goals([goal]);
     for i in 0..17 {
         let side = if i % 2 == 0 { Direction::North } else { Direction::East };
-        maze.set_wall(cell, side, Wall::Absent);
+        maze.set_wall(cell, side, WallState::Absent);
         cell = maze.neighbour(cell, side).unwrap();
     }
     assert_eq!(cell, goal);

@@ -2,7 +2,7 @@
 //! below, with bits for walls to the north, east, south and west.
 
 use super::{MazeFile, MazeFormat};
-use crate::maze::{Cell, Defect, Direction, Maze, Wall};
+use crate::maze::{Cell, Defect, Direction, Maze, WallState};
 
 /// Whether these bytes are a maze: as many as a square has cells, and none with other bits than those of walls.
 pub(super) fn is_binary(bytes: &[u8]) -> bool {
@@ -33,7 +33,7 @@ pub(super) fn read(bytes: &[u8]) -> MazeFile {
                 defects.push(Defect::of_maze(message));
             }
             let present = wall || backward == Some(true);
-            maze.set_wall(cell, direction, if present { Wall::Present } else { Wall::Absent });
+            maze.set_wall(cell, direction, if present { WallState::Present } else { WallState::Absent });
         }
     }
     MazeFile { maze, format: MazeFormat::Binary, cell: None, defects }

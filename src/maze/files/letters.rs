@@ -1,7 +1,7 @@
 //! EyeSim's `.maz`, through the reader that simulated worlds use.
 
 use super::{MazeFile, MazeFormat, size_error};
-use crate::maze::{Cell, Defect, Direction, Maze, Wall};
+use crate::maze::{Cell, Defect, Direction, Maze, WallState};
 use crate::world::formats::{FormatError, Location, maz};
 
 pub(super) fn read(text: &str, file: &str) -> Result<MazeFile, FormatError> {
@@ -32,8 +32,8 @@ pub(super) fn read(text: &str, file: &str) -> Result<MazeFile, FormatError> {
     Ok(MazeFile { maze, format: MazeFormat::EyeSim, cell: Some(grid.cell), defects })
 }
 
-fn enter_walls(grid: &maz::Maze, maze: &mut Maze) {
-    let wall = |present| if present { Wall::Present } else { Wall::Absent };
+fn enter_walls(grid: &maz::MazGrid, maze: &mut Maze) {
+    let wall = |present| if present { WallState::Present } else { WallState::Absent };
     for cell in maze.cells() {
         let (x, y) = (usize::from(cell.x), usize::from(cell.y));
         maze.set_wall(cell, Direction::South, wall(grid.wall_below(x, y)));
@@ -64,7 +64,7 @@ fn refuse_prose(text: &str, file: &str) -> Result<(), FormatError> {
 
 /// The cells with a letter that stands for a start, that which counts first: the first `s` as the picture is read, or else
 /// the first other one.
-fn starts(grid: &maz::Maze, maze: &Maze) -> Vec<(Cell, Direction)> {
+fn starts(grid: &maz::MazGrid, maze: &Maze) -> Vec<(Cell, Direction)> {
     let (width, height) = (maze.width() as u16, maze.height() as u16);
     let cells = (0..height).rev().flat_map(|y| (0..width).map(move |x| Cell::new(x, y)));
     let mut found: Vec<(bool, Cell, Direction)> = cells
@@ -86,8 +86,10 @@ fn starts(grid: &maz::Maze, maze: &Maze) -> Vec<(Cell, Direction)> {
 
 /// Writes a maze with cells of so many metres.
 pub(super) fn print(maze: &Maze, cell_size: f64) -> String {
-    let Some(mut grid) = maz::Maze::new(maze.width(), maze.height(), cell_size) else { return String::new() };
-    let present = |cell, direction| maze.wall(cell, direction) == Wall::Present;
+    let Some(mut grid) = maz::MazGrid::new(maze.width(), maze.height(), cell_size) else {
+        return String::new();
+    };
+    let present = |cell, direction| maze.wall(cell, direction) == WallState::Present;
     for cell in maze.cells() {
         let (x, y) = (usize::from(cell.x), usize::from(cell.y));
         grid.set_wall_below(x, y, present(cell, Direction::South));

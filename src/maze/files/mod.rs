@@ -116,7 +116,7 @@ pub fn print(maze: &Maze, format: MazeFormat) -> Result<String, FormatError> {
         MazeFormat::Maze => Ok(picture::print(maze, '+', true)),
         MazeFormat::Map => Ok(picture::print(maze, '+', false)),
         MazeFormat::Num => Ok(numbers::print(maze)),
-        MazeFormat::EyeSim => Ok(letters::print(maze, crate::world::formats::maz::Maze::DEFAULT_CELL)),
+        MazeFormat::EyeSim => Ok(letters::print(maze, crate::world::formats::maz::MazGrid::DEFAULT_CELL)),
         MazeFormat::Binary => {
             let (found, expected) = ("a binary format", "a format of text");
             Err(FormatError::new("maze", Location::START, found, expected))

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::{MazeFile, MazeFormat, size_error};
-use crate::maze::{Cell, Defect, Direction, Maze, Wall};
+use crate::maze::{Cell, Defect, Direction, Maze, WallState};
 use crate::world::formats::{FormatError, Location};
 
 /// Whether most of the lines that say something are those of cells.
@@ -32,7 +32,8 @@ pub(super) fn read(lines: &[&str], file: &str) -> Result<MazeFile, FormatError> 
     let entries = entries(lines, file, &mut defects)?;
     let width = entries.keys().map(|cell| usize::from(cell.x) + 1).max().unwrap_or(0);
     let height = entries.keys().map(|cell| usize::from(cell.y) + 1).max().unwrap_or(0);
-    let mut maze = Maze::filled(width, height, Wall::Unknown).map_err(|error| size_error(&error, file, 1))?;
+    let mut maze =
+        Maze::filled(width, height, WallState::Unknown).map_err(|error| size_error(&error, file, 1))?;
     let missing: Vec<Cell> = maze.cells().filter(|cell| !entries.contains_key(cell)).collect();
     if let Some(first) = missing.first() {
         let message =
@@ -51,7 +52,7 @@ pub(super) fn read(lines: &[&str], file: &str) -> Result<MazeFile, FormatError> 
                 defects.push(Defect::at(entry.line, message));
             }
             let present = wall || back == Some(true);
-            maze.set_wall(cell, direction, if present { Wall::Present } else { Wall::Absent });
+            maze.set_wall(cell, direction, if present { WallState::Present } else { WallState::Absent });
         }
     }
     Ok(MazeFile { maze, format: MazeFormat::Num, cell: None, defects })
@@ -97,7 +98,7 @@ pub(super) fn print(maze: &Maze) -> String {
     for x in 0..maze.width() as u16 {
         for y in 0..maze.height() as u16 {
             let cell = Cell::new(x, y);
-            let walls = Direction::ALL.map(|side| u8::from(maze.wall(cell, side) == Wall::Present));
+            let walls = Direction::ALL.map(|side| u8::from(maze.wall(cell, side) == WallState::Present));
             let [north, east, south, west] = walls;
             // A string takes all that is written.
             let _ = writeln!(text, "{x} {y} {north} {east} {south} {west}");

@@ -13,7 +13,7 @@
 
 use super::layout::{Layout, Line, is_post, shown};
 use super::{MazeFile, MazeFormat, size_error};
-use crate::maze::{Cell, Defect, Direction, Maze, Wall};
+use crate::maze::{Cell, Defect, Direction, Maze, WallState};
 use crate::world::formats::{FormatError, Location};
 
 /// The lines of a picture: posts and cells by turns, uppermost first.
@@ -103,15 +103,15 @@ impl Picture<'_> {
         for x in 0..self.width {
             let marks = [1, 2, 3].map(|i| self.at(index, 4 * x + i).unwrap_or(b'.'));
             let wall = match &marks {
-                b"---" => Wall::Present,
-                b"   " => Wall::Absent,
-                b" . " | b"..." => Wall::Unknown,
+                b"---" => WallState::Present,
+                b"   " => WallState::Absent,
+                b" . " | b"..." => WallState::Unknown,
                 other => {
                     self.note(
                         index,
                         format!("{} instead of a wall in column {}; taken as one", shown(other), 4 * x + 2),
                     );
-                    Wall::Present
+                    WallState::Present
                 }
             };
             // The uppermost line is above the uppermost row, any other below one.
@@ -128,9 +128,9 @@ impl Picture<'_> {
         for x in 0..=self.width {
             let mark = self.at(index, 4 * x).unwrap_or(b'.');
             let wall = match mark {
-                b'|' => Wall::Present,
-                b' ' | b'\t' => Wall::Absent,
-                b'.' => Wall::Unknown,
+                b'|' => WallState::Present,
+                b' ' | b'\t' => WallState::Absent,
+                b'.' => WallState::Unknown,
                 other => {
                     self.note(
                         index,
@@ -140,7 +140,7 @@ impl Picture<'_> {
                             4 * x + 1
                         ),
                     );
-                    Wall::Present
+                    WallState::Present
                 }
             };
             match x.checked_sub(1) {
@@ -207,8 +207,8 @@ fn print_posts(
     for (cell, side) in sides {
         text.push(post);
         text.push_str(match maze.wall(cell, side) {
-            Wall::Present => "---",
-            Wall::Unknown if marks => " . ",
+            WallState::Present => "---",
+            WallState::Unknown if marks => " . ",
             _ => "   ",
         });
     }
@@ -216,10 +216,10 @@ fn print_posts(
     text.push('\n');
 }
 
-fn beside(wall: Wall, marks: bool) -> char {
+fn beside(wall: WallState, marks: bool) -> char {
     match wall {
-        Wall::Present => '|',
-        Wall::Unknown if marks => '.',
+        WallState::Present => '|',
+        WallState::Unknown if marks => '.',
         _ => ' ',
     }
 }

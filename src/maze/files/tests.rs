@@ -2,7 +2,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::maze::generate::partly_known;
-use crate::maze::{Cell, Direction, Preference, Unknown, Wall, shortest_route};
+use crate::maze::{Cell, Direction, Preference, Unknown, WallState, shortest_route};
 
 fn read(text: &str) -> MazeFile {
     parse(text.as_bytes(), "test").unwrap()
@@ -17,8 +17,8 @@ fn plain(maze: &Maze) -> Maze {
     let mut plain = Maze::open(maze.width(), maze.height()).unwrap();
     for cell in maze.cells() {
         for side in Direction::ALL {
-            let present = maze.wall(cell, side) == Wall::Present;
-            plain.set_wall(cell, side, if present { Wall::Present } else { Wall::Absent });
+            let present = maze.wall(cell, side) == WallState::Present;
+            plain.set_wall(cell, side, if present { WallState::Present } else { WallState::Absent });
         }
     }
     plain
@@ -293,7 +293,7 @@ fn binary_mazes_are_squares_of_bytes() {
     let mut bytes = vec![0_u8; 256];
     for cell in maze.cells() {
         for side in Direction::ALL {
-            if maze.wall(cell, side) == Wall::Present {
+            if maze.wall(cell, side) == WallState::Present {
                 bytes[usize::from(cell.x) * 16 + usize::from(cell.y)] |= 1 << side as u8;
             }
         }

@@ -67,10 +67,10 @@ impl Distances {
 /// the wave is wide. Larger ones are filled from a queue with few branches, in a time in proportion to the cells.
 ///
 /// ```
-/// use roverlab::maze::{Cell, Direction, FloodFill, Maze, Passages, Unknown, Wall};
+/// use roverlab::maze::{Cell, Direction, FloodFill, Maze, Passages, Unknown, WallState};
 ///
 /// let mut maze = Maze::open(3, 3)?;
-/// maze.set_wall(Cell::new(1, 1), Direction::South, Wall::Present);
+/// maze.set_wall(Cell::new(1, 1), Direction::South, WallState::Present);
 /// let passages = Passages::new(&maze, Unknown::Closed);
 /// let mut flood = FloodFill::default();
 /// let steps = flood.run(&passages, [Cell::new(1, 0)]);

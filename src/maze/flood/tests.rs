@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::maze::generate::{braided, mazes, partly_known};
-use crate::maze::{Direction, Wall};
+use crate::maze::{Direction, WallState};
 use crate::random::Stream;
 
 /// Breadth-first search, as plainly as it can be written.
@@ -96,8 +96,8 @@ proptest! {
                 continue;
             }
             let before = incremental.distances().clone();
-            let open = maze.wall(cell, side) == Wall::Present;
-            maze.set_wall(cell, side, if open { Wall::Absent } else { Wall::Present });
+            let open = maze.wall(cell, side) == WallState::Present;
+            maze.set_wall(cell, side, if open { WallState::Absent } else { WallState::Present });
             let changed = incremental.set(cell, side, open);
             let expected = breadth_first(&maze, Unknown::Closed, &sources);
             prop_assert_eq!(found(&maze, incremental.distances()), expected);
@@ -116,7 +116,7 @@ proptest! {
 
     #[test]
     fn passages_are_set_both_ways(side in prop_oneof![Just(9usize), Just(30), Just(50)], seed in any::<u64>()) {
-        let mut passages = Passages::new(&Maze::filled(side, side, Wall::Present).unwrap(), Unknown::Open);
+        let mut passages = Passages::new(&Maze::filled(side, side, WallState::Present).unwrap(), Unknown::Open);
         let mut stream = Stream::new(seed);
         let mut open = BTreeSet::new();
         for _ in 0..50 {
@@ -160,7 +160,7 @@ fn the_longest_possible_ways_are_counted() {
         for y in 1..side as u16 {
             let gap = if y % 2 == 1 { side as u16 - 1 } else { 0 };
             for x in (0..side as u16).filter(|&x| x != gap) {
-                maze.set_wall(Cell::new(x, y), Direction::South, Wall::Present);
+                maze.set_wall(Cell::new(x, y), Direction::South, WallState::Present);
             }
         }
         let distances = distances_from_start(&maze, Unknown::Closed);
@@ -187,8 +187,8 @@ fn an_incremental_fill_of_a_large_maze_equals_a_full_one() {
         if maze.neighbour(cell, side).is_none() {
             continue;
         }
-        let open = maze.wall(cell, side) == Wall::Present;
-        maze.set_wall(cell, side, if open { Wall::Absent } else { Wall::Present });
+        let open = maze.wall(cell, side) == WallState::Present;
+        maze.set_wall(cell, side, if open { WallState::Absent } else { WallState::Present });
         incremental.set(cell, side, open);
         let full = flood.run(&Passages::new(&maze, Unknown::Closed), [maze.start()]);
         assert_eq!(incremental.distances().as_slice(), full.as_slice());

@@ -6,7 +6,7 @@ use crate::io::control::{Halt, run, until};
 use crate::io::sim::{NoiseModel, SimOptions, Simulation};
 use crate::kinematics::OdometryErrors;
 use crate::maze::generate::perfect;
-use crate::maze::{Cell, Direction, Maze, Rig, Scale, Wall, mouse};
+use crate::maze::{Cell, Direction, Maze, Rig, Scale, WallState, mouse};
 use crate::world::{RobotSpec, Scene};
 
 const NO_ERRORS: OdometryErrors =
@@ -20,7 +20,7 @@ fn rig(spec: &RobotSpec) -> Rig {
 fn maze(seed: u64) -> Maze {
     let mut maze = perfect(6, 6, seed).unwrap();
     maze.set_goals([]);
-    if maze.wall(Cell::default(), Direction::North) == Wall::Present {
+    if maze.wall(Cell::default(), Direction::North) == WallState::Present {
         maze.set_start(Cell::default(), Direction::East);
     }
     maze
@@ -84,7 +84,7 @@ fn comb() -> Maze {
     maze.set_goals([]);
     for x in 0..8 {
         for y in [0, 2] {
-            maze.set_wall(Cell::new(x, y), Direction::East, Wall::Present);
+            maze.set_wall(Cell::new(x, y), Direction::East, WallState::Present);
         }
     }
     maze
@@ -237,12 +237,12 @@ fn half_a_turn_is_followed_step_by_step() {
 
 /// A corridor of 16 cells to an opening on the left, then of 4 more.
 fn long_corridor() -> Maze {
-    let mut maze = Maze::filled(21, 2, Wall::Present).unwrap();
+    let mut maze = Maze::filled(21, 2, WallState::Present).unwrap();
     maze.set_goals([]);
     for x in 0..20 {
-        maze.set_wall(Cell::new(x, 0), Direction::East, Wall::Absent);
+        maze.set_wall(Cell::new(x, 0), Direction::East, WallState::Absent);
     }
-    maze.set_wall(Cell::new(16, 0), Direction::North, Wall::Absent);
+    maze.set_wall(Cell::new(16, 0), Direction::North, WallState::Absent);
     maze.set_start(Cell::default(), Direction::East);
     maze
 }

@@ -1,11 +1,11 @@
 use crate::ParameterError;
-use crate::maze::{Cell, Direction, Maze, Wall};
+use crate::maze::{Cell, Direction, Maze, WallState};
 use crate::random::Stream;
 
 /// A maze in which exactly one way leads from every cell to every other: a depth-first walk that takes walls down where
 /// it comes to new cells.
 pub fn perfect(width: usize, height: usize, seed: u64) -> Result<Maze, ParameterError> {
-    let mut maze = Maze::filled(width, height, Wall::Present)?;
+    let mut maze = Maze::filled(width, height, WallState::Present)?;
     let mut stream = Stream::new(seed).child("perfect maze", 0);
     let mut met = vec![false; maze.cell_count()];
     carve(&mut maze, &mut met, &mut stream, Cell::default());
@@ -21,7 +21,7 @@ pub fn braided(width: usize, height: usize, part: f64, seed: u64) -> Result<Maze
     stream.shuffle(&mut walls);
     let count = (part.clamp(0.0, 1.0) * walls.len() as f64).round() as usize;
     for &(cell, side) in &walls[..count] {
-        maze.set_wall(cell, side, Wall::Absent);
+        maze.set_wall(cell, side, WallState::Absent);
     }
     Ok(maze)
 }
@@ -37,7 +37,7 @@ pub(super) fn carve(maze: &mut Maze, met: &mut [bool], stream: &mut Stream, from
             way.pop();
             continue;
         };
-        maze.set_wall(cell, side, Wall::Absent);
+        maze.set_wall(cell, side, WallState::Absent);
         if let Some(next) = maze.neighbour(cell, side) {
             met[maze.index(next)] = true;
             way.push(next);
@@ -49,7 +49,7 @@ pub(super) fn carve(maze: &mut Maze, met: &mut [bool], stream: &mut Stream, from
 pub(super) fn inner_walls(maze: &Maze) -> Vec<(Cell, Direction)> {
     let sides = |cell| [Direction::North, Direction::East].map(|side| (cell, side));
     let inner = |&(cell, side): &(Cell, Direction)| {
-        maze.wall(cell, side) == Wall::Present && maze.neighbour(cell, side).is_some()
+        maze.wall(cell, side) == WallState::Present && maze.neighbour(cell, side).is_some()
     };
     maze.cells().flat_map(sides).filter(inner).collect()
 }

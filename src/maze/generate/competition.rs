@@ -1,6 +1,6 @@
 use super::carve::{carve, inner_walls};
 use crate::ParameterError;
-use crate::maze::{Cell, Direction, Maze, Wall};
+use crate::maze::{Cell, Direction, Maze, WallState};
 use crate::random::Stream;
 
 /// A maze by the rules of micromouse competitions: a start in the lower left corner with walls on three sides, a goal of
@@ -10,7 +10,7 @@ use crate::random::Stream;
 /// Both sides have so many cells, rounded up to an even number of at least 6.
 pub fn competition(side: usize, seed: u64) -> Result<Maze, ParameterError> {
     let side = side.max(6).next_multiple_of(2);
-    let mut maze = Maze::filled(side, side, Wall::Present)?;
+    let mut maze = Maze::filled(side, side, WallState::Present)?;
     let mut stream = Stream::new(seed).child("competition maze", 0);
     let goals = maze.centre();
     let mut met = vec![false; maze.cell_count()];
@@ -20,7 +20,7 @@ pub fn competition(side: usize, seed: u64) -> Result<Maze, ParameterError> {
     // The start is left out as well, and then joined to the north, its only way out.
     met[0] = true;
     carve(&mut maze, &mut met, &mut stream, Cell::new(0, 1));
-    maze.set_wall(Cell::default(), Direction::North, Wall::Absent);
+    maze.set_wall(Cell::default(), Direction::North, WallState::Absent);
     join_goal(&mut maze, &goals, &mut stream);
     braid(&mut maze, &goals, &mut stream);
     Ok(maze)
@@ -31,13 +31,13 @@ fn join_goal(maze: &mut Maze, goals: &[Cell], stream: &mut Stream) {
     for &goal in goals {
         for side in Direction::ALL {
             match maze.neighbour(goal, side) {
-                Some(other) if maze.is_goal(other) => maze.set_wall(goal, side, Wall::Absent),
+                Some(other) if maze.is_goal(other) => maze.set_wall(goal, side, WallState::Absent),
                 _ => entrances.push((goal, side)),
             }
         }
     }
     let (cell, side) = entrances[stream.below(entrances.len())];
-    maze.set_wall(cell, side, Wall::Absent);
+    maze.set_wall(cell, side, WallState::Absent);
 }
 
 /// Takes walls down where the posts at their ends keep others, but none of the start or the goal.
@@ -55,11 +55,11 @@ fn braid(maze: &mut Maze, goals: &[Cell], stream: &mut Stream) {
         if keep(Some(cell)) || keep(maze.neighbour(cell, side)) {
             continue;
         }
-        maze.set_wall(cell, side, Wall::Absent);
+        maze.set_wall(cell, side, WallState::Absent);
         let (x, y) = (usize::from(cell.x) + 1, usize::from(cell.y) + 1);
         let ends = if side == Direction::North { [(x - 1, y), (x, y)] } else { [(x, y - 1), (x, y)] };
         if ends.iter().any(|&post| !has_wall(maze, post)) {
-            maze.set_wall(cell, side, Wall::Present);
+            maze.set_wall(cell, side, WallState::Present);
         } else {
             left -= 1;
         }
@@ -72,7 +72,8 @@ fn has_wall(maze: &Maze, (x, y): (usize, usize)) -> bool {
         let (x, y) = (x.checked_sub(dx)?, y.checked_sub(dy)?);
         Some(Cell::new(x as u16, y as u16)).filter(|&cell| maze.contains(cell))
     };
-    let wall = |cell: Option<Cell>, side| cell.is_some_and(|cell| maze.wall(cell, side) == Wall::Present);
+    let wall =
+        |cell: Option<Cell>, side| cell.is_some_and(|cell| maze.wall(cell, side) == WallState::Present);
     wall(cell(0, 0), Direction::South)
         || wall(cell(0, 0), Direction::West)
         || wall(cell(1, 1), Direction::North)
@@ -92,7 +93,10 @@ mod tests {
             let maze = competition(16, seed).unwrap();
             assert_eq!(defects(&maze), []);
             let start = |side| maze.wall(Cell::default(), side);
-            assert_eq!((start(Direction::North), start(Direction::East)), (Wall::Absent, Wall::Present));
+            assert_eq!(
+                (start(Direction::North), start(Direction::East)),
+                (WallState::Absent, WallState::Present)
+            );
             assert_eq!(distances_from_start(&maze, Unknown::Closed).reached(), 256);
             let entrances = maze.goals().flat_map(|goal| Direction::ALL.map(|side| (goal, side)));
             let open = entrances.filter(|&(goal, side)| {

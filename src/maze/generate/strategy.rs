@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::{braided, perfect};
-use crate::maze::{Cell, Direction, Maze, Wall};
+use crate::maze::{Cell, Direction, Maze, WallState};
 use crate::random::Stream;
 
 /// Walls at random, from none to nearly all, so that many cells are out of reach; with any start, heading and goals.
@@ -17,7 +17,7 @@ pub fn sparse_mazes(side: usize) -> impl Strategy<Value = Maze> {
         for cell in maze.cells() {
             for side in [Direction::North, Direction::East] {
                 if maze.neighbour(cell, side).is_some() && stream.chance(density) {
-                    maze.set_wall(cell, side, Wall::Present);
+                    maze.set_wall(cell, side, WallState::Present);
                 }
             }
         }
@@ -59,10 +59,10 @@ pub fn partly_known(side: usize) -> impl Strategy<Value = Maze> {
             for side in Direction::ALL {
                 if maze.neighbour(cell, side).is_none() {
                     if stream.chance(0.1) {
-                        maze.set_wall(cell, side, Wall::Absent);
+                        maze.set_wall(cell, side, WallState::Absent);
                     }
                 } else if stream.chance(0.5 * unknown) {
-                    maze.set_wall(cell, side, Wall::Unknown);
+                    maze.set_wall(cell, side, WallState::Unknown);
                 }
             }
         }

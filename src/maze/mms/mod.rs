@@ -1,14 +1,14 @@
 //! The text protocol of the maze simulator mms (github.com/mackorone/mms): a mouse writes commands, a line each, and reads
 //! the answers.
 //!
-//! A [`Referee`] answers as the simulator does and counts its score, so that any mouse written for mms can be run here. An
+//! A [`MmsReferee`] answers as the simulator does and counts its score, so that any mouse written for mms can be run here. An
 //! [`MmsMouse`] is our solver at the other end of the line. Both are pure: whoever holds the streams passes the lines on.
 //!
 //! ```
-//! use roverlab::maze::mms::{MmsMouse, Move, Referee};
+//! use roverlab::maze::mms::{MmsMouse, Move, MmsReferee};
 //! use roverlab::maze::Maze;
 //!
-//! let mut referee = Referee::new(Maze::open(4, 4)?);
+//! let mut referee = MmsReferee::new(Maze::open(4, 4)?);
 //! let mut mouse = MmsMouse::new();
 //! let mut answer = None;
 //! while let Move::Say(line) = mouse.step(answer.as_deref()).expect("the answers of a referee make sense") {
@@ -25,5 +25,5 @@ mod score;
 mod tests;
 
 pub use mouse::{MmsError, MmsMouse, Move};
-pub use referee::Referee;
-pub use score::{Run, Score};
+pub use referee::MmsReferee;
+pub use score::{MmsRun, Score};

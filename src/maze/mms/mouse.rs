@@ -1,8 +1,8 @@
 use std::collections::VecDeque;
 
 use crate::maze::{
-    Cell, Direction, Explorer, Goals, Maze, Preference, Step, TwoPhaseExplorer, Unknown, Verdict, Wall,
-    shortest_route_between,
+    Cell, Direction, ExplorationOutcome, ExplorationStep, Explorer, Goals, Maze, Preference,
+    TwoPhaseExplorer, Unknown, WallState, shortest_route_between,
 };
 use crate::parameter::debug_as_sentence;
 
@@ -12,7 +12,7 @@ pub enum Move {
     /// Writes a line. It wants an answer if [`MmsMouse::awaits`] says so.
     Say(String),
     /// It has ended: it has explored to the proof and driven to the goal, or there is no way.
-    Done(Verdict),
+    Done(ExplorationOutcome),
 }
 
 /// An answer that makes no sense.
@@ -36,7 +36,7 @@ pub struct MmsMouse {
     known: Option<Maze>,
     at: (Cell, Direction),
     explorer: TwoPhaseExplorer,
-    verdict: Option<Verdict>,
+    verdict: Option<ExplorationOutcome>,
     /// Lines to be written, and what their answers are for.
     queue: VecDeque<(String, Asked)>,
     asked: Asked,
@@ -51,7 +51,7 @@ enum Asked {
     /// There is no answer.
     Nothing,
     Side(usize),
-    Wall(Direction),
+    WallState(Direction),
     Turn(Direction),
     Forward,
     Reset,
@@ -120,10 +120,10 @@ impl MmsMouse {
         match self.asked {
             Asked::Nothing => {}
             Asked::Side(index) => self.measure(index, answer)?,
-            Asked::Wall(side) => {
+            Asked::WallState(side) => {
                 let stands = self.truth(answer)?;
                 if let Some(known) = &mut self.known {
-                    known.set_wall(cell, side, if stands { Wall::Present } else { Wall::Absent });
+                    known.set_wall(cell, side, if stands { WallState::Present } else { WallState::Absent });
                 }
                 if stands {
                     let line = format!("setWall {} {} {}", cell.x, cell.y, side.letter());
@@ -177,15 +177,15 @@ impl MmsMouse {
     }
 
     /// Puts the next lines into the queue, or says how it ended.
-    fn decide(&mut self) -> Option<Verdict> {
-        let Some(known) = &self.known else { return Some(Verdict::Unreachable) };
+    fn decide(&mut self) -> Option<ExplorationOutcome> {
+        let Some(known) = &self.known else { return Some(ExplorationOutcome::Unreachable) };
         let (cell, heading) = self.at;
         if !self.looked && !known.is_known(cell) {
             for (command, side) in
                 [("wallFront", heading), ("wallLeft", heading.left()), ("wallRight", heading.right())]
             {
-                if known.wall(cell, side) == Wall::Unknown {
-                    self.queue.push_back((command.into(), Asked::Wall(side)));
+                if known.wall(cell, side) == WallState::Unknown {
+                    self.queue.push_back((command.into(), Asked::WallState(side)));
                 }
             }
         }
@@ -197,9 +197,9 @@ impl MmsMouse {
             let step = self.explorer.next(known, self.at);
             match step {
                 // What is behind has not been seen.
-                Step::Go(next) if next == cell => self.turn(heading.right()),
-                Step::Go(next) => self.head_for(next),
-                Step::Finished(verdict) => self.verdict = Some(verdict),
+                ExplorationStep::Go(next) if next == cell => self.turn(heading.right()),
+                ExplorationStep::Go(next) => self.head_for(next),
+                ExplorationStep::Finished(verdict) => self.verdict = Some(verdict),
             }
             return None;
         }
@@ -207,10 +207,10 @@ impl MmsMouse {
     }
 
     /// The best route, a cell at a time, once it is known.
-    fn race(&mut self) -> Option<Verdict> {
+    fn race(&mut self) -> Option<ExplorationOutcome> {
         let (known, verdict) = (self.known.as_ref()?, self.verdict?);
         let (cell, _) = self.at;
-        if verdict != Verdict::Optimal || (known.is_goal(cell) && self.racing) {
+        if verdict != ExplorationOutcome::Optimal || (known.is_goal(cell) && self.racing) {
             return Some(verdict);
         }
         if !self.racing && cell == known.start() {
@@ -222,7 +222,7 @@ impl MmsMouse {
         let side = self.first_step(|at| known.is_goal(at));
         match side {
             Some(side) => self.advance(side),
-            None => return Some(Verdict::Unreachable),
+            None => return Some(ExplorationOutcome::Unreachable),
         }
         None
     }
@@ -237,7 +237,7 @@ impl MmsMouse {
     fn head_for(&mut self, cell: Cell) {
         match self.first_step(|at| at == cell) {
             Some(side) => self.advance(side),
-            None => self.verdict = Some(Verdict::Unreachable),
+            None => self.verdict = Some(ExplorationOutcome::Unreachable),
         }
     }
 

@@ -7,7 +7,7 @@ use crate::maze::{Cell, Direction, Maze, Unknown};
 /// and `wallBack` (with an odd number of half steps), `moveForward` (with a number of cells), `turnRight`, `turnLeft`,
 /// `wasReset`, `ackReset`, `getStat`, and those that only draw. As in mms, other lines have no answer.
 #[derive(Debug, Clone)]
-pub struct Referee {
+pub struct MmsReferee {
     maze: Maze,
     at: (Cell, Direction),
     score: Score,
@@ -17,7 +17,7 @@ pub struct Referee {
     first_ignored: Option<String>,
 }
 
-impl Referee {
+impl MmsReferee {
     /// A mouse at the start of a maze. Unknown walls stand.
     pub fn new(maze: Maze) -> Self {
         let at = (maze.start(), maze.heading());

@@ -10,9 +10,9 @@ pub struct Score {
     /// The same with long straights counted by half.
     pub total_effective: f64,
     /// Of the run that is under way, or of the last one.
-    pub current: Run,
+    pub current: MmsRun,
     /// The run with the lowest sum of turns and effective distance, once there is one.
-    pub best: Option<Run>,
+    pub best: Option<MmsRun>,
     /// Whether a run has come to the goal.
     pub solved: bool,
     running: bool,
@@ -21,7 +21,7 @@ pub struct Score {
 
 /// One run from the start.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Run {
+pub struct MmsRun {
     /// Cells driven.
     pub distance: u32,
     /// Quarter turns.
@@ -30,7 +30,7 @@ pub struct Run {
     pub effective: f64,
 }
 
-impl Run {
+impl MmsRun {
     fn sum(&self) -> f64 {
         f64::from(self.turns) + self.effective
     }
@@ -52,7 +52,7 @@ impl Score {
 
     /// What is called by a name of the protocol; -1 where there is nothing yet.
     pub(super) fn named(&self, name: &str) -> Option<f64> {
-        let best = |value: fn(&Run) -> f64| self.best.as_ref().map_or(-1.0, value);
+        let best = |value: fn(&MmsRun) -> f64| self.best.as_ref().map_or(-1.0, value);
         Some(match name {
             "total-distance" => self.total_distance.into(),
             "total-turns" => self.total_turns.into(),
@@ -69,7 +69,7 @@ impl Score {
     }
 
     pub(super) fn leave_start(&mut self) {
-        self.current = Run { effective: self.penalty, ..Run::default() };
+        self.current = MmsRun { effective: self.penalty, ..MmsRun::default() };
         self.total_effective += self.penalty;
         self.penalty = 0.0;
         self.running = true;

@@ -2,11 +2,11 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::maze::generate::{competition, mazes};
-use crate::maze::{Cell, Direction, Maze, Unknown, Verdict, Wall, distances_from_start};
+use crate::maze::{Cell, Direction, ExplorationOutcome, Maze, Unknown, WallState, distances_from_start};
 
 /// Lets our mouse drive in front of our referee. `interrupt` presses the reset button after so many lines.
-fn play(maze: Maze, interrupt: Option<u64>) -> (Referee, MmsMouse, Verdict) {
-    let mut referee = Referee::new(maze);
+fn play(maze: Maze, interrupt: Option<u64>) -> (MmsReferee, MmsMouse, ExplorationOutcome) {
+    let mut referee = MmsReferee::new(maze);
     let mut mouse = MmsMouse::new();
     let mut answer = None;
     for line in 0.. {
@@ -35,13 +35,13 @@ proptest! {
         let from_start = distances_from_start(&truth, Unknown::Closed);
         let shortest = truth.goals().filter_map(|goal| from_start.get(goal)).min();
         let (referee, mouse, verdict) = play(truth.clone(), interrupt);
-        prop_assert_eq!(verdict, if shortest.is_some() { Verdict::Optimal } else { Verdict::Unreachable });
+        prop_assert_eq!(verdict, if shortest.is_some() { ExplorationOutcome::Optimal } else { ExplorationOutcome::Unreachable });
         prop_assert_eq!(referee.ignored(), (0, None));
         let known = mouse.maze().unwrap();
         for cell in truth.cells() {
             for side in Direction::ALL {
                 let wall = known.wall(cell, side);
-                prop_assert!(wall == Wall::Unknown || wall == truth.wall(cell, side));
+                prop_assert!(wall == WallState::Unknown || wall == truth.wall(cell, side));
             }
         }
         if shortest.is_some_and(|steps| steps > 0) {
@@ -53,8 +53,8 @@ proptest! {
     }
 
     #[test]
-    fn a_referee_takes_any_line(lines in prop::collection::vec("[ -~]{0,40}|moveForward [0-9]{1,12}|wallFront [0-9]{1,12}|set(Wall|Text|Color) -?[0-9]{1,9} [0-9]{1,3} [a-z]", 0..60)) {
-        let mut referee = Referee::new(competition(8, 1).unwrap());
+    fn a_referee_takes_any_line(lines in prop::collection::vec("[ -~]{0,40}|moveForward [0-9]{1,12}|wallFront [0-9]{1,12}|set(WallState|Text|Color) -?[0-9]{1,9} [0-9]{1,3} [a-z]", 0..60)) {
+        let mut referee = MmsReferee::new(competition(8, 1).unwrap());
         for line in &lines {
             referee.answer(line);
         }
@@ -65,9 +65,9 @@ proptest! {
 #[test]
 fn the_referee_answers_as_the_simulator_does() {
     let mut maze = Maze::open(3, 4).unwrap();
-    maze.set_wall(Cell::new(0, 2), Direction::North, Wall::Present);
+    maze.set_wall(Cell::new(0, 2), Direction::North, WallState::Present);
     maze.set_goals([Cell::new(1, 2)]);
-    let mut referee = Referee::new(maze);
+    let mut referee = MmsReferee::new(maze);
     let dialogue = [
         ("mazeWidth", Some("3")),
         ("mazeHeight", Some("4")),
@@ -106,7 +106,7 @@ fn the_referee_answers_as_the_simulator_does() {
 fn long_straights_count_by_half() {
     let mut maze = Maze::open(1, 9).unwrap();
     maze.set_goals([Cell::new(0, 8)]);
-    let mut referee = Referee::new(maze);
+    let mut referee = MmsReferee::new(maze);
     assert_eq!(referee.answer("moveForward 8").as_deref(), Some("ack"));
     assert_eq!(referee.score().best.map(|run| run.effective), Some(5.0));
     assert!((referee.score().value() - 5.5).abs() < 1e-12);

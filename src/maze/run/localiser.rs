@@ -1,9 +1,9 @@
 use nalgebra::{SMatrix, SVector};
 
-use super::rig::{Rig, Sensor};
+use super::rig::{Rig, RigSensor};
 use super::sight::{Crossing, Crossings};
 use crate::geometry::{Point, Pose, Vector, angle_difference, direction, math, normalize_angle};
-use crate::maze::{Cell, Direction, Maze, Scale, Wall};
+use crate::maze::{Cell, Direction, Maze, Scale, WallState};
 
 /// Where a robot is in a maze whose walls are partly known, from odometry and three distance sensors.
 ///
@@ -157,7 +157,7 @@ impl MazeLocaliser {
     }
 
     /// Learns from a reading of one of the rig's sensors, infinite without a return.
-    pub fn correct(&mut self, maze: &Maze, sensor: &Sensor, reading: f64) {
+    pub fn correct(&mut self, maze: &Maze, sensor: &RigSensor, reading: f64) {
         let pose = self.pose();
         let yaw = pose.heading + sensor.mount.yaw;
         let (sin, cos) = math::sin_cos(pose.heading);
@@ -187,7 +187,7 @@ impl MazeLocaliser {
             let post = margin + 0.5 * self.scale.wall;
             let differs = reading - crossing.distance;
             match crossing.wall {
-                Wall::Unknown => {
+                WallState::Unknown => {
                     // A return from where a wall can be is one from it, or from a post in line with it.
                     if agrees && square {
                         self.update(&model.range_slope(), differs, deviation * deviation);
@@ -197,7 +197,7 @@ impl MazeLocaliser {
                         return;
                     }
                 }
-                Wall::Absent => {
+                WallState::Absent => {
                     // A post may be in the way.
                     if agrees && square && crossing.corner_distance() < post {
                         self.update(&model.range_slope(), differs, deviation * deviation);
@@ -206,8 +206,8 @@ impl MazeLocaliser {
                         return;
                     }
                 }
-                Wall::Present => {
-                    let firm = crossing.beyond == Wall::Present || crossing.corner_distance() > margin;
+                WallState::Present => {
+                    let firm = crossing.beyond == WallState::Present || crossing.corner_distance() > margin;
                     if agrees && firm {
                         self.update(&model.range_slope(), differs, deviation * deviation);
                     }
@@ -219,7 +219,7 @@ impl MazeLocaliser {
 
     /// Compares what a sensor sees on the nearest line of walls with what it saw last. Where that changes, a wall or a post
     /// begins or ends, and that is at a corner of the maze.
-    fn notice_edge(&mut self, sensor: &Sensor, model: &Model, reading: f64) {
+    fn notice_edge(&mut self, sensor: &RigSensor, model: &Model, reading: f64) {
         let Some(index) = self.rig.sensors.iter().position(|other| other.id == sensor.id) else { return };
         let Crossing { upright, line, along, distance, corner, .. } = model.crossing;
         let near = reading < distance + 0.35 * self.scale.cell;
@@ -301,7 +301,7 @@ fn is_bare(maze: &Maze, x: i64, y: i64) -> bool {
     let above = Cell::new(x, y);
     [(below, Direction::North), (below, Direction::East), (above, Direction::South), (above, Direction::West)]
         .into_iter()
-        .all(|(cell, side)| maze.wall(cell, side) == Wall::Absent)
+        .all(|(cell, side)| maze.wall(cell, side) == WallState::Absent)
 }
 
 /// How a reading depends on the state.

@@ -1,7 +1,7 @@
 //! What distance readings from the middle of a cell say about the walls around.
 
 use crate::geometry::math;
-use crate::maze::{Cell, Direction, Maze, Scale, Unknown, Wall};
+use crate::maze::{Cell, Direction, Maze, Scale, Unknown, WallState};
 
 /// A direction seen from a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,13 +36,13 @@ pub(super) fn enter(maze: &mut Maze, scale: Scale, view: &View) -> usize {
             break;
         }
         let found = if passed as f64 == walls && meets {
-            Wall::Present
+            WallState::Present
         } else if seen > place + 0.4 * scale.cell {
-            Wall::Absent
+            WallState::Absent
         } else {
             break;
         };
-        if maze.wall(cell, view.direction) == Wall::Unknown {
+        if maze.wall(cell, view.direction) == WallState::Unknown {
             maze.set_wall(cell, view.direction, found);
             learnt += 1;
         }
@@ -60,7 +60,7 @@ mod tests {
 
     const SCALE: Scale = Scale::MICROMOUSE;
 
-    fn learn(distance: f64, heading_deviation: f64) -> (usize, Vec<Wall>) {
+    fn learn(distance: f64, heading_deviation: f64) -> (usize, Vec<WallState>) {
         let mut maze = Maze::unexplored(6, 1).unwrap();
         let (cell, direction) = (Cell::new(0, 0), Direction::East);
         let view = View { cell, direction, distance, range: 1.0, heading_deviation };
@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn a_wall_is_seen_from_some_cells_away() {
-        use Wall::{Absent, Present, Unknown};
+        use WallState::{Absent, Present, Unknown};
         assert_eq!(learn(0.084, 0.005), (1, vec![Present, Unknown, Unknown, Unknown, Unknown]));
         assert_eq!(learn(0.100, 0.005), (1, vec![Present, Unknown, Unknown, Unknown, Unknown]));
         assert_eq!(learn(0.264, 0.005), (2, vec![Absent, Present, Unknown, Unknown, Unknown]));
@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn what_is_in_doubt_stays_unknown() {
         // Between two walls: something else was seen.
-        assert_eq!(learn(0.175, 0.005).1[1], Wall::Unknown);
+        assert_eq!(learn(0.175, 0.005).1[1], WallState::Unknown);
         // A heading that may be off by 10 degrees tells of the next wall alone.
         assert_eq!(learn(0.624, 0.06).0, 1);
     }
@@ -97,6 +97,6 @@ mod tests {
             heading_deviation: 0.01,
         };
         assert_eq!(enter(&mut maze, SCALE, &view), 0);
-        assert_eq!(maze.wall(Cell::new(0, 0), Direction::East), Wall::Absent);
+        assert_eq!(maze.wall(Cell::new(0, 0), Direction::East), WallState::Absent);
     }
 }

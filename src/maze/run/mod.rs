@@ -14,6 +14,6 @@ mod tests;
 mod tracker;
 
 pub use localiser::{Calibration, MazeLocaliser};
-pub use rig::{Rig, Sensor, mouse};
-pub use runner::{Exploration, MazeRunner, RunnerParameters};
-pub use tracker::{Tracker, TrackerParameters};
+pub use rig::{Rig, RigSensor, mouse};
+pub use runner::{Exploration, MazeRunner, MazeRunnerParameters};
+pub use tracker::{TrajectoryTracker, TrajectoryTrackerParameters};

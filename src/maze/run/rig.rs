@@ -43,7 +43,7 @@ pub struct Rig {
     /// The time constant, in seconds, with which wheel speed follows a command.
     pub lag: f64,
     /// The distance sensors at the front, on the left and on the right.
-    pub sensors: [Sensor; 3],
+    pub sensors: [RigSensor; 3],
     /// Standard deviations of the robot from its description.
     pub errors: OdometryErrors,
     /// The standard deviation of a distance sensor's reading, in metres.
@@ -52,7 +52,7 @@ pub struct Rig {
 
 /// A distance sensor of a rig.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sensor {
+pub struct RigSensor {
     /// The number by which programs read it.
     pub id: Psd,
     /// Where it sits, and where it points.
@@ -72,7 +72,7 @@ impl Rig {
         let sensor = |id: Psd| {
             let psd = spec.psds.iter().find(|psd| psd.id == id.0);
             let psd = psd.ok_or_else(|| Error::unsupported(format!("robot {}: {id}", spec.name)))?;
-            Ok::<_, Error>(Sensor { id, mount: psd.mount, max_range: psd.max_range })
+            Ok::<_, Error>(RigSensor { id, mount: psd.mount, max_range: psd.max_range })
         };
         let sensors = [sensor(Psd::FRONT)?, sensor(Psd::LEFT)?, sensor(Psd::RIGHT)?];
         Ok(Self { track, lag: spec.motor.time_constant, sensors, errors, range_error })

@@ -1,30 +1,30 @@
 use super::localiser::{Calibration, MazeLocaliser};
 use super::look::{self, View};
 use super::rig::Rig;
-use super::tracker::{Tracker, TrackerParameters};
+use super::tracker::{TrajectoryTracker, TrajectoryTrackerParameters};
 use crate::geometry::{Pose, Twist, angle_difference};
 use crate::io::control::{Stopwatch, stopping};
 use crate::io::{Clock, DistanceSensors, Drive, Error, ErrorKind, Result};
 use crate::maze::{
-    Cell, Direction, Explorer, FastPlan, FastPlanner, Maze, RunLimits, Scale, Step, Trajectory, Unknown,
-    Verdict, Wall,
+    Cell, Direction, ExplorationOutcome, ExplorationStep, Explorer, FastPlan, FastPlanner, Maze, RunLimits,
+    Scale, Trajectory, Unknown, WallState,
 };
 use crate::parameter::require;
 
 /// How a robot drives through mazes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RunnerParameters {
+pub struct MazeRunnerParameters {
     /// What the robot does at most while it explores.
     pub exploring: RunLimits,
     /// What it does at most on the fast run.
     pub racing: RunLimits,
     /// How it is kept on its way.
-    pub tracker: TrackerParameters,
+    pub tracker: TrajectoryTrackerParameters,
     /// Readings of each sensor that are averaged when it looks around.
     pub readings: usize,
 }
 
-impl RunnerParameters {
+impl MazeRunnerParameters {
     /// For a micromouse.
     pub const MICROMOUSE: Self = Self {
         exploring: RunLimits {
@@ -36,7 +36,7 @@ impl RunnerParameters {
             angular_acceleration: 80.0,
         },
         racing: RunLimits::MICROMOUSE,
-        tracker: TrackerParameters::MICROMOUSE,
+        tracker: TrajectoryTrackerParameters::MICROMOUSE,
         readings: 8,
     };
 
@@ -51,7 +51,7 @@ impl RunnerParameters {
             angular_acceleration: 6.0,
         },
         racing: RunLimits::EYEBOT,
-        tracker: TrackerParameters::EYEBOT,
+        tracker: TrajectoryTrackerParameters::EYEBOT,
         readings: 8,
     };
 }
@@ -60,7 +60,7 @@ impl RunnerParameters {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exploration {
     /// How it ended.
-    pub verdict: Verdict,
+    pub verdict: ExplorationOutcome,
     /// How many cells the robot has been in.
     pub visited: usize,
     /// How often it stopped to look around.
@@ -76,7 +76,7 @@ pub struct Exploration {
 #[derive(Debug)]
 pub struct MazeRunner<'r, R: ?Sized> {
     robot: &'r mut R,
-    parameters: RunnerParameters,
+    parameters: MazeRunnerParameters,
     rig: Rig,
     scale: Scale,
     localiser: MazeLocaliser,
@@ -99,7 +99,7 @@ impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
         rig: Rig,
         maze: Maze,
         scale: Scale,
-        parameters: RunnerParameters,
+        parameters: MazeRunnerParameters,
         time_limit: f64,
     ) -> Result<Self> {
         Stopwatch::check_limit(time_limit)?;
@@ -163,7 +163,7 @@ impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
         let begin = self.now()?;
         let mut looks = 0;
         let verdict = match self.explore_to_end(explorer, &mut looks, watch) {
-            Err(_) if self.is_over() => Verdict::TimedOut,
+            Err(_) if self.is_over() => ExplorationOutcome::TimedOut,
             verdict => verdict?,
         };
         let visited = self.visited.iter().filter(|&&visited| visited).count();
@@ -175,15 +175,15 @@ impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
         explorer: &mut dyn Explorer,
         looks: &mut usize,
         watch: &mut dyn FnMut(Pose),
-    ) -> Result<Verdict> {
+    ) -> Result<ExplorationOutcome> {
         loop {
             if !self.maze.is_known(self.at.0) {
                 self.look_around(watch)?;
                 *looks += 1;
             }
             match explorer.next(&self.maze, self.at) {
-                Step::Go(cell) => self.go_to(cell, watch)?,
-                Step::Finished(verdict) => {
+                ExplorationStep::Go(cell) => self.go_to(cell, watch)?,
+                ExplorationStep::Finished(verdict) => {
                     self.face(self.maze.heading(), watch)?;
                     return Ok(verdict);
                 }
@@ -199,7 +199,7 @@ impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
             if self.maze.is_known(cell) {
                 return Ok(());
             }
-            let back = self.maze.wall(cell, heading.opposite()) == Wall::Unknown;
+            let back = self.maze.wall(cell, heading.opposite()) == WallState::Unknown;
             self.face(if back { heading.left() } else { heading }, watch)?;
             self.look(watch)?;
         }
@@ -336,7 +336,7 @@ impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
     }
 
     fn follow_to_end(&mut self, trajectory: Trajectory, watch: &mut dyn FnMut(Pose)) -> Result<f64> {
-        let tracker = Tracker::new(trajectory, self.parameters.tracker, self.rig.lag)?;
+        let tracker = TrajectoryTracker::new(trajectory, self.parameters.tracker, self.rig.lag)?;
         let limit = 2.0 * tracker.trajectory().duration() + 5.0;
         self.wait_for_tick()?;
         // Steps are counted from the tick at which the motors first obey.

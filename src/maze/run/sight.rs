@@ -1,7 +1,7 @@
 //! What a ray meets in a maze as far as it is known.
 
 use crate::geometry::{Point, Vector};
-use crate::maze::{Cell, Direction, Maze, Scale, Wall};
+use crate::maze::{Cell, Direction, Maze, Scale, WallState};
 
 /// A line of walls that a ray crosses.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,10 +15,10 @@ pub(super) struct Crossing {
     /// Where along the walls the ray crosses.
     pub(super) along: f64,
     /// What stands there.
-    pub(super) wall: Wall,
+    pub(super) wall: WallState,
     /// Where along the walls the nearest corner is, and what stands on its other side.
     pub(super) corner: f64,
-    pub(super) beyond: Wall,
+    pub(super) beyond: WallState,
 }
 
 impl Crossing {
@@ -67,7 +67,7 @@ impl<'a> Crossings<'a> {
     }
 
     /// The wall of a line at a place along it; `None` outside of the maze.
-    fn wall(&self, axis: usize, line: i64, place: i64) -> Option<Wall> {
+    fn wall(&self, axis: usize, line: i64, place: i64) -> Option<WallState> {
         let sides = [self.maze.width() as i64, self.maze.height() as i64];
         if !(0..=sides[axis]).contains(&line) || !(0..sides[1 - axis]).contains(&place) {
             return None;
@@ -106,7 +106,7 @@ impl Iterator for Crossings<'_> {
             along,
             wall,
             corner: corner * self.scale.cell,
-            beyond: self.wall(axis, line, other).unwrap_or(Wall::Absent),
+            beyond: self.wall(axis, line, other).unwrap_or(WallState::Absent),
         })
     }
 }
@@ -132,7 +132,7 @@ mod tests {
             let toward = direction(angle);
             let space = Space::new(&scale.world(&maze).walls);
             let truth = space.cast_ray(origin, toward, 0.02, 3.0, None);
-            let stands = |crossing: &Crossing| crossing.wall == Wall::Present;
+            let stands = |crossing: &Crossing| crossing.wall == WallState::Present;
             let met = Crossings::new(&maze, scale, origin, toward).find(stands);
             // Close to corners the ray may meet the end of a wall or a bare post.
             let mut passed = Crossings::new(&maze, scale, origin, toward);
@@ -146,12 +146,12 @@ mod tests {
     #[test]
     fn corners_and_their_other_side() {
         let mut maze = Maze::open(3, 3).unwrap();
-        maze.set_wall(Cell::new(1, 1), Direction::East, Wall::Present);
+        maze.set_wall(Cell::new(1, 1), Direction::East, WallState::Present);
         let scale = Scale::MICROMOUSE;
         let origin = Point::new(0.27, 0.34);
         let met = Crossings::new(&maze, scale, origin, Vector::new(1.0, 0.0)).next().unwrap();
         assert!((met.distance - (0.36 - 0.006 - 0.27)).abs() < 1e-12 && met.upright);
-        assert_eq!((met.wall, met.beyond), (Wall::Present, Wall::Absent));
+        assert_eq!((met.wall, met.beyond), (WallState::Present, WallState::Absent));
         assert!((met.corner - 0.36).abs() < 1e-12 && (met.corner_distance() - 0.02).abs() < 1e-12);
     }
 }

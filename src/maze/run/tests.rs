@@ -4,7 +4,7 @@ use crate::io::sim::{NoiseModel, SimOptions, Simulation, Truth};
 use crate::kinematics::OdometryErrors;
 use crate::maze::generate::competition;
 use crate::maze::{
-    Explorer, Goals, Maze, RecursiveExplorer, Scale, TwoPhaseExplorer, Unknown, Verdict, Wall,
+    ExplorationOutcome, Explorer, Goals, Maze, RecursiveExplorer, Scale, TwoPhaseExplorer, Unknown, WallState,
 };
 use crate::world::{RobotSpec, Scene};
 
@@ -13,14 +13,14 @@ struct Trial {
     maze: Maze,
     scale: Scale,
     spec: RobotSpec,
-    parameters: RunnerParameters,
+    parameters: MazeRunnerParameters,
     noise: f64,
     seed: u64,
 }
 
 impl Trial {
     fn mouse(seed: u64, noise: f64) -> Self {
-        let (scale, parameters) = (Scale::MICROMOUSE, RunnerParameters::MICROMOUSE);
+        let (scale, parameters) = (Scale::MICROMOUSE, MazeRunnerParameters::MICROMOUSE);
         Self { maze: competition(16, seed).unwrap(), scale, spec: mouse(), parameters, noise, seed }
     }
 
@@ -49,7 +49,7 @@ fn assert_known_rightly(known: &Maze, truth: &Maze) {
     for cell in truth.cells() {
         for side in crate::maze::Direction::ALL {
             let wall = known.wall(cell, side);
-            assert!(wall == Wall::Unknown || wall == truth.wall(cell, side), "{cell} to the {side}");
+            assert!(wall == WallState::Unknown || wall == truth.wall(cell, side), "{cell} to the {side}");
         }
     }
 }
@@ -62,7 +62,7 @@ fn explored_and_raced(trial: &Trial, within: f64) {
             off = off.max(truth.robot(0).unwrap().pose.distance_to(pose.position()));
         };
         let exploration = runner.explore(&mut explorer, &mut watch).unwrap();
-        assert_eq!(exploration.verdict, Verdict::Optimal);
+        assert_eq!(exploration.verdict, ExplorationOutcome::Optimal);
         let plan = runner.plan_fast_run().unwrap();
         let best = runner.planner().plan(&trial.maze, Unknown::Closed).unwrap();
         assert!((plan.time - best.time).abs() < 2e-3, "{} against {}", plan.time, best.time);
@@ -89,7 +89,7 @@ fn a_real_mouse_explores_to_the_proof_and_races() {
 
 #[test]
 fn an_eyebot_does_it_in_the_larger_maze() {
-    let (scale, parameters) = (Scale::DOUBLED, RunnerParameters::EYEBOT);
+    let (scale, parameters) = (Scale::DOUBLED, MazeRunnerParameters::EYEBOT);
     let trial = Trial { scale, spec: RobotSpec::s4(), parameters, ..Trial::mouse(1, 1.0) };
     explored_and_raced(&trial, 0.02);
 }
@@ -100,7 +100,7 @@ fn recursive_exploration_learns_the_whole_maze() {
     let contacts = trial.run(|runner, _| {
         let mut explorer: Box<dyn Explorer> = Box::new(RecursiveExplorer::new());
         let exploration = runner.explore(explorer.as_mut(), &mut |_| ()).unwrap();
-        assert_eq!((exploration.verdict, runner.maze().unknown_walls()), (Verdict::Explored, 0));
+        assert_eq!((exploration.verdict, runner.maze().unknown_walls()), (ExplorationOutcome::Explored, 0));
         assert!(exploration.visited <= 256);
     });
     assert_eq!(contacts, 0);

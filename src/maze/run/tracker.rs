@@ -5,7 +5,7 @@ use crate::parameter::{require_not_negative, require_positive};
 
 /// The gains with which a robot is kept on a trajectory.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrackerParameters {
+pub struct TrajectoryTrackerParameters {
     /// Speed for a metre behind, in 1/s.
     pub along: f64,
     /// Metres of way in which an error aside is taken back.
@@ -16,7 +16,7 @@ pub struct TrackerParameters {
     pub period: f64,
 }
 
-impl TrackerParameters {
+impl TrajectoryTrackerParameters {
     /// For a micromouse.
     pub const MICROMOUSE: Self = Self { along: 8.0, reach: 0.06, heading: 14.0, period: 0.010 };
 
@@ -35,18 +35,18 @@ impl TrackerParameters {
 /// Keeps a robot on a trajectory: the speeds that it asks for, corrected for where the robot is, and commanded so that lagging
 /// motors reach them in time.
 #[derive(Debug, Clone)]
-pub struct Tracker {
+pub struct TrajectoryTracker {
     trajectory: Trajectory,
-    parameters: TrackerParameters,
+    parameters: TrajectoryTrackerParameters,
     /// The part of a difference in speed that the motors' lag leaves after a period.
     decay: f64,
 }
 
-impl Tracker {
+impl TrajectoryTracker {
     /// A tracker for motors that lag by a time constant, in seconds.
     pub fn new(
         trajectory: Trajectory,
-        parameters: TrackerParameters,
+        parameters: TrajectoryTrackerParameters,
         lag: f64,
     ) -> Result<Self, ParameterError> {
         parameters.validate()?;

@@ -1,10 +1,11 @@
 use super::parameters::BugParameters;
 use super::report::{BugEvent, BugOutcome, BugPhase};
 use super::wall_ends::{WallEnds, overhangs};
+use crate::geometry::WallSide;
 use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math};
 use crate::io::control::LidarObservation;
 use crate::io::{Error, Result};
-use crate::nav::boundary::{WallSide, nearer_side};
+use crate::nav::boundary::nearer_side;
 use crate::nav::surroundings::Surroundings;
 use crate::scan::{ScanFilter, ScanMatcher, check_measured};
 

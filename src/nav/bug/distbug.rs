@@ -1,11 +1,11 @@
+use super::algorithm::{Bug, bug_algorithm};
 use super::body::Body;
-use super::family::{Bug, family};
 use super::progress::LapRule;
 use super::report::{BugEvent, BugPhase};
 use super::strategy::{Decision, Sight, Strategy};
 use crate::geometry::{Point, Pose};
 
-family! {
+bug_algorithm! {
     /// DistBug: to a goal through unknown obstacles, with a proof when there is no way (book, sections 10.1 and 10.2;
     /// I. Kamon and E. Rivlin, "Sensory-based motion planning with global proofs", IEEE Transactions on Robotics and
     /// Automation 13(6), 1997).

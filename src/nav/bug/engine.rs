@@ -6,10 +6,11 @@ use super::parameters::BugParameters;
 use super::progress::{Lap, LoopProgress};
 use super::report::{BugEvent, BugOutcome, BugPhase};
 use super::strategy::{Decision, Place, Sight, Strategy};
+use crate::geometry::WallSide;
 use crate::geometry::{Point, Twist, math, normalize_angle};
 use crate::io::Result;
 use crate::io::control::LidarObservation;
-use crate::nav::boundary::{BoundaryFollower, WallSide};
+use crate::nav::boundary::BoundaryFollower;
 
 /// A body that acts by a strategy: to the goal, along boundaries, and to a verdict.
 #[derive(Debug, Clone)]

@@ -95,7 +95,7 @@ impl<const EVER: bool> LeaveRule for OnMainLine<EVER> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::nav::boundary::WallSide;
+    use crate::geometry::WallSide;
     use crate::nav::bug::strategy::Place;
 
     const GOAL: Point = Point::new(3.0, 0.0);

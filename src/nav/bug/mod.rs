@@ -1,37 +1,43 @@
 //! The bug family: sensor-based ways to a goal, with a proof when there is none (book, sections 10.1 and 10.2).
 
+mod alg1;
+mod alg2;
+mod algorithm;
 mod body;
+mod bug1;
+mod bug2;
+mod circumnavigation;
+mod class1;
 mod distbug;
 mod engine;
-mod family;
+mod first_leave;
+mod hit_point_memory;
 mod kind;
+mod leave_bug;
 mod leave_rule;
-mod memory;
+mod one_bug;
 mod panorama;
 mod parameters;
-mod plain;
 mod progress;
 mod report;
+mod rev1;
+mod rev2;
 mod strategy;
 mod tangent;
-mod tour;
 mod wall_ends;
 
+pub use alg1::Alg1;
+pub use alg2::Alg2;
+pub use algorithm::{Bug, Guarantee, PathBound};
+pub use bug1::Bug1;
+pub use bug2::Bug2;
+pub use class1::Class1;
 pub use distbug::DistBug;
-pub use family::{Bug, Guarantee, PathBound};
 pub use kind::{BugKind, UnknownBug};
-pub use memory::{Alg1, Alg2, Rev1, Rev2};
+pub use leave_bug::LeaveBug;
+pub use one_bug::OneBug;
 pub use parameters::BugParameters;
-pub use plain::{Bug2, Class1, OneBug};
 pub use report::{BugEvent, BugOutcome, BugPhase};
+pub use rev1::Rev1;
+pub use rev2::Rev2;
 pub use tangent::TangentBug;
-pub use tour::{Bug1, LeaveBug};
-
-/// What DistBug goes by.
-pub type DistBugParameters = BugParameters;
-/// How a run of DistBug ended.
-pub type DistBugOutcome = BugOutcome;
-/// What a robot that runs DistBug is doing.
-pub type DistBugPhase = BugPhase;
-/// Something worth telling that happened in a step of DistBug.
-pub type DistBugEvent = BugEvent;

@@ -1,5 +1,6 @@
 use crate::ParameterError;
-use crate::nav::boundary::{FollowDistances, WallSide};
+use crate::geometry::WallSide;
+use crate::nav::boundary::FollowDistances;
 use crate::parameter::{require, require_positive};
 
 /// What the bugs go by. Lengths in metres, speeds in metres per second.

@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
+use crate::geometry::WallSide;
 use crate::geometry::{Point, Pose, angle_difference, normalize_angle};
-use crate::nav::boundary::WallSide;
 
 /// Whether the robot has been all round.
 #[derive(Debug, Clone)]

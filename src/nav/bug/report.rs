@@ -1,6 +1,6 @@
 use crate::geometry::Point;
+use crate::geometry::WallSide;
 use crate::io::control::halts;
-use crate::nav::boundary::WallSide;
 
 /// How the run of a bug ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 use super::body::{Body, GoalView};
 use super::progress::LapRule;
+use crate::geometry::WallSide;
 use crate::geometry::{Point, angle_difference};
-use crate::nav::boundary::WallSide;
 
 /// What makes one bug differ from another: when it leaves an obstacle, when it turns back, and when it gives up.
 ///

@@ -1,11 +1,11 @@
+use super::algorithm::bug_algorithm;
 use super::body::{Body, GoalView};
-use super::family::family;
 use super::panorama::{Edge, Panorama};
 use super::strategy::{Decision, Sight, Strategy};
+use crate::geometry::WallSide;
 use crate::geometry::{Point, direction, math, normalize_angle};
-use crate::nav::boundary::WallSide;
 
-family! {
+bug_algorithm! {
     /// TangentBug: drives for the ends of obstacles that it sees from afar (I. Kamon, E. Rimon and E. Rivlin, "TangentBug: a
     /// range-sensor-based navigation algorithm", International Journal of Robotics Research 17(9), 1998).
     ///

@@ -8,17 +8,17 @@ use crate::world::{BitGrid, GridCell};
 /// grid's words and the runs, and memory in proportion to the runs.
 ///
 /// ```
-/// use roverlab::nav::grid::Components;
+/// use roverlab::nav::grid::GridComponents;
 /// use roverlab::world::{BitGrid, GridCell};
 /// let grid = BitGrid::from_text("..#.\n.#..\n#...")?;
-/// let components = Components::new(&grid);
+/// let components = GridComponents::new(&grid);
 /// assert_eq!(components.count(), 2);
 /// // Two cells that only touch at a corner.
 /// assert!(!components.connected(GridCell::new(0, 1), GridCell::new(1, 2)));
 /// # Ok::<(), roverlab::world::BitGridError>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Components {
+pub struct GridComponents {
     /// Where the runs of each row begin, and the end.
     rows: Vec<u32>,
     runs: Vec<Run>,
@@ -34,7 +34,7 @@ struct Run {
     label: u32,
 }
 
-impl Components {
+impl GridComponents {
     /// Finds the regions of a grid.
     pub fn new(grid: &BitGrid) -> Self {
         let mut this = Self { rows: vec![0], runs: Vec::new(), count: 0 };
@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn grids_without_free_cells_have_no_regions() {
         for grid in [BitGrid::blocked(0, 0), BitGrid::blocked(70, 3), BitGrid::blocked(0, 5)] {
-            let components = Components::new(&grid.unwrap());
+            let components = GridComponents::new(&grid.unwrap());
             assert_eq!((components.count(), components.region(GridCell::new(0, 0))), (0, None));
             assert_eq!(components.region(GridCell::new(usize::MAX, usize::MAX)), None);
         }
@@ -161,7 +161,7 @@ mod tests {
     #[test]
     fn a_comb_is_one_region() {
         let grid = BitGrid::from_text(".#.#.#.\n.#.#.#.\n.......").unwrap();
-        let components = Components::new(&grid);
+        let components = GridComponents::new(&grid);
         assert_eq!((components.count(), components.sizes()), (1, vec![15]));
     }
 
@@ -172,7 +172,7 @@ mod tests {
         fn regions_are_flooded(width in 1..140usize, height in 1..20usize, seed in any::<u64>(), share in 0.3..0.9f64) {
             let mut stream = Stream::new(seed);
             let grid = BitGrid::from_fn(width, height, |_, _| stream.chance(share)).unwrap();
-            let components = Components::new(&grid);
+            let components = GridComponents::new(&grid);
             let mut seen = vec![false; width * height];
             let mut region = 0;
             for seed in grid.free_cells() {

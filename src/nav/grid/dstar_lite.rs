@@ -1,7 +1,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::components::Components;
+use super::components::GridComponents;
 use super::cost::{DIAGONAL, STRAIGHT, octile};
 use super::path::{End, GridPath, PlanError, SearchStatistics};
 use crate::world::{BitGrid, GridCell};
@@ -13,7 +13,7 @@ use crate::world::{BitGrid, GridCell};
 ///
 /// S. Koenig, M. Likhachev, *D\* Lite*, AAAI 2002. A new plan takes time in proportion to the cells whose distance to the
 /// goal has changed and matters, times the logarithm of the queue's length; memory is 40 bytes a cell. That the map as it
-/// was given has no way is told at once by its [`Components`]; that a change has cut off the last one is found by search.
+/// was given has no way is told at once by its [`GridComponents`]; that a change has cut off the last one is found by search.
 ///
 /// ```
 /// use roverlab::nav::grid::DStarLite;
@@ -121,7 +121,7 @@ impl DStarLite {
             }
         }
         let unreachable = PlanError::Unreachable { start: self.robot, goal: self.goal };
-        if !self.searched && !Components::new(&self.grid).connected(self.robot, self.goal) {
+        if !self.searched && !GridComponents::new(&self.grid).connected(self.robot, self.goal) {
             return Err(unreachable);
         }
         self.searched = true;

@@ -32,7 +32,7 @@ mod steps;
 mod tests;
 
 pub use any_angle::{AnyAngle, LazyThetaStar};
-pub use components::Components;
+pub use components::GridComponents;
 pub use distance::DistanceField;
 pub use dstar_lite::DStarLite;
 pub use inflate::inflated;

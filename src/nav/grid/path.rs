@@ -2,7 +2,7 @@ use crate::geometry::Point;
 use crate::parameter::debug_as_sentence;
 use crate::world::{BitGrid, GridCell};
 
-use super::components::Components;
+use super::components::GridComponents;
 use super::cost;
 
 /// A way through a grid, with what it took to find it.
@@ -138,7 +138,7 @@ fn towards(from: usize, to: usize) -> usize {
 /// Refuses queries that need no search.
 pub(super) fn check(
     grid: &BitGrid,
-    components: &Components,
+    components: &GridComponents,
     start: GridCell,
     goal: GridCell,
 ) -> Result<(), PlanError> {

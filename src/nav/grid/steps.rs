@@ -1,6 +1,6 @@
 use crate::world::{BitGrid, GridCell};
 
-use super::components::Components;
+use super::components::GridComponents;
 use super::cost::{self, DIAGONAL, STRAIGHT};
 use super::path::{GridPath, GridPlanner, PlanError, SearchStatistics, check};
 use super::queue::BucketQueue;
@@ -28,7 +28,7 @@ use super::queue::BucketQueue;
 #[derive(Debug, Clone)]
 pub struct GridSearch {
     grid: BitGrid,
-    components: Components,
+    components: GridComponents,
     informed: bool,
     /// Cells and a blocked border around them.
     stride: usize,
@@ -98,7 +98,7 @@ impl GridSearch {
         }
         Self {
             grid: grid.clone(),
-            components: Components::new(grid),
+            components: GridComponents::new(grid),
             informed,
             stride,
             free,

@@ -1,4 +1,4 @@
-use super::parameters::NavigateParameters;
+use super::parameters::NavigatorParameters;
 use crate::geometry::Point;
 use crate::io::{Error, ErrorKind, Result};
 use crate::world::{BitGrid, Clearance, GridCell, World};
@@ -34,7 +34,7 @@ pub(super) const MAX_STRAY: f64 = 0.2;
 const ENOUGH: u8 = 3;
 
 impl Chart {
-    pub(super) fn new(world: &World, parameters: &NavigateParameters) -> Result<Self> {
+    pub(super) fn new(world: &World, parameters: &NavigatorParameters) -> Result<Self> {
         let size = world.bounds().size();
         let resolution = parameters.resolution.max((size.x * size.y / MAX_CELLS).sqrt());
         let inexact = resolution * std::f64::consts::FRAC_1_SQRT_2;

@@ -12,5 +12,5 @@ mod sweep;
 mod tests;
 
 pub use navigator::Navigator;
-pub use parameters::NavigateParameters;
-pub use report::{NavigateEvent, NavigateOutcome, NavigatePhase};
+pub use parameters::NavigatorParameters;
+pub use report::{NavigatorEvent, NavigatorOutcome, NavigatorPhase};

@@ -2,8 +2,8 @@ use std::ops::ControlFlow;
 
 use super::chart::{Chart, LEVELS};
 use super::locator::Locator;
-use super::parameters::NavigateParameters;
-use super::report::{NavigateEvent, NavigateOutcome, NavigatePhase};
+use super::parameters::NavigatorParameters;
+use super::report::{NavigatorEvent, NavigatorOutcome, NavigatorPhase};
 use super::route::Route;
 use super::steering::Steering;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
@@ -30,14 +30,14 @@ use crate::world::{GridCell, World};
 ///
 /// # Outcomes
 ///
-/// [`Unreachable`](NavigateOutcome::Unreachable) is told at once if the known world has no way. If what has been seen leaves
+/// [`Unreachable`](NavigatorOutcome::Unreachable) is told at once if the known world has no way. If what has been seen leaves
 /// none, it is forgotten and looked at anew first. A robot that does not get on takes down what is before it, backs off
-/// and plans anew; after several times it is [`Stuck`](NavigateOutcome::Stuck).
+/// and plans anew; after several times it is [`Stuck`](NavigatorOutcome::Stuck).
 #[derive(Debug, Clone)]
 pub struct Navigator {
-    parameters: NavigateParameters,
+    parameters: NavigatorParameters,
     goal: Point,
-    phase: NavigatePhase,
+    phase: NavigatorPhase,
     chart: Chart,
     route: Option<Route>,
     locator: Locator,
@@ -48,7 +48,7 @@ pub struct Navigator {
     /// The noise-filtered hits of the scan in the robot's frame, and those near it.
     points: Vec<Point>,
     near: Vec<Point>,
-    events: Vec<NavigateEvent>,
+    events: Vec<NavigatorEvent>,
     /// What has been seen since the plan was made.
     marks: Vec<GridCell>,
     progress: Progress,
@@ -99,7 +99,7 @@ impl Navigator {
     /// A run through a known world, from a pose to a goal in it.
     ///
     /// Fails if a parameter is out of range, the start or the goal is no finite place, or the world is too large.
-    pub fn new(world: &World, start: Pose, goal: Point, parameters: NavigateParameters) -> Result<Self> {
+    pub fn new(world: &World, start: Pose, goal: Point, parameters: NavigatorParameters) -> Result<Self> {
         parameters.validate()?;
         if !start.is_finite() {
             return Err(Error::invalid_input("start", format!("{start:?}"), "finite numbers"));
@@ -111,7 +111,7 @@ impl Navigator {
             chart: Chart::new(world, &parameters)?,
             parameters,
             goal,
-            phase: NavigatePhase::Looking,
+            phase: NavigatorPhase::Looking,
             route: None,
             locator: Locator::new(world, start),
             start,
@@ -135,13 +135,13 @@ impl Navigator {
             widened_at: start.position(),
         };
         if !this.chart.is_open(start.position()) || !this.plan(LEVELS) {
-            this.end(NavigateOutcome::Unreachable);
+            this.end(NavigatorOutcome::Unreachable);
         }
         Ok(this)
     }
 
     /// What the robot is doing.
-    pub fn phase(&self) -> NavigatePhase {
+    pub fn phase(&self) -> NavigatorPhase {
         self.phase
     }
 
@@ -176,34 +176,34 @@ impl Navigator {
     }
 
     /// Takes the events that have happened since the last call.
-    pub fn take_events(&mut self) -> Vec<NavigateEvent> {
+    pub fn take_events(&mut self) -> Vec<NavigatorEvent> {
         std::mem::take(&mut self.events)
     }
 
-    fn end(&mut self, outcome: NavigateOutcome) {
-        if !matches!(self.phase, NavigatePhase::Ended(_)) {
-            self.phase = NavigatePhase::Ended(outcome);
-            self.events.push(NavigateEvent::End(outcome));
+    fn end(&mut self, outcome: NavigatorOutcome) {
+        if !matches!(self.phase, NavigatorPhase::Ended(_)) {
+            self.phase = NavigatorPhase::Ended(outcome);
+            self.events.push(NavigatorEvent::End(outcome));
         }
     }
 
     /// What the robot shall do until the next step.
     fn steer(&mut self, observation: &LidarObservation) -> Result<Twist> {
-        if matches!(self.phase, NavigatePhase::Ended(_)) {
+        if matches!(self.phase, NavigatorPhase::Ended(_)) {
             return Ok(Twist::STOP);
         }
         self.perceive(observation)?;
         if self.goal_distance() <= self.parameters.goal_tolerance {
-            self.end(NavigateOutcome::Reached);
+            self.end(NavigatorOutcome::Reached);
         }
         Ok(match self.phase {
-            NavigatePhase::Looking => {
+            NavigatorPhase::Looking => {
                 self.look();
                 Twist::STOP
             }
-            NavigatePhase::Driving => self.drive(observation.speed),
-            NavigatePhase::BackingOff => self.back_off(),
-            NavigatePhase::Ended(_) => Twist::STOP,
+            NavigatorPhase::Driving => self.drive(observation.speed),
+            NavigatorPhase::BackingOff => self.back_off(),
+            NavigatorPhase::Ended(_) => Twist::STOP,
         })
     }
 
@@ -235,7 +235,7 @@ impl Navigator {
         if self.left > 0 {
             return;
         }
-        self.phase = NavigatePhase::Driving;
+        self.phase = NavigatorPhase::Driving;
         if !self.plan(LEVELS) {
             self.lose_way();
         }
@@ -248,7 +248,7 @@ impl Navigator {
             (0..levels).filter_map(|level| Route::new(&self.chart, level, from, self.goal, radius));
         let Some(route) = routes.next() else { return false };
         let clearance = self.chart.clearance(route.level);
-        self.events.push(NavigateEvent::Planned { length: route.length(), clearance });
+        self.events.push(NavigatorEvent::Planned { length: route.length(), clearance });
         self.progress.least = f64::INFINITY;
         self.marks.clear();
         self.route = Some(route);
@@ -262,13 +262,13 @@ impl Navigator {
         }
         self.route = None;
         if !self.chart.forget() || self.doubts >= MAX_DOUBTS {
-            return self.end(NavigateOutcome::Unreachable);
+            return self.end(NavigatorOutcome::Unreachable);
         }
         self.doubts += 1;
-        self.events.push(NavigateEvent::Doubted { point: self.pose.position() });
+        self.events.push(NavigatorEvent::Doubted { point: self.pose.position() });
         self.marks.clear();
         self.left = (LOOKING_TIME / self.parameters.period).ceil() as u32;
-        self.phase = NavigatePhase::Looking;
+        self.phase = NavigatorPhase::Looking;
     }
 
     /// Follows the path.
@@ -298,7 +298,7 @@ impl Navigator {
             return false;
         };
         if changed {
-            self.events.push(NavigateEvent::Replanned { point: position, length: route.length() });
+            self.events.push(NavigatorEvent::Replanned { point: position, length: route.length() });
             self.progress.least = f64::INFINITY;
         }
         true
@@ -334,7 +334,7 @@ impl Navigator {
     /// Takes down what is before the robot and begins to back off.
     fn give_way(&mut self) -> Twist {
         let position = self.pose.position();
-        self.events.push(NavigateEvent::Blocked { point: position });
+        self.events.push(NavigatorEvent::Blocked { point: position });
         let progress = &mut self.progress;
         (progress.idle, progress.waiting, progress.least) = (0.0, 0.0, f64::INFINITY);
         if (position - progress.blocked_at).norm() > 5.0 * TOUCHING {
@@ -343,7 +343,7 @@ impl Navigator {
         progress.blocked += 1;
         progress.blocked_at = position;
         if progress.blocked > MAX_BLOCKED {
-            self.end(NavigateOutcome::Stuck);
+            self.end(NavigatorOutcome::Stuck);
             return Twist::STOP;
         }
         if progress.blocked.is_multiple_of(3) {
@@ -355,7 +355,7 @@ impl Navigator {
         for point in self.points.iter().filter(|point| point.x > 0.0 && point.coords.norm() < reach) {
             self.marks.extend(self.chart.insist(self.pose.to_world(*point)));
         }
-        self.phase = NavigatePhase::BackingOff;
+        self.phase = NavigatorPhase::BackingOff;
         self.left = (BACKING_TIME / self.parameters.period).ceil() as u32;
         self.back_off()
     }
@@ -364,7 +364,7 @@ impl Navigator {
         self.left = self.left.saturating_sub(1);
         let twist = self.steering(self.parameters.least_clearance).safe(Twist::new(-BACKING_SPEED, 0.0));
         if self.left == 0 || twist.linear > -0.2 * BACKING_SPEED {
-            self.phase = NavigatePhase::Driving;
+            self.phase = NavigatorPhase::Driving;
             return Twist::STOP;
         }
         twist
@@ -379,7 +379,7 @@ impl Navigator {
 impl Behaviour for Navigator {
     type Observation = LidarObservation;
     type Command = Twist;
-    type Outcome = NavigateOutcome;
+    type Outcome = NavigatorOutcome;
 
     fn period(&self) -> f64 {
         self.parameters.period
@@ -388,12 +388,12 @@ impl Behaviour for Navigator {
     fn step(&mut self, _time: f64, seen: &LidarObservation) -> Decision<Self> {
         let twist = self.steer(seen)?;
         Ok(match self.phase {
-            NavigatePhase::Ended(outcome) => ControlFlow::Break(outcome),
+            NavigatorPhase::Ended(outcome) => ControlFlow::Break(outcome),
             _ => ControlFlow::Continue(twist),
         })
     }
 
-    fn halt(&mut self, halt: Halt) -> NavigateOutcome {
+    fn halt(&mut self, halt: Halt) -> NavigatorOutcome {
         self.end(halt.into());
         halt.into()
     }

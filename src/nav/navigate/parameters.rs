@@ -4,7 +4,7 @@ use crate::world::Footprint;
 
 /// What a [`Navigator`](super::Navigator) goes by. Lengths in metres, speeds in metres per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NavigateParameters {
+pub struct NavigatorParameters {
     /// The robot's outline.
     pub footprint: Footprint,
     /// The free space beside the outline that the plan keeps where there is room.
@@ -26,7 +26,7 @@ pub struct NavigateParameters {
     pub period: f64,
 }
 
-impl NavigateParameters {
+impl NavigatorParameters {
     /// Parameters for a robot with an outline; distances are scaled to the radius of the circle that holds it.
     pub fn for_footprint(footprint: Footprint) -> Self {
         let radius = footprint.bounding_radius();
@@ -67,7 +67,7 @@ impl NavigateParameters {
     }
 }
 
-impl Default for NavigateParameters {
+impl Default for NavigatorParameters {
     /// For the S4's disc of 60 mm.
     fn default() -> Self {
         Self::for_footprint(Footprint::Disc { radius: 0.060 })

@@ -3,7 +3,7 @@ use crate::io::control::halts;
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NavigateOutcome {
+pub enum NavigatorOutcome {
     /// The robot is at the goal.
     Reached,
     /// No way leads to the goal, by the known world and what has been seen.
@@ -16,7 +16,7 @@ pub enum NavigateOutcome {
     Stopped,
 }
 
-halts!(NavigateOutcome {
+halts!(NavigatorOutcome {
     Reached: "the goal is reached",
     Unreachable: "no way leads to the goal",
     Stuck: "the robot makes no progress",
@@ -24,7 +24,7 @@ halts!(NavigateOutcome {
 
 /// What the robot is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NavigatePhase {
+pub enum NavigatorPhase {
     /// Standing and looking.
     Looking,
     /// Following the path.
@@ -32,13 +32,13 @@ pub enum NavigatePhase {
     /// Backing off from what is in the way.
     BackingOff,
     /// Standing, with a verdict.
-    Ended(NavigateOutcome),
+    Ended(NavigatorOutcome),
 }
 
 /// Something worth telling that happened in a step. Points are in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub enum NavigateEvent {
+pub enum NavigatorEvent {
     /// There is a first plan, or one with another clearance.
     Planned {
         /// Metres to the goal.
@@ -64,5 +64,5 @@ pub enum NavigateEvent {
         point: Point,
     },
     /// The run is over.
-    End(NavigateOutcome),
+    End(NavigatorOutcome),
 }

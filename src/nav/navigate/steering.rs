@@ -1,4 +1,4 @@
-use super::parameters::NavigateParameters;
+use super::parameters::NavigatorParameters;
 use super::sweep::Sweep;
 use crate::geometry::{Point, Twist, direction, math};
 use crate::nav::surroundings::Surroundings;
@@ -6,7 +6,7 @@ use crate::nav::surroundings::Surroundings;
 /// How a robot steers past what it sees.
 #[derive(Debug)]
 pub(super) struct Steering<'a> {
-    pub(super) parameters: &'a NavigateParameters,
+    pub(super) parameters: &'a NavigatorParameters,
     pub(super) surroundings: &'a Surroundings,
     /// What is seen near the robot, in its frame.
     pub(super) points: &'a [Point],
@@ -91,7 +91,7 @@ mod tests {
         ) {
             let sides = Aabb::new(Point::new(-0.05, -0.04), Point::new(0.09, 0.06));
             let footprint = if long { Footprint::Rectangle(sides) } else { Footprint::Disc { radius: 0.06 } };
-            let parameters = NavigateParameters::for_footprint(footprint);
+            let parameters = NavigatorParameters::for_footprint(footprint);
             let margin = 0.5 * parameters.least_clearance;
             let points: Vec<Point> = places.iter().map(|&(r, a)| Point::origin() + direction(a) * r).collect();
             let steering = Steering {

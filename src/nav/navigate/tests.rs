@@ -15,12 +15,12 @@ fn rooms(door: f64) -> World {
 
 fn navigator(door: f64) -> Navigator {
     let (start, goal) = (Pose::new(0.3, 0.3, 0.0), Point::new(1.7, 0.7));
-    Navigator::new(&rooms(door), start, goal, NavigateParameters::default()).unwrap()
+    Navigator::new(&rooms(door), start, goal, NavigatorParameters::default()).unwrap()
 }
 
 fn clearance_of(navigator: &mut Navigator) -> f64 {
     let planned = navigator.take_events().into_iter().find_map(|event| match event {
-        NavigateEvent::Planned { clearance, .. } => Some(clearance),
+        NavigatorEvent::Planned { clearance, .. } => Some(clearance),
         _ => None,
     });
     planned.unwrap()
@@ -31,18 +31,18 @@ fn narrow_doors_are_passed_with_less_clearance_and_closed_ones_told_at_once() {
     assert!((clearance_of(&mut navigator(0.5)) - 0.039).abs() < 1e-9);
     assert!((clearance_of(&mut navigator(0.18)) - 0.012).abs() < 1e-9);
     let mut closed = navigator(0.1);
-    assert_eq!(closed.phase(), NavigatePhase::Ended(NavigateOutcome::Unreachable));
-    assert_eq!(closed.take_events(), [NavigateEvent::End(NavigateOutcome::Unreachable)]);
+    assert_eq!(closed.phase(), NavigatorPhase::Ended(NavigatorOutcome::Unreachable));
+    assert_eq!(closed.take_events(), [NavigatorEvent::End(NavigatorOutcome::Unreachable)]);
     let decision = closed.step(0.0, &LidarObservation::default()).unwrap();
-    assert_eq!(decision, ControlFlow::Break(NavigateOutcome::Unreachable));
+    assert_eq!(decision, ControlFlow::Break(NavigatorOutcome::Unreachable));
 }
 
 #[test]
 fn goals_in_walls_or_outside_are_unreachable() {
     for goal in [Point::new(1.0, 0.1), Point::new(5.0, 5.0), Point::new(-3.0, 0.5)] {
         let start = Pose::new(0.3, 0.3, 0.0);
-        let navigator = Navigator::new(&rooms(0.5), start, goal, NavigateParameters::default()).unwrap();
-        assert_eq!(navigator.phase(), NavigatePhase::Ended(NavigateOutcome::Unreachable), "{goal:?}");
+        let navigator = Navigator::new(&rooms(0.5), start, goal, NavigatorParameters::default()).unwrap();
+        assert_eq!(navigator.phase(), NavigatorPhase::Ended(NavigatorOutcome::Unreachable), "{goal:?}");
     }
 }
 
@@ -50,22 +50,22 @@ fn goals_in_walls_or_outside_are_unreachable() {
 fn starts_in_walls_or_outside_lead_nowhere() {
     for start in [Pose::new(1.0, 0.1, 0.0), Pose::new(5.0, 5.0, 0.0), Pose::new(-3.0, 0.5, 0.0)] {
         let goal = Point::new(1.7, 0.7);
-        let navigator = Navigator::new(&rooms(0.5), start, goal, NavigateParameters::default()).unwrap();
-        assert_eq!(navigator.phase(), NavigatePhase::Ended(NavigateOutcome::Unreachable), "{start:?}");
+        let navigator = Navigator::new(&rooms(0.5), start, goal, NavigatorParameters::default()).unwrap();
+        assert_eq!(navigator.phase(), NavigatorPhase::Ended(NavigatorOutcome::Unreachable), "{start:?}");
     }
 }
 
 #[test]
 fn nonsense_is_refused() {
-    let good = NavigateParameters::default();
+    let good = NavigatorParameters::default();
     let new =
         |goal: Point, parameters| Navigator::new(&rooms(0.5), Pose::new(0.3, 0.3, 0.0), goal, parameters);
     assert!(new(Point::new(f64::NAN, 0.0), good).is_err());
     for bad in [
-        NavigateParameters { clearance: 0.001, ..good },
-        NavigateParameters { clearance: f64::NAN, ..good },
-        NavigateParameters { resolution: 0.0, ..good },
-        NavigateParameters { period: f64::INFINITY, ..good },
+        NavigatorParameters { clearance: 0.001, ..good },
+        NavigatorParameters { clearance: f64::NAN, ..good },
+        NavigatorParameters { resolution: 0.0, ..good },
+        NavigatorParameters { period: f64::INFINITY, ..good },
     ] {
         assert!(new(Point::new(1.0, 0.5), bad).is_err());
     }

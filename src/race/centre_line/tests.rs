@@ -83,16 +83,16 @@ fn too_few_cones_or_none_ahead() {
     let p = CentreLineParameters::default();
     let two = [Cone::unknown(Point::origin()); 2];
     let error = CentreLine::from_cones(&two, Pose::default(), &p).unwrap_err();
-    assert_eq!(error, PlanError::TooFew { found: 2, needed: 3 });
+    assert_eq!(error, LineError::TooFew { found: 2, needed: 3 });
     let far: Vec<Cone> =
         (0..9).map(|i| Cone::unknown(Point::new(90.0 + f64::from(i % 3), f64::from(i / 3)))).collect();
-    assert_eq!(CentreLine::from_cones(&far, Pose::default(), &p).unwrap_err(), PlanError::NoWay);
+    assert_eq!(CentreLine::from_cones(&far, Pose::default(), &p).unwrap_err(), LineError::NoWay);
     let line: Vec<Cone> = (0..9).map(|i| Cone::unknown(Point::new(f64::from(i), 0.0))).collect();
-    assert_eq!(CentreLine::from_cones(&line, Pose::default(), &p).unwrap_err(), PlanError::NoWay);
+    assert_eq!(CentreLine::from_cones(&line, Pose::default(), &p).unwrap_err(), LineError::NoWay);
     let mut bad = far;
     bad[4].position.x = f64::NAN;
     assert_eq!(
         CentreLine::from_cones(&bad, Pose::default(), &p).unwrap_err(),
-        PlanError::Degenerate { index: 4 }
+        LineError::Degenerate { index: 4 }
     );
 }

@@ -5,15 +5,15 @@ use crate::geometry::{Point, Pose, Twist};
 use crate::io::LidarScan;
 use crate::parameter::{require, require_positive, require_up_to};
 use crate::race::cone::{Cone, ConeColour};
-use crate::race::error::PlanError;
-use crate::race::hold::Hold;
+use crate::race::error::LineError;
+use crate::race::grip::GripLimit;
 use crate::race::map::{ConeMap, ConeMapParameters};
 use crate::race::profile::{CarLimits, SpeedProfile};
 use crate::race::racer::RacerParameters;
 use crate::race::racing_line::CarOutline;
 use crate::race::reckoning::Reckoning;
-use crate::race::sight::{Sighting, sightings};
-use crate::race::tracker::{LineTracker, TrackerParameters};
+use crate::race::sight::{ConeSighting, sightings};
+use crate::race::tracker::{LineTracker, LineTrackerParameters};
 use crate::race::tyres::Tyres;
 
 /// How an event is driven.
@@ -26,7 +26,7 @@ pub struct EventParameters {
     /// How the map is made.
     pub map: ConeMapParameters,
     /// How lines are followed.
-    pub tracker: TrackerParameters,
+    pub tracker: LineTrackerParameters,
     /// Metres from the nose to the finish of an acceleration: from where the car stands to the start line, and 75 m.
     pub strip: f64,
     /// Metres behind the finish at which the nose stands at the end: of an acceleration, and of a skidpad.
@@ -45,7 +45,7 @@ impl Default for EventParameters {
         Self {
             // A circle that stays the same asks less of steering and tyres than bends that come and go.
             limits: CarLimits {
-                hold: Hold::Balance(Tyres { grip: 11.7, ..Tyres::default() }),
+                hold: GripLimit::Balance(Tyres { grip: 11.7, ..Tyres::default() }),
                 brake: 10.0,
                 ..limits
             },
@@ -194,7 +194,7 @@ impl EventRacer {
 
     /// The same for what was found already, by a lidar or a camera. It is called once in every
     /// [`period`](EventParameters::period). Where odometry is no number, the car brakes.
-    pub fn decide(&mut self, odometry: Pose, speed: Twist, seen: &[Sighting]) -> Twist {
+    pub fn decide(&mut self, odometry: Pose, speed: Twist, seen: &[ConeSighting]) -> Twist {
         if !(odometry.is_finite() && speed.is_finite()) {
             return Twist::STOP;
         }
@@ -217,7 +217,7 @@ impl EventRacer {
     }
 
     /// Finds the layout, or follows it, and tells for how long nothing that is seen has belonged to it.
-    fn localise(&mut self, fresh: &[Cone], seen: &[Sighting]) {
+    fn localise(&mut self, fresh: &[Cone], seen: &[ConeSighting]) {
         let Some(layout) = &mut self.layout else {
             self.blind = if seen.is_empty() { self.blind + self.parameters.period } else { 0.0 };
             if self.time >= LOOKS {
@@ -271,7 +271,7 @@ impl EventRacer {
     }
 
     /// The line in the frame of a layout, with its speeds.
-    fn plan(&self, shape: EventShape) -> Result<(Vec<Point>, SpeedProfile), PlanError> {
+    fn plan(&self, shape: EventShape) -> Result<(Vec<Point>, SpeedProfile), LineError> {
         let p = &self.parameters;
         // The line is that of a point behind the nose.
         let behind = p.outline.nose - p.outline.ahead;

@@ -1,6 +1,6 @@
 use super::course::EventCourse;
 use crate::geometry::{Point, Pose};
-use crate::race::referee::Verdict;
+use crate::race::referee::RaceScore;
 
 /// Takes the times of an event and looks whether a car stays on its course.
 #[derive(Debug, Clone)]
@@ -8,7 +8,7 @@ pub struct EventReferee {
     course: EventCourse,
     wheels: [Point; 4],
     nose: Point,
-    verdict: Verdict,
+    verdict: RaceScore,
     nearest: usize,
     outside: bool,
     /// When each line was crossed: the beginnings and the ends of the times.
@@ -26,12 +26,12 @@ impl EventReferee {
     /// A referee for a car with wheels at some places of its frame, whose nose breaks the light barriers.
     pub fn new(course: EventCourse, wheels: [Point; 4], nose: Point) -> Self {
         let crossed = vec![[None; 2]; course.timed().len()];
-        let verdict = Verdict::default();
+        let verdict = RaceScore::default();
         Self { course, wheels, nose, verdict, nearest: 0, outside: false, crossed, last: None }
     }
 
     /// What was seen so far. Its lap times are those of the event.
-    pub fn verdict(&self) -> &Verdict {
+    pub fn verdict(&self) -> &RaceScore {
         &self.verdict
     }
 

@@ -7,7 +7,8 @@ use crate::geometry::{Point, Pose, direction};
 use crate::io::sim::{SimOptions, Simulation, TICK};
 use crate::io::{Camera, Clock, Drive, Lidar, LidarScan, Resolution, control};
 use crate::race::{
-    CameraMount, CameraSight, CarLimits, CarOutline, Cone, ConeColour, ConeTrack, Event, RaceOutcome, Verdict,
+    CameraMount, CameraSight, CarLimits, CarOutline, Cone, ConeColour, ConeTrack, Event, RaceOutcome,
+    RaceScore,
 };
 use crate::world::RobotSpec;
 
@@ -75,7 +76,7 @@ fn world(track: &ConeTrack, seed: u64) -> Simulation {
 }
 
 /// One run with lidar or camera: what the referee saw, whether all was complete, and how the car ended.
-fn run(track: &ConeTrack, seed: u64, camera: bool) -> (Verdict, bool, EventPhase) {
+fn run(track: &ConeTrack, seed: u64, camera: bool) -> (RaceScore, bool, EventPhase) {
     let course = EventCourse::of(track, &OUTLINE).unwrap();
     let wheels = [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y));
     let mut racer = racer_for(&course);

@@ -3,7 +3,7 @@ use std::fmt::Write as _;
 use super::MOST;
 use super::csv::{field, rows};
 use crate::geometry::Point;
-use crate::race::{Corridor, PlanError};
+use crate::race::{Corridor, LineError};
 use crate::world::formats::{FormatError, Location, shown};
 
 /// Metres from the middle to an edge at most. No track is wider, and wider ones would take long to line with cones.
@@ -24,7 +24,7 @@ pub fn parse_tum(text: &str, file: &str) -> Result<Corridor, FormatError> {
     }
     let rows: Vec<_> =
         numbers.iter().map(|([x, y, right, left], _)| (Point::new(*x, *y), *left, *right)).collect();
-    Corridor::closed(&rows).map_err(|error: PlanError| {
+    Corridor::closed(&rows).map_err(|error: LineError| {
         FormatError::new(file, Location::START, error.to_string(), "a closed centre line")
     })
 }

@@ -1,16 +1,16 @@
 use super::*;
 use crate::race::landmark::SURE;
 
-fn sighting(x: f64, y: f64) -> Sighting {
+fn sighting(x: f64, y: f64) -> ConeSighting {
     let position = Point::new(x, y);
     let range = position.coords.norm();
     let colour = ConeColour::Unknown;
-    Sighting { position, size: 0.1, confidence: 1.0, range, error: 0.03, colour }
+    ConeSighting { position, size: 0.1, confidence: 1.0, range, error: 0.03, colour }
 }
 
 /// A map after some looks from one place.
 fn seen(map: &mut ConeMap, from: Pose, looks: usize, places: &[(f64, f64)]) {
-    let sightings: Vec<Sighting> = places.iter().map(|&(x, y)| sighting(x, y)).collect();
+    let sightings: Vec<ConeSighting> = places.iter().map(|&(x, y)| sighting(x, y)).collect();
     (0..looks).for_each(|_| map.update(from, &sightings));
 }
 
@@ -24,9 +24,9 @@ fn two_things_in_one_scan_are_two_cones() {
 
 #[test]
 fn what_has_no_colour_among_cones_that_have_one_is_none_of_them() {
-    let pale = |x, y| Sighting { confidence: 0.0, ..sighting(x, y) };
-    let blue = |x, y| Sighting { colour: ConeColour::Blue, ..sighting(x, y) };
-    let after = |looks: usize, sightings: &[Sighting]| {
+    let pale = |x, y| ConeSighting { confidence: 0.0, ..sighting(x, y) };
+    let blue = |x, y| ConeSighting { colour: ConeColour::Blue, ..sighting(x, y) };
+    let after = |looks: usize, sightings: &[ConeSighting]| {
         let mut map = ConeMap::new(ConeMapParameters::default()).unwrap();
         (0..looks).for_each(|_| map.update(Pose::default(), sightings));
         let places: Vec<f64> = map.cones().map(|cone| cone.position.x).collect();
@@ -42,8 +42,8 @@ fn what_has_no_colour_among_cones_that_have_one_is_none_of_them() {
 
 #[test]
 fn what_has_no_colour_is_not_driven_into_and_a_known_cone_keeps_its_colour() {
-    let painted = |x| Sighting { colour: ConeColour::Blue, ..sighting(x, 1.5) };
-    let pale = |seen: Sighting| Sighting { confidence: 0.0, colour: ConeColour::Unknown, ..seen };
+    let painted = |x| ConeSighting { colour: ConeColour::Blue, ..sighting(x, 1.5) };
+    let pale = |seen: ConeSighting| ConeSighting { confidence: 0.0, colour: ConeColour::Unknown, ..seen };
     let mut map = ConeMap::new(ConeMapParameters::default()).unwrap();
     let row = [painted(5.0), painted(6.5), painted(8.0), painted(9.5)];
     let seen = [&row[..], &[pale(sighting(6.0, 3.0))]].concat();
@@ -51,7 +51,7 @@ fn what_has_no_colour_is_not_driven_into_and_a_known_cone_keeps_its_colour() {
     let others: Vec<Point> = map.fresh_others().collect();
     assert!(others.len() == 1 && (others[0] - Point::new(6.0, 3.0)).norm() < 0.01, "{others:?}");
     // A camera that fails after a while takes none of them away.
-    let dark: Vec<Sighting> = seen.into_iter().map(pale).collect();
+    let dark: Vec<ConeSighting> = seen.into_iter().map(pale).collect();
     (0..200).for_each(|_| map.update(Pose::default(), &dark));
     assert_eq!(map.cones().count(), 4);
 }
@@ -74,7 +74,7 @@ fn what_a_car_hides_is_not_forgotten() {
     let mut map = ConeMap::new(ConeMapParameters::default()).unwrap();
     seen(&mut map, Pose::default(), 10, &[(5.0, 1.9), (8.0, -0.6)]);
     // The second one is behind the right end of its rear.
-    let car = Sighting { size: 1.4, ..sighting(6.0, 0.0) };
+    let car = ConeSighting { size: 1.4, ..sighting(6.0, 0.0) };
     (0..20).for_each(|_| map.update(Pose::default(), &[sighting(5.0, 1.9), car]));
     assert_eq!(map.cones().count(), 2);
     // It is gone, and so is the cone.
@@ -162,7 +162,7 @@ fn a_lap_that_begins_later_closes_as_well() {
             let car = on_stadium(along);
             let ahead = cones.iter().map(|cone| car.to_local(*cone));
             let near = ahead.filter(|place| place.x > 0.0 && place.coords.norm() < 15.0);
-            let sightings: Vec<Sighting> = near.map(|place| sighting(place.x, place.y)).collect();
+            let sightings: Vec<ConeSighting> = near.map(|place| sighting(place.x, place.y)).collect();
             (0..3).for_each(|_| map.update(car, &sightings));
             along += 1.0;
         }

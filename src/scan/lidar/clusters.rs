@@ -1,4 +1,4 @@
-use super::ExtractionParameters;
+use super::ScanFeaturesParameters;
 use crate::geometry::{Point, direction, math};
 use crate::io::LidarScan;
 
@@ -26,7 +26,7 @@ const SIGMAS: f64 = 6.0;
 
 /// Parts a scan where neighbouring beams hit different surfaces (G. A. Borges and M.-J. Aldon, "Line extraction in 2D range
 /// images for mobile robotics", 2004). A cluster that reaches over the scan's ends is whole if the scan goes all round.
-pub(super) fn clusters(scan: &LidarScan, parameters: &ExtractionParameters) -> Vec<Cluster> {
+pub(super) fn clusters(scan: &LidarScan, parameters: &ScanFeaturesParameters) -> Vec<Cluster> {
     let beams = scan.ranges.len();
     let all_round = (scan.angle_increment.abs() * beams as f64 - std::f64::consts::TAU).abs() < 1e-6;
     let breaks: Vec<bool> = (0..beams)
@@ -62,7 +62,7 @@ fn hit(scan: &LidarScan, beam: usize) -> Option<Hit> {
 }
 
 /// Whether two neighbouring beams hit different surfaces, or one of them nothing.
-fn is_break(scan: &LidarScan, one: usize, other: usize, parameters: &ExtractionParameters) -> bool {
+fn is_break(scan: &LidarScan, one: usize, other: usize, parameters: &ScanFeaturesParameters) -> bool {
     let (a, b) = (scan.ranges[one], scan.ranges[other]);
     match (a.is_finite(), b.is_finite()) {
         (true, true) => {}

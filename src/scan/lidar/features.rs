@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use super::ExtractionParameters;
+use super::ScanFeaturesParameters;
 use super::clusters::{Cluster, Hit, clusters};
 use super::split_merge::{Part, straight_parts};
 use crate::geometry::{FittedLine, Point, angle_difference};
@@ -59,17 +59,17 @@ pub struct ScanFeatures {
 /// use roverlab::geometry::Pose;
 /// use roverlab::io::Lidar;
 /// use roverlab::io::sim::{SimOptions, Simulation};
-/// use roverlab::scan::{ExtractionParameters, extract_features};
+/// use roverlab::scan::{ScanFeaturesParameters, extract_features};
 /// use roverlab::world::{RobotSpec, Scene, World};
 /// # fn main() -> roverlab::io::Result<()> {
 /// let scene = Scene::with_robot(World::walled(2.0, 1.5), RobotSpec::s4(), Pose::new(0.8, 0.6, 0.3));
 /// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
-/// let features = extract_features(&simulation.robot(0)?.scan()?, &ExtractionParameters::default())?;
+/// let features = extract_features(&simulation.robot(0)?.scan()?, &ScanFeaturesParameters::default())?;
 /// assert_eq!((features.walls.len(), features.corners.len(), features.objects.len()), (4, 4, 0));
 /// # Ok(())
 /// # }
 /// ```
-pub fn extract_features(scan: &LidarScan, parameters: &ExtractionParameters) -> Result<ScanFeatures> {
+pub fn extract_features(scan: &LidarScan, parameters: &ScanFeaturesParameters) -> Result<ScanFeatures> {
     parameters.validate()?;
     let mut features = ScanFeatures::default();
     if scan.ranges.is_empty() {
@@ -100,7 +100,7 @@ fn wall(hits: &[Hit], part: &Part) -> ScanWall {
 }
 
 /// The corner between two walls that follow each other counter-clockwise, if it lies near where they end.
-fn corner(one: &ScanWall, other: &ScanWall, parameters: &ExtractionParameters) -> Option<ScanCorner> {
+fn corner(one: &ScanWall, other: &ScanWall, parameters: &ScanFeaturesParameters) -> Option<ScanCorner> {
     /// Walls that turn by less make no corner, in radians.
     const LEAST_TURN: f64 = 0.2;
     let turn = angle_difference(other.line.angle(), one.line.angle());
@@ -111,7 +111,7 @@ fn corner(one: &ScanWall, other: &ScanWall, parameters: &ExtractionParameters) -
 }
 
 /// Where nothing parts the scan, its first and last wall may meet or be the same.
-fn close_round(features: &mut ScanFeatures, parameters: &ExtractionParameters) {
+fn close_round(features: &mut ScanFeatures, parameters: &ScanFeaturesParameters) {
     let [first, .., last] = features.walls.as_slice() else { return };
     let gap = (first.ends[0] - last.ends[1]).norm();
     if gap > 2.0 * parameters.corner_gap {
@@ -137,7 +137,7 @@ fn close_round(features: &mut ScanFeatures, parameters: &ExtractionParameters) {
 }
 
 /// The object that a cluster is, if it is one.
-fn object(cluster: &Cluster, scan: &LidarScan, parameters: &ExtractionParameters) -> Option<ScanObject> {
+fn object(cluster: &Cluster, scan: &LidarScan, parameters: &ScanFeaturesParameters) -> Option<ScanObject> {
     if cluster.stands_before != [true; 2] {
         return None;
     }
@@ -175,7 +175,7 @@ mod tests {
         let scene = Scene::with_robot(world.clone(), RobotSpec::s4(), pose);
         let simulation = Simulation::new(&scene, SimOptions::with_noise(noise, seed)).unwrap();
         let scan = simulation.robot(0).unwrap().scan().unwrap();
-        extract_features(&scan, &ExtractionParameters::default()).unwrap()
+        extract_features(&scan, &ScanFeaturesParameters::default()).unwrap()
     }
 
     /// Metres from where something is to where the scan shows it, in the world.
@@ -275,17 +275,17 @@ mod tests {
         fn nothing_panics(ranges in prop::collection::vec(prop_oneof![0.0..9.0f64, Just(f64::INFINITY)], 0..400)) {
             let angle_increment = units::from_deg(360.0) / ranges.len().max(1) as f64;
             let scan = LidarScan { angle_min: -3.0, angle_increment, range_max: 9.0, ranges, ..LidarScan::default() };
-            prop_assert!(extract_features(&scan, &ExtractionParameters::default()).is_ok());
+            prop_assert!(extract_features(&scan, &ScanFeaturesParameters::default()).is_ok());
         }
     }
 
     #[test]
     fn wrong_parameters_are_refused() {
-        let good = ExtractionParameters::default();
+        let good = ScanFeaturesParameters::default();
         for bad in [
-            ExtractionParameters { least_wall: 0.0, ..good },
-            ExtractionParameters { range_error: f64::NAN, ..good },
-            ExtractionParameters { least_points: 1, ..good },
+            ScanFeaturesParameters { least_wall: 0.0, ..good },
+            ScanFeaturesParameters { range_error: f64::NAN, ..good },
+            ScanFeaturesParameters { least_points: 1, ..good },
         ] {
             assert!(extract_features(&LidarScan::default(), &bad).is_err());
         }

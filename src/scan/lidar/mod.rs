@@ -9,5 +9,5 @@ mod split_merge;
 
 pub use extrema::{Extremum, ExtremumKind, local_extrema};
 pub use features::{ScanCorner, ScanFeatures, ScanObject, ScanWall, extract_features};
-pub use parameters::ExtractionParameters;
+pub use parameters::ScanFeaturesParameters;
 pub use plot::plot_scan;

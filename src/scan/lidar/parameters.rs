@@ -3,7 +3,7 @@ use crate::parameter::{require, require_not_negative, require_positive};
 
 /// What [`extract_features`](super::extract_features) goes by.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ExtractionParameters {
+pub struct ScanFeaturesParameters {
     /// The standard deviation of a range reading, in metres.
     pub range_error: f64,
     /// The shortest wall, in metres.
@@ -16,14 +16,14 @@ pub struct ExtractionParameters {
     pub corner_gap: f64,
 }
 
-impl Default for ExtractionParameters {
+impl Default for ScanFeaturesParameters {
     /// For the lidar of the real robot.
     fn default() -> Self {
         Self { range_error: 0.01, least_wall: 0.12, least_points: 6, largest_object: 0.35, corner_gap: 0.3 }
     }
 }
 
-impl ExtractionParameters {
+impl ScanFeaturesParameters {
     /// Fails with the name of the parameter that is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require_positive("least wall", self.least_wall)?;

@@ -1,4 +1,4 @@
-use super::ExtractionParameters;
+use super::ScanFeaturesParameters;
 use super::clusters::Hit;
 use crate::geometry::{FittedLine, Point, angle_difference};
 
@@ -21,7 +21,7 @@ const ALIKE: f64 = 0.12;
 ///
 /// A part is split at its farthest point from the line between its ends as long as that is farther than ranges err;
 /// neighbours that one line fits are merged; where two meet, the points beside the joint go to the line that they fit.
-pub(super) fn straight_parts(hits: &[Hit], parameters: &ExtractionParameters) -> Vec<Part> {
+pub(super) fn straight_parts(hits: &[Hit], parameters: &ScanFeaturesParameters) -> Vec<Part> {
     let mut parts = Vec::new();
     split(hits, 0, hits.len(), parameters, &mut parts);
     merge(hits, parameters, &mut parts);
@@ -39,7 +39,7 @@ fn fit(hits: &[Hit], first: usize, end: usize) -> Option<FittedLine> {
     FittedLine::through(hits[first..end].iter().map(|hit| hit.point))
 }
 
-fn split(hits: &[Hit], first: usize, end: usize, parameters: &ExtractionParameters, parts: &mut Vec<Part>) {
+fn split(hits: &[Hit], first: usize, end: usize, parameters: &ScanFeaturesParameters, parts: &mut Vec<Part>) {
     // By a stack of its own: a scan may have any number of beams.
     let mut stack = vec![(first, end)];
     while let Some((first, end)) = stack.pop() {
@@ -77,7 +77,7 @@ fn farthest(hits: &[Hit], first: usize, end: usize) -> Option<(usize, f64)> {
 
 /// Puts the joints of neighbours to where both lines together fit best: the farthest point, by noise, is rarely the one in
 /// the corner, and one point of the other wall turns the line through a short one.
-fn share_joints(hits: &[Hit], parameters: &ExtractionParameters, parts: &mut [Part]) {
+fn share_joints(hits: &[Hit], parameters: &ScanFeaturesParameters, parts: &mut [Part]) {
     /// Hits to either side of a joint that may change over.
     const REACH: usize = 6;
     let misfit = |line: &FittedLine| line.rms * line.rms * line.points as f64;
@@ -100,7 +100,7 @@ fn share_joints(hits: &[Hit], parameters: &ExtractionParameters, parts: &mut [Pa
     }
 }
 
-fn merge(hits: &[Hit], parameters: &ExtractionParameters, parts: &mut Vec<Part>) {
+fn merge(hits: &[Hit], parameters: &ScanFeaturesParameters, parts: &mut Vec<Part>) {
     let mut merged: Vec<Part> = Vec::with_capacity(parts.len());
     for &part in &*parts {
         let joint = merged.last().and_then(|last| {

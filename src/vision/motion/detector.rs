@@ -1,5 +1,5 @@
 use crate::parameter::{require, require_not_negative, require_positive};
-use crate::vision::{Error, GrayView, mean_difference, view::require_size};
+use crate::vision::{GrayView, ImageError, mean_difference, view::require_size};
 
 use super::range::Ranges;
 
@@ -125,7 +125,7 @@ impl Block {
 impl MotionDetector {
     /// A detector. Fails unless blocks have 2 to 256 pixels a side, the threshold is a number of at least 0 and the least
     /// noise one above 0.
-    pub fn new(parameters: MotionParameters) -> Result<Self, Error> {
+    pub fn new(parameters: MotionParameters) -> Result<Self, ImageError> {
         let MotionParameters { block, threshold, least_noise } = parameters;
         require("motion block", block as f64, (2..=256).contains(&block), "2 to 256")?;
         require_not_negative("motion threshold", threshold)?;
@@ -140,7 +140,7 @@ impl MotionDetector {
     }
 
     /// What moved between two images of one size, by a camera that stood.
-    pub fn compare(&mut self, first: GrayView<'_>, second: GrayView<'_>) -> Result<Motion, Error> {
+    pub fn compare(&mut self, first: GrayView<'_>, second: GrayView<'_>) -> Result<Motion, ImageError> {
         self.compare_loosely(first, second, 0)
     }
 
@@ -150,7 +150,7 @@ impl MotionDetector {
         first: GrayView<'_>,
         second: GrayView<'_>,
         slack: usize,
-    ) -> Result<Motion, Error> {
+    ) -> Result<Motion, ImageError> {
         require_size("second image", second.size(), first.size())?;
         self.sum(first, second);
         let gain = self.gain();

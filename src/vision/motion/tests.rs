@@ -3,7 +3,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::random::Stream;
-use crate::vision::{Error, GrayView};
+use crate::vision::{GrayView, ImageError};
 
 fn view(image: &GrayImage) -> GrayView<'_> {
     image.try_into().unwrap()
@@ -68,5 +68,5 @@ fn parameters_out_of_range() {
     }
     assert!(TurnCompensator::new(0.0).is_err());
     let (a, b) = (GrayImage::new(4, 4), GrayImage::new(4, 5));
-    assert!(matches!(detector().compare(view(&a), view(&b)), Err(Error::Size { .. })));
+    assert!(matches!(detector().compare(view(&a), view(&b)), Err(ImageError::Size { .. })));
 }

@@ -1,6 +1,6 @@
 use crate::ParameterError;
 use crate::geometry::math;
-use crate::vision::{Error, GrayView, GrayViewMut};
+use crate::vision::{GrayView, GrayViewMut, ImageError};
 
 /// Takes the robot's own turn out of an image, so that what is left of its change is the motion of others (book, section
 /// 11.6).
@@ -38,7 +38,7 @@ const TRUST: f64 = 0.03;
 
 impl TurnCompensator {
     /// For a level camera with a horizontal field of view in radians.
-    pub fn new(field_of_view: f64) -> Result<Self, Error> {
+    pub fn new(field_of_view: f64) -> Result<Self, ImageError> {
         if !(field_of_view > 0.0 && field_of_view < 3.0) {
             let expected = "more than 0 and below 3 radians";
             return Err(ParameterError::new("field of view", field_of_view, expected).into());
@@ -53,7 +53,7 @@ impl TurnCompensator {
         first: GrayView<'_>,
         second: GrayView<'_>,
         angle: f64,
-    ) -> Result<Turned<'_>, Error> {
+    ) -> Result<Turned<'_>, ImageError> {
         crate::vision::view::require_size("second image", second.size(), first.size())?;
         let (width, height) = first.size();
         let focal = 0.5 * width as f64 / math::tan(0.5 * self.field_of_view);

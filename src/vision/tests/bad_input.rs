@@ -1,22 +1,25 @@
 //! What is refused, and how.
 
 use crate::vision::{
-    Border, Canny, CannyThresholds, Error, GaussianKernel, GrayView, GrayViewMut, GrayWeights, HoughLines,
-    HueLimits, HueRange, HueScale, RgbView, gray_into, hue_histogram_into, laplace_into, mean_difference,
-    projections_into,
+    Border, Canny, CannyThresholds, GaussianKernel, GrayView, GrayViewMut, GrayWeights, HoughLines,
+    HueLimits, HueRange, HueScale, ImageError, RgbView, gray_into, hue_histogram_into, laplace_into,
+    mean_difference, projections_into,
 };
 
 #[test]
 fn shapes_that_are_none() {
-    assert_eq!(GrayView::new(&[], 0, 3).unwrap_err(), Error::Empty { width: 0, height: 3 });
-    assert_eq!(GrayView::new(&[1; 5], 2, 3).unwrap_err(), Error::Truncated { found: 5, expected: 6 });
-    assert_eq!(RgbView::new(&[1; 5], 2, 1).unwrap_err(), Error::Truncated { found: 5, expected: 6 });
-    assert_eq!(GrayView::with_stride(&[1; 9], 3, 3, 2).unwrap_err(), Error::Stride { stride: 2, row: 3 });
+    assert_eq!(GrayView::new(&[], 0, 3).unwrap_err(), ImageError::Empty { width: 0, height: 3 });
+    assert_eq!(GrayView::new(&[1; 5], 2, 3).unwrap_err(), ImageError::Truncated { found: 5, expected: 6 });
+    assert_eq!(RgbView::new(&[1; 5], 2, 1).unwrap_err(), ImageError::Truncated { found: 5, expected: 6 });
+    assert_eq!(
+        GrayView::with_stride(&[1; 9], 3, 3, 2).unwrap_err(),
+        ImageError::Stride { stride: 2, row: 3 }
+    );
     assert!(GrayView::with_stride(&[1; 11], 3, 3, 4).is_ok(), "the last row needs no gap behind it");
     let huge = GrayView::with_stride(&[1; 9], 3, usize::MAX, usize::MAX).unwrap_err();
-    assert_eq!(huge, Error::Truncated { found: 9, expected: usize::MAX });
+    assert_eq!(huge, ImageError::Truncated { found: 9, expected: usize::MAX });
     assert!(RgbView::new(&[1; 9], usize::MAX, 2).is_err());
-    assert_eq!(GrayViewMut::new(&mut [], 3, 0).unwrap_err(), Error::Empty { width: 3, height: 0 });
+    assert_eq!(GrayViewMut::new(&mut [], 3, 0).unwrap_err(), ImageError::Empty { width: 3, height: 0 });
     let image = image::GrayImage::new(0, 0);
     assert!(GrayView::try_from(&image).is_err());
 }
@@ -24,9 +27,9 @@ fn shapes_that_are_none() {
 #[test]
 fn regions_outside() {
     let view = GrayView::new(&[0; 12], 4, 3).unwrap();
-    assert_eq!(view.region((2, 0), 3, 1).unwrap_err(), Error::Region { end: (5, 1), size: (4, 3) });
+    assert_eq!(view.region((2, 0), 3, 1).unwrap_err(), ImageError::Region { end: (5, 1), size: (4, 3) });
     assert!(view.region((usize::MAX, 0), 2, 1).is_err());
-    assert_eq!(view.region((0, 0), 0, 1).unwrap_err(), Error::Empty { width: 0, height: 1 });
+    assert_eq!(view.region((0, 0), 0, 1).unwrap_err(), ImageError::Empty { width: 0, height: 1 });
     assert_eq!(view.region((3, 2), 1, 1).unwrap().size(), (1, 1));
 }
 
@@ -36,7 +39,7 @@ fn sizes_that_differ() {
     let (four, three) = (GrayView::new(&a, 4, 3).unwrap(), GrayView::new(&b, 3, 2).unwrap());
     let mut outputs = std::iter::repeat_with(|| GrayViewMut::new(vec![0; 6].leak(), 3, 2).unwrap());
     let mut small = || outputs.next().unwrap();
-    let output = Error::Size { what: "output", found: (3, 2), expected: (4, 3) };
+    let output = ImageError::Size { what: "output", found: (3, 2), expected: (4, 3) };
     assert_eq!(laplace_into(four, small(), Border::Zero).unwrap_err(), output);
     assert_eq!(Canny::new().find_into(four, small(), CannyThresholds::default()).unwrap_err(), output);
     let rgb = RgbView::new(&a, 2, 2).unwrap();

@@ -8,8 +8,8 @@ use super::{Image, images};
 use crate::geometry::math;
 use crate::random::Stream;
 use crate::vision::{
-    Error, GrayView, Hog, HogParameters, HoughSegments, LineSegment, SegmentDefinition, SegmentParameters,
-    hog,
+    GrayView, Hog, HogParameters, HoughSegments, ImageError, LineSegment, SegmentDefinition,
+    SegmentParameters, hog,
 };
 
 /// The histograms of all whole cells, by angles.
@@ -72,7 +72,7 @@ proptest! {
         let mut hog = Hog::new(parameters).unwrap();
         let fits = image.width / cell >= block && image.height / cell >= block;
         if !fits {
-            let refused = matches!(hog.describe(image.view()), Err(Error::Size { .. }));
+            let refused = matches!(hog.describe(image.view()), Err(ImageError::Size { .. }));
             prop_assert!(refused);
             return Ok(());
         }

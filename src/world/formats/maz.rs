@@ -37,7 +37,7 @@ use crate::world::{Object, ObjectKind, Place, Wall, World};
 ///
 /// Columns count from the left, rows from the bottom, both from 0.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Maze {
+pub struct MazGrid {
     columns: usize,
     rows: usize,
     /// Metres from one cell to the next.
@@ -49,7 +49,7 @@ pub struct Maze {
     letters: Vec<Option<char>>,
 }
 
-impl Maze {
+impl MazGrid {
     /// The cell size of files that state none, in metres.
     pub const DEFAULT_CELL: f64 = 0.360;
 
@@ -77,27 +77,27 @@ impl Maze {
         self.rows
     }
 
-    /// Whether there is a wall below the cell of a column and a row; row [`Maze::rows`] means the upper edge.
+    /// Whether there is a wall below the cell of a column and a row; row [`MazGrid::rows`] means the upper edge.
     /// Outside the maze there is none.
     pub fn wall_below(&self, column: usize, row: usize) -> bool {
         column < self.columns && self.horizontal.get(row * self.columns + column).is_some_and(|&wall| wall)
     }
 
-    /// Whether there is a wall to the left of the cell of a column and a row; column [`Maze::columns`] means the
+    /// Whether there is a wall to the left of the cell of a column and a row; column [`MazGrid::columns`] means the
     /// right edge. Outside the maze there is none.
     pub fn wall_left(&self, column: usize, row: usize) -> bool {
         column <= self.columns
             && self.vertical.get(row * (self.columns + 1) + column).is_some_and(|&wall| wall)
     }
 
-    /// Builds or removes the wall that [`Maze::wall_below`] tells of. Outside the maze nothing happens.
+    /// Builds or removes the wall that [`MazGrid::wall_below`] tells of. Outside the maze nothing happens.
     pub fn set_wall_below(&mut self, column: usize, row: usize, wall: bool) {
         if column < self.columns && row <= self.rows {
             self.horizontal[row * self.columns + column] = wall;
         }
     }
 
-    /// Builds or removes the wall that [`Maze::wall_left`] tells of. Outside the maze nothing happens.
+    /// Builds or removes the wall that [`MazGrid::wall_left`] tells of. Outside the maze nothing happens.
     pub fn set_wall_left(&mut self, column: usize, row: usize, wall: bool) {
         if column <= self.columns && row < self.rows {
             self.vertical[row * (self.columns + 1) + column] = wall;
@@ -200,7 +200,7 @@ pub fn parse(text: &str, file: &str) -> Result<Parsed<World>, FormatError> {
 }
 
 /// Reads a maze as a grid.
-pub fn parse_maze(text: &str, file: &str) -> Result<Parsed<Maze>, FormatError> {
+pub fn parse_maze(text: &str, file: &str) -> Result<Parsed<MazGrid>, FormatError> {
     check_length(text, file)?;
     let mut picture = Picture { rows: Vec::new(), sizes: Vec::new(), notes: Notes::new(file) };
     lexer::numbered(text).try_for_each(|(number, line)| picture.line(number, line))?;
@@ -245,7 +245,7 @@ impl<'a> Picture<'a> {
         Err(FormatError::new(self.notes.file, Location { line, column: 1 }, "one more line", expected))
     }
 
-    fn finish(mut self) -> Result<Parsed<Maze>, FormatError> {
+    fn finish(mut self) -> Result<Parsed<MazGrid>, FormatError> {
         let blank = |row: &(usize, &str)| row.1.is_empty();
         let first = self.rows.iter().position(|row| !blank(row));
         let Some(first) = first else {
@@ -254,7 +254,7 @@ impl<'a> Picture<'a> {
         };
         let last = self.rows.iter().rposition(|row| !blank(row)).unwrap_or(first);
         let rows: Vec<_> = self.rows[first..=last].to_vec();
-        let (line, cell) = self.choose_size(first, last).unwrap_or((rows[0].0, Maze::DEFAULT_CELL));
+        let (line, cell) = self.choose_size(first, last).unwrap_or((rows[0].0, MazGrid::DEFAULT_CELL));
         let maze = self.draw(&rows, cell)?;
         self.check_extent(&maze, line)?;
         Ok(self.notes.finish(maze))
@@ -278,7 +278,7 @@ impl<'a> Picture<'a> {
     }
 
     /// The world of the maze must have coordinates that other files can name. `line` tells the size of a cell.
-    fn check_extent(&self, maze: &Maze, line: usize) -> Result<(), FormatError> {
+    fn check_extent(&self, maze: &MazGrid, line: usize) -> Result<(), FormatError> {
         let extent = maze.columns.max(maze.rows) as f64 * maze.cell;
         if extent <= MAX_METRES {
             return Ok(());
@@ -289,13 +289,13 @@ impl<'a> Picture<'a> {
         Err(FormatError::new(self.notes.file, Location { line, column: 1 }, found, expected))
     }
 
-    fn draw(&mut self, rows: &[(usize, &str)], cell: f64) -> Result<Maze, FormatError> {
+    fn draw(&mut self, rows: &[(usize, &str)], cell: f64) -> Result<MazGrid, FormatError> {
         // The uppermost line holds nothing but the upper edge, unless something stands in it.
         let roof = usize::from(!rows[0].1.contains(|c: char| c == '|' || c.is_alphabetic()));
         let count = rows.len() - roof;
         // The last character of a row stands at half the row's length, or begins there.
         let columns = rows.iter().map(|row| row.1.chars().count() / 2).max().unwrap_or(0);
-        let mut maze = Maze::new(columns, count, cell).ok_or_else(|| {
+        let mut maze = MazGrid::new(columns, count, cell).ok_or_else(|| {
             let found = format!("a maze of {columns} by {count} cells");
             let expected = format!("at most {MAX_MAZE_CELLS} cells");
             FormatError::new(self.notes.file, Location { line: rows[0].0, column: 1 }, found, expected)
@@ -313,7 +313,7 @@ impl<'a> Picture<'a> {
     }
 }
 
-impl Maze {
+impl MazGrid {
     /// Enters a character of the picture. Returns whether it has a meaning in its column.
     fn draw(&mut self, row: usize, column: usize, c: char) -> bool {
         let edge = column.div_ceil(2);
@@ -358,7 +358,7 @@ fn cell_size(text: &str, file: &str, number: usize, line: &str) -> Result<f64, F
 }
 
 /// Writes a maze, so that [`parse_maze`] gives it back.
-pub fn print(maze: &Maze) -> String {
+pub fn print(maze: &MazGrid) -> String {
     let mut lines: Vec<String> = (0..=maze.rows).rev().map(|row| maze.print_row(row)).collect();
     let width = 2 * maze.columns;
     if lines.iter().all(|line| line.trim_end().len() < width) {

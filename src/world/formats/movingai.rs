@@ -27,7 +27,7 @@ use super::limits::{MAX_GRID_BYTES, MAX_QUERIES};
 use super::number;
 use super::source::{decode, read_limited, unreadable};
 use crate::geometry::{Pose, units};
-use crate::world::{BitGrid, Cell, GridCell, OccupancyGrid};
+use crate::world::{BitGrid, GridCell, Occupancy, OccupancyGrid};
 
 /// A map, character by character.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -89,7 +89,7 @@ impl Map {
             for column in 0..grid.width() {
                 // Rows count downwards in the map and upwards on the floor.
                 let from = GridCell::new(column.wrapping_sub(1), self.height.wrapping_sub(row));
-                grid.set(column, row, if free.is_free(from) { Cell::Free } else { Cell::Occupied });
+                grid.set(column, row, if free.is_free(from) { Occupancy::Free } else { Occupancy::Occupied });
             }
         }
         grid

@@ -4,7 +4,7 @@ use image::{DynamicImage, GrayAlphaImage, RgbaImage};
 use proptest::prelude::*;
 
 use super::*;
-use crate::world::Cell;
+use crate::world::Occupancy;
 use crate::world::formats::MemoryFiles;
 
 /// A PGM of one row.
@@ -69,7 +69,7 @@ fn the_lowest_row_of_the_image_is_row_zero() {
     let yaml = "image: m.pgm\nresolution: 0.5\norigin: [2, 3, 1.5707963267948966]\n";
     let parsed = read(yaml, image).unwrap();
     let grid = parsed.value.grid;
-    assert_eq!((grid.cell(0, 1), grid.count(Cell::Occupied)), (Cell::Occupied, 1));
+    assert_eq!((grid.cell(0, 1), grid.count(Occupancy::Occupied)), (Occupancy::Occupied, 1));
     assert!((grid.centre(0, 1) - crate::geometry::Point::new(1.25, 3.25)).norm() < 1e-12);
     let messages: Vec<String> = parsed.warnings.iter().map(ToString::to_string).collect();
     assert_eq!(
@@ -114,8 +114,8 @@ fn what_cannot_be_written_is_an_error() {
 #[test]
 fn what_was_saved_loads_again() {
     let mut grid = OccupancyGrid::unknown(4, 3, 0.05, Pose::new(-1.0, 2.5, 0.25)).unwrap();
-    grid.set(0, 0, Cell::Occupied);
-    grid.set(3, 2, Cell::Free);
+    grid.set(0, 0, Occupancy::Occupied);
+    grid.set(3, 2, Occupancy::Free);
     let folder = std::env::temp_dir().join(format!("roverlab-ros-map-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     for image in ["map.pgm", "map.png", "map.bmp"] {

@@ -4,7 +4,7 @@ use roverlab::geometry::{Point, Pose};
 use roverlab::io::Result;
 use roverlab::io::control::run;
 use roverlab::io::sim::SimOptions;
-use roverlab::nav::{BugKind, BugParameters, DistBug, DistBugParameters, WallSide};
+use roverlab::nav::{BugKind, BugParameters, DistBug, WallSide};
 use roverlab::world::{RobotSpec, Scene, Wall, World};
 
 use super::{Scenario, drive, noise, note, ride};
@@ -28,7 +28,7 @@ fn cove() -> Scene {
 pub(super) fn distbug(scene: &Scene, options: SimOptions, goal: Point, time_limit: f64) -> Result<String> {
     let mut verdict = String::new();
     let log = drive(scene, options, |robot| {
-        let mut behaviour = DistBug::new(goal, DistBugParameters::default())?;
+        let mut behaviour = DistBug::new(goal, BugParameters::default())?;
         let outcome = run(robot, &mut behaviour, time_limit, |_, _, _| {})?;
         note(&mut verdict, "outcome", &outcome);
         note(&mut verdict, "events", &behaviour.take_events());

@@ -3,8 +3,8 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use roverlab::drive::colour::{ColourTracker, HomeParameters, PushHome, TrackerParameters};
-use roverlab::drive::motion_watch::{MotionWatch, WatchParameters};
+use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
+use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::geometry::{Pose, Twist, direction};
 use roverlab::io::control::run;
 use roverlab::io::sim::{Fleet, Lcd, SimOptions, Simulation};
@@ -107,7 +107,8 @@ fn tracking() -> Result<String> {
         log += &ride(&scene, noise(1.0, 122), |robot| {
             let image = robot.image()?;
             note(&mut seen, "taught", &teach_hue(&image, ColourFinder::LIMITS).map_err(other)?);
-            let mut tracker = ColourTracker::new(finder(method, geometry)?, TrackerParameters::default())?;
+            let mut tracker =
+                ColourTracker::new(finder(method, geometry)?, ColourTrackerParameters::default())?;
             let outcome = run(robot, &mut tracker, 25.0, |_, tracker, _| {
                 note(&mut seen, "seen", &(tracker.phase(), tracker.sighting(), tracker.target()));
             })?;
@@ -124,7 +125,8 @@ fn push_home() -> Result<String> {
     let mut seen = String::new();
     let log = ride(&scene, SimOptions { pushing: true, ..noise(0.5, 123) }, |robot| {
         let home = robot.pose()?.position();
-        let mut push = PushHome::new(finder(FindMethod::Blob, geometry)?, home, HomeParameters::default())?;
+        let mut push =
+            PushHome::new(finder(FindMethod::Blob, geometry)?, home, PushHomeParameters::default())?;
         let outcome = run(robot, &mut push, 40.0, |_, push, _| {
             note(&mut seen, "seen", &(push.phase(), push.object()));
         })?;
@@ -139,7 +141,7 @@ fn watch() -> Result<String> {
     let (mut scene, geometry) = coloured();
     scene.robots[0].pose = Pose::new(0.5, 1.0, 0.0);
     scene.robots.push(RobotPlacement::new(Arc::new(RobotSpec::s4()), Pose::new(1.1, 0.8, 1.0)));
-    let mut watch = MotionWatch::new(WatchParameters::new(geometry.field_of_view)).map_err(other)?;
+    let mut watch = MotionWatch::new(MotionWatchParameters::new(geometry.field_of_view)).map_err(other)?;
     let (mut trace, mut seen) = (Vec::new(), String::new());
     let mut fleet = Fleet::new(&scene, noise(1.0, 124))?;
     fleet.control(0, 0.1, |robot| {

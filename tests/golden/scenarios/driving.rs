@@ -1,9 +1,9 @@
 //! Driving to goals, along paths and over a whole floor; kinematics, controllers and landmarks.
 
 use roverlab::drive::{
-    AToB, AToBParameters, CarDriver, CarParameters, CarToB, Chase, ChaseParameters, CoverageMap,
-    CoverageParameters, CoveragePlan, FollowerParameters, Goal, Method, OmniDriver, OmniParameters,
-    OmniTracker, Path, PathFollower, Pid, PidParameters, RandomDrive, RandomDriveParameters, RelayTuner,
+    AToB, AToBParameters, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters, CoverageMap,
+    CoverageMapParameters, CoveragePlan, Goal, Method, OmniDriver, OmniParameters, OmniTracker, Path,
+    PathFollower, PathFollowerParameters, Pid, PidParameters, RandomDrive, RandomDriveParameters, RelayTuner,
     Steering, Tour, TourParameters, Waypoint,
 };
 use roverlab::geometry::{Point, Pose, Twist};
@@ -90,7 +90,7 @@ fn paths() -> Result<String> {
         for (steering, is_reverse) in
             [(Steering::PurePursuit { lookahead: 0.12 }, false), (cross_track, false), (cross_track, true)]
         {
-            let parameters = FollowerParameters { steering, ..FollowerParameters::default() };
+            let parameters = PathFollowerParameters { steering, ..PathFollowerParameters::default() };
             let mut follower = PathFollower::new(path.clone(), parameters)?;
             if is_reverse {
                 follower = follower.reversed();
@@ -204,7 +204,7 @@ fn ackermann() -> Result<String> {
     let mut log = String::new();
     note(&mut log, "command", &driver.command(CarState { speed: 0.2, steering: -0.1 }));
     for method in METHODS {
-        let mut behaviour = CarToB::new(method, goal, driver, CarParameters::default())?;
+        let mut behaviour = CarToB::new(method, goal, driver, CarToBParameters::default())?;
         let mut outcome = None;
         log += &ride(&scene, noise(1.0, 23), |robot| {
             outcome = Some(run(robot, &mut behaviour, 25.0, |_, _, _| {})?);
@@ -252,7 +252,7 @@ fn random_drive() -> Result<String> {
 /// The plan over a floor, the first part of the tour, and what it covers.
 fn coverage() -> Result<String> {
     let (world, start) = (room(), Pose::new(0.3, 0.3, 0.0));
-    let mut map = CoverageMap::new(&world, start.position(), CoverageParameters::default())?;
+    let mut map = CoverageMap::new(&world, start.position(), CoverageMapParameters::default())?;
     let plan = CoveragePlan::new(&map, start.position())?;
     let mut tour = Tour::new(plan.points(), TourParameters::default())?;
     let mut log = ride(&Scene::with_robot(world, RobotSpec::s4(), start), noise(0.0, 26), |robot| {

@@ -4,7 +4,7 @@ use roverlab::geometry::{Aabb, Point};
 use roverlab::io::Result;
 use roverlab::nav::graph::shortest_path;
 use roverlab::nav::grid::{
-    AnyAngle, Components, DStarLite, DistanceField, Edges, GridPath, GridPlanner, GridSearch,
+    AnyAngle, DStarLite, DistanceField, Edges, GridComponents, GridPath, GridPlanner, GridSearch,
     JumpPointSearch, LazyThetaStar, PlanError, PreparedJumps, Quadtree, QuadtreePlanner, inflated,
     segment_meets_box,
 };
@@ -136,7 +136,7 @@ fn quadtree() -> Result<String> {
 fn distance_field() -> Result<String> {
     let grid = map()?;
     let field = DistanceField::new(&grid);
-    let components = Components::new(&grid);
+    let components = GridComponents::new(&grid);
     let mut log = String::new();
     for row in 0..grid.height() {
         let cells = (0..grid.width()).map(|column| GridCell::new(column, row));

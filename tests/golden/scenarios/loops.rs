@@ -3,12 +3,12 @@
 
 use std::thread;
 
-use roverlab::drive::colour::{ColourTracker, HomeParameters, PushHome, TrackerParameters};
-use roverlab::drive::motion_watch::{MotionWatch, WatchParameters};
+use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
+use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::{
-    AToB, AToBParameters, AlongWall, CarDriver, CarParameters, CarToB, Chase, ChaseParameters, Goal,
-    LidarWallFollower, LidarWallParameters, Method, OmniDriver, OmniParameters, OmniTracker, RandomDrive,
-    RandomDriveParameters, WallFollower, WallFollowerParameters,
+    AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters, Goal,
+    LidarWallFollower, LidarWallFollowerParameters, Method, OmniDriver, OmniParameters, OmniTracker,
+    RandomDrive, RandomDriveParameters, WallFollower, WallFollowerParameters,
 };
 use roverlab::evolve::Gait;
 use roverlab::geometry::{Point, Pose, Twist};
@@ -18,7 +18,7 @@ use roverlab::io::wrappers::{Faulty, Traced};
 use roverlab::io::{Clock, DistanceSensors, Drive, Keys, Lidar, Psd, Radio, Result};
 use roverlab::kinematics::{Ackermann, Omni};
 use roverlab::maze::{Direction, LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters};
-use roverlab::nav::{BugKind, BugParameters, DistBug, NavigateParameters, Navigator};
+use roverlab::nav::{BugKind, BugParameters, DistBug, Navigator, NavigatorParameters};
 use roverlab::race::{Cone, ConeTrack, EventParameters, EventRacer, GapDriver, Racer, RacerParameters};
 use roverlab::random::Stream;
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
@@ -61,7 +61,7 @@ const LOOPS: [Loop; 20] = [
     ("car", RobotSpec::car, |robot| {
         let kinematics = Ackermann::new(0.12, 0.1, 0.5).map_err(other)?;
         let driver = CarDriver { kinematics, full_speed: 0.5 };
-        let mut behaviour = CarToB::new(Method::Arc, Goal::point(GOAL), driver, CarParameters::default())?;
+        let mut behaviour = CarToB::new(Method::Arc, Goal::point(GOAL), driver, CarToBParameters::default())?;
         said(run(robot, &mut behaviour, LIMIT, |_, _, _| {})?)
     }),
     ("Mecanum", RobotSpec::omni, |robot| {
@@ -75,7 +75,7 @@ const LOOPS: [Loop; 20] = [
         said(run(robot, &mut along, LIMIT, |_, _, _| {})?)
     }),
     ("wall, stopped", RobotSpec::s4, |robot| {
-        let mut along = AlongWall::new(LidarWallFollower::new(LidarWallParameters::default())?);
+        let mut along = AlongWall::new(LidarWallFollower::new(LidarWallFollowerParameters::default())?);
         said(run(robot, &mut along, LIMIT, |_, _, step| until(step.time > 1.0))?)
     }),
     ("random", RobotSpec::s4, |robot| {
@@ -102,19 +102,19 @@ const LOOPS: [Loop; 20] = [
     }),
     ("navigate", RobotSpec::s4, |robot| {
         let goal = Point::new(1.4, 0.9);
-        let mut navigator = Navigator::new(&room(), START, goal, NavigateParameters::default())?;
+        let mut navigator = Navigator::new(&room(), START, goal, NavigatorParameters::default())?;
         said(run(robot, &mut navigator, LIMIT, |_, _, _| {})?)
     }),
     ("colour", RobotSpec::s4, |robot| {
-        let mut tracker = ColourTracker::new(finder()?, TrackerParameters::default())?;
+        let mut tracker = ColourTracker::new(finder()?, ColourTrackerParameters::default())?;
         said(run(robot, &mut tracker, LIMIT, |_, _, _| {})?)
     }),
     ("home", RobotSpec::s4, |robot| {
-        let mut push = PushHome::new(finder()?, Point::origin(), HomeParameters::default())?;
+        let mut push = PushHome::new(finder()?, Point::origin(), PushHomeParameters::default())?;
         said(run(robot, &mut push, LIMIT, |_, _, _| {})?)
     }),
     ("motion", RobotSpec::s4, |robot| {
-        let mut watch = MotionWatch::new(WatchParameters::new(1.0)).map_err(other)?;
+        let mut watch = MotionWatch::new(MotionWatchParameters::new(1.0)).map_err(other)?;
         said(run(robot, &mut watch, LIMIT, |_, _, _| {})?)
     }),
     ("gait", RobotSpec::s4, |robot| {

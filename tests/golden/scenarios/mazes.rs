@@ -6,11 +6,11 @@ use roverlab::io::sim::NoiseModel;
 use roverlab::io::{Error, ErrorKind, Result};
 use roverlab::kinematics::OdometryErrors;
 use roverlab::maze::files::{MazeFormat, parse, print};
-use roverlab::maze::mms::{MmsMouse, Move, Referee};
+use roverlab::maze::mms::{MmsMouse, MmsReferee, Move};
 use roverlab::maze::{
-    CellDriveParameters, Direction, Explorer, FastPlanner, Goals, IncrementalFlood, LeftHand,
-    LeftHandParameters, LidarLeft, LidarLeftParameters, Maze, MazeRunner, Passages, Preference,
-    RecursiveExplorer, Rig, RunLimits, RunnerParameters, Scale, Step, Straight, Trajectory, TwoPhaseExplorer,
+    CellDriveParameters, Direction, ExplorationStep, Explorer, FastPlanner, Goals, IncrementalFlood,
+    LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters, Maze, MazeRunner, MazeRunnerParameters,
+    Passages, Preference, RecursiveExplorer, Rig, RunLimits, Scale, Straight, Trajectory, TwoPhaseExplorer,
     Unknown, distances_from_start, distances_to_goal, mouse, shortest_route,
 };
 use roverlab::world::{RobotSpec, Scene};
@@ -131,7 +131,7 @@ fn exploration() -> Result<String> {
             }
             let step = explorer.next(&known, at);
             note(&mut log, "step", &step);
-            let Step::Go(next) = step else { break };
+            let ExplorationStep::Go(next) = step else { break };
             let side = Direction::ALL.into_iter().find(|&side| known.neighbour(at.0, side) == Some(next));
             at = (next, side.unwrap_or(at.1));
         }
@@ -145,7 +145,7 @@ fn fast_run() -> Result<String> {
     let maze = maze()?;
     let mut log = String::new();
     for (scale, limits) in
-        [(Scale::MICROMOUSE, RunLimits::MICROMOUSE), (Scale::DOUBLED, RunnerParameters::EYEBOT.racing)]
+        [(Scale::MICROMOUSE, RunLimits::MICROMOUSE), (Scale::DOUBLED, MazeRunnerParameters::EYEBOT.racing)]
     {
         let plan = FastPlanner::new(scale, limits).map_err(other)?.plan(&maze, Unknown::Closed);
         let Some(plan) = plan else { return Err(Error::new(ErrorKind::Other, "the maze has a way")) };
@@ -227,7 +227,7 @@ fn micromouse() -> Result<String> {
     let (scale, spec) = (Scale::MICROMOUSE, mouse());
     let log = ride(&scene(scale, spec.clone())?, noise(1.0, 73), |robot| {
         let known = unexplored(&maze()?)?;
-        let parameters = RunnerParameters::MICROMOUSE;
+        let parameters = MazeRunnerParameters::MICROMOUSE;
         let mut runner = MazeRunner::new(robot, rig(&spec)?, known, scale, parameters, f64::INFINITY)?;
         let mut explorer = TwoPhaseExplorer::new(Goals::StepsAndTime(Box::new(runner.planner())));
         let mut watch = |pose: Pose| note(&mut told, "at", &pose);
@@ -246,7 +246,7 @@ fn micromouse() -> Result<String> {
 
 /// What a mouse and the referee of the simulator `mms` say to each other.
 fn mms() -> Result<String> {
-    let mut referee = Referee::new(maze()?);
+    let mut referee = MmsReferee::new(maze()?);
     let mut mouse = MmsMouse::new();
     let (mut log, mut answer) = (String::new(), None);
     loop {

@@ -18,7 +18,7 @@ mod with_log {
     use std::ops::ControlFlow;
 
     use roverlab::geometry::{Pose, Twist};
-    use roverlab::io::log::{Header, Log, LogWriter, OpenLoop, Player, Troop, Witness, recover};
+    use roverlab::io::log::{FleetIo, GroundTruth, Header, Log, LogWriter, OpenLoop, Player, recover};
     use roverlab::io::sim::{Fleet, Simulation};
     use roverlab::io::{Clock, Drive, LidarScan, Psd, Result, RobotIo};
 
@@ -61,7 +61,7 @@ mod with_log {
         let writer = LogWriter::new(Vec::new(), &header()).map_err(other)?;
         writer.show(&scene);
         let mut robot = writer.recorder(simulation.robot(0)?, 0);
-        let mut truth = writer.witness(simulation.truth(), 0);
+        let mut truth = writer.truth(simulation.truth(), 0);
         tour(&mut robot)?;
         drop(robot);
         truth.robot(0)?;
@@ -90,9 +90,9 @@ mod with_log {
     }
 
     /// Two robots that keep their distance, for three seconds.
-    fn approach(troop: &mut dyn Troop<'_>) -> Result<Vec<Pose>> {
+    fn approach(fleet: &mut dyn FleetIo<'_>) -> Result<Vec<Pose>> {
         for robot in 0..2 {
-            troop.control(
+            fleet.control(
                 robot,
                 0.1 + 0.05 * robot as f64,
                 Box::new(|robot| {
@@ -102,8 +102,8 @@ mod with_log {
                 }),
             )?;
         }
-        troop.run_for(3.0)?;
-        (0..2).map(|robot| troop.pose(robot)).collect()
+        fleet.run_for(3.0)?;
+        (0..2).map(|robot| fleet.pose(robot)).collect()
     }
 
     pub(super) fn fleet() -> Result<String> {
@@ -113,7 +113,7 @@ mod with_log {
         second.pose = Pose::new(2.5, 1.2, 3.0);
         scene.robots.push(second);
         let writer = LogWriter::new(Vec::new(), &header()).map_err(other)?;
-        let mut recorded = writer.troop(Fleet::new(&scene, noise(1.0, 172))?);
+        let mut recorded = writer.fleet(Fleet::new(&scene, noise(1.0, 172))?);
         note(&mut log, "poses", &approach(&mut recorded)?);
         drop(recorded);
         let bytes = writer.finish().map_err(other)?;
@@ -122,7 +122,7 @@ mod with_log {
         for entry in read.entries(1) {
             note(&mut log, "entry", &(entry.time, entry.method, entry.arguments, entry.result));
         }
-        note(&mut log, "replayed", &approach(&mut Player::new(&read).troop())?);
+        note(&mut log, "replayed", &approach(&mut Player::new(&read).fleet())?);
         Ok(log)
     }
 }

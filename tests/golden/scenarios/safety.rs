@@ -7,8 +7,8 @@ use roverlab::io::{Clock, Drive, Lidar, MockRobot, Motors, Result, Servos};
 use roverlab::race::{Cone, ConeTrack, GapDriver};
 use roverlab::random::Stream;
 use roverlab::safety::{
-    BaseStation, Beat, Causes, Deadline, Debounce, Panel, Requests, SafetyCore, SafetyInputs, SafetyState,
-    SignalLimits, SignalMonitor, Station, Supervised, SupervisorParameters, is_inside,
+    BaseStation, Causes, Deadline, Debounce, Heartbeat, Panel, Requests, SafetyCore, SafetyInputs,
+    SafetyState, SignalLimits, SignalMonitor, Station, Supervised, SupervisedParameters, is_inside,
 };
 
 use super::{Scenario, in_room, noise, note, text};
@@ -35,7 +35,7 @@ fn machine() -> Result<String> {
         let state = core.step(SafetyInputs { causes, requests, standing: random.chance(0.7) });
         note(&mut log, "state", &(causes.bits(), causes.is_hard(), requests, state, state.severity()));
     }
-    let parameters = SupervisorParameters::default();
+    let parameters = SupervisedParameters::default();
     for state in [SafetyState::SafeStop, SafetyState::EmergencyStop] {
         let model = parameters.stopping_in(state, 0.3, 4.0);
         let distances = [0.0, 0.5, 3.0, 12.0].map(|speed| (model.distance(speed), model.speed_within(speed)));
@@ -71,10 +71,10 @@ fn note_state<R: Clock + Drive, S: Station>(log: &mut String, car: &Supervised<R
 }
 
 /// Armed and started at once, with a change to the panel.
-fn station(change: impl Fn(f64, &mut Panel)) -> impl FnMut(f64, Beat) -> Panel {
-    move |now, beat| {
+fn station(change: impl Fn(f64, &mut Panel)) -> impl FnMut(f64, Heartbeat) -> Panel {
+    move |now, heartbeat| {
         let requests = Requests { arm: now > 0.03, start: now > 0.07, disarm: false };
-        let mut panel = Panel { heartbeat: Some(beat.count), requests, ..Panel::default() };
+        let mut panel = Panel { heartbeat: Some(heartbeat.count), requests, ..Panel::default() };
         change(now, &mut panel);
         panel
     }
@@ -101,7 +101,7 @@ fn events() -> Result<String> {
         let fence = if index == 0 { fence.to_vec() } else { Vec::new() };
         let simulation = Simulation::new(&in_room(0.5, 0.5, 0.3), noise(1.0, 141))?;
         let traced = Traced::new(simulation.robot(0)?, Vec::new());
-        let parameters = SupervisorParameters { fence, ..SupervisorParameters::default() };
+        let parameters = SupervisedParameters { fence, ..SupervisedParameters::default() };
         let mut car = Supervised::new(traced, station(change), parameters)?;
         for _ in 0..40 {
             // Refused calls show in the vehicle's state.
@@ -134,7 +134,7 @@ fn faults() -> Result<String> {
         let simulation = Simulation::new(&in_room(0.5, 0.5, 0.3), noise(1.0, 142))?;
         let fault: Fault = fault.parse()?;
         let robot = Faulty::new(simulation.robot(0)?, vec![fault]);
-        let mut car = Supervised::new(robot, station(|_, _| ()), SupervisorParameters::default())?;
+        let mut car = Supervised::new(robot, station(|_, _| ()), SupervisedParameters::default())?;
         for _ in 0..30 {
             let commanded = car.set_speed(Twist::new(0.25, 0.3)).is_ok();
             let seen = car.scan().map(|scan| scan.ranges.len()).map_err(|error| error.to_string());
@@ -155,7 +155,7 @@ fn race_car() -> Result<String> {
     let scene = track.scene(&[Pose::new(-2.0, 0.2, 0.0)]);
     let race = Simulation::new(&scene, SimOptions { seed: 143, ..SimOptions::default() })?;
     let stop = station(|now, panel| panel.remote_stop = now > 3.0);
-    let mut car = Supervised::new(race.robot(0)?, stop, SupervisorParameters::default())?;
+    let mut car = Supervised::new(race.robot(0)?, stop, SupervisedParameters::default())?;
     let mut driver = GapDriver::default();
     for _ in 0..60 {
         let scan = car.scan()?;
@@ -177,7 +177,7 @@ fn race_car() -> Result<String> {
 fn base_station() -> Result<String> {
     let mut log = String::new();
     let robot = MockRobot::new().with_ideal_drive();
-    let mut car = Supervised::new(robot, BaseStation::new(0.5), SupervisorParameters::default())?;
+    let mut car = Supervised::new(robot, BaseStation::new(0.5), SupervisedParameters::default())?;
     for step in 0..120_u32 {
         let crew = car.station_mut();
         match step {

@@ -7,11 +7,11 @@ use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::control::{Senses, run};
 use roverlab::io::sim::Lcd;
 use roverlab::io::{Clock, Drive, Lidar, LidarScan, Result};
-use roverlab::nav::{NavigateParameters, Navigator};
+use roverlab::nav::{Navigator, NavigatorParameters};
 use roverlab::random::Stream;
 use roverlab::scan::{
-    ExtractionParameters, Localisation, LocalisationMap, Localiser, LocaliserParameters, LogOddsMap,
-    LogOddsParameters, ScanFilter, ScanMatcher, extract_features, local_extrema, plot_scan,
+    Localisation, LocalisationMap, Localiser, LocaliserParameters, LogOddsMap, LogOddsMapParameters,
+    ScanFeaturesParameters, ScanFilter, ScanMatcher, extract_features, local_extrema, plot_scan,
 };
 use roverlab::world::{Object, ObjectKind, RobotSpec, Scene};
 
@@ -34,7 +34,7 @@ fn features() -> Result<String> {
         for round in 0..8 {
             robot.wait(0.8)?;
             let scan = robot.scan()?;
-            let features = extract_features(&scan, &ExtractionParameters::default())?;
+            let features = extract_features(&scan, &ScanFeaturesParameters::default())?;
             for wall in &features.walls {
                 let line = (wall.line.middle, wall.line.direction, wall.line.rms, wall.line.points);
                 note(&mut found, "wall", &(line, wall.ends, wall.beams.clone()));
@@ -60,7 +60,7 @@ fn features() -> Result<String> {
 fn map() -> Result<String> {
     let scene = in_room(0.5, 0.5, 0.2);
     let start = scene.robots[0].pose;
-    let mut map = LogOddsMap::new(64, 44, 0.05, Pose::new(-0.1, -0.1, 0.0), LogOddsParameters::default())
+    let mut map = LogOddsMap::new(64, 44, 0.05, Pose::new(-0.1, -0.1, 0.0), LogOddsMapParameters::default())
         .map_err(other)?;
     let mut log = ride(&scene, noise(0.5, 102), |robot| {
         robot.set_speed(Twist::new(0.15, 0.35))?;
@@ -163,7 +163,7 @@ fn navigate() -> Result<String> {
     scene.world.objects.push(Object::new(Arc::new(crate_kind), Pose::new(1.3, 1.5, 0.2)));
     let mut told = String::new();
     let log = ride(&scene, noise(1.0, 105), |robot| {
-        let mut navigator = Navigator::new(&known, start, goal, NavigateParameters::default())?;
+        let mut navigator = Navigator::new(&known, start, goal, NavigatorParameters::default())?;
         note(&mut told, "plan", &(navigator.path_length(), navigator.path()));
         let outcome = run(robot, &mut navigator, 40.0, |_, navigator, step| {
             let events = navigator.take_events();

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use roverlab::drive::{
-    Cruise, CruiseParameters, FollowMeObservation, FollowMeParameters, Follower, Formation, robots_in,
+    Cruise, CruiseParameters, Follower, FollowerObservation, FollowerParameters, Formation, robots_in,
 };
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::Fleet;
@@ -15,8 +15,8 @@ use roverlab::world::{Footprint, Object, ObjectKind, RobotPlacement, RobotSpec, 
 use super::{Scenario, noise, note, note_truth, other};
 
 pub(super) const SCENARIOS: &[Scenario] = &[
-    Scenario::new("chain", || troop(Follows::TheOneBefore, 41)),
-    Scenario::new("formation", || troop(Follows::ByRadio, 42)),
+    Scenario::new("chain", || fleet(Follows::TheOneBefore, 41)),
+    Scenario::new("formation", || fleet(Follows::ByRadio, 42)),
 ];
 
 #[derive(Clone, Copy, PartialEq)]
@@ -51,7 +51,7 @@ fn radius(spec: &RobotSpec) -> f64 {
 }
 
 /// A drive round the hall: every robot's readings, messages and commands, and its true path.
-fn troop(follows: Follows, seed: u64) -> Result<String> {
+fn fleet(follows: Follows, seed: u64) -> Result<String> {
     let scene = hall();
     let mut traces = vec![Vec::new(); scene.robots.len()];
     let mut fleet = Fleet::new(&scene, noise(1.0, seed))?;
@@ -69,11 +69,11 @@ fn troop(follows: Follows, seed: u64) -> Result<String> {
             }
             (_, Follows::TheOneBefore) => {
                 let leader_radius = radius(&scene.robots[index - 1].spec);
-                let parameters = FollowMeParameters {
+                let parameters = FollowerParameters {
                     gap: 0.36,
                     leader_radius,
                     radius: radius(&scene.robots[index].spec),
-                    ..FollowMeParameters::default()
+                    ..FollowerParameters::default()
                 };
                 let mut follower = Follower::new(parameters)?;
                 Box::new(move |robot| {
@@ -82,7 +82,7 @@ fn troop(follows: Follows, seed: u64) -> Result<String> {
                     let candidates = robots_in(&scan, leader_radius);
                     let obstacles: Vec<Point> = scan.points().collect();
                     let seen =
-                        FollowMeObservation { time, pose, candidates: &candidates, obstacles: &obstacles };
+                        FollowerObservation { time, pose, candidates: &candidates, obstacles: &obstacles };
                     let twist = follower.step(&seen)?;
                     robot.set_speed(twist)
                 })
@@ -124,7 +124,7 @@ fn troop(follows: Follows, seed: u64) -> Result<String> {
 /// One step of a robot.
 type Step = Box<dyn FnMut(&mut dyn Member) -> Result<()>>;
 
-/// The capabilities of a robot in a troop.
+/// The capabilities of a robot in a fleet.
 trait Member: Clock + Drive + Lidar + Radio {}
 
 impl<R: Clock + Drive + Lidar + Radio> Member for R {}

@@ -5,10 +5,10 @@ use roverlab::geometry::{Point, Pose};
 use roverlab::io::Result;
 use roverlab::kinematics::{Displacement, advance};
 use roverlab::race::{
-    CarLimits, CentreLine, CentreLineParameters, ClosedSpline, Cone, ConeColour, Corridor, EventCourse, Hold,
-    LaneFinder, LaneParameters, LineTracker, RacerParameters, RacingLineParameters, SpeedProfile, TrackFile,
-    TrackOptions, TrackerParameters, Tyres, generate, lined, minimum_curvature, parse_track, write_eufs,
-    write_fssim, write_tum,
+    CarLimits, CentreLine, CentreLineParameters, ClosedSpline, Cone, ConeColour, Corridor, EventCourse,
+    GripLimit, LaneFinder, LaneParameters, LineTracker, LineTrackerParameters, RacerParameters,
+    RacingLineParameters, SpeedProfile, TrackFile, TrackOptions, Tyres, generate, lined, minimum_curvature,
+    parse_track, write_eufs, write_fssim, write_tum,
 };
 
 use super::races::{skidpad, strip};
@@ -103,7 +103,7 @@ fn centre_line() -> Result<String> {
 fn racing_line() -> Result<String> {
     let outline = RacerParameters::default().outline;
     let limits = RacerParameters::default().limits;
-    let ellipse = CarLimits { hold: Hold::Ellipse { across: 5.0, turned: 1.0, along: 5.0 }, ..limits };
+    let ellipse = CarLimits { hold: GripLimit::Ellipse { across: 5.0, turned: 1.0, along: 5.0 }, ..limits };
     let mut log = String::new();
     for seed in [52, 53] {
         let corridor = generate(seed, &TrackOptions::drawn(seed)).map_err(other)?.corridor;
@@ -131,12 +131,12 @@ fn racing_line() -> Result<String> {
 /// What is left of the grip along the way, by how much there is across it.
 fn tyres() -> Result<String> {
     let tyres = Tyres::default();
-    let ellipse = Hold::Ellipse { across: 5.0, turned: 1.0, along: 4.0 };
+    let ellipse = GripLimit::Ellipse { across: 5.0, turned: 1.0, along: 4.0 };
     let mut log = String::new();
     for (curvature, across) in [(0.0, 0.0), (0.02, 3.0), (0.1, 6.0), (0.2, 9.0), (-0.3, 10.5)] {
         note(&mut log, "slips", &(tyres.slips(across, 1.0), tyres.left_along(curvature, across)));
         note(&mut log, "steering", &tyres.steering(curvature, across, -2.0));
-        for hold in [ellipse, Hold::Balance(tyres)] {
+        for hold in [ellipse, GripLimit::Balance(tyres)] {
             let along = (hold.forwards(curvature, across, 8.0), hold.backwards(curvature, across, 9.0));
             note(&mut log, "hold", &(hold.across(curvature, 5.0), along));
         }
@@ -189,7 +189,7 @@ fn line_tracker() -> Result<String> {
     let limits = RacerParameters::default().limits;
     let profile = SpeedProfile::closed(&line.points, &limits).map_err(other)?;
     let mut log = String::new();
-    for parameters in [TrackerParameters::default(), TrackerParameters::rolling()] {
+    for parameters in [LineTrackerParameters::default(), LineTrackerParameters::rolling()] {
         let mut tracker = LineTracker::new(line.points.clone(), profile.clone(), true, parameters)?;
         let ahead = line.points[1] - line.points[0];
         let heading = roverlab::geometry::math::atan2(ahead.y, ahead.x);

@@ -54,7 +54,7 @@ fn plane(bytes: &[u8]) -> Result<GrayView<'_>> {
     GrayView::new(bytes, WIDTH, HEIGHT).map_err(other)
 }
 
-type Outcome = std::result::Result<(), roverlab::vision::Error>;
+type Outcome = std::result::Result<(), roverlab::vision::ImageError>;
 
 /// Notes the digest of the gray image that a kernel makes, and gives the image back.
 fn gray_of(log: &mut String, what: &str, kernel: impl FnOnce(GrayViewMut<'_>) -> Outcome) -> Result<Vec<u8>> {

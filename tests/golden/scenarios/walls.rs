@@ -1,8 +1,9 @@
 //! Following walls.
 
 use roverlab::drive::{
-    AlongWall, FollowsWalls, LidarWallFollower, LidarWallParameters, PidWallFollower, PidWallParameters,
-    TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallReading, WallSide,
+    AlongWall, FollowsWalls, LidarWallFollower, LidarWallFollowerParameters, PidWallFollower,
+    PidWallFollowerParameters, TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallReading,
+    WallSide,
 };
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::Result;
@@ -49,11 +50,11 @@ fn psd() -> Result<String> {
 }
 
 fn pid() -> Result<String> {
-    follow(33, PidWallFollower::new(PidWallParameters::default())?)
+    follow(33, PidWallFollower::new(PidWallFollowerParameters::default())?)
 }
 
 fn lidar() -> Result<String> {
-    follow(34, LidarWallFollower::new(LidarWallParameters::default())?)
+    follow(34, LidarWallFollower::new(LidarWallFollowerParameters::default())?)
 }
 
 fn two_levels() -> Result<String> {

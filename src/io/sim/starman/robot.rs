@@ -6,7 +6,7 @@ use super::physics::{Figure, StarmanTruth};
 use super::{LIMBS, StarmanSpec};
 use crate::geometry::{Pose, Twist};
 use crate::io::delegate::{
-    Colour, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Picture, Pixel, Psd, RadioMessage,
+    Colour, DisplayImage, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Pixel, Psd, RadioMessage,
     Resolution, Result, RgbImage, Viewport, ambassador_impl_Display,
 };
 use crate::io::sim::Lcd;

@@ -6,7 +6,7 @@ use super::{CALLS, busy_robot, calls};
 use crate::geometry::{Pose, Twist};
 use crate::io::wrappers::{Faulty, Limited, Limits, Noise, Noisy, Stamp, Traced};
 use crate::io::{
-    Clock, Display, DistanceSensors, Drive, Lidar, LidarScan, MockRobot, Picture, Psd, Radio, Viewport,
+    Clock, Display, DisplayImage, DistanceSensors, Drive, Lidar, LidarScan, MockRobot, Psd, Radio, Viewport,
 };
 use crate::random::Stream;
 
@@ -109,7 +109,7 @@ fn every_line_has_its_fixed_form() {
     robot.pixel((-1, 0)).unwrap();
     robot.set_menu(["", "b", "c", "END"]).unwrap();
     let gray = image::GrayImage::new(3, 2);
-    robot.draw_image(Picture::Binary(&gray), Viewport::new((1, -2), 3, 4)).unwrap();
+    robot.draw_image(DisplayImage::Binary(&gray), Viewport::new((1, -2), 3, 4)).unwrap();
     robot.send(2, b"\x00hi\n").unwrap();
     robot.set_speed(Twist::new(1.0 / 3.0, 0.0)).unwrap();
     let text = String::from_utf8(robot.finish().1.unwrap()).unwrap();

@@ -4,7 +4,7 @@ use std::collections::BinaryHeap;
 use super::field::{Field, HalfPoint};
 use super::sight::in_sight;
 use crate::geometry::Point;
-use crate::nav::grid::components::Components;
+use crate::nav::grid::components::GridComponents;
 use crate::nav::grid::path::{GridPath, GridPlanner, PlanError, SearchStatistics, check};
 use crate::world::{BitGrid, GridCell};
 
@@ -31,7 +31,7 @@ use crate::world::{BitGrid, GridCell};
 #[derive(Debug, Clone)]
 pub struct LazyThetaStar {
     grid: BitGrid,
-    components: Components,
+    components: GridComponents,
     field: Field,
     labels: Vec<Label>,
     query: u32,
@@ -51,7 +51,7 @@ impl LazyThetaStar {
     pub fn new(grid: &BitGrid) -> Self {
         Self {
             grid: grid.clone(),
-            components: Components::new(grid),
+            components: GridComponents::new(grid),
             field: Field::new(grid),
             labels: vec![Label::default(); grid.width() * grid.height()],
             query: 0,

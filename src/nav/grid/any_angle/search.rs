@@ -2,7 +2,7 @@ use super::field::{Corner, Field, HalfPoint};
 use super::scan::{Scanner, Side};
 use super::sight::in_sight;
 use crate::geometry::Point;
-use crate::nav::grid::components::Components;
+use crate::nav::grid::components::GridComponents;
 use crate::nav::grid::cost::{fixed, limit};
 use crate::nav::grid::path::{GridPath, GridPlanner, PlanError, SearchStatistics, check};
 use crate::nav::grid::queue::BucketQueue;
@@ -35,7 +35,7 @@ use crate::world::{BitGrid, GridCell};
 #[derive(Debug, Clone)]
 pub struct AnyAngle {
     grid: BitGrid,
-    components: Components,
+    components: GridComponents,
     field: Field,
     corners: Vec<Corner>,
     views: Vec<View>,
@@ -95,7 +95,7 @@ impl AnyAngle {
         let unknown = View { first: UNKNOWN, middle: 0, end: 0 };
         Self {
             grid: grid.clone(),
-            components: Components::new(grid),
+            components: GridComponents::new(grid),
             views: vec![unknown; corners.len()],
             labels: vec![Label::default(); corners.len()],
             field,

@@ -1,6 +1,6 @@
 use super::planes::{Landing, Planes};
 use super::search::{Arrival, Jumps, Search};
-use crate::nav::grid::components::Components;
+use crate::nav::grid::components::GridComponents;
 use crate::nav::grid::path::{GridPath, GridPlanner, PlanError, check};
 use crate::world::{BitGrid, GridCell};
 
@@ -25,7 +25,7 @@ use crate::world::{BitGrid, GridCell};
 #[derive(Debug, Clone)]
 pub struct JumpPointSearch {
     grid: BitGrid,
-    components: Components,
+    components: GridComponents,
     cells: Cells,
     search: Search,
 }
@@ -43,7 +43,7 @@ impl JumpPointSearch {
     pub fn new(grid: &BitGrid) -> Self {
         let stride = grid.width() + 2;
         let cells = Cells { planes: Planes::new(grid), stride, count: stride * (grid.height() + 2) };
-        Self { grid: grid.clone(), components: Components::new(grid), cells, search: Search::default() }
+        Self { grid: grid.clone(), components: GridComponents::new(grid), cells, search: Search::default() }
     }
 
     /// Makes a cell free or blocked; takes time in proportion to the width and height of the grid, and to the runs of free
@@ -52,7 +52,7 @@ impl JumpPointSearch {
         if self.grid.contains(cell) && self.grid.is_free(cell) != free {
             self.grid.set_free(cell, free);
             self.cells.planes.set_free(cell, free);
-            self.components = Components::new(&self.grid);
+            self.components = GridComponents::new(&self.grid);
         }
     }
 }

@@ -1,6 +1,6 @@
 use super::planes::{Direction, Landing, Planes};
 use super::search::{Arrival, Jumps, Search};
-use crate::nav::grid::components::Components;
+use crate::nav::grid::components::GridComponents;
 use crate::nav::grid::path::{GridPath, GridPlanner, PlanError, check};
 use crate::world::{BitGrid, GridCell};
 
@@ -25,7 +25,7 @@ use crate::world::{BitGrid, GridCell};
 #[derive(Debug, Clone)]
 pub struct PreparedJumps {
     grid: BitGrid,
-    components: Components,
+    components: GridComponents,
     planes: Planes,
     graph: Graph,
     search: Search,
@@ -63,7 +63,7 @@ impl PreparedJumps {
     pub fn new(grid: &BitGrid) -> Self {
         let planes = Planes::new(grid);
         let graph = Graph::new(grid, &planes);
-        let components = Components::new(grid);
+        let components = GridComponents::new(grid);
         Self { grid: grid.clone(), components, planes, graph, search: Search::default() }
     }
 

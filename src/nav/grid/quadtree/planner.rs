@@ -3,7 +3,7 @@ use super::pull::{distance, funnel, shortcut};
 use super::tree::Quadtree;
 use crate::geometry::Point;
 use crate::nav::grid::any_angle::{Field, HalfPoint};
-use crate::nav::grid::components::Components;
+use crate::nav::grid::components::GridComponents;
 use crate::nav::grid::cost::{fixed, limit};
 use crate::nav::grid::path::{GridPath, GridPlanner, PlanError, SearchStatistics, check};
 use crate::nav::grid::queue::BucketQueue;
@@ -30,7 +30,7 @@ use crate::world::{BitGrid, GridCell};
 pub struct QuadtreePlanner {
     tree: Quadtree,
     grid: BitGrid,
-    components: Components,
+    components: GridComponents,
     field: Field,
     portals: Portals,
     labels: Vec<Label>,
@@ -72,7 +72,7 @@ impl QuadtreePlanner {
     pub fn new(tree: &Quadtree) -> Self {
         let (grid, portals) = (tree.grid(), Portals::new(tree));
         Self {
-            components: Components::new(&grid),
+            components: GridComponents::new(&grid),
             field: Field::new(&grid),
             labels: vec![Label::default(); portals.nodes.len()],
             tree: tree.clone(),

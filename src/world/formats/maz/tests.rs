@@ -87,8 +87,8 @@ prop_compose! {
         cell in 0.001..3.0f64,
         columns in Just(columns),
         rows in Just(rows),
-    ) -> Maze {
-        let mut maze = Maze::new(columns, rows, cell).unwrap();
+    ) -> MazGrid {
+        let mut maze = MazGrid::new(columns, rows, cell).unwrap();
         for (i, &(below, left)) in walls.iter().enumerate() {
             maze.set_wall_below(i % (columns + 1), i / (columns + 1), below);
             maze.set_wall_left(i % (columns + 1), i / (columns + 1), left);

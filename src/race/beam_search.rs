@@ -1,4 +1,4 @@
-//! From triangle to triangle between cones.
+//! A beam search from triangle to triangle between cones.
 
 use super::cone::Cone;
 use super::mesh::{Mesh, triangle};
@@ -21,7 +21,7 @@ const GOOD_METRE: f64 = 0.4;
 const MEMORY: usize = 16;
 
 /// Goes from triangle to triangle between some cones.
-pub(super) struct Walker<'c> {
+pub(super) struct BeamSearch<'c> {
     pub(super) cones: &'c [Cone],
     pub(super) parameters: &'c CentreLineParameters,
     /// The triangulation of these cones.
@@ -114,7 +114,7 @@ impl Search {
     }
 }
 
-impl Walker<'_> {
+impl BeamSearch<'_> {
     fn position(&self, cone: usize) -> Point {
         self.cones[cone].position
     }
@@ -137,7 +137,7 @@ impl Walker<'_> {
     }
 
     /// The best way from a car on. `None` if there is none.
-    pub(super) fn walk(&self, car: Pose) -> Option<Way> {
+    pub(super) fn run(&self, car: Pose) -> Option<Way> {
         let mut search = self.search(car);
         let mut steps: Vec<Step> = Vec::new();
         for left in (0..self.cones.len() + self.cones.len() / 4 + 8).rev() {

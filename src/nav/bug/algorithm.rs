@@ -96,7 +96,7 @@ impl<R: Drive + Lidar + ?Sized, B: Bug + ?Sized> Senses<R> for B {
 }
 
 /// Defines a bug: its name, the strategy that an engine acts by, and the path's bound. All are complete.
-macro_rules! family {
+macro_rules! bug_algorithm {
     ($(#[$doc:meta])* $bug:ident, $name:literal, $strategy:ty, PathBound::$bound:ident) => {
         $(#[$doc])*
         #[derive(Debug, Clone)]
@@ -170,4 +170,4 @@ macro_rules! family {
         }
     };
 }
-pub(super) use family;
+pub(super) use bug_algorithm;

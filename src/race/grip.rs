@@ -4,7 +4,7 @@ use crate::parameter::{require, require_positive};
 
 /// What the tyres of a car give at most.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Hold {
+pub enum GripLimit {
     /// A friction ellipse, whatever the car.
     Ellipse {
         /// The greatest acceleration across, straight on, in m/s².
@@ -18,7 +18,7 @@ pub enum Hold {
     Balance(Tyres),
 }
 
-impl Hold {
+impl GripLimit {
     pub(super) fn validate(&self) -> Result<(), ParameterError> {
         match *self {
             Self::Ellipse { across, turned, along } => {
@@ -92,15 +92,15 @@ mod tests {
 
     const DRIVE: f64 = 8.0;
 
-    fn balance() -> Hold {
-        Hold::Balance(Tyres::default())
+    fn balance() -> GripLimit {
+        GripLimit::Balance(Tyres::default())
     }
 
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn tighter_bends_are_slower(curvature in 0.005..0.38f64, tighter in 1.02..1.5f64) {
-            for hold in [balance(), Hold::Ellipse { across: 10.0, turned: 0.5, along: 10.0 }] {
+            for hold in [balance(), GripLimit::Ellipse { across: 10.0, turned: 0.5, along: 10.0 }] {
                 let fast = |bend: f64| (hold.across(bend, DRIVE) / bend).sqrt();
                 prop_assert!(fast(curvature * tighter) < fast(curvature), "{hold:?}");
                 prop_assert_eq!(hold.across(-curvature, DRIVE), hold.across(curvature, DRIVE));
@@ -141,13 +141,13 @@ mod tests {
 
     #[test]
     fn what_is_no_hold() {
-        let told = |hold: Hold| hold.validate().unwrap_err().to_string();
+        let told = |hold: GripLimit| hold.validate().unwrap_err().to_string();
         assert_eq!(
-            told(Hold::Ellipse { across: 9.0, turned: 2.0, along: 9.0 }),
+            told(GripLimit::Ellipse { across: 9.0, turned: 2.0, along: 9.0 }),
             "grip lost by turned wheels is 2; expected 0 to 1"
         );
         assert_eq!(
-            told(Hold::Balance(Tyres { grip: -1.0, ..Tyres::default() })),
+            told(GripLimit::Balance(Tyres { grip: -1.0, ..Tyres::default() })),
             "grip is -1; expected a positive, finite number"
         );
     }

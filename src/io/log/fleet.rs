@@ -11,13 +11,13 @@ use super::truth::Notes;
 use super::values::Values;
 use super::{LogWriter, Recorder, Replay, ReplayTruth};
 use crate::geometry::Pose;
-use crate::io::troop::no_robot;
-use crate::io::{Error, ErrorKind, Result, RobotIo, RobotTruth, Troop, TroopStep, Witness};
+use crate::io::fleet::no_robot;
+use crate::io::{Error, ErrorKind, FleetIo, FleetStep, GroundTruth, Result, RobotIo, RobotTruth};
 
-/// A troop that is recorded, made by [`LogWriter::troop`]: each robot's calls as those of a
+/// A fleet that is recorded, made by [`LogWriter::fleet`]: each robot's calls as those of a
 /// [`Recorder`], with the ends of the runs among them.
 #[derive(Debug)]
-pub struct RecordedTroop<T, W: Write> {
+pub struct RecordedFleet<T, W: Write> {
     inner: T,
     writer: LogWriter<W>,
     notes: Vec<Notes<W>>,
@@ -25,15 +25,15 @@ pub struct RecordedTroop<T, W: Write> {
 
 impl<W: Write> LogWriter<W> {
     /// Records robots that are stepped in one thread, under the indices that they have.
-    pub fn troop<'a, T: Troop<'a>>(&self, troop: T) -> RecordedTroop<T, W> {
-        RecordedTroop::new(troop, self.clone())
+    pub fn fleet<'a, T: FleetIo<'a>>(&self, fleet: T) -> RecordedFleet<T, W> {
+        RecordedFleet::new(fleet, self.clone())
     }
 }
 
-impl<T, W: Write> RecordedTroop<T, W> {
+impl<T, W: Write> RecordedFleet<T, W> {
     pub(super) fn new<'a>(inner: T, writer: LogWriter<W>) -> Self
     where
-        T: Troop<'a>,
+        T: FleetIo<'a>,
     {
         let notes =
             (0..inner.robots()).map(|robot| Notes::new(Port::beside(writer.clone(), robot))).collect();
@@ -46,12 +46,12 @@ impl<T, W: Write> RecordedTroop<T, W> {
     }
 }
 
-impl<'a, T: Troop<'a>, W: Write + 'a> Troop<'a> for RecordedTroop<T, W> {
+impl<'a, T: FleetIo<'a>, W: Write + 'a> FleetIo<'a> for RecordedFleet<T, W> {
     fn robots(&self) -> usize {
         self.inner.robots()
     }
 
-    fn control(&mut self, robot: usize, period: f64, mut behaviour: TroopStep<'a>) -> Result<()> {
+    fn control(&mut self, robot: usize, period: f64, mut behaviour: FleetStep<'a>) -> Result<()> {
         self.notes(robot)?;
         let mut port = Some(self.writer.port(robot));
         let recorded = move |robot: &mut dyn RobotIo| {
@@ -95,13 +95,13 @@ impl<'a, T: Troop<'a>, W: Write + 'a> Troop<'a> for RecordedTroop<T, W> {
     }
 }
 
-/// What a recorded troop was told, beside the calls of its robots.
+/// What a recorded fleet was told, beside the calls of its robots.
 const CONTROL: &str = "control";
 const RUN: &str = "run_for";
 
-/// A troop made of a recording, made by [`Player::troop`]. Each behaviour is stepped as often as it was in the recorded
+/// A fleet made of a recording, made by [`Player::fleet`]. Each behaviour is stepped as often as it was in the recorded
 /// run, whose periods and durations must be the same; what a robot is asked must be, too, as with [`Replay`].
-pub struct ReplayTroop<'a> {
+pub struct ReplayFleet<'a> {
     members: Vec<Member<'a>>,
     time: f64,
 }
@@ -110,19 +110,19 @@ struct Member<'a> {
     robot: Replay,
     truth: ReplayTruth,
     orders: Orders,
-    behaviour: Option<TroopStep<'a>>,
+    behaviour: Option<FleetStep<'a>>,
 }
 
-impl std::fmt::Debug for ReplayTroop<'_> {
+impl std::fmt::Debug for ReplayFleet<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("ReplayTroop")
+        f.debug_struct("ReplayFleet")
             .field("robots", &self.members.len())
             .field("time", &self.time)
             .finish_non_exhaustive()
     }
 }
 
-/// What a recorded robot's troop was told, in order.
+/// What a recorded robot's fleet was told, in order.
 struct Orders {
     position: Position,
     /// The first event that has not been looked at.
@@ -168,13 +168,13 @@ fn ended(what: &str) -> Error {
 }
 
 impl Player {
-    /// The robots of a recorded troop, which are stepped in one thread.
-    pub fn troop<'a>(&self) -> ReplayTroop<'a> {
-        ReplayTroop::new(self)
+    /// The robots of a recorded fleet, which are stepped in one thread.
+    pub fn fleet<'a>(&self) -> ReplayFleet<'a> {
+        ReplayFleet::new(self)
     }
 }
 
-impl<'a> ReplayTroop<'a> {
+impl<'a> ReplayFleet<'a> {
     pub(super) fn new(player: &Player) -> Self {
         let member = |position: Position| Member {
             robot: Replay::at(position.clone()),
@@ -225,12 +225,12 @@ impl Member<'_> {
     }
 }
 
-impl<'a> Troop<'a> for ReplayTroop<'a> {
+impl<'a> FleetIo<'a> for ReplayFleet<'a> {
     fn robots(&self) -> usize {
         self.members.len()
     }
 
-    fn control(&mut self, robot: usize, period: f64, behaviour: TroopStep<'a>) -> Result<()> {
+    fn control(&mut self, robot: usize, period: f64, behaviour: FleetStep<'a>) -> Result<()> {
         let member = self.member(robot)?;
         member.orders.take(CONTROL, period)?.ok_or_else(|| ended("the behaviours were given"))?;
         member.behaviour = Some(behaviour);

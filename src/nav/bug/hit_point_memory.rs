@@ -1,78 +1,12 @@
 use super::body::{Body, GoalView};
-use super::family::family;
-use super::leave_rule::{LeaveRule, Nearer, OnMainLine};
+use super::leave_rule::LeaveRule;
 use super::strategy::{Decision, Place, Sight, Strategy};
-use crate::nav::boundary::WallSide;
-
-family! {
-    /// Alg1: Bug2 with a memory of its hit and leave points (A. Sankaranarayanan and M. Vidyasagar, "A new path planning
-    /// algorithm for moving a point object amidst unknown obstacles in a plane", IEEE International Conference on Robotics
-    /// and Automation, 1990).
-    ///
-    /// The robot leaves an obstacle where it meets the straight line from start to goal, nearer to the goal than it has ever
-    /// been on that line, with the way along it open. If it comes to a hit or leave point of before while it follows a
-    /// boundary, it returns to the present hit point and follows the boundary the other way; once for each hit point. Back
-    /// at the hit point without having left, it knows that there is no way.
-    ///
-    /// # Guarantee
-    ///
-    /// Complete, and no part of a boundary is followed for a third time in the same sense, as [`Bug2`](super::Bug2) may do
-    /// in a maze.
-    ///
-    /// # Model
-    ///
-    /// As for [`Bug2`](super::Bug2), whose M-line it is. A point is met again where both the place and the direction of the
-    /// wall are those of before, which tells the two sides of a thin wall apart.
-    Alg1, "Alg1", Remembering<OnMainLine<true>, false>, PathBound::Unknown
-}
-
-family! {
-    /// Alg2: leaves as [`Class1`](super::Class1) does, with a memory of hit and leave points (A. Sankaranarayanan and
-    /// M. Vidyasagar, "Path planning for moving a point object amidst unknown obstacles in a plane: a new algorithm and a
-    /// general theory for algorithm development", IEEE Conference on Decision and Control, 1990).
-    ///
-    /// The robot leaves an obstacle as soon as it can move towards the goal and is nearer to it than ever before. If it comes
-    /// to a hit or leave point of before while it follows a boundary, it returns to the present hit point and follows the
-    /// boundary the other way; once for each hit point. Back at the hit point without having left, it knows that there is
-    /// no way.
-    ///
-    /// # Guarantee
-    ///
-    /// Complete. See [`Alg1`] for the model.
-    Alg2, "Alg2", Remembering<Nearer<true>, false>, PathBound::Unknown
-}
-
-family! {
-    /// Rev1: [`Alg1`] that follows obstacles on alternate sides (Y. Horiuchi and H. Noborio, "Evaluation of path length made
-    /// in sensor-based path-planning with the alternative following", IEEE International Conference on Robotics and
-    /// Automation, 2001).
-    ///
-    /// At every hit point it takes the other side than it followed last, so that it does not run round a maze the same way
-    /// for ever.
-    ///
-    /// # Guarantee
-    ///
-    /// Complete, as Alg1 is, for which either side is as good.
-    Rev1, "Rev1", Remembering<OnMainLine<true>, true>, PathBound::Unknown
-}
-
-family! {
-    /// Rev2: [`Alg2`] that follows obstacles on alternate sides (Y. Horiuchi and H. Noborio, "Evaluation of path length made
-    /// in sensor-based path-planning with the alternative following", IEEE International Conference on Robotics and
-    /// Automation, 2001).
-    ///
-    /// At every hit point it takes the other side than it followed last.
-    ///
-    /// # Guarantee
-    ///
-    /// Complete, as Alg2 is, for which either side is as good.
-    Rev2, "Rev2", Remembering<Nearer<true>, true>, PathBound::Unknown
-}
+use crate::geometry::WallSide;
 
 /// Follows until a rule allows to leave, turns back once at a point that it remembers, and with `ALTERNATING` takes the
 /// other side at every obstacle.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Remembering<R, const ALTERNATING: bool> {
+pub(super) struct HitPointMemory<R, const ALTERNATING: bool> {
     rule: R,
     /// Hit and leave points of before.
     remembered: Vec<Remembered>,
@@ -110,7 +44,7 @@ const HIT_POINT: f64 = 1.5;
 const EARLIEST: f64 = 0.6;
 const LATEST: f64 = 1.4;
 
-impl<R, const ALTERNATING: bool> Remembering<R, ALTERNATING> {
+impl<R, const ALTERNATING: bool> HitPointMemory<R, ALTERNATING> {
     /// Whether the robot meets a place that it remembers.
     fn meets_remembered(&mut self, sight: &Sight) -> bool {
         let mut met = false;
@@ -135,7 +69,7 @@ impl<R, const ALTERNATING: bool> Remembering<R, ALTERNATING> {
     }
 }
 
-impl<R: LeaveRule, const ALTERNATING: bool> Strategy for Remembering<R, ALTERNATING> {
+impl<R: LeaveRule, const ALTERNATING: bool> Strategy for HitPointMemory<R, ALTERNATING> {
     fn side(&mut self, _body: &Body, _view: &GoalView) -> Option<WallSide> {
         self.side.filter(|_| ALTERNATING).map(WallSide::other)
     }

@@ -3,9 +3,9 @@ use std::ops::ControlFlow;
 use super::{Error, ErrorKind, Result, RobotIo, RobotTruth};
 use crate::geometry::Pose;
 
-/// What a robot of a [`Troop`] does at each of its steps, until it breaks. A [`Run`](crate::io::control::Run)
+/// What a robot of a [`FleetIo`] does at each of its steps, until it breaks. A [`Run`](crate::io::control::Run)
 /// makes one of a behaviour.
-pub type TroopStep<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<()>> + 'a>;
+pub type FleetStep<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<()>> + 'a>;
 
 /// Robots whose behaviours are stepped in one thread: a simulator's [`Fleet`](crate::io::sim::Fleet), one
 /// that is recorded, or the recording of one.
@@ -14,17 +14,17 @@ pub type TroopStep<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<(
 /// use std::ops::ControlFlow;
 /// use roverlab::geometry::{Pose, Twist};
 /// use roverlab::io::sim::{Fleet, SimOptions};
-/// use roverlab::io::{Drive, Psd, Result, Troop};
+/// use roverlab::io::{Drive, Psd, Result, FleetIo};
 /// use roverlab::world::{RobotSpec, Scene, World};
 ///
-/// fn approach<'a>(troop: &mut dyn Troop<'a>) -> Result<Pose> {
-///     troop.control(0, 0.1, Box::new(|robot| {
+/// fn approach<'a>(fleet: &mut dyn FleetIo<'a>) -> Result<Pose> {
+///     fleet.control(0, 0.1, Box::new(|robot| {
 ///         let free = robot.distance(Psd::FRONT)?;
 ///         robot.set_speed(Twist::new(0.5 * (free - 0.2), 0.0))?;
 ///         Ok(ControlFlow::Continue(()))
 ///     }))?;
-///     troop.run_for(5.0)?;
-///     troop.pose(0)
+///     fleet.run_for(5.0)?;
+///     fleet.pose(0)
 /// }
 ///
 /// # fn main() -> Result<()> {
@@ -34,12 +34,12 @@ pub type TroopStep<'a> = Box<dyn FnMut(&mut dyn RobotIo) -> Result<ControlFlow<(
 /// # Ok(())
 /// # }
 /// ```
-pub trait Troop<'a> {
+pub trait FleetIo<'a> {
     /// How many robots there are.
     fn robots(&self) -> usize;
 
     /// Gives a robot a behaviour, which is called every `period` seconds until it breaks.
-    fn control(&mut self, robot: usize, period: f64, behaviour: TroopStep<'a>) -> Result<()>;
+    fn control(&mut self, robot: usize, period: f64, behaviour: FleetStep<'a>) -> Result<()>;
 
     /// Steps each behaviour when it is due, for `seconds` or until all behaviours have ended. The first error
     /// of a behaviour ends the run.
@@ -55,12 +55,12 @@ pub trait Troop<'a> {
     fn truth(&mut self, robot: usize) -> Result<RobotTruth>;
 }
 
-impl<'a, T: Troop<'a> + ?Sized> Troop<'a> for Box<T> {
+impl<'a, T: FleetIo<'a> + ?Sized> FleetIo<'a> for Box<T> {
     fn robots(&self) -> usize {
         (**self).robots()
     }
 
-    fn control(&mut self, robot: usize, period: f64, behaviour: TroopStep<'a>) -> Result<()> {
+    fn control(&mut self, robot: usize, period: f64, behaviour: FleetStep<'a>) -> Result<()> {
         (**self).control(robot, period, behaviour)
     }
 

@@ -1,51 +1,9 @@
 use super::body::Body;
-use super::family::family;
 use super::strategy::{Decision, Sight, Strategy};
-
-family! {
-    /// Bug1: goes all round every obstacle, and leaves it at its place nearest to the goal (V. J. Lumelsky and
-    /// A. A. Stepanov, "Path-planning strategies for a point mobile automaton moving amidst unknown obstacles of arbitrary
-    /// shape", Algorithmica 2, 1987).
-    ///
-    /// The robot drives at the goal until something is in the way, follows the boundary once round, returns to its place
-    /// nearest to the goal the shorter way, and leaves. If the way from there leads into the same obstacle, there is none.
-    ///
-    /// # Guarantee
-    ///
-    /// Complete. The path is at most `D + 1.5 sum(p)`, where `D` is the straight distance and `p` the perimeters of the
-    /// boundaries that are met: each is met once at the most.
-    ///
-    /// # Model
-    ///
-    /// As for [`DistBug`](super::DistBug): the robot is a disc, and boundaries are those of obstacles grown by it. Of the
-    /// lidar it uses no more than a robot that feels its surroundings would.
-    Bug1, "Bug1", Tour<false>, PathBound::Perimeters
-}
-
-family! {
-    /// LeaveBug: goes all round every obstacle, and leaves it where the free range towards the goal brings it nearest.
-    ///
-    /// This is [`Bug1`](super::Bug1) with eyes: what counts of a place is not how near it is to the goal but how near the
-    /// way from it leads, as in the leave condition of [`DistBug`](super::DistBug).
-    ///
-    /// The name is from J. Ng and T. Bräunl, "Performance comparison of bug navigation algorithms", Journal of Intelligent
-    /// and Robotic Systems 50, 2007. The definition is this library's own, and no claim about theirs.
-    ///
-    /// # Guarantee
-    ///
-    /// Complete, for the reasons of Bug1: what the best place promises is nearer than all of the boundary, so no obstacle
-    /// is met twice. The path is at most `D + 2 sum(p)`: the best place may be farther from the goal than the hit point is,
-    /// by half of the boundary at the most, and the way to the next obstacle is longer by that.
-    ///
-    /// A free range that is seen between two beams may not be there. Then the robot meets the same obstacle again, and relies
-    /// on ranges less from there on: in 2 of 10,000 generated worlds, closed rooms, that made the path longer than the bound, by
-    /// 1 %.
-    LeaveBug, "LeaveBug", Tour<true>, PathBound::TwicePerimeters
-}
 
 /// Goes once round, then to the best place to leave. With `BY_RANGE` free ranges count too.
 #[derive(Debug, Clone)]
-pub(super) struct Tour<const BY_RANGE: bool> {
+pub(super) struct Circumnavigation<const BY_RANGE: bool> {
     /// How near to the goal the boundary has come.
     least_distance: f64,
     best: Option<Candidate>,
@@ -92,7 +50,7 @@ const MISSED: f64 = 3.0;
 /// For so many steps a merit lasts.
 const LASTING: usize = 3;
 
-impl<const BY_RANGE: bool> Default for Tour<BY_RANGE> {
+impl<const BY_RANGE: bool> Default for Circumnavigation<BY_RANGE> {
     fn default() -> Self {
         let latest = [None; LASTING];
         Self {
@@ -106,7 +64,7 @@ impl<const BY_RANGE: bool> Default for Tour<BY_RANGE> {
     }
 }
 
-impl<const BY_RANGE: bool> Tour<BY_RANGE> {
+impl<const BY_RANGE: bool> Circumnavigation<BY_RANGE> {
     /// How near to the goal leaving here leads; `None` where the way is blocked.
     fn merit(&self, sight: &Sight) -> Option<f64> {
         let free = if BY_RANGE { sight.free.min(sight.distance) * (1.0 - self.doubt) } else { 0.0 };
@@ -149,7 +107,7 @@ impl<const BY_RANGE: bool> Tour<BY_RANGE> {
     }
 }
 
-impl<const BY_RANGE: bool> Strategy for Tour<BY_RANGE> {
+impl<const BY_RANGE: bool> Strategy for Circumnavigation<BY_RANGE> {
     /// Begins a tour. If the last leave has not brought the robot nearer than all of the boundary before, as it promised,
     /// free ranges are relied upon less from now on; so the robot cannot go round the same obstacle for ever.
     fn meet(&mut self, meeting: &Sight) {

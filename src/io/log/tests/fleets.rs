@@ -3,7 +3,7 @@
 use super::*;
 
 /// Two robots, the first of which stops for good after some steps.
-fn patrol(troop: &mut dyn Troop<'_>, period: f64, steps: u32) -> Result<Vec<Pose>> {
+fn patrol(fleet: &mut dyn FleetIo<'_>, period: f64, steps: u32) -> Result<Vec<Pose>> {
     let mut left = steps;
     let first = move |robot: &mut dyn RobotIo| {
         left -= 1;
@@ -16,14 +16,14 @@ fn patrol(troop: &mut dyn Troop<'_>, period: f64, steps: u32) -> Result<Vec<Pose
         robot.print(".")?;
         Ok(ControlFlow::Continue(()))
     };
-    troop.control(0, period, Box::new(first))?;
-    troop.control(1, 0.07, Box::new(second))?;
+    fleet.control(0, period, Box::new(first))?;
+    fleet.control(1, 0.07, Box::new(second))?;
     let mut path = Vec::new();
-    while troop.time()? < 2.45 {
-        troop.run_for(0.1)?;
-        path.extend([troop.pose(0)?, troop.pose(1)?]);
+    while fleet.time()? < 2.45 {
+        fleet.run_for(0.1)?;
+        path.extend([fleet.pose(0)?, fleet.pose(1)?]);
     }
-    path.extend([troop.truth(0)?.pose, troop.truth(1)?.odometry]);
+    path.extend([fleet.truth(0)?.pose, fleet.truth(1)?.odometry]);
     Ok(path)
 }
 
@@ -34,14 +34,14 @@ fn pair() -> Scene {
     scene
 }
 
-fn recorded_troop<'a, T>(
-    troop: impl Troop<'a> + 'a,
-    run: impl FnOnce(&mut dyn Troop<'a>) -> T,
+fn recorded_fleet<'a, T>(
+    fleet: impl FleetIo<'a> + 'a,
+    run: impl FnOnce(&mut dyn FleetIo<'a>) -> T,
 ) -> (T, Vec<u8>) {
     let writer = LogWriter::new(Vec::new(), &header()).unwrap();
-    let mut troop = writer.troop(troop);
-    let result = run(&mut troop);
-    drop(troop);
+    let mut fleet = writer.fleet(fleet);
+    let result = run(&mut fleet);
+    drop(fleet);
     (result, writer.finish().unwrap())
 }
 
@@ -51,12 +51,12 @@ fn fleet<'a>() -> Fleet<'a> {
 
 #[test]
 fn a_troop_replays_to_the_bit() {
-    let (path, bytes) = recorded_troop(fleet(), |troop| patrol(troop, 0.05, 30).unwrap());
+    let (path, bytes) = recorded_fleet(fleet(), |fleet| patrol(fleet, 0.05, 30).unwrap());
     assert_eq!(path, patrol(&mut fleet(), 0.05, 30).unwrap());
-    assert!(bytes == recorded_troop(fleet(), |troop| patrol(troop, 0.05, 30)).1);
+    assert!(bytes == recorded_fleet(fleet(), |fleet| patrol(fleet, 0.05, 30)).1);
     let log = Log::read(bytes.clone()).unwrap();
     let player = Player::new(&log);
-    let (again, second) = recorded_troop(player.troop(), |troop| patrol(troop, 0.05, 30).unwrap());
+    let (again, second) = recorded_fleet(player.fleet(), |fleet| patrol(fleet, 0.05, 30).unwrap());
     assert_eq!((again, player.rest()), (path, None));
     let second = Log::read(second).unwrap();
     assert!(second.bytes() == bytes, "{}", Difference::between(&log, &second).unwrap());
@@ -74,10 +74,10 @@ fn a_troop_replays_to_the_bit() {
 
 #[test]
 fn a_troop_that_does_something_else_is_named() {
-    let (_, bytes) = recorded_troop(fleet(), |troop| patrol(troop, 0.05, 30));
+    let (_, bytes) = recorded_fleet(fleet(), |fleet| patrol(fleet, 0.05, 30));
     let log = Log::read(bytes.clone()).unwrap();
     let named = |log: &Log, period, steps| {
-        let error = patrol(&mut Player::new(log).troop(), period, steps).unwrap_err();
+        let error = patrol(&mut Player::new(log).fleet(), period, steps).unwrap_err();
         (error.kind(), error.to_string())
     };
     let message = "found control(0.06); expected control(0.05), as recorded";
@@ -87,13 +87,13 @@ fn a_troop_that_does_something_else_is_named() {
     let (kind, message) = named(&log, 0.05, 29);
     assert!(kind == ErrorKind::Diverged && message.contains("set_speed("), "{message}");
     let idle = Player::new(&log)
-        .troop()
+        .fleet()
         .control(0, 0.05, Box::new(|_| Ok(ControlFlow::Continue(()))))
-        .and_then(|()| patrol(&mut Player::new(&Log::read(recorded(0.3)).unwrap()).troop(), 0.05, 3));
+        .and_then(|()| patrol(&mut Player::new(&Log::read(recorded(0.3)).unwrap()).fleet(), 0.05, 3));
     assert_eq!(idle.unwrap_err().kind(), ErrorKind::EndOfLog);
-    let mut troop = Player::new(&log).troop();
-    troop.control(0, 0.05, Box::new(|_| Ok(ControlFlow::Continue(())))).unwrap();
-    let error = troop.run_for(0.1).unwrap_err().to_string();
+    let mut fleet = Player::new(&log).fleet();
+    fleet.control(0, 0.05, Box::new(|_| Ok(ControlFlow::Continue(())))).unwrap();
+    let error = fleet.run_for(0.1).unwrap_err().to_string();
     assert!(error.starts_with("found a step without a call; expected set_speed("), "{error}");
     // What is left of a recording that was cut off replays as far as it goes.
     let saved = Log::read(recover(&bytes[..bytes.len() / 2]).unwrap().bytes).unwrap();
@@ -102,7 +102,7 @@ fn a_troop_that_does_something_else_is_named() {
 
 #[test]
 fn an_error_that_ends_a_troop_is_replayed() {
-    let run = |troop: &mut dyn Troop<'_>| {
+    let run = |fleet: &mut dyn FleetIo<'_>| {
         for (robot, sensor) in [(0, Psd::FRONT), (1, Psd(99))] {
             let mut steps = 0;
             let step = move |robot: &mut dyn RobotIo| {
@@ -111,14 +111,14 @@ fn an_error_that_ends_a_troop_is_replayed() {
                 robot.distance(if steps < 8 { Psd::FRONT } else { sensor })?;
                 Ok(ControlFlow::Continue(()))
             };
-            troop.control(robot, 0.05, Box::new(step)).unwrap();
+            fleet.control(robot, 0.05, Box::new(step)).unwrap();
         }
-        (0..20).try_for_each(|_| troop.run_for(0.1)).unwrap_err().to_string()
+        (0..20).try_for_each(|_| fleet.run_for(0.1)).unwrap_err().to_string()
     };
-    let (error, bytes) = recorded_troop(fleet(), run);
+    let (error, bytes) = recorded_fleet(fleet(), run);
     let log = Log::read(bytes.clone()).unwrap();
     let player = Player::new(&log);
-    let (again, second) = recorded_troop(player.troop(), run);
+    let (again, second) = recorded_fleet(player.fleet(), run);
     assert_eq!((again, player.rest()), (error, None));
     assert!(second == bytes, "{}", Difference::between(&log, &Log::read(second).unwrap()).unwrap());
 }

@@ -1,0 +1,20 @@
+use super::body::Body;
+use super::leave_rule::LeaveRule;
+use super::strategy::{Decision, Sight, Strategy};
+
+/// Follows one way round until a rule allows to leave.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FirstLeave<R> {
+    rule: R,
+}
+
+impl<R: LeaveRule> Strategy for FirstLeave<R> {
+    fn meet(&mut self, meeting: &Sight) {
+        self.rule.meet(meeting);
+    }
+
+    fn consider(&mut self, body: &Body, sight: &Sight) -> Decision {
+        let leave = self.rule.allows(body.goal, sight) || sight.is_goal_at_hand();
+        if leave { Decision::Leave } else { Decision::Follow }
+    }
+}
