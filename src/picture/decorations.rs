@@ -4,53 +4,55 @@ use svg::node::element::Group;
 
 use super::canvas::{line, path_data, words};
 use super::colours::{INK, PALE_INK};
+use super::film::Film;
 use super::frame::{Frame, Pixel};
 use super::items::Picture;
 use super::text;
 use crate::geometry::Vector;
 
-const TITLE: f64 = 19.0;
+const TITLE: f64 = 17.0;
 const CAPTION: f64 = 12.5;
+/// Pixels from one line of the caption to the next.
+const LINE: f64 = 17.0;
 
-/// The height of title and caption together, with the space below them.
-pub(super) fn heading_height(picture: &Picture) -> f64 {
-    let title = if picture.title.is_some() { 26.0 } else { 0.0 };
-    let caption = if picture.caption.is_some() { 20.0 } else { 0.0 };
-    let space = if title + caption > 0.0 { 12.0 } else { 0.0 };
-    title + caption + space
-}
-
-/// The width that title and caption would like.
-pub(super) fn heading_width(picture: &Picture) -> f64 {
-    let title = picture.title.as_ref().map_or(0.0, |title| bold_width(title));
-    let caption = picture.caption.as_ref().map_or(0.0, |caption| text::width(caption, CAPTION));
-    title.max(caption)
-}
-
-/// Title and caption, cut to the room there is.
-pub(super) fn heading(picture: &Picture, corner: Pixel, room: f64) -> Group {
+/// Title and caption of a page with this much room, and their height with the space below them.
+pub(super) fn heading(picture: &Picture, corner: Pixel, room: f64) -> (Group, f64) {
     let mut group = Group::new();
     let mut base = corner.y;
     if let Some(title) = &picture.title {
-        base += 19.0;
-        let title = text::fit(&text::clean(title), 1.12 * TITLE, room);
+        base += TITLE;
+        let title = text::fit(&text::clean(title), BOLD * TITLE, room);
         group = group.add(words(&title, Pixel::new(corner.x, base), TITLE, INK).set("font-weight", "bold"));
-        base += 7.0;
+        base += 4.0;
     }
-    if let Some(caption) = &picture.caption {
-        base += 14.0;
-        let caption = text::fit(&text::clean(caption), CAPTION, room);
-        group = group.add(words(&caption, Pixel::new(corner.x, base), CAPTION, PALE_INK));
+    for row in picture.caption.iter().flat_map(|caption| text::wrapped(&text::clean(caption), CAPTION, room))
+    {
+        base += LINE;
+        group = group.add(words(&row, Pixel::new(corner.x, base), CAPTION, PALE_INK));
     }
-    group
+    let height = if base > corner.y { base - corner.y + 11.0 } else { 0.0 };
+    (group, height)
 }
 
-fn bold_width(title: &str) -> f64 {
-    text::width(title, 1.12 * TITLE)
+/// How much wider bold letters are.
+const BOLD: f64 = 1.12;
+
+/// The width that the title would like.
+pub(super) fn title_width(picture: &Picture) -> f64 {
+    picture.title.as_ref().map_or(0.0, |title| text::width(title, BOLD * TITLE))
 }
 
 /// The height of the scale bar with the space above it.
 pub(super) const SCALE_HEIGHT: f64 = 30.0;
+
+/// How fast a film is, below the frame's lower right corner.
+pub(super) fn pace(frame: &Frame, film: &Film) -> Group {
+    let words_for =
+        if film.pace() > 1.05 { format!("{:.1} times as fast", film.pace()) } else { "real time".into() };
+    let corner = frame.pixels().max;
+    let left = Pixel::new(corner.x - text::width(&words_for, 12.0), corner.y + 23.2);
+    Group::new().add(words(&words_for, left, 12.0, PALE_INK)).add(film.progress(&frame.pixels()))
+}
 
 /// A bar as long as one step of the grid, with its length, below the frame's lower left corner.
 pub(super) fn scale_bar(frame: &Frame) -> Group {

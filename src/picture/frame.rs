@@ -16,8 +16,8 @@ pub(super) struct Frame {
 
 impl Frame {
     /// The room for the plot, in pixels.
-    const WIDEST: f64 = 960.0;
-    const TALLEST: f64 = 720.0;
+    const WIDEST: f64 = 560.0;
+    const TALLEST: f64 = 480.0;
     /// No region is drawn flatter than this share of its longer side.
     const FLATTEST: f64 = 0.06;
 
@@ -85,7 +85,7 @@ mod tests {
             let frame = Frame::around(region, corner);
             let size = frame.pixels().size();
             prop_assert!(size.x <= Frame::WIDEST + 1e-6 && size.y <= Frame::TALLEST + 1e-6);
-            prop_assert!(size.x >= 40.0 && size.y >= 40.0);
+            prop_assert!(size.x >= 28.0 && size.y >= 28.0);
             for point in [region.min, region.max] {
                 prop_assert!(frame.pixels().inflated(1e-6).contains(frame.at(point)));
             }

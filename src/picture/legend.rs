@@ -7,17 +7,17 @@ use svg::node::element::{Group, LinearGradient, Stop};
 use super::canvas::{number, rectangle, words};
 use super::colours::{INK, PALE_INK, ramp};
 use super::frame::Pixel;
-use super::items::Picture;
-use super::{Mark, Style, lines, scenery, text};
+use super::items::{Figure, Item, Picture};
+use super::{Mark, Style, lines, robots, scenery, text};
 use crate::geometry::{Aabb, Vector};
-use crate::world::{Colour, Shape};
+use crate::world::{Colour, Footprint, Shape};
 
-const SIZE: f64 = 12.0;
+const SIZE: f64 = 12.5;
 /// Pixels from the left end of a line's symbol to its text, and from one line to the next.
-const INDENT: f64 = 34.0;
-const ROW: f64 = 23.0;
+const INDENT: f64 = 30.0;
+const ROW: f64 = 21.0;
 /// Pixels between entries that share a row.
-const BETWEEN: f64 = 22.0;
+const BETWEEN: f64 = 18.0;
 /// More kinds of objects than these are summed up.
 const MOST_KINDS: usize = 8;
 
@@ -31,11 +31,13 @@ pub(super) struct Legend {
 }
 
 /// What stands before the text of a line.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 enum Key {
     Line(Style),
     Area(Style),
+    Disc(Style),
     Points(Style),
+    Robot(Style, Footprint),
     Mark(Mark),
     Object(Shape, Colour),
     Hills,
@@ -55,15 +57,13 @@ pub(super) enum Arrangement {
 impl Legend {
     pub(super) fn of(picture: &Picture) -> Self {
         let mut legend = Self { entries: Vec::new() };
-        legend.add_lines(picture);
-        for cloud in &picture.clouds {
-            legend.add_labelled(&cloud.style, Key::Points);
-        }
-        for area in &picture.areas {
-            legend.add_labelled(&area.style, Key::Area);
-        }
-        for robot in &picture.robots {
-            legend.add_labelled(&robot.style, Key::Area);
+        let top = number(picture.top_speed());
+        for item in picture.items.iter().filter(|item| item.figure.is_visible()) {
+            match Key::of(item) {
+                Some(Key::Speed) => legend.add_once(Key::Speed, &format!("true path, 0 to {top} m/s")),
+                Some(key) => item.style.label.iter().for_each(|label| legend.add_once(key.clone(), label)),
+                None => {}
+            }
         }
         legend.add_marks(picture);
         legend.add_objects(picture);
@@ -121,30 +121,20 @@ impl Legend {
         self.entries.push((key, text::fit(&text::clean(&text.into()), SIZE, 260.0)));
     }
 
-    /// Adds a style's label, unless it is there already.
-    fn add_labelled(&mut self, style: &Style, key: fn(Style) -> Key) {
-        if let Some(label) = &style.label {
-            let label = text::fit(&text::clean(label), SIZE, 260.0);
-            if !self.entries.iter().any(|(_, text)| *text == label) {
-                self.add(key(style.clone()), label);
-            }
-        }
-    }
-
-    fn add_lines(&mut self, picture: &Picture) {
-        for line in picture.lines.iter().filter(|line| line.speeds.is_none()) {
-            self.add_labelled(&line.style, Key::Line);
-        }
-        if picture.lines.iter().any(|line| line.speeds.is_some()) {
-            let top = number(lines::top_speed(picture));
-            self.add(Key::Speed, format!("true path, 0 to {top} m/s"));
+    /// Adds an entry, unless its text is there already.
+    fn add_once(&mut self, key: Key, text: &str) {
+        let text = text::fit(&text::clean(text), SIZE, 260.0);
+        if !self.entries.iter().any(|(_, other)| *other == text) {
+            self.entries.push((key, text));
         }
     }
 
     fn add_marks(&mut self, picture: &Picture) {
         let mut counts: BTreeMap<Mark, usize> = BTreeMap::new();
-        for mark in picture.marks.iter().filter_map(|marked| marked.mark) {
-            *counts.entry(mark).or_default() += 1;
+        for item in picture.items.iter().filter(|item| item.figure.is_visible()) {
+            if let Figure::Mark { mark: Some(mark), .. } = item.figure {
+                *counts.entry(mark).or_default() += 1;
+            }
         }
         for (mark, count) in counts {
             self.add(Key::Mark(mark), counted(mark.name(), count));
@@ -179,6 +169,20 @@ fn entry_width(text: &str) -> f64 {
 }
 
 impl Key {
+    /// What stands for an item that a label explains.
+    fn of(item: &Item) -> Option<Self> {
+        let style = item.style.clone();
+        Some(match &item.figure {
+            Figure::Line { speeds, .. } if !speeds.is_empty() => Key::Speed,
+            Figure::Line { .. } | Figure::Moving(_) => Key::Line(style),
+            Figure::Disc { .. } => Key::Disc(style),
+            Figure::Polygon(_) => Key::Area(style),
+            Figure::Points(_) => Key::Points(style),
+            Figure::Robot { footprint, .. } => Key::Robot(style, *footprint),
+            Figure::Mark { .. } => return None,
+        })
+    }
+
     /// The symbol, whose left end and middle height is `at`.
     fn symbol(&self, at: Pixel) -> Group {
         let middle = at + Vector::new(12.0, 0.0);
@@ -186,13 +190,16 @@ impl Key {
         match self {
             Key::Line(style) => lines::stroke(&[at, at + Vector::new(24.0, 0.0)], style),
             Key::Area(style) => lines::swatch(bar.inflated(1.0), style),
+            Key::Disc(style) => lines::circle(middle, 5.5, &style.clone().width(style.width.min(2.4))),
+            Key::Robot(style, footprint) => {
+                let scale = 8.0 / footprint.bounding_radius().max(1e-6);
+                robots::outline(middle, 0.0, footprint, style, scale)
+            }
             Key::Points(style) => {
                 let spread = [(-8.0, 2.0), (-1.0, -3.0), (3.0, 4.0), (9.0, -1.0)];
                 lines::dots(&spread.map(|(x, y)| middle + Vector::new(x, y)), style)
             }
-            // The flag stands above its point.
-            Key::Mark(Mark::Goal) => Mark::Goal.symbol(middle + Vector::new(-4.0, 8.0)),
-            Key::Mark(mark) => mark.symbol(middle),
+            Key::Mark(mark) => mark.symbol(middle, 0.0),
             Key::Object(shape, colour) => scenery::object_symbol(shape, *colour, middle),
             Key::Hills => scenery::hills_symbol(middle),
             Key::Speed => {

@@ -1,43 +1,36 @@
 //! Areas, clouds of points and lines.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
-use svg::node::element::Group;
+use svg::node::element::{Group, Mask};
 
 use super::Style;
 use super::canvas::{disc, line, number, path_data};
-use super::colours::ramp;
+use super::colours::{PAGE, ramp};
+use super::film::{Film, in_time, simplified};
 use super::frame::{Frame, Pixel};
-use super::items::{Area, Cloud, Line, Outline, Picture, is_finite};
+use super::items::is_finite;
 use crate::geometry::{Aabb, Point};
 
 /// Steps of the colour scale along a path.
 const SHADES: f64 = 24.0;
-/// Points of a path nearer than this to the one before, in pixels, make no difference.
-const FINEST: f64 = 0.45;
+/// A path is drawn to this many pixels.
+const FINEST: f64 = 0.25;
 
-/// A disc or a polygon.
-pub(super) fn area(item: &Area, frame: &Frame) -> Group {
-    match &item.outline {
-        Outline::Disc { centre, radius } if is_finite(centre) && radius.is_finite() => {
-            let circle = disc(frame.at(*centre), frame.length(radius.abs()), item.style.colour)
-                .set("fill-opacity", number(item.style.fill * item.style.opacity))
-                .set("stroke", item.style.colour.to_string())
-                .set("stroke-width", number(item.style.width))
-                .set("stroke-opacity", number(item.style.opacity));
-            Group::new().add(dash(circle, &item.style))
-        }
-        Outline::Polygon(corners) if !corners.is_empty() => {
-            let pixels: Vec<Pixel> = corners.iter().map(|p| frame.at(*p)).collect();
-            outlined(&path_data(&pixels, true), &item.style)
-        }
-        _ => Group::new(),
-    }
+/// A disc.
+pub(super) fn circle(centre: Pixel, radius: f64, style: &Style) -> Group {
+    let circle = disc(centre, radius, style.colour)
+        .set("fill-opacity", number(style.fill * style.opacity))
+        .set("stroke", style.colour.to_string())
+        .set("stroke-width", number(style.width.min(radius)))
+        .set("stroke-opacity", number(style.opacity));
+    Group::new().add(dash(circle, style))
 }
 
 /// A closed outline, filled as its style says.
-fn outlined(data: &str, style: &Style) -> Group {
-    let outline = line(data.to_owned(), style.colour, style.width)
+pub(super) fn outlined(corners: &[Pixel], style: &Style) -> Group {
+    let outline = line(path_data(corners, true), style.colour, style.width)
         .set("fill", style.colour.to_string())
         .set("fill-opacity", number(style.fill * style.opacity))
         .set("stroke-opacity", number(style.opacity));
@@ -56,13 +49,13 @@ fn dash<T: svg::Node>(mut element: T, style: &Style) -> T {
 pub(super) fn swatch(bounds: Aabb, style: &Style) -> Group {
     let (min, max) = (bounds.min, bounds.max);
     let corners = [min, Pixel::new(max.x, min.y), max, Pixel::new(min.x, max.y)];
-    outlined(&path_data(&corners, true), &style.clone().width(style.width.min(2.0)))
+    outlined(&corners, &style.clone().width(style.width.min(2.0)))
 }
 
 /// The points of a cloud.
-pub(super) fn cloud(cloud: &Cloud, frame: &Frame) -> Group {
-    let pixels: Vec<Pixel> = cloud.points.iter().filter(|p| is_finite(p)).map(|p| frame.at(*p)).collect();
-    dots(&pixels, &cloud.style)
+pub(super) fn cloud(points: &[Point], style: &Style, frame: &Frame) -> Group {
+    let pixels: Vec<Pixel> = points.iter().filter(|p| is_finite(p)).map(|p| frame.at(*p)).collect();
+    dots(&pixels, style)
 }
 
 /// Dots, one for every place where there are any.
@@ -83,56 +76,125 @@ pub(super) fn stroke(pixels: &[Pixel], style: &Style) -> Group {
     Group::new().add(dash(shape, style))
 }
 
-/// The highest speed along the paths that are coloured by it, in metres per second.
-pub(super) fn top_speed(picture: &Picture) -> f64 {
-    let speeds = picture.lines.iter().filter_map(|line| line.speeds.as_ref()).flatten();
-    speeds.copied().filter(|speed| speed.is_finite()).fold(0.0, f64::max)
+/// A line that changes its shape, or as it is in the end.
+pub(super) fn moving(shapes: &[(f64, Vec<Pixel>)], style: &Style, film: Option<&Film>) -> Group {
+    let Some((_, last)) = shapes.last() else { return Group::new() };
+    let still =
+        line(path_data(last, false), style.colour, style.width).set("stroke-opacity", number(style.opacity));
+    let still = dash(still, style);
+    Group::new().add(match film {
+        Some(film) if shapes.len() > 1 => still.add(film.shapes(shapes)),
+        _ => still,
+    })
 }
 
-/// A path, in one colour or coloured by speed.
-pub(super) fn path(item: &Line, frame: &Frame, top_speed: f64) -> Group {
-    let Some(speeds) = &item.speeds else {
-        let data: String = runs(&item.points, frame).iter().map(|run| path_data(run, false)).collect();
-        let shape =
-            line(data, item.style.colour, item.style.width).set("stroke-opacity", number(item.style.opacity));
-        return Group::new().add(dash(shape, &item.style));
-    };
-    let shade = |speed: f64| if top_speed > 0.0 { (speed / top_speed * SHADES).round() } else { 0.0 };
-    let mut group = Group::new();
+/// A path: its points, when it reaches them, and how fast; both may be empty.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Path<'a> {
+    pub(super) points: &'a [Point],
+    pub(super) times: &'a [f64],
+    pub(super) speeds: &'a [f64],
+    pub(super) style: &'a Style,
+}
+
+impl Path<'_> {
+    /// The whole path, in one colour or coloured by speed, up to the picture's highest one.
+    pub(super) fn draw(&self, frame: &Frame, top_speed: f64) -> Group {
+        if self.speeds.len() < self.points.len() {
+            let data = self.data(0..self.points.len(), frame);
+            let shape = line(data, self.style.colour, self.style.width)
+                .set("stroke-opacity", number(self.style.opacity));
+            return Group::new().add(dash(shape, self.style));
+        }
+        let shade = |speed: f64| if top_speed > 0.0 { (speed / top_speed * SHADES).round() } else { 0.0 };
+        let mut group = Group::new();
+        let mut start = 0;
+        for end in 1..=self.points.len() {
+            let last = end == self.points.len();
+            if last || shade(self.speeds[end]) != shade(self.speeds[start]) {
+                // Pieces share the point where they meet.
+                let data = self.data(start..(end + 1).min(self.points.len()), frame);
+                group = group.add(line(data, ramp(shade(self.speeds[start]) / SHADES), self.style.width));
+                start = end;
+            }
+        }
+        group
+    }
+
+    /// The path as it grows in a film. `name` is that of a mask, one for each path of a document.
+    pub(super) fn grow(&self, frame: &Frame, top_speed: f64, film: &Film, name: &str) -> Group {
+        let plain = self.speeds.is_empty() && !self.style.dashed;
+        let (colour, width) = if plain { (self.style.colour, self.style.width) } else { (PAGE, 8.0) };
+        let growing = runs(self.points).into_iter().map(|run| {
+            let places: Vec<(f64, Pixel)> = run
+                .map(|i| (self.times.get(i).copied().unwrap_or(f64::INFINITY), frame.at(self.points[i])))
+                .collect();
+            let places: Vec<_> = in_time(&places).into_iter().map(|i| places[i]).collect();
+            let (mut along, mut before) = (0.0, places[0].1);
+            let reached: Vec<(f64, f64)> = places
+                .iter()
+                .map(|(time, place)| {
+                    along += (place - before).norm();
+                    before = *place;
+                    (*time, along)
+                })
+                .collect();
+            let (pattern, growth) = film.growth(along, &reached);
+            let pixels: Vec<Pixel> = places.into_iter().map(|(_, place)| place).collect();
+            line(path_data(&pixels, false), colour, width).set("stroke-dasharray", pattern).add(growth)
+        });
+        if plain {
+            return growing.fold(Group::new(), Group::add).set("stroke-opacity", number(self.style.opacity));
+        }
+        let bounds = frame.pixels().inflated(20.0);
+        let size = bounds.size();
+        let mask = Mask::new()
+            .set("id", name)
+            .set("maskUnits", "userSpaceOnUse")
+            .set("x", number(bounds.min.x))
+            .set("y", number(bounds.min.y))
+            .set("width", number(size.x))
+            .set("height", number(size.y));
+        let mask = growing.fold(mask, Mask::add);
+        let whole = self.draw(frame, top_speed).set("mask", format!("url(#{name})"));
+        Group::new().add(mask).add(whole)
+    }
+
+    /// The data of a piece, without points that make no difference.
+    fn data(&self, piece: Range<usize>, frame: &Frame) -> String {
+        runs(&self.points[piece.clone()])
+            .into_iter()
+            .map(|run| path_data(&thinned(&self.points[piece.clone()][run], frame), false))
+            .collect()
+    }
+}
+
+/// The unbroken parts of a path.
+pub(super) fn runs(points: &[Point]) -> Vec<Range<usize>> {
+    let mut runs = Vec::new();
     let mut start = 0;
-    for end in 1..=item.points.len() {
-        let last = end == item.points.len();
-        if last || shade(speeds[end]) != shade(speeds[start]) {
-            // Pieces share the point where they meet.
-            let piece = &item.points[start..(end + 1).min(item.points.len())];
-            let data: String = runs(piece, frame).iter().map(|run| path_data(run, false)).collect();
-            group = group.add(line(data, ramp(shade(speeds[start]) / SHADES), item.style.width));
-            start = end;
+    for end in 0..=points.len() {
+        if points.get(end).is_none_or(|point| !is_finite(point)) {
+            if end > start {
+                runs.push(start..end);
+            }
+            start = end + 1;
         }
     }
-    group
+    runs
 }
 
-/// The unbroken parts of a path in pixels, without points that make no difference.
-pub(super) fn runs(points: &[Point], frame: &Frame) -> Vec<Vec<Pixel>> {
-    points
-        .split(|p| !is_finite(p))
-        .filter(|run| !run.is_empty())
-        .map(|run| thinned(run.iter().map(|p| frame.at(*p))))
-        .collect()
+/// A path in pixels, without points that make no difference.
+pub(super) fn thinned(points: &[Point], frame: &Frame) -> Vec<Pixel> {
+    let pixels: Vec<Pixel> = points.iter().map(|p| frame.at(*p)).collect();
+    let off = |between: usize, a: usize, b: usize| distance(pixels[between], pixels[a], pixels[b]);
+    simplified(pixels.len(), FINEST, off).into_iter().map(|i| pixels[i]).collect()
 }
 
-fn thinned(pixels: impl Iterator<Item = Pixel>) -> Vec<Pixel> {
-    let mut kept: Vec<Pixel> = Vec::new();
-    let mut skipped = None;
-    for pixel in pixels {
-        if kept.last().is_some_and(|last| (pixel - last).norm() < FINEST) {
-            skipped = Some(pixel);
-        } else {
-            kept.push(pixel);
-            skipped = None;
-        }
-    }
-    kept.extend(skipped);
-    kept
+/// Pixels from a point to the line between two others.
+fn distance(point: Pixel, a: Pixel, b: Pixel) -> f64 {
+    let along = b - a;
+    let length = along.norm_squared();
+    let share = if length > 0.0 { ((point - a).dot(&along) / length).clamp(0.0, 1.0) } else { 0.0 };
+    (point - (a + along * share)).norm()
 }

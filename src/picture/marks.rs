@@ -28,11 +28,14 @@ impl Mark {
     /// Pixels from a mark's point to the end of its symbol.
     pub(super) const REACH: f64 = 7.5;
 
+    /// Whether it lies on the floor, below robots.
+    pub(super) fn is_on_floor(self) -> bool {
+        matches!(self, Mark::Start | Mark::Goal)
+    }
+
     /// The box around the symbol at a pixel.
-    pub(super) fn extent(self, at: Pixel) -> Aabb {
-        let reach = Vector::new(Self::REACH, Self::REACH);
-        let upper_right = if self == Mark::Goal { Vector::new(15.0, -21.0) } else { Vector::zeros() };
-        Aabb { min: (at - reach).inf(&(at + upper_right)), max: (at + reach).sup(&(at + upper_right)) }
+    pub(super) fn extent(at: Pixel) -> Aabb {
+        Aabb { min: at, max: at }.inflated(Self::REACH)
     }
 
     /// What the legend calls it.
@@ -47,12 +50,12 @@ impl Mark {
         }
     }
 
-    /// The symbol at a pixel.
-    pub(super) fn symbol(self, at: Pixel) -> Group {
+    /// The symbol at a pixel. Those on the floor are rings around what stands there, of at least `around` pixels.
+    pub(super) fn symbol(self, at: Pixel, around: f64) -> Group {
         let corner = |x: f64, y: f64| at + Vector::new(x, y);
         match self {
-            Mark::Start => Group::new().add(ringed(at, 6.0, PAGE, INK)).add(disc(at, 2.4, INK)),
-            Mark::Goal => flag(at),
+            Mark::Start => ring(at, around.max(5.5), INK).add(disc(at, 2.4, INK)),
+            Mark::Goal => ring(at, around.max(7.5), GREEN).add(disc(at, 3.2, GREEN)),
             Mark::HitPoint => Group::new().add(ringed(at, 6.0, RED, PAGE)),
             Mark::LeavePoint => {
                 let corners = [corner(0.0, -7.4), corner(7.4, 0.0), corner(0.0, 7.4), corner(-7.4, 0.0)];
@@ -68,17 +71,15 @@ impl Mark {
     }
 }
 
-/// A flag whose pole stands on the point.
-fn flag(at: Pixel) -> Group {
-    let corner = |x: f64, y: f64| at + Vector::new(x, y);
-    let pole = path_data(&[at, corner(0.0, -20.0)], false);
-    let cloth = [corner(0.0, -20.0), corner(15.0, -15.0), corner(0.0, -9.8)];
-    Group::new()
-        .add(line(pole.clone(), PAGE, 4.6))
-        .add(outlined(&cloth, GREEN, PAGE))
-        .add(line(pole, INK, 1.8))
-        .add(disc(at, 3.0, PAGE))
-        .add(disc(at, 2.2, INK))
+/// A ring with a light edge on both sides.
+fn ring(at: Pixel, radius: f64, colour: Colour) -> Group {
+    let circle = |colour: Colour, width: &str| {
+        disc(at, radius, PAGE)
+            .set("fill-opacity", "0.5")
+            .set("stroke", colour.to_string())
+            .set("stroke-width", width)
+    };
+    Group::new().add(circle(PAGE, "5")).add(circle(colour, "2.4"))
 }
 
 fn ringed(at: Pixel, radius: f64, fill: Colour, ring: Colour) -> svg::node::element::Circle {

@@ -25,6 +25,7 @@
 mod canvas;
 mod colours;
 mod decorations;
+mod film;
 mod frame;
 mod items;
 mod labels;
@@ -42,7 +43,7 @@ mod style;
 mod text;
 
 pub use colours::{SERIES, ramp};
-pub use items::Picture;
+pub use items::{Figure, Item, Picture};
 pub use marks::Mark;
 pub use save::{FileType, SaveError};
 pub use style::Style;

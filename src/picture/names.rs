@@ -4,39 +4,54 @@ use svg::node::element::Group;
 
 use super::canvas::{line, path_data, words};
 use super::colours::{FLOOR, INK, PALE_INK};
+use super::film::Film;
 use super::frame::Frame;
-use super::items::{Marked, Picture};
+use super::items::{Figure, Item, Picture, is_finite};
 use super::labels::{self, Labels};
-use super::lines::runs;
+use super::lines::{runs, thinned};
 use super::{Mark, robots, text};
 
 /// The names that fit, each beside its point.
-pub(super) fn beside_marks(picture: &Picture, frame: &Frame) -> Group {
+pub(super) fn beside_marks(picture: &Picture, frame: &Frame, film: Option<&Film>) -> Group {
     let mut labels = Labels::new(frame.pixels().inflated(4.0));
-    for marked in picture.finite_marks() {
-        if let Some(mark) = marked.mark {
-            labels.keep_off(mark.extent(frame.at(marked.position)));
-        }
-    }
-    for extent in picture.robots.iter().filter_map(|robot| robots::extent(robot, frame)) {
-        labels.keep_off(extent);
-    }
     for wall in &picture.world.walls {
         labels.avoid(&[frame.at(wall.line.a), frame.at(wall.line.b)]);
     }
-    for run in picture.lines.iter().flat_map(|line| runs(&line.points, frame)) {
-        labels.avoid(&run);
+    for item in &picture.items {
+        keep_clear(&mut labels, item, frame);
     }
-    picture.finite_marks().fold(Group::new(), |group, marked| match name(marked, frame, &mut labels) {
-        Some(text) => group.add(text),
-        None => group,
+    picture.items.iter().fold(Group::new(), |group, item| match (name(item, frame, &mut labels), film) {
+        (Some(text), Some(film)) => group.add(film.seen(text, item.from, item.until)),
+        (Some(text), None) => group.add(text),
+        (None, _) => group,
     })
 }
 
-fn name(marked: &Marked, frame: &Frame, labels: &mut Labels) -> Option<Group> {
-    let name = text::fit(&text::clean(marked.text.as_ref()?), labels::SIZE, 160.0);
-    let at = frame.at(marked.position);
-    let reach = if marked.mark.is_some() { Mark::REACH } else { 0.0 };
+/// Keeps names off an item.
+fn keep_clear(labels: &mut Labels, item: &Item, frame: &Frame) {
+    match &item.figure {
+        Figure::Mark { mark: Some(_), position, .. } if is_finite(position) => {
+            labels.keep_off(Mark::extent(frame.at(*position)));
+        }
+        Figure::Robot { poses, footprint } => {
+            let extent = poses.last().and_then(|(_, pose)| robots::extent(pose, footprint, frame));
+            extent.into_iter().for_each(|extent| labels.keep_off(extent));
+        }
+        Figure::Line { points, .. } => {
+            runs(points).into_iter().for_each(|run| labels.avoid(&thinned(&points[run], frame)));
+        }
+        _ => {}
+    }
+}
+
+fn name(item: &Item, frame: &Frame, labels: &mut Labels) -> Option<Group> {
+    let Figure::Mark { mark, position, text: Some(name) } = &item.figure else { return None };
+    if !is_finite(position) {
+        return None;
+    }
+    let name = text::fit(&text::clean(name), labels::SIZE, 160.0);
+    let at = frame.at(*position);
+    let reach = if mark.is_some() { Mark::REACH } else { 0.0 };
     let placed = labels.place(&name, at, reach)?;
     let shown = words(&name, placed.start, labels::SIZE, INK)
         .set("stroke", FLOOR.to_string())

@@ -5,65 +5,93 @@ use svg::node::element::{ClipPath, Definitions, Group};
 
 use super::canvas::{FONTS, number, rectangle};
 use super::colours::PAGE;
-use super::decorations::{SCALE_HEIGHT, heading, heading_height, heading_width, scale_bar};
+use super::decorations::{SCALE_HEIGHT, heading, pace, scale_bar, title_width};
+use super::film::Film;
 use super::frame::{Frame, Pixel};
-use super::items::Picture;
+use super::items::{Figure, Item, Picture, is_finite};
 use super::legend::{Arrangement, Legend};
-use super::{lines, names, robots, scenery};
-use crate::geometry::{Aabb, Vector};
+use super::lines::{self, Path};
+use super::{Mark, names, robots, scenery};
+use crate::geometry::{Aabb, Point, Vector};
 
-const MARGIN: f64 = 28.0;
+const MARGIN: f64 = 20.0;
 /// Pixels between plot and legend.
-const GUTTER: f64 = 26.0;
+const GUTTER: f64 = 20.0;
 const NARROWEST_PAGE: f64 = 340.0;
-const WIDEST_PAGE: f64 = 1340.0;
+const WIDEST_PAGE: f64 = 600.0;
+/// Beside a plot narrower than this, and not below it, stands the legend.
+const NARROW_PLOT: f64 = 300.0;
 /// Pixels around the world where paths still show.
 const BLEED: f64 = 10.0;
 /// The name of the outline beyond which nothing is drawn.
 const CLIP: &str = "frame";
 
 impl Picture {
-    /// The picture as an SVG document.
+    /// The picture at its end as an SVG document.
     pub fn to_svg(&self) -> String {
-        let top = MARGIN + heading_height(self);
-        let frame = Frame::around(self.region(), Pixel::new(MARGIN, top));
-        let legend = Legend::of(self);
-        let plot = frame.pixels();
-        let below = if self.to_scale { SCALE_HEIGHT } else { 0.0 };
-        let (arrangement, corner) = arrange(&plot, below);
-        let extent = if legend.is_empty() { Vector::zeros() } else { legend.size(arrangement) };
-        let bottom = (plot.max.y + below).max(corner.y + extent.y);
-        let wanted = (corner.x + extent.x).max(plot.max.x).max(MARGIN + heading_width(self)) + MARGIN;
-        let page = Vector::new(wanted.clamp(NARROWEST_PAGE, WIDEST_PAGE), bottom + 0.75 * MARGIN);
+        page(&self.at(self.duration()), None)
+    }
 
-        let text = Group::new()
-            .add(heading(self, Pixel::new(MARGIN, MARGIN), page.x - 2.0 * MARGIN))
-            .add(if self.to_scale { scale_bar(&frame) } else { Group::new() })
-            .add(legend.draw(corner, arrangement))
-            .add(names::beside_marks(self, &frame));
-        let page_bounds = Aabb { min: Pixel::origin(), max: Pixel::origin() + page };
-        let document = Document::new()
-            .set("viewBox", format!("0 0 {} {}", number(page.x), number(page.y)))
-            .set("width", number(page.x))
-            .set("height", number(page.y))
-            .set("font-family", FONTS)
-            .add(clip(&plot))
-            .add(rectangle(page_bounds, PAGE))
-            .add(plotted(self, &frame))
-            .add(text);
-        format!("{document}\n")
+    /// The picture as an SVG document that moves, again and again: at the run's pace if that takes no longer than some
+    /// seconds, and faster otherwise. Where nothing moves, it is the still one.
+    pub fn to_moving_svg(&self) -> String {
+        match Film::of(self.duration()) {
+            Some(film) => page(self, Some(&film)),
+            None => self.to_svg(),
+        }
+    }
+
+    /// The highest speed along the paths that are coloured by it, in metres per second.
+    pub(super) fn top_speed(&self) -> f64 {
+        let speeds = self.items.iter().filter_map(|item| match &item.figure {
+            Figure::Line { speeds, .. } => Some(speeds),
+            _ => None,
+        });
+        speeds.flatten().copied().fold(0.0, f64::max)
     }
 }
 
-/// Where the legend goes: beside the plot, or below it and so many pixels if the plot is wide.
-fn arrange(plot: &Aabb, below: f64) -> (Arrangement, Pixel) {
-    let size = plot.size();
-    if size.x > 1.7 * size.y {
-        let room = size.x.max(NARROWEST_PAGE);
-        (Arrangement::Rows(room), Pixel::new(plot.min.x, plot.max.y + below + 8.0))
+fn page(picture: &Picture, film: Option<&Film>) -> String {
+    let region = picture.region();
+    let wide = Frame::around(region, Pixel::origin()).pixels().size().x;
+    let legend = Legend::of(picture);
+    let below = if picture.to_scale || film.is_some() { SCALE_HEIGHT } else { 0.0 };
+    let beside = wide < NARROW_PLOT && !legend.is_empty();
+    let (arrangement, wanted) = if beside {
+        (Arrangement::Column, wide + GUTTER + legend.size(Arrangement::Column).x)
     } else {
-        (Arrangement::Column, Pixel::new(plot.max.x + GUTTER, plot.min.y - 2.0))
+        (Arrangement::Rows(wide.max(NARROWEST_PAGE)), wide)
+    };
+    let room = wanted.max(title_width(picture)).clamp(NARROWEST_PAGE, WIDEST_PAGE);
+    let (heading, height) = heading(picture, Pixel::new(MARGIN, MARGIN), room);
+    let frame = Frame::around(region, Pixel::new(MARGIN, MARGIN + height));
+    let plot = frame.pixels();
+    let corner = if beside {
+        Pixel::new(plot.max.x + GUTTER, plot.min.y)
+    } else {
+        Pixel::new(plot.min.x, plot.max.y + below + 5.0)
+    };
+    let extent = if legend.is_empty() { Vector::zeros() } else { legend.size(arrangement) };
+    let bottom = (plot.max.y + below).max(corner.y + extent.y);
+    let size = Vector::new((corner.x + extent.x - MARGIN).max(room) + 2.0 * MARGIN, bottom + 0.75 * MARGIN);
+    let mut text = Group::new().add(heading).add(legend.draw(corner, arrangement));
+    if picture.to_scale {
+        text = text.add(scale_bar(&frame));
     }
+    if let Some(film) = film {
+        text = text.add(pace(&frame, film));
+    }
+    let bounds = Aabb { min: Pixel::origin(), max: Pixel::origin() + size };
+    let document = Document::new()
+        .set("viewBox", format!("0 0 {} {}", number(size.x), number(size.y)))
+        .set("width", number(size.x))
+        .set("height", number(size.y))
+        .set("font-family", FONTS)
+        .add(clip(&plot))
+        .add(rectangle(bounds, PAGE).set("rx", "8"))
+        .add(plotted(picture, &frame, film))
+        .add(text.add(names::beside_marks(picture, &frame, film)));
+    format!("{document}\n")
 }
 
 fn clip(plot: &Aabb) -> Definitions {
@@ -71,26 +99,95 @@ fn clip(plot: &Aabb) -> Definitions {
     Definitions::new().add(ClipPath::new().set("id", CLIP).add(outline))
 }
 
+/// What lies above what.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Layer {
+    Areas,
+    Points,
+    Lines,
+    FloorMarks,
+    Robots,
+    Marks,
+}
+
+impl Layer {
+    fn of(figure: &Figure) -> Self {
+        match figure {
+            Figure::Disc { .. } | Figure::Polygon(_) => Layer::Areas,
+            Figure::Points(_) => Layer::Points,
+            Figure::Line { .. } | Figure::Moving(_) => Layer::Lines,
+            Figure::Robot { .. } => Layer::Robots,
+            Figure::Mark { mark, .. } if mark.is_some_and(Mark::is_on_floor) => Layer::FloorMarks,
+            Figure::Mark { .. } => Layer::Marks,
+        }
+    }
+}
+
 /// Everything that is drawn to scale, from the floor up.
-fn plotted(picture: &Picture, frame: &Frame) -> Group {
-    let areas = picture.areas.iter().fold(Group::new(), |group, a| group.add(lines::area(a, frame)));
-    let clouds = picture.clouds.iter().fold(Group::new(), |group, c| group.add(lines::cloud(c, frame)));
-    let top = lines::top_speed(picture);
-    let paths = picture.lines.iter().fold(Group::new(), |group, l| group.add(lines::path(l, frame, top)));
-    let robots = picture.robots.iter().fold(Group::new(), |group, r| group.add(robots::outline(r, frame)));
-    let marks = picture
-        .finite_marks()
-        .filter_map(|marked| Some(marked.mark?.symbol(frame.at(marked.position))))
-        .fold(Group::new(), Group::add);
-    Group::new()
+fn plotted(picture: &Picture, frame: &Frame, film: Option<&Film>) -> Group {
+    let top = picture.top_speed();
+    let layer = |layer: Layer| {
+        let items = picture.items.iter().enumerate().filter(|(_, item)| Layer::of(&item.figure) == layer);
+        items.fold(Group::new(), |group, (index, item)| {
+            let drawn = draw(picture, item, frame, film, (top, index));
+            group.add(film.map_or(drawn.clone(), |film| film.seen(drawn, item.from, item.until)))
+        })
+    };
+    let above = [Layer::Points, Layer::Lines, Layer::FloorMarks, Layer::Robots, Layer::Marks];
+    let group = Group::new()
         .set("clip-path", format!("url(#{CLIP})"))
         .add(scenery::floor(&picture.world, frame, picture.to_scale))
-        .add(areas)
-        .add(scenery::solids(&picture.world, frame))
-        .add(clouds)
-        .add(paths)
-        .add(robots)
-        .add(marks)
+        .add(layer(Layer::Areas))
+        .add(scenery::solids(&picture.world, frame));
+    above.into_iter().fold(group, |group, above| group.add(layer(above)))
+}
+
+/// One item; the highest speed of all, and the item's number, which names what belongs to it.
+fn draw(
+    picture: &Picture,
+    item: &Item,
+    frame: &Frame,
+    film: Option<&Film>,
+    (top, index): (f64, usize),
+) -> Group {
+    let style = &item.style;
+    let pixels = |points: &[Point]| points.iter().map(|p| frame.at(*p)).collect::<Vec<_>>();
+    match &item.figure {
+        Figure::Disc { centre, radius } if is_finite(centre) && radius.is_finite() => {
+            lines::circle(frame.at(*centre), frame.length(radius.abs()), style)
+        }
+        Figure::Polygon(corners) if !corners.is_empty() => lines::outlined(&pixels(corners), style),
+        Figure::Points(points) => lines::cloud(points, style, frame),
+        Figure::Line { points, times, speeds } => {
+            let path = Path { points, times, speeds, style };
+            match film {
+                Some(film) if !times.is_empty() => path.grow(frame, top, film, &format!("grown{index}")),
+                _ => path.draw(frame, top),
+            }
+        }
+        Figure::Moving(shapes) => {
+            let shapes: Vec<_> = shapes.iter().map(|(time, points)| (*time, pixels(points))).collect();
+            lines::moving(&shapes, style, film)
+        }
+        Figure::Robot { poses, footprint } => robots::robot(poses, footprint, style, frame, film),
+        Figure::Mark { mark: Some(mark), position, .. } if is_finite(position) => {
+            mark.symbol(frame.at(*position), around(picture, *position, frame))
+        }
+        _ => Group::new(),
+    }
+}
+
+/// The radius of a ring around a robot that ends near a place, in pixels; 0 if there is none.
+fn around(picture: &Picture, place: Point, frame: &Frame) -> f64 {
+    let near = picture.items.iter().filter_map(|item| match &item.figure {
+        Figure::Robot { poses, footprint } => {
+            let (_, pose) = poses.last()?;
+            let (off, reach) = (pose.distance_to(place), footprint.bounding_radius());
+            (off < 0.5 * reach).then(|| frame.length(reach + off) + 5.0)
+        }
+        _ => None,
+    });
+    near.fold(0.0, f64::max)
 }
 
 #[cfg(all(test, feature = "png"))]

@@ -31,6 +31,12 @@ pub enum SaveError {
         /// The name.
         path: PathBuf,
     },
+    /// PNG files do not move.
+    #[error("{}: a PNG picture, which does not move; expected a name that ends in .svg", path.display())]
+    Still {
+        /// The name.
+        path: PathBuf,
+    },
     /// The picture could not be turned into pixels.
     #[error("{}: the picture cannot be drawn: {reason}", path.display())]
     Draw {
@@ -83,6 +89,19 @@ impl Picture {
             FileType::Png => png(self, path)?,
         };
         replace(path, &bytes).map_err(|source| SaveError::Write { path: path.to_owned(), source })
+    }
+}
+
+impl Picture {
+    /// Saves the picture as it [moves](Self::to_moving_svg), under a name that ends in `.svg`, in the same way.
+    pub fn save_moving(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
+        let path = path.as_ref();
+        match FileType::of(path)? {
+            FileType::Svg => {}
+            FileType::Png => return Err(SaveError::Still { path: path.to_owned() }),
+        }
+        let written = replace(path, self.to_moving_svg().as_bytes());
+        written.map_err(|source| SaveError::Write { path: path.to_owned(), source })
     }
 }
 

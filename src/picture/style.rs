@@ -9,13 +9,20 @@ use crate::world::Colour;
 /// # assert_eq!(plan, plan.clone());
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Style {
-    pub(super) colour: Colour,
-    pub(super) width: f64,
-    pub(super) opacity: f64,
-    pub(super) fill: f64,
-    pub(super) dashed: bool,
-    pub(super) label: Option<String>,
+    /// The colour of lines, points and insides.
+    pub colour: Colour,
+    /// The width of a line or of a point, in pixels.
+    pub width: f64,
+    /// 0 is invisible, 1 opaque.
+    pub opacity: f64,
+    /// How far the inside of an area is filled: 0 is empty, 1 opaque.
+    pub fill: f64,
+    /// Whether lines are dashed.
+    pub dashed: bool,
+    /// What the legend calls it.
+    pub label: Option<String>,
 }
 
 impl Style {

@@ -24,6 +24,21 @@ pub(super) fn fit(text: &str, size: f64, room: f64) -> String {
     short
 }
 
+/// The text in lines of at most `room` pixels, broken between words; a word that is wider is cut.
+pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if width(line, size) + width(" ", size) + width(word, size) <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(fit(word, size, room)),
+        }
+    }
+    lines
+}
+
 /// One line without characters that XML forbids or that would break the line.
 pub(super) fn clean(text: &str) -> String {
     let forbidden = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
@@ -53,6 +68,13 @@ mod tests {
             let short = fit(&text, 11.0, room);
             prop_assert!(width(&short, 11.0) <= room + 1e-9);
             prop_assert!(short == text || short.ends_with('…'));
+        }
+
+        #[test]
+        fn wrapped_lines_fit_and_lose_no_word(words in prop::collection::vec("[a-z,.]{1,9}", 0..20), room in 90.0..400.0) {
+            let lines = wrapped(&words.join(" "), 11.0, room);
+            prop_assert!(lines.iter().all(|line| width(line, 11.0) <= room + 1e-9));
+            prop_assert_eq!(lines.join(" "), words.join(" "));
         }
 
         #[test]
