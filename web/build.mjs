@@ -1,5 +1,6 @@
 #!/usr/bin/env node
-// Builds the page: one file with everything in it. Usage: web/build.mjs [FILE]   [default: target/web/roverlab.html]
+// Builds the page: one file with everything in it.
+// Usage: web/build.mjs [FILE [MODULE]]   [default: target/web/roverlab.html, and a module that is compiled]
 // Needs Rust's target wasm32-unknown-unknown, and Node.js 18; uses wasm-opt of Binaryen where it is there.
 import { execFileSync } from "node:child_process";
 import { mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
@@ -53,8 +54,28 @@ function inert(text) {
   return text.replace(/<\/(script)/gi, "<\\/$1").replace(/<!--/g, "<\\!--");
 }
 
+// A module without the names of its functions and of the tools that made it.
+function nameless(module) {
+  const number = (at) => {
+    let value = 0, shift = 0, byte;
+    do {
+      byte = module[at++];
+      value += (byte & 127) * 2 ** shift;
+      shift += 7;
+    } while (byte > 127);
+    return [value, at];
+  };
+  const kept = [module.subarray(0, 8)];
+  for (let at = 8; at < module.length;) {
+    const [length, content] = number(at + 1), end = content + length;
+    if (module[at] !== 0) kept.push(module.subarray(at, end));
+    at = end;
+  }
+  return Buffer.concat(kept);
+}
+
 mkdirSync(dirname(out), { recursive: true });
-const module = readFileSync(optimised(compiled()));
+const module = nameless(readFileSync(process.argv[3] ?? optimised(compiled())));
 const packed = deflateRawSync(module, { level: 9 });
 const parts = [
   ['<link rel="stylesheet" href="style.css">', `<style>\n${page("style.css")}</style>`],

@@ -138,8 +138,8 @@ pub struct Ended {
     pub errors: String,
 }
 
-/// Runs a command line, without the program's name, while somebody looks on.
-pub fn run_watched(words: impl IntoIterator<Item = OsString>, onlooker: Box<dyn Onlooker>) -> Ended {
+/// Runs a command line, without the program's name, perhaps while somebody looks on.
+pub fn run_words(words: impl IntoIterator<Item = OsString>, onlooker: Option<Box<dyn Onlooker>>) -> Ended {
     let words = std::iter::once(OsString::from("roverlab")).chain(words).collect();
     let (mut out, mut err) = (Vec::new(), Vec::new());
     let status = onlooker::with(onlooker, || dispatch(words, &mut out, &mut err));

@@ -39,5 +39,5 @@ mod starman;
 mod tests;
 mod wall_following;
 
-pub use commands::{Ended, main, options, run_watched};
+pub use commands::{Ended, main, options, run_words};
 pub use common::Onlooker;

@@ -85,7 +85,9 @@ export class View {
     this.floor(recording.scene);
     this.things(recording, moment);
     if (layers.lidar) this.eachRobot(moment, (robot) => this.lidar(recording.scan(robot, moment.frame)), 8);
+    this.items(recording.overlay.filter((item) => ["disc", "polygon"].includes(item.kind)), moment);
     this.walls(recording.scene, moment.walls);
+    this.items(recording.overlay.filter((item) => ["line", "points"].includes(item.kind)), moment);
     this.eachRobot(moment, (robot) => {
       if (layers.odometry) this.path(recording.beliefs[robot], moment, colours.belief, [5, 4], 1.4, robot);
       if (layers.path) this.path(recording.paths[robot], moment, this.colour(robot), [], 2.2, robot);
@@ -98,6 +100,7 @@ export class View {
       if (layers.distances && robots.length <= 8) this.distances(spec, pose, recording.distances(robot, moment.frame));
       this.robot(spec, moment.held?.robot === robot ? moment.held.pose : pose, this.colour(robot), moment.selected === robot);
     });
+    this.items(recording.overlay.filter((item) => item.kind === "mark"), moment);
     if (layers.contacts) robots.forEach((_, robot) => this.contacts(recording.contacts(robot, moment.frame)));
     this.pixels();
     this.scaleBar();
@@ -274,6 +277,82 @@ export class View {
     context.stroke();
     context.globalAlpha = 1;
     context.setLineDash([]);
+  }
+
+  // What the robot knew at the time.
+  items(items, { time, layers }) {
+    const { context } = this;
+    for (const item of items) {
+      if (!layers[item.layer] || item.from > time || (item.until !== null && item.until < time)) continue;
+      const { points, more, kind } = item;
+      context.strokeStyle = this.readable(item.colour);
+      context.fillStyle = context.strokeStyle;
+      context.lineWidth = this.px(item.width);
+      context.globalAlpha = item.opacity;
+      context.setLineDash(item.dashed ? [this.px(6), this.px(4)] : []);
+      if (kind === "mark") this.mark(item);
+      else if (kind === "points") this.dots(points, this.px(item.width));
+      else {
+        context.beginPath();
+        if (kind === "disc") context.arc(points[0], points[1], more, 0, 2 * Math.PI);
+        else this.line(points, kind === "line" && more?.length ? more.filter((reached) => reached <= time).length : Infinity);
+        if (kind === "polygon") context.closePath();
+        context.stroke();
+        context.globalAlpha = item.opacity * item.fill;
+        if (item.fill > 0) context.fill();
+      }
+    }
+    context.globalAlpha = 1;
+    context.setLineDash([]);
+  }
+
+  line(points, most) {
+    const { context } = this;
+    let begun = false;
+    for (let at = 0; at < points.length && at < 2 * most; at += 2) {
+      // A point that is none leaves a gap.
+      if (points[at] === null || points[at + 1] === null) begun = false;
+      else if (begun) context.lineTo(points[at], points[at + 1]);
+      else { context.moveTo(points[at], points[at + 1]); begun = true; }
+    }
+  }
+
+  dots(points, size) {
+    const { context } = this;
+    for (let at = 0; at < points.length; at += 2) {
+      if (points[at] !== null) context.fillRect(points[at] - size / 2, points[at + 1] - size / 2, size, size);
+    }
+  }
+
+  mark({ points, more: [mark, text] }) {
+    const { context, colours } = this;
+    this.pixels();
+    const [x, y] = this.toScreen(points);
+    context.lineWidth = 2;
+    context.fillStyle = context.strokeStyle = { HitPoint: colours.bad, LeavePoint: colours.goal }[mark] ?? colours.soft;
+    if (mark) {
+      context.beginPath();
+      if (mark === "HitPoint") context.rect(x - 4, y - 4, 8, 8);
+      else if (mark === "LeavePoint") { context.moveTo(x, y - 6); context.lineTo(x + 6, y); context.lineTo(x, y + 6); context.lineTo(x - 6, y); }
+      else context.arc(x, y, 4, 0, 2 * Math.PI);
+      context.fill();
+    }
+    if (text) {
+      context.font = "600 12px system-ui, sans-serif";
+      context.textAlign = "left";
+      context.textBaseline = "middle";
+      context.lineWidth = 3;
+      context.strokeStyle = colours.floor;
+      context.strokeText(text, x + 8, y - 8);
+      context.fillStyle = colours.ink;
+      context.fillText(text, x + 8, y - 8);
+    }
+    this.metres();
+  }
+
+  // Black and dark grey are not seen in the dark.
+  readable(colour) {
+    return `color-mix(in srgb, ${colour} 82%, ${this.colours.ink})`;
   }
 
   marks({ scene }, { goal, held }) {

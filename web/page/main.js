@@ -35,6 +35,7 @@ function start(from = 0) {
   }
   notice(null);
   $("drawing").hidden = true;
+  $("picture").replaceChildren();
   history.replaceState(null, "", toHash(run));
   const command = commandOf(run.command);
   const job = { words: wordsOf(command, run.values), wishes: run.wishes, walls: run.walls, from };
@@ -55,6 +56,8 @@ function hear(bytes, [message, at, length], from) {
     scene(JSON.parse(text()), from);
   } else if (message === MESSAGE.told) {
     tell(new DataView(bytes, at, 8).getFloat64(0, true), new TextDecoder().decode(new Uint8Array(bytes, at + 8, length - 8)));
+  } else if (message === MESSAGE.overlay) {
+    overlay(JSON.parse(text()));
   } else if (message === MESSAGE.picture) {
     picture(text());
   } else if (message === MESSAGE.ended) {
@@ -98,13 +101,38 @@ function notice(text, calm = false) {
 function tell(when, text) {
   const line = document.createElement("li"), stamp = document.createElement("time"), words = document.createElement("span");
   // Some lines begin with a time of their own.
-  const [, , said] = /^(\s*[\d.]+ s\s+)?(.*)$/s.exec(text);
+  const [, own, said] = /^(?:\s*([\d.]+) s\s+)?(.*)$/s.exec(text);
+  if (own) when = Number(own);
   stamp.textContent = `${when.toFixed(1)} s`;
   words.textContent = said;
   line.dataset.time = when;
   line.append(stamp, words);
   line.addEventListener("click", () => seek(when));
   $("log").append(line);
+}
+
+// What the robot knew: one more layer for each name that the legend of its picture has.
+function overlay(items) {
+  for (const item of items) item.layer = item.label ?? (item.kind === "mark" ? "marks of its way" : "other lines");
+  recording.overlay = items;
+  for (const name of new Set(items.map((item) => item.layer))) layers[name] ??= true;
+  showLayers();
+  dirty = true;
+}
+
+function showLayers() {
+  const own = new Map((recording?.overlay ?? []).map((item) => [item.layer, item.colour]));
+  const rows = [...Object.entries(LAYERS), ...[...own.keys()].map((name) => [name, name])].map(([name, text]) => {
+    const label = document.createElement("label"), box = document.createElement("input");
+    [box.type, box.checked] = ["checkbox", layers[name]];
+    box.addEventListener("change", () => { layers[name] = box.checked; dirty = true; });
+    label.append(box, text);
+    if (own.has(name)) label.style.setProperty("--swatch", own.get(name));
+    return label;
+  });
+  const legend = document.createElement("legend");
+  legend.textContent = "Shown";
+  $("layer-box").replaceChildren(legend, ...rows);
 }
 
 function picture(svg) {
@@ -114,12 +142,12 @@ function picture(svg) {
   $("picture").replaceChildren(image);
   $("picture").href = image.src;
   $("picture").download = `${run.command}.svg`;
-  $("drawing").hidden = false;
 }
 
 // The report's first line is the verdict, the others are names and values.
 function report() {
   if (!ended) return;
+  $("drawing").hidden = $("picture").children.length === 0;
   const [head, ...rest] = ended.output.trim().split("\n");
   const word = head?.includes(": ") ? head.split(": ").slice(1).join(": ").replaceAll("_", " ") : head;
   $("status").textContent = ended.output ? sentence(word) : "It cannot run like this";
@@ -488,13 +516,7 @@ function listen() {
     button.addEventListener("click", () => pressKey(key));
     $("keys").append(button);
   }
-  for (const [name, text] of Object.entries(LAYERS)) {
-    const label = document.createElement("label"), box = document.createElement("input");
-    [box.type, box.checked] = ["checkbox", true];
-    box.addEventListener("change", () => { layers[name] = box.checked; dirty = true; });
-    label.append(box, text);
-    $("layer-box").append(label);
-  }
+  showLayers();
 }
 
 // What tests look at, and nothing else here uses.
@@ -509,6 +531,8 @@ const page = {
   get view() { return view; },
   get recording() { return recording; },
   seek,
+  pause: () => play(false),
+  drawAt: (when) => { time = when; draw(); },
 };
 window.roverlab = page;
 

@@ -11,7 +11,7 @@ export class Recording {
     this.scene = scene;
     this.times = [];
     this.frames = [];
-    this.lines = [];
+    this.overlay = [];
     const list = () => scene.robots.map(() => []);
     this.paths = list();
     this.beliefs = list();
@@ -53,7 +53,6 @@ export class Recording {
     for (const robots of Object.values(this.news)) {
       for (const list of robots) while (list.length && list[list.length - 1].frame >= left) list.pop();
     }
-    this.lines = this.lines.filter((line) => line.time < time);
   }
 
   // The last frame that is not after a time.

@@ -27,7 +27,9 @@ onmessage = async ({ data: { module, job, files } }) => {
     if (performance.now() - last > PAUSE) flush();
   };
   const give = (content) => {
-    new Uint8Array(exports.memory.buffer, exports.room(content.length), content.length).set(content);
+    // Memory may grow, and be another buffer then.
+    const start = exports.room(content.length);
+    new Uint8Array(exports.memory.buffer, start, content.length).set(content);
   };
   try {
     exports = (await WebAssembly.instantiate(module, { page: { tell } })).exports;

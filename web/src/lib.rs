@@ -8,6 +8,7 @@ mod exports;
 mod frame;
 mod job;
 mod message;
+mod overlay;
 mod run;
 mod scene;
 

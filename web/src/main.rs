@@ -1,8 +1,8 @@
-//! Runs the command line of a page's run, and prints the digest of what the page would show: `roverlab-web distbug --seed 1`.
-//! Without words, prints the commands and their options.
+//! Runs command lines as the page does, and prints what came of them: `roverlab-web distbug --seed=1`. Without words, prints
+//! the commands and their options.
 
 use std::io::Write;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use roverlab_web::{Job, Message, run};
 
@@ -16,8 +16,8 @@ fn main() -> std::io::Result<()> {
     let told = Arc::clone(&ended);
     run(Job { words, ..Job::default() }, move |message, bytes| {
         if message == Message::Ended {
-            *told.lock().expect("nobody has panicked") = String::from_utf8_lossy(bytes).into_owned();
+            *told.lock().unwrap_or_else(PoisonError::into_inner) = String::from_utf8_lossy(bytes).into_owned();
         }
     });
-    writeln!(out, "{}", ended.lock().expect("nobody has panicked"))
+    writeln!(out, "{}", ended.lock().unwrap_or_else(PoisonError::into_inner))
 }

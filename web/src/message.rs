@@ -16,6 +16,8 @@ pub enum Message {
     Picture = 6,
     /// The commands and their options, as JSON.
     Options = 7,
+    /// What the picture of the run shows beside the robots, as JSON.
+    Overlay = 8,
 }
 
 /// Sixty-four bits that tell streams of bytes apart, by Fowler, Noll and Vo.

@@ -8,19 +8,22 @@ use roverlab::io::sim::{Onlooking, Watcher};
 use roverlab::io::{LidarScan, Psd};
 use roverlab::picture::Picture;
 use roverlab::world::{Scene, Wall};
-use roverlab_cli::{Onlooker, run_watched};
+use roverlab_cli::{Onlooker, run_words};
 use serde_json::json;
 
 use crate::frame::Frames;
-use crate::{Digest, Job, Message, Thing, Wish, scene};
+use crate::{Digest, Job, Message, Thing, Wish, overlay, scene};
 
 /// Runs a job, and tells what happens in messages.
 pub fn run(job: Job, tell: impl FnMut(Message, &[u8]) + Send + 'static) {
     let Job { words, files, wishes, walls, from } = job;
     let mouth = Mouth(Arc::new(Mutex::new(Telling { tell: Box::new(tell), digest: Digest::default(), time: 0.0 })));
     let page = Page { mouth: mouth.clone(), files, wishes, walls, from };
-    let ended = run_watched(words.into_iter().map(OsString::from), Box::new(page));
-    let digest = mouth.with(|telling| telling.digest.to_string());
+    let ended = run_words(words.into_iter().map(OsString::from), Some(Box::new(page)));
+    let digest = mouth.with(|telling| {
+        telling.digest.add(ended.output.as_bytes());
+        telling.digest.to_string()
+    });
     let ended = json!({ "status": ended.status, "output": ended.output, "errors": ended.errors, "digest": digest });
     mouth.say(Message::Ended, ended.to_string().as_bytes());
 }
@@ -94,6 +97,7 @@ impl Onlooker for Page {
     }
 
     fn picture(&mut self, picture: &Picture) {
+        self.mouth.say(Message::Overlay, overlay::json(picture).to_string().as_bytes());
         self.mouth.say(Message::Picture, picture.to_svg().as_bytes());
     }
 }

@@ -194,13 +194,13 @@ impl CommonArgs {
 
     /// The picture's file: the one that `--picture` names, or one in the folder for what nobody named.
     pub(crate) fn picture_file(&self, name: &str) -> Option<PathBuf> {
-        if onlooker::is_there() { None } else { self.picture.clone().or_else(|| self.unnamed_file(name)) }
+        self.picture.clone().or_else(|| self.unnamed_file(name))
     }
 
     /// The file for an output that no option names: in a folder of its own, and only without `--json`. `None`
     /// if an option names that very file for something else.
     pub(crate) fn unnamed_file(&self, name: &str) -> Option<PathBuf> {
-        if self.json {
+        if self.json || onlooker::is_there() {
             return None;
         }
         let folder = Path::new(UNNAMED);

@@ -28,9 +28,9 @@ thread_local! {
     static ONLOOKER: RefCell<Option<Box<dyn Onlooker>>> = const { RefCell::new(None) };
 }
 
-/// Does something while somebody looks on at what this thread does.
-pub(crate) fn with<T>(onlooker: Box<dyn Onlooker>, work: impl FnOnce() -> T) -> T {
-    ONLOOKER.set(Some(onlooker));
+/// Does something while somebody looks on at what this thread does, or nobody.
+pub(crate) fn with<T>(onlooker: Option<Box<dyn Onlooker>>, work: impl FnOnce() -> T) -> T {
+    ONLOOKER.set(onlooker);
     let result = work();
     ONLOOKER.set(None);
     result

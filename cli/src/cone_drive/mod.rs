@@ -9,7 +9,7 @@ use roverlab::picture::{Picture, Style};
 use roverlab::race::{GapDriver, RaceScore};
 use roverlab::world::RobotSpec;
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, Stage, rounded};
+use crate::common::{CommonArgs, Failure, Outcome, Report, Stage, onlooker, rounded};
 use crate::cones::{Course, Judge, check_campaign, check_race, pass};
 
 /// The command line of `cone-drive`.
@@ -80,6 +80,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     };
     let stage = common.stage(&course.scene(&[course.start]), options(args, common.seed))?;
     let driven = drive(&course, args, &stage)?;
+    onlooker::pictured(|| picture(&course, &driven));
     let file = common.picture_file("cone_drive.svg");
     let saved = file.as_ref().map(|file| picture(&course, &driven).save(file)).transpose();
     let trouble = saved.err().map(|error| error.to_string());

@@ -11,7 +11,9 @@ use std::path::{Path, PathBuf};
 use roverlab::geometry::{Point, Segment};
 use roverlab::race::{ClosedSpline, Event, EventCourse, TrackFile, parse_track};
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, check_writable, is_same_file, rounded};
+use crate::common::{
+    CommonArgs, Failure, Outcome, Report, check_writable, is_same_file, onlooker, rounded,
+};
 use crate::cones::{Course, Spoils, check_race, refuse};
 use race::{Ending, Settings};
 
@@ -353,6 +355,7 @@ fn draw(
     course: &Course,
     outcome: &race::Outcome,
 ) -> (Option<PathBuf>, Option<PathBuf>, Option<String>) {
+    onlooker::pictured(|| drawing::picture(course, outcome));
     let (still, moving) = pictures(args);
     let mut trouble = Vec::new();
     if let Some(file) = &still {

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use roverlab::picture::Picture;
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
+use crate::common::{CommonArgs, Failure, Outcome, Report, onlooker, rounded};
 use evolve::{evolve, inside};
 use spline::Spline;
 use wall::Wall;
@@ -98,6 +98,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         Task::Spline => (spline.found(&genes)?, spline.picture(&population, &genes)),
         Task::Wall => (Wall::found(&genes), wall.picture(common, &genes)?),
     };
+    onlooker::pictured(|| picture.clone());
     let (file, trouble) = draw(common, &picture);
     let report = Report::new(Outcome::verdict("evolved"))
         .field("task", format!("{:?}", args.task).to_lowercase())

@@ -10,7 +10,7 @@ use roverlab::io::sim::SimOptions;
 use roverlab::picture::{Picture, Style};
 use roverlab::world::Colour;
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
+use crate::common::{CommonArgs, Failure, Outcome, Report, onlooker, rounded};
 use crate::cones::{Course, check_race};
 use crew::Event;
 use drive::{Driven, Stopped};
@@ -77,6 +77,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     for takeover in &driven.takeovers {
         common.tell(takeover);
     }
+    onlooker::pictured(|| picture(&course, &driven));
     let file = common.picture_file("safety.svg");
     let saved = file.as_ref().map(|file| picture(&course, &driven).save(file)).transpose();
     let trouble = saved.err().map(|error| error.to_string());
