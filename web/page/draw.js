@@ -32,10 +32,11 @@ export class View {
   // Shows a box of the world: [left, bottom, right, top] in metres.
   show(box) {
     this.fitCanvas();
-    const margin = Math.min(48, 0.08 * this.width);
+    // The buttons of the view stand on the right, or above where the page is narrow.
+    const narrow = this.width < 560, margin = narrow ? 20 : 40, right = narrow ? margin : 72, top = narrow ? 64 : margin;
     const [width, height] = [Math.max(box[2] - box[0], 0.5), Math.max(box[3] - box[1], 0.5)];
-    this.scale = Math.min((this.width - 2 * margin) / width, (this.height - 2 * margin) / height);
-    this.centre = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
+    this.scale = Math.min((this.width - margin - right) / width, (this.height - top - margin) / height);
+    this.centre = [(box[0] + box[2] + (right - margin) / this.scale) / 2, (box[1] + box[3] + (top - margin) / this.scale) / 2];
   }
 
   toScreen([x, y]) {
@@ -84,7 +85,7 @@ export class View {
     this.metres();
     this.floor(recording.scene);
     this.things(recording, moment);
-    if (layers.lidar) this.eachRobot(moment, (robot) => this.lidar(recording.scan(robot, moment.frame)), 8);
+    if (layers.lidar) this.lidar(recording.scan(moment.selected ?? 0, moment.frame));
     this.items(recording.overlay.filter((item) => ["disc", "polygon"].includes(item.kind)), moment);
     this.walls(recording.scene, moment.walls);
     this.items(recording.overlay.filter((item) => ["line", "points"].includes(item.kind)), moment);
@@ -429,10 +430,12 @@ export class View {
   }
 
   robot(spec, [x, y, heading], colour, selected) {
-    const { context, colours } = this, radius = reach(spec);
+    // A car on a race track is still seen.
+    const { context, colours } = this, larger = Math.max(1, this.px(8) / reach(spec)), radius = reach(spec);
     context.save();
     context.translate(x, y);
     context.rotate(heading);
+    context.scale(larger, larger);
     context.fillStyle = `color-mix(in srgb, ${colours.ink} 82%, ${colours.panel})`;
     for (const [wx, wy] of wheels(spec)) {
       const width = 0.32 * spec.wheel;

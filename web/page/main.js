@@ -29,6 +29,7 @@ function start(from = 0) {
     recording = null;
     time = 0;
     $("log").replaceChildren();
+    $("story").hidden = true;
   } else {
     recording?.cut(from);
     for (const line of [...$("log").children]) if (Number(line.dataset.time) >= from) line.remove();
@@ -109,6 +110,7 @@ function tell(when, text) {
   line.append(stamp, words);
   line.addEventListener("click", () => seek(when));
   $("log").append(line);
+  $("story").hidden = false;
 }
 
 // What the robot knew: one more layer for each name that the legend of its picture has.
@@ -170,8 +172,8 @@ function progress() {
   const frame = recording?.frames.length ? recording.index(time) : -1;
   if (frame < 0) return $("figures").replaceChildren();
   const { pose, contacts } = recording.robotAt(frame, 0);
-  const degrees = ((pose[2] * 180) / Math.PI) % 360;
-  const rows = [["time", `${time.toFixed(1)} s`], ["place", `${mm(pose[0])}, ${mm(pose[1])} mm`], ["heading", `${degrees.toFixed(0)}°`], ["contacts", String(contacts)]];
+  const degrees = Math.round((pose[2] * 180) / Math.PI) % 360;
+  const rows = [["time", `${time.toFixed(1)} s`], ["place", `${mm(pose[0])}, ${mm(pose[1])} mm`], ["heading", `${degrees + 0}°`], ["contacts", String(contacts)]];
   $("figures").replaceChildren(...rows.flatMap(([name, value]) => {
     const [term, text] = [document.createElement("dt"), document.createElement("dd")];
     [term.textContent, text.textContent] = [name, value];
@@ -283,7 +285,7 @@ function devices(frame) {
   }
   const menu = recording.menu(robot, frame);
   [...$("keys").children].forEach((button, index) => {
-    const label = menu[index] || "–";
+    const label = menu[index] || String(index + 1);
     if (button.textContent !== label) {
       button.textContent = label;
       button.setAttribute("aria-label", `Key ${index + 1}${menu[index] ? `: ${menu[index]}` : ""}`);
@@ -390,7 +392,11 @@ function open(found) {
   $("title").textContent = nameOf(run.command);
   $("about").textContent = command.about;
   document.title = `${nameOf(run.command)} – roverlab`;
-  for (const link of $("systems").querySelectorAll("a")) link.setAttribute("aria-current", String(link.dataset.command === run.command));
+  for (const link of $("systems").querySelectorAll("a")) {
+    const current = link.dataset.command === run.command;
+    link.setAttribute("aria-current", String(current));
+    if (current) link.scrollIntoView({ block: "nearest" });
+  }
   closeMenu();
   showOptions();
   start();

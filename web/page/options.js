@@ -1,6 +1,9 @@
 // The form of a system's options, made of what the commands say of themselves.
 import { FIRST, LAST, FILES, OVERRIDES, isShown } from "./systems.js";
 
+// What stands in an empty box.
+const UNITS = { S: "s", MM: "mm", DEG: "deg", "M/S": "m/s", "X,Y,DEG": "mm, mm, deg", "X,Y[,DEG]": "mm, mm", "KIND@T": "stuck@5" };
+
 // The options of a command as the page has them.
 export function optionsOf(command) {
   const own = OVERRIDES[command.name]?.options ?? {};
@@ -73,7 +76,7 @@ function control(option, value, files) {
   if (option.kind === "number") box.step = "any";
   if (option.name === "seed") [box.step, box.min] = ["1", "0"];
   if (option.name === "noise") [box.step, box.min, box.max] = ["0.5", "0", "5"];
-  box.placeholder = option.default ?? option.value ?? "";
+  box.placeholder = UNITS[option.value] ?? "";
   box.value = value ?? option.default ?? "";
   return box;
 }

@@ -1,6 +1,7 @@
 // Tests of the page in a browser without a window: PAGE=FILE node --test web/tests/browser.mjs; PICTURES=FOLDER keeps pictures.
-// Needs `npm ci --prefix web/tests`, and Chromium: /usr/bin/chromium, or what CHROMIUM names.
+// Needs `npm ci --prefix web/tests`, and Chromium: `chromium`, or what CHROMIUM names.
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
 import { mkdirSync, readFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { after, before, test } from "node:test";
@@ -20,9 +21,14 @@ const DESKTOP = { width: 1280, height: 800 }, PHONE = { width: 390, height: 844 
 const RUNS = readFileSync(join(here, "digests.txt"), "utf8").split("\n").filter((line) => line && !line.startsWith("#"))
   .map((line) => ({ words: line.split(" ").slice(0, -1), digest: line.split(" ").at(-1) }));
 
+// Chromium, by its path or by its name.
+function executable() {
+  return execFileSync("sh", ["-c", 'command -v "$0"', process.env.CHROMIUM ?? "chromium"], { encoding: "utf8" }).trim();
+}
+
 let browser;
 before(async () => {
-  browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ARGUMENTS });
+  browser = await chromium.launch({ executablePath: executable(), args: ARGUMENTS });
 });
 after(() => browser?.close());
 
