@@ -18,6 +18,9 @@ use super::library::{Library, alone};
 use super::supervision::{DEADMAN, Stops, guarded};
 use super::{CommonArgs, Failure, Origin, onlooker};
 
+/// Whether robots are recorded and replayed. A page in a browser has no files for that, and is smaller by the code for it.
+pub(super) const RECORDS: bool = cfg!(feature = "native");
+
 /// How many bytes of a recording a robot that is apart may be ahead of the others.
 const MOST_AHEAD: usize = 1 << 20;
 
@@ -229,8 +232,8 @@ impl CommonArgs {
             ));
         }
         let fleet: Box<dyn FleetIo<'a> + 'a> = match &player {
-            Some(player) => Box::new(player.fleet()),
-            None => {
+            Some(player) if RECORDS => Box::new(player.fleet()),
+            _ => {
                 let (scene, watcher) = onlooker::watched(scene);
                 let mut fleet = Fleet::new(&scene, options).map_err(Failure::input)?;
                 if let Some(watcher) = watcher {
@@ -241,8 +244,8 @@ impl CommonArgs {
         };
         let recording = self.recording(scene, player)?;
         let fleet = match &recording.writer {
-            Some(writer) => Box::new(writer.fleet(fleet)),
-            None => fleet,
+            Some(writer) if RECORDS => Box::new(writer.fleet(fleet)),
+            _ => fleet,
         };
         Ok(StagedFleet { fleet, _recording: recording })
     }
@@ -258,8 +261,8 @@ impl CommonArgs {
         let player = self.player();
         let recording = self.recording(scene, player.clone())?;
         let robot = match player {
-            Some(player) => recording.recorder(player.robot(0).map_err(|error| foreign(&error))?, 0),
-            None => recording.recorder(own, 0),
+            Some(player) => recording.recorder(replayed_robot(&player, 0)?, 0),
+            None => recording.recorder(Box::new(own), 0),
         };
         Ok(StagedRobot { robot, _recording: recording })
     }
@@ -273,7 +276,7 @@ impl CommonArgs {
     fn recording(&self, scene: &Scene, player: Option<Player>) -> Result<Recording, Failure> {
         let mut recording = Recording { writer: None, player, origin: self.origin.clone() };
         self.origin.set_staged();
-        let Some(file) = &self.record else { return Ok(recording) };
+        let Some(file) = self.record.as_ref().filter(|_| RECORDS) else { return Ok(recording) };
         let facts = self.origin.facts();
         let header = facts.log.as_ref().map_or_else(
             || Header {
@@ -369,13 +372,13 @@ impl Stage {
         let simulated = |simulation: &Simulation, index| simulation.robot(index).map_err(Failure::input);
         let robot = match &self.play {
             Play::Simulation(simulation) if self.quantised => {
-                self.faulty(Quantised::new(simulated(simulation, index)?), index)?
+                self.faulty(Box::new(Quantised::new(simulated(simulation, index)?)), index)?
             }
-            Play::Simulation(simulation) => self.faulty(simulated(simulation, index)?, index)?,
-            Play::Apart(simulations) => self.faulty(simulated(&simulations[index], 0)?, index)?,
+            Play::Simulation(simulation) => self.faulty(Box::new(simulated(simulation, index)?), index)?,
+            Play::Apart(simulations) => self.faulty(Box::new(simulated(&simulations[index], 0)?), index)?,
             Play::Library(library) => self.faulty(library.robot()?, index)?,
             Play::Recording(player) => {
-                self.recording.recorder(player.robot(index).map_err(|error| foreign(&error))?, index)
+                self.recording.recorder(replayed_robot(player, index)?, index)
             }
         };
         let Some(guard) = &self.guard else { return Ok(Claimed { robot, guard: None }) };
@@ -388,13 +391,13 @@ impl Stage {
     }
 
     /// A simulated robot with the faults of the first one.
-    fn faulty(&self, robot: impl RobotIo + Send + 'static, index: usize) -> Result<Driven, Failure> {
+    fn faulty(&self, robot: Driven, index: usize) -> Result<Driven, Failure> {
         let faults = if index == 0 { self.faults.clone() } else { Vec::new() };
         if self.guard.is_none() && !self.deadman {
-            return Ok(self.recording.recorder(Faulty::new(robot, faults), index));
+            return Ok(self.recording.recorder(Box::new(Faulty::new(robot, faults)), index));
         }
         let robot = Deadman::new(robot, DEADMAN).map_err(Failure::run)?;
-        Ok(self.recording.recorder(Faulty::new(robot, faults), index))
+        Ok(self.recording.recorder(Box::new(Faulty::new(robot, faults)), index))
     }
 
     /// What is true, for the program that drives or watches a robot. Of robots apart, each is the first one of its world.
@@ -413,12 +416,12 @@ impl Stage {
         let truth: StageTruth = match &self.play {
             Play::Simulation(simulation) => Box::new(simulation.truth()),
             Play::Apart(simulations) => Box::new(simulations[index].truth()),
-            Play::Recording(player) => Box::new(player.truth(index).map_err(|error| foreign(&error))?),
+            Play::Recording(player) => replayed_truth(player, index)?,
             Play::Library(library) => library.truth()?,
         };
         Ok(match &self.recording.writer {
-            Some(writer) => Box::new(writer.truth(truth, index)),
-            None => truth,
+            Some(writer) if RECORDS => Box::new(writer.truth(truth, index)),
+            _ => truth,
         })
     }
 
@@ -456,6 +459,20 @@ impl Claimed {
     }
 }
 
+/// A robot of a recording.
+fn replayed_robot(player: &Player, index: usize) -> Result<Driven, Failure> {
+    if RECORDS { Ok(Box::new(player.robot(index).map_err(|error| foreign(&error))?)) } else { Err(no_recordings()) }
+}
+
+/// What is true about a robot of a recording.
+fn replayed_truth(player: &Player, index: usize) -> Result<StageTruth, Failure> {
+    if RECORDS { Ok(Box::new(player.truth(index).map_err(|error| foreign(&error))?)) } else { Err(no_recordings()) }
+}
+
+fn no_recordings() -> Failure {
+    Failure::input("--replay: found a recording; expected a program that replays")
+}
+
 /// A recording that lacks a robot belongs to another scene.
 fn foreign(error: &LogError) -> Failure {
     Failure::input(format!("--replay: {error}"))
@@ -463,10 +480,10 @@ fn foreign(error: &LogError) -> Failure {
 
 impl Recording {
     /// A robot that is recorded, if there is a recording.
-    fn recorder(&self, robot: impl RobotIo + Send + 'static, index: usize) -> Driven {
+    fn recorder(&self, robot: Driven, index: usize) -> Driven {
         match &self.writer {
-            Some(writer) => Box::new(writer.recorder(robot, index)),
-            None => Box::new(robot),
+            Some(writer) if RECORDS => Box::new(writer.recorder(robot, index)),
+            _ => robot,
         }
     }
 }
