@@ -6,15 +6,18 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::CommandFactory;
+use serde_json::{Value, json};
 
-use crate::common::{Failure, parser, refused, run, run_plain, run_printing, written};
+use crate::common::{Failure, Onlooker, onlooker, parser, refused, run, run_plain, run_printing, written};
 #[cfg(test)]
 use crate::common::{Heeds, Unheeded};
 use crate::maze_drive::{explore as maze_explore, left as maze_left, lidar as maze_lidar};
+#[cfg(feature = "native")]
+use crate::starman;
 use crate::{
     a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, edges,
     follow_me, genetic, grid_benchmark, lidar_scan, localise, micromouse, motion, navigate, omni, quadtree,
-    random_drive, replay, safety, starman, wall_following,
+    random_drive, replay, safety, wall_following,
 };
 
 /// Runs a command with its command line and its two outputs. Returns the exit status.
@@ -47,9 +50,9 @@ fn unheeded_by<A: Heeds, R>(_: impl Fn(&A) -> Result<R, Failure>) -> &'static [U
 
 /// A table of commands from the names of their modules and the functions that run them.
 macro_rules! commands {
-    ($($name:ident by $run:path),* $(,)?) => {
+    ($($(#[$when:meta])? $name:ident by $run:path),* $(,)?) => {
         /// All commands, in the order of their names.
-        pub(crate) const COMMANDS: &[Command] = &[$(Command {
+        pub(crate) const COMMANDS: &[Command] = &[$($(#[$when])? Command {
             name: stringify!($name),
             run: |words, out, err| $run(stringify!($name), words, out, err, $name::work),
             parser: || parser_of(stringify!($name), $name::work),
@@ -86,6 +89,7 @@ commands!(
     random_drive by run,
     replay by run_printing,
     safety by run,
+    #[cfg(feature = "native")]
     starman by run,
     wall_following by run,
 );
@@ -113,10 +117,67 @@ pub(crate) fn named(name: &str) -> Option<&'static Command> {
 #[must_use]
 pub fn main() -> ExitCode {
     let words: Vec<OsString> = std::env::args_os().collect();
-    let status = starman::work_for_another(&words)
+    #[cfg(feature = "native")]
+    let for_another = starman::work_for_another(&words);
+    #[cfg(not(feature = "native"))]
+    let for_another = None;
+    let status = for_another
         .or_else(|| micromouse::mms::drive_for_another(&words))
         .unwrap_or_else(|| dispatch(words, &mut io::stdout(), &mut io::stderr()));
     ExitCode::from(status)
+}
+
+/// How a command ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Ended {
+    /// The exit status: 0 came to a verdict, 1 failed, 2 was told something wrong.
+    pub status: u8,
+    /// What it printed.
+    pub output: String,
+    /// What it complained of.
+    pub errors: String,
+}
+
+/// Runs a command line, without the program's name, perhaps while somebody looks on.
+pub fn run_words(words: impl IntoIterator<Item = OsString>, onlooker: Option<Box<dyn Onlooker>>) -> Ended {
+    let words = std::iter::once(OsString::from("roverlab")).chain(words).collect();
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    let status = onlooker::with(onlooker, || dispatch(words, &mut out, &mut err));
+    let [output, errors] = [out, err].map(|text| String::from_utf8_lossy(&text).into_owned());
+    Ended { status, output, errors }
+}
+
+/// The commands that drive robots and their options, as JSON: a list of `{name, about, options}`, where an option has a `name`,
+/// `help`, `kind` (`switch`, `choice`, `number` or `text`), `default`, `choices` and `value`, how its value is called.
+pub fn options() -> String {
+    let commands = COMMANDS.iter().filter(|command| command.drives()).map(|command| {
+        let parser = (command.parser)();
+        let options: Vec<_> = parser.get_arguments().filter_map(option).collect();
+        let about = parser.get_about().map(ToString::to_string);
+        json!({ "name": parser.get_name(), "about": about, "options": options })
+    });
+    Value::from(commands.collect::<Vec<_>>()).to_string()
+}
+
+/// An option as JSON.
+fn option(argument: &clap::Arg) -> Option<Value> {
+    let name = argument.get_long().filter(|name| *name != "help")?;
+    let choices: Vec<_> =
+        argument.get_possible_values().iter().map(|choice| choice.get_name().to_owned()).collect();
+    let default = argument.get_default_values().first().map(|value| value.to_string_lossy().into_owned());
+    let takes = argument.get_action().takes_values();
+    let is_number = default.as_ref().is_some_and(|value| value.parse::<f64>().is_ok());
+    let kind = match (takes, choices.is_empty(), is_number) {
+        (false, ..) => "switch",
+        (true, false, _) => "choice",
+        (true, true, true) => "number",
+        _ => "text",
+    };
+    let value = argument.get_value_names().and_then(|names| names.first()).map(ToString::to_string);
+    let help = argument.get_help().map(ToString::to_string);
+    Some(json!({
+        "name": name, "help": help, "kind": kind, "default": default, "choices": choices, "value": value,
+    }))
 }
 
 /// Runs the command that a command line names, or says which ones there are. Returns the exit status.

@@ -33,9 +33,11 @@ mod random_drive;
 mod replay;
 mod room;
 mod safety;
+#[cfg(feature = "native")]
 mod starman;
 #[cfg(test)]
 mod tests;
 mod wall_following;
 
-pub use commands::main;
+pub use commands::{Ended, main, options, run_words};
+pub use common::Onlooker;

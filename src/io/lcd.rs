@@ -107,6 +107,11 @@ impl Lcd {
         self.frozen.as_ref().unwrap_or_else(|| self.canvas.image())
     }
 
+    /// The labels of the soft keys from left to right; empty without one.
+    pub fn menu(&self) -> [&str; 4] {
+        self.labels.each_ref().map(|label| label.text.as_str())
+    }
+
     /// Rows and columns of text that fit, in the present font.
     pub fn text_size(&self) -> (i32, i32) {
         let (width, height) = fonts::cell(self.face());

@@ -10,7 +10,7 @@ use roverlab::world::{BitGrid, BitGridError, GridCell, RobotSpec, Scene};
 
 use super::ride::{Conditions, Ride, ride, ride_with};
 use super::{Args, job};
-use crate::common::{Driven, Failure, StageTruth, Trip, share_out, threads};
+use crate::common::{Driven, Failure, StageTruth, Trip, onlooker, share_out, threads};
 
 /// A world with a robot and a goal, and the truth about it.
 #[derive(Debug, Clone)]
@@ -105,6 +105,9 @@ pub(crate) fn recorded(args: &Args) -> Result<Entry, Failure> {
     let stage = args.common.stage_apart(&trip.scene, &conditions.sim_options(), bugs.len())?;
     let robots = (0..bugs.len()).map(|index| Ok((stage.robot(index)?, stage.truth(index)?)));
     let robots: Vec<(Driven, StageTruth)> = robots.collect::<Result<_, Failure>>()?;
+    if onlooker::is_there() {
+        return looked_at(setting, conditions, bugs, robots);
+    }
     let rides = thread::scope(|scope| {
         let drive = |(&kind, (robot, mut truth)): (&BugKind, (Driven, StageTruth))| {
             scope.spawn(move || ride_with(trip, kind, conditions, robot, &mut truth))
@@ -115,6 +118,20 @@ pub(crate) fn recorded(args: &Args) -> Result<Entry, Failure> {
         rides.collect::<Result<_, Failure>>()
     })?;
     Ok(Entry { setting, rides })
+}
+
+/// The ride of the one algorithm that somebody looks at.
+fn looked_at(
+    setting: Setting,
+    conditions: Conditions,
+    bugs: &[BugKind],
+    robots: Vec<(Driven, StageTruth)>,
+) -> Result<Entry, Failure> {
+    let (&[kind], Some((robot, mut truth))) = (bugs, robots.into_iter().next()) else {
+        return Err(Failure::input(format!("--bugs: found {} to look at; expected one", bugs.len())));
+    };
+    let ride = ride_with(&setting.trip, kind, conditions, robot, &mut truth)?;
+    Ok(Entry { setting, rides: vec![ride] })
 }
 
 /// The course of a family and a seed.

@@ -4,7 +4,7 @@ use roverlab::world::{RobotSpec, Scene, World};
 use super::contest::{self, Entry};
 use super::ride::ride;
 use super::{Args, campaign, picture, table};
-use crate::common::{Failure, Outcome, Report, Trip};
+use crate::common::{Failure, Outcome, Report, Trip, onlooker};
 
 /// The work of the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
@@ -12,7 +12,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if args.campaign {
         return campaign::campaign(args);
     }
-    let is_recorded = args.common.record.is_some() || args.common.replay.is_some();
+    let is_recorded = args.common.record.is_some() || args.common.replay.is_some() || onlooker::is_there();
     let entries = if is_recorded { vec![contest::recorded(args)?] } else { contest::entries(args)? };
     let rows = table::rows(&entries, args.common.noise);
     args.common.tell(table::text(&rows));

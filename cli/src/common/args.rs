@@ -8,10 +8,11 @@ use roverlab::geometry::Pose;
 use roverlab::io::wrappers::Fault;
 use roverlab::picture::{Picture, SaveError};
 
+use super::library::Library;
 use super::values::{
     GoalOption, parse_animation, parse_goal, parse_noise, parse_picture, parse_pose, parse_seconds,
 };
-use super::{Failure, Origin, Report, is_same_file};
+use super::{Failure, Origin, Report, is_same_file, onlooker};
 
 /// The folder of files that no option names.
 const UNNAMED: &str = "target/pictures";
@@ -190,7 +191,7 @@ impl CommonArgs {
 
     /// Tells a person what happens during a run. Silent with `--json`.
     pub(crate) fn tell(&self, event: impl Display) {
-        if !self.json {
+        if !self.json && !onlooker::told(&event) {
             // A reader that went away, as `head` does, is no reason to stop the run.
             let _ = writeln!(std::io::stdout(), "{event}");
         }
@@ -247,11 +248,11 @@ impl PlainArgs {
     }
 }
 
-/// A file in the folder for what no option names; none where a program reads the report.
+/// A file in the folder for what no option names; none where a program reads the report, or somebody looks on.
 fn unnamed_file(json: bool, name: &str) -> Option<PathBuf> {
     let folder = Path::new(UNNAMED);
     // If it cannot be made, then saving the file fails, and says why.
-    (!json).then(|| fs::create_dir_all(folder)).map(|_| folder.join(name))
+    (!json && !onlooker::is_there()).then(|| fs::create_dir_all(folder)).map(|_| folder.join(name))
 }
 
 fn check_pictures(still: Option<&Path>, moving: Option<&Path>) -> Result<(), Failure> {
@@ -266,7 +267,11 @@ fn drawn(
     tell: impl Fn(String),
     picture: impl FnOnce() -> Picture,
 ) -> Report {
-    let picture = if still.is_some() || moving.is_some() { Some(picture()) } else { None };
+    let is_wanted = still.is_some() || moving.is_some() || onlooker::is_there();
+    let picture = is_wanted.then(picture);
+    if let Some(picture) = &picture {
+        onlooker::pictured(picture);
+    }
     let mut trouble = Vec::new();
     let mut saved = |file: Option<PathBuf>, save: fn(&Picture, &Path) -> Result<(), SaveError>| {
         let (file, picture) = (file?, picture.as_ref()?);
@@ -293,7 +298,7 @@ fn drawn(
 
 /// Fails if a library cannot be loaded.
 fn check_library(library: &Path) -> Result<(), Failure> {
-    let opened = roverlab::io::robios::RobiosRobot::open(library);
+    let opened = Library::open(library, Pose::default());
     opened
         .map(|_| ())
         .map_err(|error| Failure::input(format!("--robios {error}; expected a library of RoBIOS")))

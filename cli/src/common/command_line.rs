@@ -9,7 +9,7 @@ use roverlab::io::log::Log;
 use super::files::recorded_name;
 use super::origin::Facts;
 use super::outputs::check_outputs;
-use super::{CommonArgs, Failure, Heeds, heed, parser};
+use super::{CommonArgs, Failure, Heeds, Unheeded, heed, parser, stage};
 
 /// Options that do not affect a run.
 const NOT_RECORDED: [&str; 13] = [
@@ -51,9 +51,23 @@ pub(crate) fn parse<A>(name: &str, command_line: impl IntoIterator<Item = OsStri
 where
     A: clap::Parser + AsRef<CommonArgs> + Heeds,
 {
-    let mut words: Vec<OsString> = command_line.into_iter().collect();
     let mut command = parser::<A>(name);
-    let log = replayed(&words).map(|file| recording(name, &command, &file));
+    let words = command_line.into_iter().collect();
+    let (mut matches, facts) = matches(name, &mut command, A::UNHEEDED, words)?;
+    let args =
+        A::from_arg_matches_mut(&mut matches).map_err(|error| Refusal::Parser(error.format(&mut command)))?;
+    args.as_ref().origin.set(facts);
+    Ok(args)
+}
+
+/// What stands on a command line, and what is known of the run by it.
+fn matches(
+    name: &str,
+    command: &mut Command,
+    unheeded: &[Unheeded],
+    mut words: Vec<OsString>,
+) -> Result<(ArgMatches, Facts), Refusal> {
+    let log = replayed(&words).filter(|_| stage::RECORDS).map(|file| recording(name, command, &file));
     let log = log.transpose().map_err(Refusal::Files)?;
     let given = words.split_off(1.min(words.len()));
     if let Some(log) = &log {
@@ -61,20 +75,17 @@ where
         words.extend(recorded.map(OsString::from));
     }
     words.extend(given.iter().cloned());
-    let mut matches = command.try_get_matches_from_mut(words).map_err(Refusal::Parser)?;
+    let matches = command.try_get_matches_from_mut(words).map_err(Refusal::Parser)?;
     check_recorded(&matches).map_err(Refusal::Files)?;
     check_outputs(&matches).map_err(Refusal::Files)?;
     // What an older program recorded was not refused then.
     let is_recorded = |id: &str| log.is_some() && !repeats(&format!("--{}", id.replace('_', "-")), &given);
-    heed::check(&matches, A::UNHEEDED, |id| !is_recorded(id)).map_err(Refusal::Files)?;
-    let options = options(&command, &matches);
+    heed::check(&matches, unheeded, |id| !is_recorded(id)).map_err(Refusal::Files)?;
+    let options = options(command, &matches);
     if let Some(log) = &log {
-        check_met(&command, &options, &log.header().options).map_err(Refusal::Files)?;
+        check_met(command, &options, &log.header().options).map_err(Refusal::Files)?;
     }
-    let args =
-        A::from_arg_matches_mut(&mut matches).map_err(|error| Refusal::Parser(error.format(&mut command)))?;
-    args.as_ref().origin.set(Facts { program: name.into(), options, log });
-    Ok(args)
+    Ok((matches, Facts { program: name.into(), options, log }))
 }
 
 /// Fails if there is to be a recording of what cannot be recorded.

@@ -5,7 +5,7 @@ use roverlab::io::log::{Attachment, Log};
 use roverlab::world::formats::{self, DiskFiles, FileSource, FormatError, Location, Parsed, SourceFile};
 use roverlab::world::{RobotSpec, Scene};
 
-use super::CommonArgs;
+use super::{CommonArgs, onlooker};
 
 /// The name that a file of an option has in recordings: that of the option, with the file's ending.
 pub(crate) fn recorded_name(option: &str, path: &Path) -> String {
@@ -28,7 +28,13 @@ impl CommonArgs {
             };
             return log.header().attachment(&name).map(|file| file.data.clone()).ok_or_else(lost);
         }
-        let bytes = formats::read_file(path)?;
+        let bytes = match onlooker::file(path) {
+            Some(file) => file.ok_or_else(|| {
+                let name = path.display().to_string();
+                FormatError::new(&name, Location::START, "no such file", "one that was opened here")
+            })?,
+            None => formats::read_file(path)?,
+        };
         self.origin.attach(attachment(&name, &bytes));
         Ok(bytes)
     }
@@ -78,7 +84,10 @@ impl FileSource for Companions {
             self.found.push(file.clone());
             return Ok(SourceFile { name: reference.into(), bytes: file.data.clone() });
         }
-        let file = self.disk.read(reference, referrer, limit)?;
+        let file = match onlooker::file(Path::new(reference)) {
+            Some(file) => SourceFile { name: reference.into(), bytes: file.ok_or(io::ErrorKind::NotFound)? },
+            None => self.disk.read(reference, referrer, limit)?,
+        };
         self.found.push(attachment(&name, &file.bytes));
         Ok(file)
     }

@@ -31,20 +31,29 @@ where
         let common = args.as_ref();
         let stopwatch = Stopwatch::start();
         common.check()?;
-        let mut report = work(args)?;
-        common.origin.tell_warnings();
-        report.add_trouble(common.origin.take_trouble());
-        let safety = common.origin.stops().take();
-        common.check_supervised(safety.is_some())?;
-        if let Some(safety) = safety {
-            report = report.field("safety", safety);
-        }
-        common.check_recorded()?;
-        report.timing.insert(0, ("wall_time_s", rounded(stopwatch.seconds())));
-        let (seed, timing) = (common.seed, common.timing);
-        let noise = (!report.mixed_noise).then_some(common.noise);
-        Ok(report.printed(Header { command, seed, noise, timing }, common.json))
+        completed(command, common, stopwatch, work(args)?)
     })
+}
+
+/// The report of a command, with what is told of all of them.
+fn completed(
+    command: &'static str,
+    common: &CommonArgs,
+    stopwatch: Stopwatch,
+    mut report: Report,
+) -> Result<Printed, Failure> {
+    common.origin.tell_warnings();
+    report.add_trouble(common.origin.take_trouble());
+    let safety = common.origin.stops().take();
+    common.check_supervised(safety.is_some())?;
+    if let Some(safety) = safety {
+        report = report.field("safety", safety);
+    }
+    common.check_recorded()?;
+    report.timing.insert(0, ("wall_time_s", rounded(stopwatch.seconds())));
+    let (seed, timing) = (common.seed, common.timing);
+    let noise = (!report.mixed_noise).then_some(common.noise);
+    Ok(report.printed(Header { command, seed, noise, timing }, common.json))
 }
 
 /// As [`run`], for a command that drives no robot.
@@ -107,11 +116,15 @@ fn run_parsed<A>(
     err: &mut dyn Write,
     work: impl FnOnce(&A) -> Result<Printed, Failure>,
 ) -> u8 {
-    let args = match args {
-        Ok(args) => args,
-        Err(error) => return refused(&error, out, err),
-    };
-    match work(&args) {
+    match args {
+        Ok(args) => ended(work(&args), out, err),
+        Err(error) => refused(&error, out, err),
+    }
+}
+
+/// Prints what came of a command's work. Returns the exit status.
+fn ended(printed: Result<Printed, Failure>, out: &mut dyn Write, err: &mut dyn Write) -> u8 {
+    match printed {
         Err(failure) => complain(err, &failure),
         Ok(printed) => {
             if let Some(message) = printed.message {

@@ -3,20 +3,23 @@ use std::fmt;
 use std::fs::File;
 use std::io::BufWriter;
 use std::ops::{Deref, DerefMut};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use roverlab::geometry::Pose;
 use roverlab::io::log::{Attachment, FleetIo, GroundTruth, Header, LogError, LogWriter, Player};
-use roverlab::io::robios::{RobiosRobot, RobiosTruth};
-use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, Simulation};
+use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, Simulation, Watcher};
 use roverlab::io::wrappers::{Deadman, Fault, Faulty, Quantised};
 use roverlab::io::{self, Key, RobotIo};
 use roverlab::safety::{SpeedError, StoppingModel};
 use roverlab::world::{RobotPlacement, Scene, formats};
 
+use super::library::{Library, alone};
 use super::supervision::{DEADMAN, Stops, guarded};
-use super::{CommonArgs, Failure, Origin};
+use super::{CommonArgs, Failure, Origin, onlooker};
+
+/// Whether robots are recorded and replayed. A page in a browser has no files for that, and is smaller by the code for it.
+pub(super) const RECORDS: bool = cfg!(feature = "native");
 
 /// How many bytes of a recording a robot that is apart may be ahead of the others.
 const MOST_AHEAD: usize = 1 << 20;
@@ -61,8 +64,7 @@ enum Play {
     /// Each robot alone in a world of its own.
     Apart(Vec<Simulation>),
     Recording(Player),
-    /// The one robot behind a library, until it is taken, and what is known about it.
-    Library(PathBuf, Mutex<(Option<RobiosRobot>, Option<RobiosTruth>)>),
+    Library(Library),
 }
 
 /// Where a run is recorded, and what it replays.
@@ -97,6 +99,7 @@ impl DerefMut for StagedFleet<'_> {
 
 /// One robot with a world of its own kind: made by the command or replayed, and recorded if the options ask
 /// for it. For all else as a [`Stage`].
+#[cfg_attr(not(feature = "native"), allow(dead_code, reason = "only the walking robot needs it"))]
 pub(crate) struct StagedRobot {
     // Let go before the recording is finished.
     robot: Driven,
@@ -158,12 +161,14 @@ impl CommonArgs {
             (Some(player), _) => Stage::new(Play::Recording(player), Vec::new()),
             (None, Some(library)) => {
                 let start = scene.robots.first().map_or(Pose::default(), |robot| robot.pose);
-                let robot = RobiosRobot::open(library).map_err(Failure::input)?;
-                let truth = robot.truth(start);
-                let play = Play::Library(library.clone(), Mutex::new((Some(robot), Some(truth))));
-                Stage::new(play, self.faults()?)
+                Stage::new(Play::Library(Library::open(library, start)?), self.faults()?)
             }
-            _ => Stage { quantised: self.quantised, ..Stage::simulated(scene, options, self.faults()?)? },
+            _ => {
+                let (scene, watcher) = onlooker::watched(scene);
+                let stage = Stage::simulated(&scene, options, self.faults()?)?;
+                stage.watch(watcher);
+                Stage { quantised: self.quantised, ..stage }
+            }
         };
         self.recorded(scene, stage, motors(scene))
     }
@@ -185,8 +190,13 @@ impl CommonArgs {
         let play = if let Some(player) = self.player() {
             Play::Recording(player)
         } else {
-            let simulations = (0..robots).map(|_| Simulation::new(scene, options.clone()));
-            Play::Apart(simulations.collect::<io::Result<_>>().map_err(Failure::input)?)
+            let (shown, watcher) = onlooker::watched(scene);
+            let simulations = (0..robots).map(|_| Simulation::new(&shown, options.clone()));
+            let simulations: Vec<_> = simulations.collect::<io::Result<_>>().map_err(Failure::input)?;
+            if let (Some(first), Some(watcher)) = (simulations.first(), watcher) {
+                first.watch(watcher);
+            }
+            Play::Apart(simulations)
         };
         let mut stage = self.recorded(scene, Stage::new(play, Vec::new()), motors(scene))?;
         if let Some(guard) = &mut stage.guard {
@@ -222,19 +232,27 @@ impl CommonArgs {
             ));
         }
         let fleet: Box<dyn FleetIo<'a> + 'a> = match &player {
-            Some(player) => Box::new(player.fleet()),
-            None => Box::new(Fleet::new(scene, options).map_err(Failure::input)?),
+            Some(player) if RECORDS => Box::new(player.fleet()),
+            _ => {
+                let (scene, watcher) = onlooker::watched(scene);
+                let mut fleet = Fleet::new(&scene, options).map_err(Failure::input)?;
+                if let Some(watcher) = watcher {
+                    fleet.watch(watcher);
+                }
+                Box::new(fleet)
+            }
         };
         let recording = self.recording(scene, player)?;
         let fleet = match &recording.writer {
-            Some(writer) => Box::new(writer.fleet(fleet)),
-            None => fleet,
+            Some(writer) if RECORDS => Box::new(writer.fleet(fleet)),
+            _ => fleet,
         };
         Ok(StagedFleet { fleet, _recording: recording })
     }
 
     /// A robot that no scene describes: `own`, or that of the recording which `--replay` names. The scene is what
     /// viewers show around it.
+    #[cfg_attr(not(feature = "native"), allow(dead_code, reason = "only the walking robot needs it"))]
     pub(crate) fn staged_robot(
         &self,
         scene: &Scene,
@@ -243,8 +261,8 @@ impl CommonArgs {
         let player = self.player();
         let recording = self.recording(scene, player.clone())?;
         let robot = match player {
-            Some(player) => recording.recorder(player.robot(0).map_err(|error| foreign(&error))?, 0),
-            None => recording.recorder(own, 0),
+            Some(player) => recording.recorder(replayed_robot(&player, 0)?, 0),
+            None => recording.recorder(Box::new(own), 0),
         };
         Ok(StagedRobot { robot, _recording: recording })
     }
@@ -258,7 +276,7 @@ impl CommonArgs {
     fn recording(&self, scene: &Scene, player: Option<Player>) -> Result<Recording, Failure> {
         let mut recording = Recording { writer: None, player, origin: self.origin.clone() };
         self.origin.set_staged();
-        let Some(file) = &self.record else { return Ok(recording) };
+        let Some(file) = self.record.as_ref().filter(|_| RECORDS) else { return Ok(recording) };
         let facts = self.origin.facts();
         let header = facts.log.as_ref().map_or_else(
             || Header {
@@ -320,6 +338,13 @@ impl Stage {
         Ok(Self::new(Play::Simulation(simulation), faults))
     }
 
+    /// Lets somebody look on at a simulation.
+    fn watch(&self, watcher: Option<Box<dyn Watcher>>) {
+        if let (Play::Simulation(simulation), Some(watcher)) = (&self.play, watcher) {
+            simulation.watch(watcher);
+        }
+    }
+
     fn new(play: Play, faults: Vec<Fault>) -> Self {
         Self {
             play,
@@ -347,17 +372,12 @@ impl Stage {
         let simulated = |simulation: &Simulation, index| simulation.robot(index).map_err(Failure::input);
         let robot = match &self.play {
             Play::Simulation(simulation) if self.quantised => {
-                self.faulty(Quantised::new(simulated(simulation, index)?), index)?
+                self.faulty(Box::new(Quantised::new(simulated(simulation, index)?)), index)?
             }
-            Play::Simulation(simulation) => self.faulty(simulated(simulation, index)?, index)?,
-            Play::Apart(simulations) => self.faulty(simulated(&simulations[index], 0)?, index)?,
-            Play::Library(library, taken) => {
-                let robot = taken.lock().unwrap_or_else(PoisonError::into_inner).0.take();
-                self.faulty(robot.filter(|_| index == 0).ok_or_else(|| alone(library))?, index)?
-            }
-            Play::Recording(player) => {
-                self.recording.recorder(player.robot(index).map_err(|error| foreign(&error))?, index)
-            }
+            Play::Simulation(simulation) => self.faulty(Box::new(simulated(simulation, index)?), index)?,
+            Play::Apart(simulations) => self.faulty(Box::new(simulated(&simulations[index], 0)?), index)?,
+            Play::Library(library) => self.faulty(library.robot()?, index)?,
+            Play::Recording(player) => self.recording.recorder(replayed_robot(player, index)?, index),
         };
         let Some(guard) = &self.guard else { return Ok(Claimed { robot, guard: None }) };
         let models = &guard.models;
@@ -369,13 +389,13 @@ impl Stage {
     }
 
     /// A simulated robot with the faults of the first one.
-    fn faulty(&self, robot: impl RobotIo + Send + 'static, index: usize) -> Result<Driven, Failure> {
+    fn faulty(&self, robot: Driven, index: usize) -> Result<Driven, Failure> {
         let faults = if index == 0 { self.faults.clone() } else { Vec::new() };
         if self.guard.is_none() && !self.deadman {
-            return Ok(self.recording.recorder(Faulty::new(robot, faults), index));
+            return Ok(self.recording.recorder(Box::new(Faulty::new(robot, faults)), index));
         }
         let robot = Deadman::new(robot, DEADMAN).map_err(Failure::run)?;
-        Ok(self.recording.recorder(Faulty::new(robot, faults), index))
+        Ok(self.recording.recorder(Box::new(Faulty::new(robot, faults)), index))
     }
 
     /// What is true, for the program that drives or watches a robot. Of robots apart, each is the first one of its world.
@@ -394,15 +414,12 @@ impl Stage {
         let truth: StageTruth = match &self.play {
             Play::Simulation(simulation) => Box::new(simulation.truth()),
             Play::Apart(simulations) => Box::new(simulations[index].truth()),
-            Play::Recording(player) => Box::new(player.truth(index).map_err(|error| foreign(&error))?),
-            Play::Library(library, taken) => {
-                let truth = taken.lock().unwrap_or_else(PoisonError::into_inner).1.take();
-                Box::new(truth.ok_or_else(|| alone(library))?)
-            }
+            Play::Recording(player) => replayed_truth(player, index)?,
+            Play::Library(library) => library.truth()?,
         };
         Ok(match &self.recording.writer {
-            Some(writer) => Box::new(writer.truth(truth, index)),
-            None => truth,
+            Some(writer) if RECORDS => Box::new(writer.truth(truth, index)),
+            _ => truth,
         })
     }
 
@@ -412,7 +429,7 @@ impl Stage {
             Play::Simulation(simulation) => simulation.press_key(index, time, key),
             Play::Apart(simulations) => simulations[index].press_key(0, time, key),
             // Whoever stands beside a real robot presses its keys.
-            Play::Recording(_) | Play::Library(..) => Ok(()),
+            Play::Recording(_) | Play::Library(_) => Ok(()),
         }
     }
 }
@@ -440,12 +457,26 @@ impl Claimed {
     }
 }
 
-/// A library has one robot.
-fn alone(library: &Path) -> Failure {
-    let library = library.display();
-    Failure::input(format!(
-        "--robios {library}: found several robots that drive; expected a run of one robot"
-    ))
+/// A robot of a recording.
+fn replayed_robot(player: &Player, index: usize) -> Result<Driven, Failure> {
+    if RECORDS {
+        Ok(Box::new(player.robot(index).map_err(|error| foreign(&error))?))
+    } else {
+        Err(no_recordings())
+    }
+}
+
+/// What is true about a robot of a recording.
+fn replayed_truth(player: &Player, index: usize) -> Result<StageTruth, Failure> {
+    if RECORDS {
+        Ok(Box::new(player.truth(index).map_err(|error| foreign(&error))?))
+    } else {
+        Err(no_recordings())
+    }
+}
+
+fn no_recordings() -> Failure {
+    Failure::input("--replay: found a recording; expected a program that replays")
 }
 
 /// A recording that lacks a robot belongs to another scene.
@@ -455,10 +486,10 @@ fn foreign(error: &LogError) -> Failure {
 
 impl Recording {
     /// A robot that is recorded, if there is a recording.
-    fn recorder(&self, robot: impl RobotIo + Send + 'static, index: usize) -> Driven {
+    fn recorder(&self, robot: Driven, index: usize) -> Driven {
         match &self.writer {
-            Some(writer) => Box::new(writer.recorder(robot, index)),
-            None => Box::new(robot),
+            Some(writer) if RECORDS => Box::new(writer.recorder(robot, index)),
+            _ => robot,
         }
     }
 }

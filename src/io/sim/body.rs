@@ -33,6 +33,8 @@ pub(super) struct Body {
     pub(super) keys: VecDeque<KeyPress>,
     /// Made when the program first draws: most robots of a fleet never do.
     lcd: Option<Box<Lcd>>,
+    /// Calls of the display so far.
+    drawings: u64,
     pub(super) encoder_offsets: [i64; 4],
     pub(super) touch: Touch,
     pub(super) path_length: f64,
@@ -179,6 +181,7 @@ impl Body {
             mailbox: VecDeque::new(),
             keys: VecDeque::new(),
             lcd: None,
+            drawings: 0,
             encoder_offsets: [0; 4],
             touch: Touch::default(),
             path_length: 0.0,
@@ -190,7 +193,13 @@ impl Body {
     }
 
     pub(super) fn lcd(&mut self) -> &mut Lcd {
+        self.drawings += 1;
         self.lcd.get_or_insert_with(|| Box::new(Lcd::new()))
+    }
+
+    /// What the display shows, and how many calls of it there have been.
+    pub(super) fn display(&self) -> Option<(u64, &Lcd)> {
+        Some((self.drawings, self.lcd.as_deref()?))
     }
 
     /// Where it truly is.

@@ -6,6 +6,7 @@ use super::lockstep::{Ticking, no_robot};
 use super::movable::{Movable, movables};
 use super::options::ticks_in;
 use super::terrain::Hills;
+use super::watch::{Onlooking, Watcher};
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
 use crate::geometry::{Pose, Pose3, Twist};
 use crate::io::{Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result};
@@ -32,6 +33,7 @@ pub(super) struct Engine {
     /// What robots stand on instead of a level floor.
     pub(super) hills: Option<Box<Hills>>,
     trail_ticks: Option<u64>,
+    watcher: Option<Box<dyn Watcher>>,
 }
 
 /// What a robot's program puts somewhere else at the next tick.
@@ -107,6 +109,7 @@ impl Engine {
             studio,
             hills: Hills::of(&scene.world, &scene.robots),
             trail_ticks,
+            watcher: None,
         };
         engine.stand_on_hills();
         Ok(engine)
@@ -178,6 +181,30 @@ impl Engine {
         }
     }
 
+    /// Lets somebody look on from now on, in place of who did before.
+    pub(super) fn watch(&mut self, watcher: Box<dyn Watcher>) {
+        self.watcher = Some(watcher);
+        self.show();
+    }
+
+    /// Shows the world to who looks on.
+    fn show(&mut self) {
+        if let Some(mut watcher) = self.watcher.take() {
+            watcher.tick(&mut Onlooking::new(self));
+            self.watcher = Some(watcher);
+        }
+    }
+
+    /// Fails without an object of this index.
+    pub(super) fn check_object(&self, object: usize) -> Result<()> {
+        let objects = self.movables.len();
+        if object < objects {
+            return Ok(());
+        }
+        let expected = format!("an index below {objects}, the number of objects");
+        Err(Error::invalid_input("object", object, &expected))
+    }
+
     /// Advances the world by one tick.
     pub(super) fn step(&mut self) {
         self.make_moves();
@@ -202,6 +229,7 @@ impl Engine {
         self.deliver();
         self.tick += 1;
         self.extend_trails();
+        self.show();
     }
 
     fn extend_trails(&mut self) {
@@ -298,7 +326,11 @@ impl Engine {
         let pose = body.pose();
         let Some(camera) = &mut body.camera else { return Err(Error::unsupported("camera")) };
         let moment = Moment { tick: self.tick, light: self.options.light, noise: &self.options.noise };
-        camera.take(&mut self.studio, &self.space, (index, pose), moment, image)
+        camera.take(&mut self.studio, &self.space, (index, pose), moment, image)?;
+        if let Some(watcher) = &mut self.watcher {
+            watcher.image(index, image);
+        }
+        Ok(())
     }
 
     pub(super) fn set_odometry(&mut self, index: usize, pose: Pose) -> Result<()> {
@@ -322,7 +354,11 @@ impl Engine {
         let origin = body.pose().position() + body.course.turned(device.offset);
         let direction = body.course.turned(device.direction);
         let range = self.space.cast_ray(origin, direction, device.height, device.max_range, Some(body.solid));
-        Ok(noisy(range, sigma, device.max_range, &mut body.psd_noise))
+        let reading = noisy(range, sigma, device.max_range, &mut body.psd_noise);
+        if let Some(watcher) = &mut self.watcher {
+            watcher.distance(index, psd, reading);
+        }
+        Ok(reading)
     }
 
     pub(super) fn scan_into(&mut self, index: usize, scan: &mut LidarScan) -> Result<()> {
@@ -345,6 +381,9 @@ impl Engine {
         }
         for range in &mut scan.ranges {
             *range = noisy(*range, sigma, device.max_range, &mut device.noise);
+        }
+        if let Some(watcher) = &mut self.watcher {
+            watcher.scan(index, scan);
         }
         Ok(())
     }

@@ -1,12 +1,12 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
-use super::SimOptions;
 use super::body::Body;
 use super::engine::Engine;
 use super::lockstep::{check_duration, no_robot, time_is_over};
 use super::options::ticks_in;
 use super::truth::robot_truth;
+use super::{SimOptions, Watcher};
 use crate::geometry::Pose;
 use crate::io::fleet;
 use crate::io::{Error, ErrorKind, FleetIo, Key, Result, RobotTruth};
@@ -75,6 +75,11 @@ impl<'a> Fleet<'a> {
         let engine = Engine::new(scene, options)?;
         let members = engine.bodies.iter().map(|_| None).collect();
         Ok(Self { engine, members })
+    }
+
+    /// Lets somebody look on, from now on.
+    pub fn watch(&mut self, watcher: Box<dyn Watcher>) {
+        self.engine.watch(watcher);
     }
 
     /// How many robots there are.

@@ -49,6 +49,7 @@ mod simulation;
 pub mod starman;
 mod terrain;
 mod truth;
+mod watch;
 mod wheels;
 
 pub use fleet::{Fleet, FleetRobot};
@@ -58,6 +59,7 @@ pub use robot::SimRobot;
 pub use simulation::Simulation;
 pub use terrain::Mishap;
 pub use truth::Truth;
+pub use watch::{Onlooking, Watcher};
 
 pub use super::{Lcd, RobotTruth, TrailPoint};
 

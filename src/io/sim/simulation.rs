@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use super::engine::Engine;
 use super::lockstep::Lockstep;
-use super::{SimOptions, SimRobot, TICK, Truth};
+use super::{SimOptions, SimRobot, TICK, Truth, Watcher};
 use crate::io::{Key, Result};
 use crate::world::Scene;
 
@@ -36,6 +36,11 @@ impl Simulation {
     /// What is true in the world, for verdicts, pictures and tests.
     pub fn truth(&self) -> Truth {
         Truth::new(Arc::clone(&self.shared))
+    }
+
+    /// Lets somebody look on, from now on.
+    pub fn watch(&self, watcher: Box<dyn Watcher>) {
+        self.shared.lock().world.watch(watcher);
     }
 
     /// Schedules a key press on a robot, in seconds since the start. One whose time has passed is due at once.

@@ -122,7 +122,7 @@ impl Truth {
     }
 }
 
-fn require_finite_pose(pose: Pose) -> Result<()> {
+pub(super) fn require_finite_pose(pose: Pose) -> Result<()> {
     if pose.is_finite() {
         return Ok(());
     }

@@ -1,0 +1,138 @@
+use std::fmt::Debug;
+
+use image::RgbImage;
+
+use super::body::Body;
+use super::engine::Engine;
+use crate::geometry::{Point, Pose};
+use crate::io::{Key, Lcd, LidarScan, Psd, Result};
+
+/// Looks on while a world runs, at every tick: a window that shows it, say. It also sees what the robots' sensors
+/// answer, and may change the world as a hand would: what it changes at which tick is part of the run.
+///
+/// A simulation that is watched makes the same run as one that is not.
+///
+/// ```
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::Clock;
+/// use roverlab::io::sim::{Onlooking, SimOptions, Simulation, Watcher};
+/// use roverlab::world::{RobotSpec, Scene, World};
+///
+/// /// Carries the robot away after a second.
+/// #[derive(Debug)]
+/// struct Hand;
+///
+/// impl Watcher for Hand {
+///     fn tick(&mut self, world: &mut Onlooking<'_>) {
+///         if world.time() == 1.0 {
+///             let _ = world.place_robot(0, Pose::new(1.5, 0.5, 0.0));
+///         }
+///     }
+/// }
+///
+/// # fn main() -> Result<(), roverlab::io::Error> {
+/// let scene = Scene::with_robot(World::walled(2.0, 1.0), RobotSpec::s4(), Pose::new(0.5, 0.5, 0.0));
+/// let simulation = Simulation::new(&scene, SimOptions::default())?;
+/// simulation.watch(Box::new(Hand));
+/// simulation.robot(0)?.wait(2.0)?;
+/// assert_eq!(simulation.truth().pose(0)?.x, 1.5);
+/// # Ok(())
+/// # }
+/// ```
+pub trait Watcher: Debug + Send {
+    /// The world at a tick, before anything moves; first at the tick at which it begins to watch.
+    fn tick(&mut self, world: &mut Onlooking<'_>);
+
+    /// A robot has been told a distance in metres; infinity without a return.
+    fn distance(&mut self, _robot: usize, _sensor: Psd, _range: f64) {}
+
+    /// A robot has been given a scan.
+    fn scan(&mut self, _robot: usize, _scan: &LidarScan) {}
+
+    /// A robot has been given an image.
+    fn image(&mut self, _robot: usize, _image: &RgbImage) {}
+}
+
+/// A simulated world, as a [`Watcher`] sees it and may change it. Robots and objects go by their indices in the scene.
+#[derive(Debug)]
+pub struct Onlooking<'e> {
+    engine: &'e mut Engine,
+}
+
+impl<'e> Onlooking<'e> {
+    pub(super) fn new(engine: &'e mut Engine) -> Self {
+        Self { engine }
+    }
+
+    /// Seconds since the start.
+    pub fn time(&self) -> f64 {
+        self.engine.time()
+    }
+
+    /// How many robots there are.
+    pub fn robots(&self) -> usize {
+        self.engine.bodies.len()
+    }
+
+    /// How many objects there are.
+    pub fn objects(&self) -> usize {
+        self.engine.movables.len()
+    }
+
+    /// A robot's true pose.
+    pub fn pose(&self, robot: usize) -> Option<Pose> {
+        self.engine.bodies.get(robot).map(Body::pose)
+    }
+
+    /// Where a robot's odometry takes it to be, in odometry's own frame.
+    pub fn odometry(&self, robot: usize) -> Option<Pose> {
+        self.engine.bodies.get(robot).map(|body| body.drive.get().odometry())
+    }
+
+    /// How often a robot came into contact with something, and where, for the first thousand times.
+    pub fn contacts(&self, robot: usize) -> Option<(u32, &[Point])> {
+        self.engine.bodies.get(robot).map(|body| (body.touch.contacts, body.touch.places.as_slice()))
+    }
+
+    /// What a robot has drawn, and how many calls of its display there have been: as long as this number is the same, so is
+    /// the display. `None` before the first one.
+    pub fn display(&self, robot: usize) -> Option<(u64, &Lcd)> {
+        self.engine.bodies.get(robot)?.display()
+    }
+
+    /// Where an object is; robots may have pushed it.
+    pub fn object(&self, object: usize) -> Option<Pose> {
+        let movable = self.engine.movables.get(object)?;
+        Some(self.engine.space.solid(movable.solid).pose)
+    }
+
+    /// Whether an object has been knocked over.
+    pub fn has_fallen(&self, object: usize) -> bool {
+        self.engine.movables.get(object).is_some_and(|movable| {
+            let solid = self.engine.space.solid(movable.solid);
+            solid.top <= solid.bottom
+        })
+    }
+
+    /// Puts a robot somewhere else. Its odometry does not notice. Fails without such a robot, or if the pose is none.
+    pub fn place_robot(&mut self, robot: usize, pose: Pose) -> Result<()> {
+        self.engine.body(robot)?;
+        super::truth::require_finite_pose(pose)?;
+        self.engine.place(robot, pose, 0.0);
+        Ok(())
+    }
+
+    /// Puts an object somewhere else. Fails without such an object, or if the pose is none.
+    pub fn place_object(&mut self, object: usize, pose: Pose) -> Result<()> {
+        self.engine.check_object(object)?;
+        super::truth::require_finite_pose(pose)?;
+        self.engine.place_object(object, pose);
+        Ok(())
+    }
+
+    /// Presses a soft key of a robot now. Fails without such a robot.
+    pub fn press_key(&mut self, robot: usize, key: Key) -> Result<()> {
+        let now = self.time();
+        self.engine.press_key(robot, now, key)
+    }
+}
