@@ -302,7 +302,7 @@ fn strays(cones: &[Cone], pairs: &[Pair], closed: bool, parameters: &CentreLineP
             }
             // From the other edge, near where this cone was passed.
             let (at, m) = (chain[k].1, pairs.len());
-            let other = |k: usize| opposites[(at + m + k - WINDOW) % m][1 - side];
+            let other = |k: usize| opposites[(at + m * WINDOW + k - WINDOW) % m][1 - side];
             let away = (0..2 * WINDOW).map(|k| Segment::new(other(k), other(k + 1)).distance_to(here));
             if away.fold(f64::INFINITY, f64::min) > width + 0.8 {
                 found.push(chain[k].0);

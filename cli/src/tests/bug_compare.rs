@@ -91,7 +91,8 @@ fn goals_that_nobody_can_reach_are_told() {
         let world = ["--world", &field, "--goal", goal, "--noise", "0", "--runs", "1"];
         let report = report(&world);
         for run in report["runs"].as_array().unwrap() {
-            assert_eq!((&run["outcome"], &run["correct"]), (&"unreachable".into(), &true.into()), "{run}");
+            let outcome = run["outcome"].as_str().unwrap();
+            assert!(["unreachable", "no_room"].contains(&outcome) && run["correct"] == true, "{run}");
         }
     }
 }

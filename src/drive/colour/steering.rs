@@ -33,7 +33,7 @@ impl Steering {
     /// How far the robot can drive straight on in a direction, at most `reach` metres.
     pub(super) fn free(&self, points: &[Point], angle: f64, reach: f64) -> f64 {
         let (free, _) = free_distance(points, direction(angle), self.radius + self.margin);
-        free.clamp(0.0, reach)
+        free.max(0.0).min(reach)
     }
 
     /// The direction nearest to a wished one in which the robot can drive so far; `None` if it cannot anywhere.
