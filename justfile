@@ -24,9 +24,9 @@ ci *arguments:
 bench *words:
     cargo bench -p roverlab-bench -- {{words}}
 
-# The lessons' pictures, in target/pictures.
+# The pictures of the README's gallery, in docs/pictures.
 pictures:
-    cargo test --test lessons
+    .ci/pictures
 
 # New cases for all properties, ten times as many as usual.
 properties seed=`date +%N`:

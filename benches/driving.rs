@@ -68,16 +68,16 @@ fn methods(c: &mut Criterion) {
 /// Cars, wheels with rollers, a PID controller, and the covariance of odometry.
 fn others(c: &mut Criterion) {
     let kinematics = Ackermann::new(0.26, 0.16, 0.5).expect("a car");
-    let driver = CarDriver { kinematics, full_speed: 0.5 };
+    let driver = CarDriver::new(kinematics, 0.5).expect("a driver");
     let goal = Goal::pose(Pose::new(2.0, 1.0, 1.0));
     let mut car =
         CarToB::new(Method::Spline, goal, driver, CarToBParameters::default()).expect("a behaviour");
     (0..200).for_each(|_| assert!(car.step(Pose::default()).expect("a command").is_some()));
     c.bench_function("car: step", |b| b.iter(|| car.step(black_box(Pose::new(0.1, 0.0, 0.0)))));
 
-    let omni = OmniDriver { kinematics: Omni::mecanum(0.18, 0.16).expect("a drive"), full_speed: 0.47 };
+    let omni = OmniDriver::new(Omni::mecanum(0.18, 0.16).expect("a drive"), 0.47).expect("a driver");
     let twist = PlanarTwist::new(0.1, -0.2, 0.5);
-    let back = omni.kinematics.forward(omni.kinematics.inverse(twist));
+    let back = omni.kinematics().forward(omni.kinematics().inverse(twist));
     assert!((back.left - twist.left).abs() < 1e-12, "forward undoes inverse");
     c.bench_function("omni: motors for a twist", |b| b.iter(|| omni.command(black_box(twist))));
     let route = [Point::new(1.0, 0.0), Point::new(1.0, 1.0)];

@@ -10,7 +10,7 @@ use roverlab::geometry::Point;
 use roverlab::io::control::run;
 use roverlab::io::log::{Header, Log, LogWriter, Player};
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::io::{Camera, Clock, Drive, Lidar, Resolution, Result};
+use roverlab::io::{Camera, Clock, Drive, Lidar, Odometry, Resolution, Result};
 use roverlab::nav::{BugOutcome, BugParameters, DistBug};
 use roverlab::random::Stream;
 use roverlab::world::generate::{CourseOptions, obstacle_course};
@@ -30,7 +30,7 @@ fn simulation(scene: &Scene) -> Simulation {
     Simulation::new(scene, options).expect("a simulation")
 }
 
-fn drive(robot: &mut (impl Clock + Drive + Lidar), goal: Point) -> BugOutcome {
+fn drive(robot: &mut (impl Clock + Drive + Odometry + Lidar), goal: Point) -> BugOutcome {
     let mut bug = DistBug::new(goal, BugParameters::default()).expect("a goal");
     run(robot, &mut bug, 3600.0, |_, _, _| {}).expect("a robot that works")
 }

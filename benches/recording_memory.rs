@@ -6,7 +6,7 @@ use std::io;
 use roverlab::geometry::{Pose, Twist};
 use roverlab::io::log::{Header, LogWriter};
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::io::{Clock, Drive, Lidar, LidarScan, Result};
+use roverlab::io::{Clock, Drive, Lidar, LidarScan, Odometry, Result};
 use roverlab::world::{RobotSpec, Scene, World};
 
 /// Megabytes that this process uses, if somebody tells.

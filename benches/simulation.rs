@@ -301,6 +301,7 @@ criterion_group!(
     contacts,
     building_time,
     robots::one_robot,
+    robots::racing,
     robots::fleet,
     robots::growth
 );

@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let kinematics = Ackermann::new(wheelbase, track, max_steering)?;
     // Motor and servo take fractions of their range; the driver turns speed and steering angle into them.
-    let driver = CarDriver { kinematics, full_speed: 0.5 * wheel_diameter * max_wheel_speed };
+    let driver = CarDriver::new(kinematics, 0.5 * wheel_diameter * max_wheel_speed)?;
     println!("The turning circle has a radius of {:.2} m.", kinematics.turning_radius());
 
     let scene = Scene::with_robot(World::walled(4.0, 3.5), spec.clone(), start);

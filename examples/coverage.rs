@@ -9,7 +9,7 @@ use roverlab::drive::{CoverageMap, CoverageMapParameters, CoveragePlan, Tour, To
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::control::{SensedBy, run};
 use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
-use roverlab::io::{Drive, Lidar};
+use roverlab::io::{Lidar, Odometry};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::scan::{LocalisationMap, Localiser, LocaliserParameters};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Wall, World};

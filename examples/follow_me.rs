@@ -11,7 +11,7 @@ use roverlab::drive::{
 };
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::{Fleet, SimOptions};
-use roverlab::io::{Clock, Drive, Lidar};
+use roverlab::io::{Clock, Drive, Lidar, Odometry};
 use roverlab::picture::{Picture, Style};
 use roverlab::world::{RobotPlacement, RobotSpec, Scene, World};
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::geometry::{Pose, Twist, units};
 use roverlab::io::sim::{Fleet, SimOptions};
-use roverlab::io::{Camera, Clock, Drive, Error, ErrorKind};
+use roverlab::io::{Camera, Clock, Drive, Error, ErrorKind, Odometry};
 use roverlab::picture::{Mark, Picture};
 use roverlab::world::{Colour, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
 

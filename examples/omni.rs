@@ -5,7 +5,7 @@
 
 use roverlab::drive::{OmniDriver, OmniOutcome, OmniParameters, OmniTracker};
 use roverlab::geometry::{Point, Pose, angle_difference, units};
-use roverlab::io::Drive;
+use roverlab::io::Odometry;
 use roverlab::io::control::run;
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::kinematics::Omni;
@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Err("this robot has other wheels".into());
     };
     let kinematics = Omni::mecanum(track, wheelbase)?;
-    let driver = OmniDriver { kinematics, full_speed: 0.5 * wheel_diameter * max_wheel_speed };
+    let driver = OmniDriver::new(kinematics, 0.5 * wheel_diameter * max_wheel_speed)?;
     let start = Pose::new(0.5, 0.5, 0.0);
     let scene = Scene::with_robot(World::walled(2.5, 2.0), spec.clone(), start);
     let options = SimOptions { trail_interval: Some(0.1), ..SimOptions::with_noise(1.0, 1) };

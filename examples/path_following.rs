@@ -7,7 +7,7 @@
 use roverlab::drive::{Path, PathFollower, PathFollowerParameters, Steering, Waypoint};
 use roverlab::geometry::{Point, Twist, units};
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::io::{Clock, Drive};
+use roverlab::io::{Clock, Drive, Odometry};
 use roverlab::picture::{Mark, Picture, SERIES, Style};
 use roverlab::world::{RobotSpec, Scene, World};
 

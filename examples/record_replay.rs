@@ -9,11 +9,16 @@ use roverlab::geometry::{Point, Pose};
 use roverlab::io::control::run;
 use roverlab::io::log::{Difference, Header, Log, LogWriter, Replay};
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::io::{Clock, DistanceSensors, Drive, ErrorKind, Psd, Result};
+use roverlab::io::{
+    Clock, DistanceSensors, Drive, ErrorKind, Manoeuvres, Odometry, Psd, Result, StallDetector,
+};
 use roverlab::world::{RobotSpec, Scene, World};
 
 /// The program: it does not know what kind of robot it drives. Returns the last odometry and the range ahead.
-fn program(robot: &mut (impl Clock + DistanceSensors + Drive), method: Method) -> Result<(Pose, f64)> {
+fn program(
+    robot: &mut (impl Clock + DistanceSensors + Drive + Odometry + Manoeuvres + StallDetector),
+    method: Method,
+) -> Result<(Pose, f64)> {
     let mut drive = AToB::new(method, Goal::point(Point::new(1.2, 0.5)), AToBParameters::default())?;
     let outcome = run(robot, &mut drive, 60.0, |_, _, _| {})?;
     assert_eq!(outcome, AToBOutcome::Reached);

@@ -8,7 +8,7 @@ use std::cell::RefCell;
 
 use roverlab::geometry::{Pose, Twist, units};
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::io::{Clock, Drive};
+use roverlab::io::{Clock, Drive, Odometry};
 use roverlab::safety::SafetyState::{Armed, Auto, EmergencyStop, Manual, SafeStop};
 use roverlab::safety::{Heartbeat, Panel, Requests, SafetyState, Supervised, SupervisedParameters};
 use roverlab::world::{RobotSpec, Scene, World};

@@ -8,7 +8,7 @@ use roverlab::evolve::{Evolution, Gait, Genetic, Recipe, Serial, StopRules, Tria
 use roverlab::geometry::{Point, units};
 use roverlab::io::control::run;
 use roverlab::io::sim::starman::{LIMBS, Starman, StarmanPosture, StarmanSpec};
-use roverlab::io::{Drive, Result};
+use roverlab::io::{Odometry, Result};
 use roverlab::picture::{Picture, Style, ramp};
 use roverlab::random::Stream;
 use roverlab::world::World;

@@ -1,6 +1,37 @@
-//! Compiles the two functions of RoBIOS that take arguments like `printf`.
+//! Compiles the two functions of RoBIOS that take arguments like `printf`, and tells builds apart.
 
-fn main() {
-    println!("cargo:rerun-if-changed=src/shim.c");
+use std::collections::BTreeSet;
+use std::hash::{DefaultHasher, Hasher};
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+/// What library and runner are made of.
+const SOURCES: [&str; 2] = ["src", "../src"];
+
+fn main() -> io::Result<()> {
     cc::Build::new().file("src/shim.c").warnings(true).compile("eyesim_shim");
+    let mut files = BTreeSet::new();
+    for folder in SOURCES {
+        println!("cargo:rerun-if-changed={folder}");
+        list(Path::new(folder), &mut files)?;
+    }
+    let mut hasher = DefaultHasher::new();
+    for file in files {
+        hasher.write(&fs::read(file)?);
+    }
+    println!("cargo:rustc-env=EYESIM_BUILD={:016x}", hasher.finish());
+    Ok(())
+}
+
+/// Adds all files of a folder.
+fn list(folder: &Path, files: &mut BTreeSet<PathBuf>) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            list(&path, files)?;
+        } else {
+            files.insert(path);
+        }
+    }
+    Ok(())
 }

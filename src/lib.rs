@@ -120,3 +120,33 @@ pub use parameter::ParameterError;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// So do those in the guide.
+#[cfg(doctest)]
+mod guide {
+    #[doc = include_str!("../docs/guide/first-robot.md")]
+    struct FirstRobot;
+    #[doc = include_str!("../docs/guide/driving.md")]
+    struct Driving;
+    #[doc = include_str!("../docs/guide/lidar.md")]
+    struct Lidar;
+    #[doc = include_str!("../docs/guide/swarms.md")]
+    struct Swarms;
+    #[doc = include_str!("../docs/guide/wall-following.md")]
+    struct WallFollowing;
+    #[doc = include_str!("../docs/guide/other-drives.md")]
+    struct OtherDrives;
+    #[doc = include_str!("../docs/guide/mazes.md")]
+    struct Mazes;
+    #[doc = include_str!("../docs/guide/navigation.md")]
+    struct Navigation;
+    #[doc = include_str!("../docs/guide/vision.md")]
+    struct Vision;
+    #[doc = include_str!("../docs/guide/evolution.md")]
+    struct Evolution;
+    #[doc = include_str!("../docs/guide/racing.md")]
+    struct Racing;
+    #[cfg(feature = "testing")]
+    #[doc = include_str!("../docs/guide/own-planner.md")]
+    struct OwnPlanner;
+}

@@ -141,6 +141,7 @@ fn ratio([numerator, denominator]: &Rational, x: f64) -> f64 {
     horner(numerator) / horner(denominator)
 }
 
+/// The normal quantile near the median (M. J. Wichura, algorithm AS 241, 1988).
 const CENTRE: Rational = [
     [
         3.387_132_872_796_366_5,
@@ -163,6 +164,7 @@ const CENTRE: Rational = [
         5.226_495_278_852_545e3,
     ],
 ];
+/// The same farther out.
 const SHOULDER: Rational = [
     [
         1.423_437_110_749_683_5,
@@ -185,6 +187,7 @@ const SHOULDER: Rational = [
         1.050_750_071_644_416_9e-9,
     ],
 ];
+/// The same in the tails.
 const TAIL: Rational = [
     [
         6.657_904_643_501_103,

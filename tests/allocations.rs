@@ -6,7 +6,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use roverlab::geometry::{Point, Pose, Twist};
-use roverlab::io::{Clock, DistanceSensors, Drive, Lidar, LidarScan, LidarSettings, Psd, Result};
+use roverlab::io::{Clock, DistanceSensors, Drive, Lidar, LidarScan, LidarSettings, Odometry, Psd, Result};
 use roverlab::safety::{
     BaseStation, Causes, Heartbeat, Panel, Requests, SafetyState, Station, Supervised, SupervisedParameters,
 };
@@ -78,7 +78,9 @@ impl Drive for Plain {
         self.twist = twist;
         Ok(())
     }
+}
 
+impl Odometry for Plain {
     fn speed(&mut self) -> Result<Twist> {
         Ok(self.twist)
     }
@@ -90,34 +92,6 @@ impl Drive for Plain {
     fn set_pose(&mut self, pose: Pose) -> Result<()> {
         self.pose = pose;
         Ok(())
-    }
-
-    fn straight(&mut self, _: f64, speed: f64) -> Result<()> {
-        self.set_speed(Twist::new(speed, 0.0))
-    }
-
-    fn turn(&mut self, _: f64, speed: f64) -> Result<()> {
-        self.set_speed(Twist::new(0.0, speed))
-    }
-
-    fn curve(&mut self, _: f64, _: f64, speed: f64) -> Result<()> {
-        self.set_speed(Twist::new(speed, 0.0))
-    }
-
-    fn remaining(&mut self) -> Result<f64> {
-        Ok(0.0)
-    }
-
-    fn is_done(&mut self) -> Result<bool> {
-        Ok(true)
-    }
-
-    fn wait_done(&mut self) -> Result<()> {
-        Ok(())
-    }
-
-    fn is_stalled(&mut self) -> Result<bool> {
-        Ok(false)
     }
 }
 
@@ -185,7 +159,7 @@ fn supervision_allocates_nothing_after_it_was_made() {
             [(-1.0, -1.0), (1.8, -1.0), (1.8, 1.0), (-1.0, 1.0)].map(|(x, y)| Point::new(x, y)).to_vec();
         let steps = if cause == Causes::OUTSIDE_FENCE { 120 } else { 60 };
         let parameters = SupervisedParameters { fence, ..SupervisedParameters::default() };
-        let crew = Crew { base: BaseStation::new(0.5), change };
+        let crew = Crew { base: BaseStation::new(0.5).unwrap(), change };
         let mut car = Supervised::new(Plain::default(), crew, parameters).unwrap();
         let mut scan = LidarScan { ranges: Vec::with_capacity(180), ..LidarScan::default() };
         assert_eq!(allocations(|| drive(&mut car, &mut scan, steps)), 0, "{state:?}");
@@ -198,7 +172,7 @@ fn supervision_allocates_nothing_after_it_was_made() {
 fn what_allocates_is_counted() {
     assert!(allocations(|| drop(std::hint::black_box(vec![1_u8; 100]))) > 0);
     let made = allocations(|| {
-        let crew = Crew { base: BaseStation::new(0.5), change: |_, _| {} };
+        let crew = Crew { base: BaseStation::new(0.5).unwrap(), change: |_, _| {} };
         drop(Supervised::new(Plain::default(), crew, SupervisedParameters::default()));
     });
     assert!(made > 0, "a supervisor is made of memory");

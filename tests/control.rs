@@ -17,7 +17,7 @@ use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::control::{Behaviour, Command, Decision, Halt, Run, Senses, run, until};
 use roverlab::io::sim::{Fleet, SimOptions, SimRobot, Simulation};
 use roverlab::io::wrappers::Faulty;
-use roverlab::io::{Call, Clock, Drive, Error, ErrorKind, MockRobot, Result};
+use roverlab::io::{Call, Clock, Drive, Error, ErrorKind, MockRobot, Odometry, Result};
 use roverlab::kinematics::{Ackermann, OdometryErrors, Omni};
 use roverlab::maze::{
     Direction, LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters, Maze, MazeRunner,
@@ -64,13 +64,13 @@ const CASES: [Case; 24] = [
         driven(robot, &mut behaviour.after(goal), limit, stop)
     }),
     ("car", RobotSpec::car, |robot, limit, stop| {
-        let driver = CarDriver { kinematics: Ackermann::new(0.12, 0.1, 0.5).unwrap(), full_speed: 0.5 };
+        let driver = CarDriver::new(Ackermann::new(0.12, 0.1, 0.5).unwrap(), 0.5).unwrap();
         let goal = Goal::point(Point::new(2.0, -2.0));
         let mut behaviour = CarToB::new(Method::Arc, goal, driver, CarToBParameters::default())?;
         driven(robot, &mut behaviour, limit, stop)
     }),
     ("Mecanum", RobotSpec::omni, |robot, limit, stop| {
-        let driver = OmniDriver { kinematics: Omni::mecanum(0.2, 0.2).unwrap(), full_speed: 0.5 };
+        let driver = OmniDriver::new(Omni::mecanum(0.2, 0.2).unwrap(), 0.5).unwrap();
         let tracker = OmniTracker::new(Pose::default(), &[GOAL], OmniParameters::default())?;
         driven(robot, &mut tracker.by(driver), limit, stop)
     }),
@@ -351,46 +351,6 @@ impl Drive for Odd {
         }
         self.told.push(twist);
         Ok(())
-    }
-
-    fn speed(&mut self) -> Result<Twist> {
-        Err(Error::unsupported("odometry"))
-    }
-
-    fn pose(&mut self) -> Result<Pose> {
-        Err(Error::unsupported("odometry"))
-    }
-
-    fn set_pose(&mut self, _pose: Pose) -> Result<()> {
-        Err(Error::unsupported("odometry"))
-    }
-
-    fn straight(&mut self, _distance: f64, _speed: f64) -> Result<()> {
-        Err(Error::unsupported("manoeuvres"))
-    }
-
-    fn turn(&mut self, _angle: f64, _speed: f64) -> Result<()> {
-        Err(Error::unsupported("manoeuvres"))
-    }
-
-    fn curve(&mut self, _length: f64, _angle: f64, _speed: f64) -> Result<()> {
-        Err(Error::unsupported("manoeuvres"))
-    }
-
-    fn remaining(&mut self) -> Result<f64> {
-        Ok(0.0)
-    }
-
-    fn is_done(&mut self) -> Result<bool> {
-        Ok(true)
-    }
-
-    fn wait_done(&mut self) -> Result<()> {
-        Ok(())
-    }
-
-    fn is_stalled(&mut self) -> Result<bool> {
-        Ok(false)
     }
 }
 

@@ -6,7 +6,7 @@ use roverlab::geometry::{Point, Pose, Twist, Vector, angle_difference};
 use roverlab::io::control::{self, Behaviour, LidarObservation};
 use roverlab::io::sim::{NoiseModel, SimOptions, SimRobot, Simulation, Truth};
 use roverlab::io::wrappers::{Fault, Faulty};
-use roverlab::io::{Clock, Drive, ErrorKind, Lidar, LidarScan};
+use roverlab::io::{Clock, Drive, ErrorKind, Lidar, LidarScan, Odometry};
 use roverlab::nav::{BugEvent, BugOutcome, BugParameters, DistBug};
 use roverlab::scan::{ScanFilter, ScanMatcher};
 use roverlab::world::{RobotSpec, Scene, Wall, World};
@@ -33,7 +33,7 @@ fn the_filter_takes_most_of_the_noise_out_of_scans_of_a_moving_robot() {
     let (mut noisy, _) =
         robot_in(room(), START, SimOptions { noise: ranges_only(0.02), ..SimOptions::default() });
     let (mut exact, _) = robot_in(room(), START, SimOptions::ideal());
-    let mut filter = ScanFilter::new(0.01);
+    let mut filter = ScanFilter::new();
     let (mut raw_error, mut filtered_error, mut count) = (0.0, 0.0, 0.0);
     for step in 0..60 {
         let scan = noisy.scan().unwrap();
@@ -67,7 +67,7 @@ fn the_filter_keeps_a_corner_that_points_at_the_robot() {
     };
     let start = Pose::new(0.75, 0.75, 0.25 * PI);
     let (mut robot, _) = robot_in(world, start, SimOptions::ideal());
-    let mut filter = ScanFilter::new(0.01);
+    let mut filter = ScanFilter::new();
     for _ in 0..60 {
         filter.update(robot.pose().unwrap(), &robot.scan().unwrap()).unwrap();
         robot.set_speed(Twist::new(0.1, 0.0)).unwrap();
@@ -91,7 +91,7 @@ fn the_filter_wants_a_full_turn() {
         ranges: vec![1.0; 180],
         ..LidarScan::default()
     };
-    let error = ScanFilter::new(0.01).update(Pose::default(), &half).unwrap_err();
+    let error = ScanFilter::new().update(Pose::default(), &half).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::InvalidInput);
     assert_eq!(
         error.to_string(),
@@ -104,7 +104,7 @@ fn matching_scans_takes_back_the_drift_of_odometry() {
     for seed in 1..=5 {
         let (mut robot, truth) = robot_in(room(), START, SimOptions::with_noise(2.0, seed));
         let mut matcher = ScanMatcher::new();
-        let mut filter = ScanFilter::new(0.01);
+        let mut filter = ScanFilter::new();
         for step in 0..400 {
             let scan = robot.scan().unwrap();
             let points: Vec<Point> = scan.points().collect();

@@ -71,6 +71,78 @@ fn a_jump_of_the_odometry_does_not_shrink_the_world() {
     assert_eq!(size(&near), size(&far));
 }
 
+/// A robot that drives, turns and comes back, with what is seen of it at times.
+fn moving() -> Picture {
+    let mut picture = Picture::new(&World::walled(4.0, 3.0));
+    let trail: Vec<(f64, Pose)> = (0..=300)
+        .map(|i| f64::from(i) / 10.0)
+        .map(|time| (time, Pose::new(0.5 + 0.1 * time, 1.0 + 0.02 * time, 0.3 * time)))
+        .collect();
+    picture.drive(&trail, &RobotSpec::s4().footprint);
+    picture.trace(trail.iter().map(|(time, pose)| (*time, pose.position())), Style::odometry());
+    picture.speed_trace(trail.iter().map(|(time, pose)| (*time, pose.position(), pose.heading)));
+    picture.mark(Mark::Start, trail[0].1.position()).mark(Mark::Goal, trail[300].1.position());
+    picture.during(12.0..).mark_named(Mark::HitPoint, Point::new(1.7, 1.24), "H1");
+    picture.during(3.0..5.0).disc(Point::new(2.0, 2.0), 0.2, Style::new(Colour::new(1, 2, 3)));
+    picture
+}
+
+#[test]
+fn a_picture_shows_what_is_there_at_a_time() {
+    let picture = moving();
+    assert_eq!(picture.duration(), 30.0);
+    let shows = |time: f64, text: &str| picture.at(time).to_svg().contains(text);
+    assert!(!shows(11.9, "hit point") && shows(12.0, "hit point"));
+    assert!(!shows(2.9, "#010203") && shows(4.0, "#010203") && !shows(5.1, "#010203"));
+    // The still picture is that of the end.
+    assert_eq!(picture.to_svg(), picture.at(30.0).to_svg());
+    assert_ne!(picture.to_svg(), picture.at(20.0).to_svg());
+}
+
+#[test]
+fn a_moving_picture_moves_what_has_times_and_nothing_else() {
+    let svg = moving().to_moving_svg();
+    let times = |text: &str| svg.matches(text).count();
+    // The robot's place and heading; three lines that grow; a mark, its name, and a disc that come and go; the bar.
+    assert_eq!((times("<animateTransform"), times("<mask"), times("<animate ")), (2, 2, 7));
+    assert_eq!(times("attributeName=\"visibility\""), 3);
+    assert!(svg.contains("2.1 times as fast") && svg.len() < 12_000, "{} bytes", svg.len());
+    let still = Picture::new(&World::walled(1.0, 1.0));
+    assert_eq!(still.to_moving_svg(), still.to_svg());
+}
+
+#[test]
+fn the_goal_rings_the_robot_that_stands_there() {
+    let footprint = RobotSpec::s4().footprint;
+    let rings = |place: Point| {
+        let mut picture = Picture::new(&World::walled(2.0, 2.0));
+        picture.mark(Mark::Goal, Point::new(1.0, 1.0)).robot(Pose::new(place.x, place.y, 0.0), &footprint);
+        let svg = picture.to_svg();
+        let radii = svg
+            .match_indices(" r=\"")
+            .map(|(at, text)| svg[at + text.len()..].split('"').next().unwrap().parse::<f64>().unwrap());
+        radii.fold(0.0, f64::max)
+    };
+    assert!(rings(Point::new(1.01, 1.0)) > rings(Point::new(0.3, 1.0)) + 4.0);
+}
+
+#[test]
+fn png_files_do_not_move() {
+    let error = moving().save_moving("run.png").unwrap_err().to_string();
+    assert!(error.contains("run.png") && error.ends_with("expected a name that ends in .svg"), "{error}");
+}
+
+#[test]
+fn panels_stand_apart_with_their_titles() {
+    let mut panel = Picture::new(&World::walled(1.0, 1.0));
+    panel.title("one").disc(Point::new(0.5, 0.5), 0.1, Style::new(Colour::new(1, 2, 3)));
+    let svg = Picture::panels(&[panel.clone(), panel.clone(), panel], 2).to_svg();
+    let found = circles(&svg, Colour::new(1, 2, 3));
+    assert_eq!((found.len(), svg.lines().filter(|line| *line == "one").count()), (3, 3));
+    assert!(found[1].0 > found[0].0 + 50.0 && found[1].1 == found[0].1);
+    assert!(found[2].0 == found[0].0 && found[2].1 > found[0].1 + 50.0);
+}
+
 #[test]
 fn long_paths_stay_small() {
     let mut picture = Picture::new(&World::walled(4.0, 4.0));
@@ -113,7 +185,7 @@ fn a_png_shows_what_the_svg_describes() {
     let svg = picture.to_svg();
     let (x, y) = circles(&svg, Colour::new(10, 200, 30))[0];
     assert_eq!(image.get_pixel((2.0 * x) as u32, (2.0 * y) as u32).0, [10, 200, 30]);
-    assert_eq!(image.get_pixel(0, 0).0, [255, 255, 255]);
+    assert_eq!(image.get_pixel(20, 4).0, [255, 255, 255]);
     let title = (0..80)
         .flat_map(|y| (0..200).map(move |x| (x, y)))
         .filter(|(x, y)| image.get_pixel(*x, *y).0[0] < 100);

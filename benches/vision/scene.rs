@@ -3,7 +3,7 @@ use std::sync::Arc;
 use image::RgbImage;
 use roverlab::geometry::Pose;
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::io::{self, Camera, Clock, Drive, Resolution};
+use roverlab::io::{self, Camera, Clock, Manoeuvres, Resolution};
 use roverlab::random::Stream;
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Shape, World};
 

@@ -11,9 +11,9 @@ use serde_json::{Value, json};
 use crate::common::{Failure, Onlooker, onlooker, parser, refused, run, run_plain, run_printing, written};
 #[cfg(test)]
 use crate::common::{Heeds, Unheeded};
+use crate::maze_drive::{explore as maze_explore, left as maze_left, lidar as maze_lidar};
 #[cfg(feature = "native")]
 use crate::starman;
-use crate::maze_drive::{explore as maze_explore, left as maze_left, lidar as maze_lidar};
 use crate::{
     a_to_b, ackermann, bug_compare, camera, color_tracking, cone_drive, cone_race, coverage, distbug, edges,
     follow_me, genetic, grid_benchmark, lidar_scan, localise, micromouse, motion, navigate, omni, quadtree,

@@ -5,10 +5,11 @@
 use libfuzzer_sys::fuzz_target;
 use roverlab::world::formats::{MemoryFiles, sim};
 
-const FILES: [(&str, &[u8]); 10] = [
+const FILES: [(&str, &[u8]); 11] = [
     ("small.maz", include_bytes!("../../tests/data/formats/small.maz")),
     (".\\room.wld", include_bytes!("../../tests/data/formats/room.wld")),
     ("cart.robi", include_bytes!("../../tests/data/formats/cart.robi")),
+    ("cart.obj", include_bytes!("../../tests/data/formats/cart.obj")),
     ("sign.esObj", include_bytes!("../../tests/data/formats/sign.esObj")),
     ("room.yaml", include_bytes!("../../tests/data/formats/room.yaml")),
     ("room.pgm", include_bytes!("../../tests/data/formats/room.pgm")),

@@ -63,8 +63,8 @@ pub enum Request {
     ResetEncoder(u8),
     /// Where a robot truly is, by its number; 0 is the robot that asks.
     RobotAt(u32),
-    /// Puts a robot somewhere else.
-    PlaceRobot(u32, Pose),
+    /// Puts a robot somewhere else; on hills it drops from so many metres above the floor.
+    PlaceRobot(u32, Pose, f64),
     /// Where an object truly is, by its number.
     ObjectAt(u32),
     /// Puts an object somewhere else.
@@ -181,7 +181,6 @@ pub struct Seat {
     index: usize,
     /// The numbers of the robots and of the objects.
     numbers: (Vec<u32>, Vec<u32>),
-    elevations: (Vec<f64>, Vec<f64>),
     scan: LidarScan,
     walker: Option<Walker>,
     /// Seconds that readings have taken which were not called for.
@@ -234,20 +233,8 @@ impl Seat {
             exact: terms.exact,
             camera: spec.camera.is_some() && on_wheels,
         };
-        let robots = scene.robots.iter().map(|robot| robot.elevation).collect();
-        let objects = scene.world.objects.iter().map(|object| object.elevation).collect();
         let (truth, scan) = (simulation.truth(), LidarScan::default());
-        Self {
-            robot,
-            truth,
-            identity,
-            index,
-            numbers,
-            elevations: (robots, objects),
-            scan,
-            walker,
-            ahead: 0.0,
-        }
+        Self { robot, truth, identity, index, numbers, scan, walker, ahead: 0.0 }
     }
 
     /// Who the robot is.
@@ -323,16 +310,16 @@ impl Seat {
                 if index != self.index {
                     self.robot.wait(0.0)?;
                 }
-                Reply::Pose(self.truth.pose(index)?, elevation(&self.elevations.0, index))
+                Reply::Pose(self.truth.pose(index)?, self.truth.pose_in_space(index)?.position.z)
             }
-            Request::PlaceRobot(id, pose) => {
+            Request::PlaceRobot(id, pose, z) => {
                 let index = self.robot_index(id)?;
-                self.moves(|truth, by| truth.move_robot(by, index, pose))?
+                self.moves(|truth, by| truth.drop_robot(by, index, pose, z))?
             }
             Request::ObjectAt(id) => {
                 let index = self.object_index(id)?;
                 self.robot.wait(0.0)?;
-                Reply::Pose(self.truth.object(index)?, elevation(&self.elevations.1, index))
+                Reply::Pose(self.truth.object(index)?, self.truth.object_elevation(index)?)
             }
             Request::PlaceObject(id, pose) => {
                 let index = self.object_index(id)?;
@@ -391,7 +378,7 @@ impl Seat {
         }
         let own = |id| id == 0 || self.robot_index(id).is_ok_and(|index| index == self.index);
         let mine = match *request {
-            Request::RobotAt(id) | Request::PlaceRobot(id, _) => own(id),
+            Request::RobotAt(id) | Request::PlaceRobot(id, ..) => own(id),
             Request::Pose
             | Request::SetPose(_)
             | Request::Remaining
@@ -405,7 +392,7 @@ impl Seat {
             return Ok(None);
         }
         self.wait(0.0)?;
-        if let Request::PlaceRobot(_, pose) = *request {
+        if let Request::PlaceRobot(_, pose, _) = *request {
             self.truth.move_robot(self.index, self.index, pose)?;
         }
         let Some(walker) = &mut self.walker else { return Ok(None) };
@@ -416,7 +403,7 @@ impl Seat {
                 walker.set_odometry(pose);
                 Reply::Done
             }
-            Request::PlaceRobot(_, pose) => done(walker.place(pose)?),
+            Request::PlaceRobot(_, pose, _) => done(walker.place(pose)?),
             Request::Servo(servo, position) => done(walker.set_servo(servo, position)?),
             Request::Remaining => Reply::Number(0.0),
             Request::IsDone => Reply::Flag(true),
@@ -465,10 +452,6 @@ fn done((): ()) -> Reply {
     Reply::Done
 }
 
-fn elevation(all: &[f64], index: usize) -> f64 {
-    all.get(index).copied().unwrap_or_default()
-}
-
 /// The index of the thing that has a number. Numbers that none of its kind has count its kind alone, from 1.
 fn index_of(what: &str, id: u32, numbers: &[u32]) -> Result<usize> {
     let placed = numbers.iter().position(|&number| number == id);
@@ -487,6 +470,7 @@ fn resolution(number: u8) -> Result<Resolution> {
 fn speeds(spec: &RobotSpec) -> (f64, f64, f64) {
     let (diameter, fastest, ticks, full) = match spec.drive {
         DriveSpec::Differential { wheel_diameter, max_wheel_speed, ticks_per_turn, .. }
+        | DriveSpec::Tracked { wheel_diameter, max_wheel_speed, ticks_per_turn, .. }
         | DriveSpec::Omni { wheel_diameter, max_wheel_speed, ticks_per_turn, .. } => {
             (wheel_diameter, max_wheel_speed, ticks_per_turn, FULL_SPEED)
         }

@@ -23,7 +23,7 @@
 //! | `DIGITALSetup`, `DIGITALRead`, `DIGITALWrite` | outputs read what was written; inputs read 1 with a pull-up resistor and 0 without |
 //! | `ANALOGRead`, `ANALOGVoltage` | 8.20 V of supply on channel 0; 0 on all others |
 //! | `ANALOGRecord`, `ANALOGTransfer`, `AUMicrophone` | silence |
-//! | `AUBeep`, `AUPlay` | counted in the report; a sound takes half a second for `AUDone` |
+//! | `AUBeep`, `AUPlay` | counted in the report, a file that is missing with a warning; a sound takes half a second for `AUDone` |
 //! | `IRTVGet`, `IRTVRead` | what the script of the keys says; `AUTO` presses OK for a program that waits |
 //! | `SERVOSet` | steering, camera and Starman's limbs follow; positions of other servos are remembered (`SERVOGet`) |
 //! | `MOTORPID`, `MOTORPIDOff`, `VWControl`, `VWControlOff` | accepted, without effect |

@@ -10,6 +10,7 @@ use roverlab::io::{Error, ErrorKind, Result};
 use crate::ask::{Reply, Request, Seat, Terms};
 use crate::memory::Memory;
 use crate::plan::Plan;
+use crate::report::Stance;
 use crate::wire::{Answer, Question};
 
 /// Somebody who answers requests.
@@ -32,6 +33,8 @@ pub struct Truth {
     pub time: f64,
     /// Where it is.
     pub pose: Pose,
+    /// How it stands there.
+    pub stance: Stance,
     /// Where it believes to be.
     pub odometry: Pose,
     /// Metres that it has moved.
@@ -56,6 +59,7 @@ impl Link for Seat {
         Some(Truth {
             time: Seat::truth(self).time(),
             pose: robot.pose,
+            stance: Stance::of(Seat::truth(self), self.index()),
             odometry,
             path_length,
             contacts: robot.contacts,

@@ -41,15 +41,10 @@ const ANSWER: u32 = 2;
 /// The program has no more questions.
 const LEFT: u32 = 3;
 
-/// Looks at a word before the system is asked to wait for it: the other side mostly answers within this time,
-/// if it has a processor of its own.
-const SPINS: u32 = 2000;
-
 /// The memory.
 #[derive(Debug)]
 pub struct Memory {
     start: *mut u32,
-    spins: u32,
 }
 
 // SAFETY: it is memory of its own, which lives as long as this handle; words are atomic, and whose turn it is
@@ -113,8 +108,7 @@ impl Memory {
         if start == libc::MAP_FAILED {
             return Err(io::Error::last_os_error());
         }
-        let several = std::thread::available_parallelism().is_ok_and(|number| number.get() > 1);
-        Ok(Self { start: start.cast(), spins: if several { SPINS } else { 0 } })
+        Ok(Self { start: start.cast() })
     }
 
     fn word(&self, word: Word) -> &AtomicU32 {
@@ -172,7 +166,7 @@ impl Memory {
         self.put(question);
         self.say(QUESTION);
         while self.word(Word::Turn).load(Ordering::Acquire) == QUESTION {
-            self.pause(QUESTION, Duration::from_secs(1));
+            wait(self.word(Word::Turn), QUESTION, Duration::from_secs(1));
         }
         self.frame(LONGEST)
     }
@@ -187,7 +181,7 @@ impl Memory {
         let turn = self.word(Word::Turn);
         let mut now = turn.load(Ordering::Acquire);
         if now == IDLE || now == ANSWER {
-            self.pause(now, patience);
+            wait(turn, now, patience);
             now = turn.load(Ordering::Acquire);
         }
         match now {
@@ -205,7 +199,7 @@ impl Memory {
         let turn = self.word(Word::Turn);
         let now = turn.load(Ordering::Acquire);
         if now == ANSWER || now == IDLE {
-            self.pause(now, patience);
+            wait(turn, now, patience);
         }
         matches!(turn.load(Ordering::Acquire), QUESTION | LEFT)
     }
@@ -229,18 +223,6 @@ impl Memory {
     fn say(&self, turn: u32) {
         self.word(Word::Turn).store(turn, Ordering::Release);
         wake(self.word(Word::Turn));
-    }
-
-    /// Waits while it is somebody's turn, at most so long.
-    fn pause(&self, turn: u32, patience: Duration) {
-        let word = self.word(Word::Turn);
-        for _ in 0..self.spins {
-            if word.load(Ordering::Acquire) != turn {
-                return;
-            }
-            std::hint::spin_loop();
-        }
-        wait(word, turn, patience);
     }
 }
 

@@ -55,6 +55,9 @@ impl Default for Plan {
     }
 }
 
+/// What tells this build of library and runner from others: a digest of their source texts.
+pub const BUILD: &str = env!("EYESIM_BUILD");
+
 /// The names of the environment's variables.
 pub mod names {
     /// The file of the world.
@@ -89,6 +92,8 @@ pub mod names {
     pub const KEYBOARD: &str = "ROBIOS_KEYBOARD";
     /// The library's file, for `eye.py`.
     pub const LIBRARY: &str = "ROBIOS_LIBRARY";
+    /// The runner's [`BUILD`](super::BUILD).
+    pub const BUILD: &str = "ROBIOS_BUILD";
 }
 
 /// Frames that EyeSim renders in a second, unless somebody says otherwise.
@@ -102,6 +107,7 @@ const DEFAULT_SIZE: f64 = 4.0;
 impl Plan {
     /// The plan in the environment.
     pub fn from_environment() -> Result<Self, String> {
+        check_build(std::env::var(names::BUILD).ok().as_deref())?;
         let mut plan = Self::default();
         let text = |name: &str| env::var(name).ok().filter(|value| !value.is_empty());
         plan.world = text(names::WORLD).map(PathBuf::from);
@@ -204,6 +210,17 @@ impl Plan {
     }
 }
 
+/// Refuses a runner of another build, which may say things in another way.
+fn check_build(runner: Option<&str>) -> Result<(), String> {
+    match runner {
+        Some(build) if build != BUILD => Err(format!(
+            "this library is of another build ({BUILD}) than the runner ({build}); expected both from one \
+             `cargo build -p robios`"
+        )),
+        _ => Ok(()),
+    }
+}
+
 fn number<T: std::str::FromStr>(name: &str, value: &str) -> Result<T, String> {
     value.trim().parse().map_err(|_| format!("{name} is {value:?}; expected a number"))
 }
@@ -229,7 +246,7 @@ fn robot(name: &str, warnings: &mut Vec<String>) -> Result<RobotSpec, String> {
             RobotSpec::PREDEFINED.join(", ")
         ));
     }
-    let parsed = formats::load_robot(name).map_err(|error| error.to_string())?;
+    let parsed = formats::load_robot_tolerantly(name).map_err(|error| error.to_string())?;
     warnings.extend(parsed.warnings.iter().map(ToString::to_string));
     Ok(parsed.value)
 }

@@ -5,6 +5,7 @@
 use std::sync::Arc;
 
 use roverlab::geometry::Pose;
+use roverlab::io::sim::{Mishap, Truth};
 
 use crate::memory::{Memory, REPORT};
 
@@ -29,6 +30,32 @@ pub enum Stage {
 const STAGES: [Stage; 6] =
     [Stage::Silent, Stage::Running, Stage::Ended, Stage::TimedOut, Stage::Refused, Stage::Disconnected];
 
+/// How a robot stands on hills, and what has become of it there.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stance {
+    /// Metres above the floor.
+    pub elevation: f64,
+    /// Radians by which its left side is lifted.
+    pub roll: f64,
+    /// Radians by which its nose is lowered.
+    pub pitch: f64,
+    /// Why it drives no more, or in vain.
+    pub mishap: Option<Mishap>,
+}
+
+const MISHAPS: [Option<Mishap>; 5] =
+    [None, Some(Mishap::Tipped), Some(Mishap::Fell), Some(Mishap::Stuck), Some(Mishap::Drowned)];
+
+impl Stance {
+    /// That of a robot in a world.
+    pub fn of(world: &Truth, robot: usize) -> Self {
+        let Ok(pose) = world.pose_in_space(robot) else { return Self::default() };
+        let [roll, pitch, _] = pose.roll_pitch_yaw();
+        let mishap = world.mishap(robot).ok().flatten();
+        Self { elevation: pose.position.z, roll, pitch, mishap }
+    }
+}
+
 /// What is known about a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Report {
@@ -42,6 +69,8 @@ pub struct Report {
     pub world_time: f64,
     /// Where the robot is.
     pub pose: Pose,
+    /// How it stands there.
+    pub stance: Stance,
     /// Where it believes to be.
     pub odometry: Pose,
     /// Metres.
@@ -60,7 +89,7 @@ pub struct Report {
     pub notes: Vec<String>,
 }
 
-const NUMBERS: usize = 15;
+const NUMBERS: usize = 19;
 /// Numbers, and the lengths of the texts.
 const HEADER: usize = 8 * (NUMBERS + 3);
 /// Bytes of the rows that stand on the display.
@@ -102,6 +131,10 @@ impl ReportFile {
             report.later_contacts as f64,
             report.sounds as f64,
             report.listening_since.unwrap_or(-1.0),
+            report.stance.elevation,
+            report.stance.roll,
+            report.stance.pitch,
+            MISHAPS.iter().position(|&mishap| mishap == report.stance.mishap).unwrap_or_default() as f64,
         ];
         let mut bytes = [0; 8 * NUMBERS];
         for (place, number) in bytes.as_chunks_mut::<8>().0.iter_mut().zip(numbers) {
@@ -162,6 +195,12 @@ impl Report {
             time: number(2),
             world_time: number(3),
             pose: Pose::new(number(4), number(5), number(6)),
+            stance: Stance {
+                elevation: number(15),
+                roll: number(16),
+                pitch: number(17),
+                mishap: MISHAPS.get(number(18) as usize).copied().flatten(),
+            },
             odometry: Pose::new(number(7), number(8), number(9)),
             path_length: number(10),
             contacts: number(11) as u64,
@@ -188,6 +227,7 @@ mod tests {
             known: true,
             time: 1.5,
             pose: Pose::new(1.0, 2.0, 3.0),
+            stance: Stance { elevation: 0.5, roll: 0.1, pitch: -0.2, mishap: Some(Mishap::Tipped) },
             contacts: 4,
             listening_since: Some(1.0),
             ..Report::default()

@@ -11,6 +11,8 @@ use serde_json::Value;
 
 #[path = "programs/endings.rs"]
 mod endings;
+#[path = "programs/library.rs"]
+mod library;
 #[path = "programs/limits.rs"]
 mod limits;
 #[path = "programs/scripts.rs"]
@@ -70,6 +72,25 @@ impl Folder {
         std::fs::write(self.0.join(name), text).unwrap();
         self.0.join(name)
     }
+}
+
+/// The library of this build: the newest one beside the runner.
+fn library() -> PathBuf {
+    let folder = Path::new(env!("CARGO_BIN_EXE_robios")).parent().unwrap();
+    let files = [folder.to_owned(), folder.join("deps")].map(|folder| folder.join("libeyesim.so"));
+    let built = files.into_iter().filter_map(|file| Some((file.metadata().ok()?.modified().ok()?, file)));
+    built.max().expect("a library").1
+}
+
+/// Compiles a program as the script for it does, beside its source text.
+fn compiled(file: &Path) -> PathBuf {
+    let program = file.with_extension("x");
+    let done = Command::new(Path::new(env!("CARGO_MANIFEST_DIR")).join("bin/gccsim"))
+        .args([file.as_os_str(), "-o".as_ref(), program.as_os_str()])
+        .env("ROBIOS_LIBRARY_DIR", library().parent().unwrap())
+        .status();
+    assert!(done.unwrap().success());
+    program
 }
 
 fn robios(arguments: &[&str]) -> Output {

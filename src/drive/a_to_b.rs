@@ -178,9 +178,10 @@ enum Phase {
 
 /// Metres before the end of a path at which manoeuvres take over.
 const HANDOVER: f64 = 0.02;
-/// Metres of path in which the robot gets on, and seconds without that after which manoeuvres take over: pure pursuit
-/// circles round the end of a path that bends within its lookahead.
+/// Metres of path that count as getting on.
 const PROGRESS: f64 = 0.001;
+/// Seconds without getting on after which manoeuvres take over: pure pursuit circles round the end of a path
+/// that bends within its lookahead.
 const LONGEST_IDLING: f64 = 3.0;
 /// Seconds in which a dog curve turns towards its goal.
 const HOMING_TIME: f64 = 0.5;

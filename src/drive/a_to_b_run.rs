@@ -3,7 +3,7 @@ use std::ops::ControlFlow;
 use super::{AToB, AToBObservation, AToBOutcome};
 use crate::geometry::Pose;
 use crate::io::control::{Behaviour, Decision, Manoeuvre, SensedBy, Senses, halts};
-use crate::io::{Drive, Result};
+use crate::io::{Manoeuvres, Odometry, Result, StallDetector};
 
 halts!(AToBOutcome { Reached: "the goal is reached", Blocked: "something holds the robot" });
 
@@ -25,14 +25,14 @@ impl Behaviour for AToB {
     }
 }
 
-impl<R: Drive + ?Sized> Senses<R> for AToB {
+impl<R: Odometry + Manoeuvres + StallDetector + ?Sized> Senses<R> for AToB {
     fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut AToBObservation) -> Result<()> {
         seen.read(robot, R::pose)
     }
 }
 
 impl AToBObservation {
-    fn read<R: Drive + ?Sized>(
+    fn read<R: Odometry + Manoeuvres + StallDetector + ?Sized>(
         &mut self,
         robot: &mut R,
         estimate: impl FnOnce(&mut R) -> Result<Pose>,
@@ -44,7 +44,7 @@ impl AToBObservation {
 
 impl AToB {
     /// The behaviour by any other estimate of the pose than odometry, such as one that landmarks correct.
-    pub fn by<R: Drive + ?Sized>(
+    pub fn by<R: Odometry + Manoeuvres + StallDetector + ?Sized>(
         &mut self,
         mut estimate: impl FnMut(&mut R) -> Result<Pose>,
     ) -> impl Senses<R, Observation = AToBObservation, Command = Manoeuvre, Outcome = AToBOutcome> {

@@ -2,19 +2,18 @@ use std::ops::ControlFlow;
 
 use super::a_to_b::dog_twist;
 use super::{Goal, Method, Path, PathFollower, PathFollowerParameters, Steering};
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Command, Decision, Senses, halts};
-use crate::io::{Drive, Error, Motors, Result, Servos};
+use crate::io::{Error, Motors, Odometry, Result, Servos, StallDetector};
 use crate::kinematics::{Ackermann, CarState};
 use crate::parameter::{require, require_positive, require_up_to};
 
 /// Speed and steering of a car as commands of its motor and its servo (book, program 7.1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarDriver {
-    /// The car's geometry.
-    pub kinematics: Ackermann,
-    /// The rim speed of its wheels at full motor speed, in m/s.
-    pub full_speed: f64,
+    kinematics: Ackermann,
+    full_speed: f64,
 }
 
 /// What motor 1 and servo 1 are told.
@@ -27,6 +26,18 @@ pub struct CarCommand {
 }
 
 impl CarDriver {
+    /// For a car of a geometry whose wheels have that rim speed, in m/s, at full motor speed. Fails unless it is positive and
+    /// finite.
+    pub fn new(kinematics: Ackermann, full_speed: f64) -> std::result::Result<Self, ParameterError> {
+        require_positive("full speed", full_speed)?;
+        Ok(Self { kinematics, full_speed })
+    }
+
+    /// The car's geometry.
+    pub fn kinematics(&self) -> &Ackermann {
+        &self.kinematics
+    }
+
     /// The commands for a speed and a steering angle, as far as both go.
     pub fn command(&self, state: CarState) -> CarCommand {
         CarCommand {
@@ -154,8 +165,9 @@ const SHARP_TURN: f64 = 0.1;
 const LARGE_JUMP: f64 = 1.2;
 /// Metres before the goal of a dog curve in which the car only drives on.
 const LAST_BIT: f64 = 0.03;
-/// The largest k of splines that is tried, and its steps.
+/// The largest k of splines that is tried where the book's k of 1 bends too tightly.
 const LARGEST_SCALE: f64 = 4.0;
+/// By how much k grows from try to try.
 const SCALE_STEP: f64 = 0.25;
 /// Turning radii before a goal with a heading at which a dog curve hands over.
 const DOG_HANDOVER: f64 = 4.0;
@@ -165,7 +177,6 @@ impl CarToB {
     pub fn new(method: Method, goal: Goal, driver: CarDriver, parameters: CarToBParameters) -> Result<Self> {
         goal.check()?;
         parameters.follower.validate()?;
-        require_positive("full speed", driver.full_speed)?;
         require_up_to("spline scale", parameters.spline_scale, 100.0)?;
         require_positive("tolerance", parameters.tolerance)?;
         require_positive("heading tolerance", parameters.heading_tolerance)?;
@@ -369,7 +380,7 @@ impl Behaviour for CarToB {
     }
 }
 
-impl<R: Drive + ?Sized> Senses<R> for CarToB {
+impl<R: Odometry + StallDetector + ?Sized> Senses<R> for CarToB {
     fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut CarObservation) -> Result<()> {
         *seen = CarObservation { pose: robot.pose()?, stalled: robot.is_stalled()? };
         Ok(())
@@ -394,7 +405,7 @@ mod tests {
     use crate::random::Stream;
 
     fn driver() -> CarDriver {
-        CarDriver { kinematics: Ackermann::new(0.26, 0.16, 0.5).unwrap(), full_speed: 0.5 }
+        CarDriver::new(Ackermann::new(0.26, 0.16, 0.5).unwrap(), 0.5).unwrap()
     }
 
     /// A car that does exactly as it is told. Returns where it ends.

@@ -5,7 +5,7 @@ use super::a_to_b::dog_twist;
 use super::{Hermite, Method, PathFollowerParameters};
 use crate::geometry::{Pose, Twist};
 use crate::io::control::{Behaviour, Decision, SensedBy, Senses, halts};
-use crate::io::{Drive, Error, Result};
+use crate::io::{Error, Odometry, Result, StallDetector};
 use crate::parameter::{require_positive, require_up_to};
 
 /// What [`Chase`] goes by.
@@ -124,7 +124,7 @@ impl Chase {
 
     /// The behaviour after a goal. `goal` says, for a time since the first step, where it is in the frame of
     /// the robot's odometry, by whatever way the robot learns of it.
-    pub fn after<R: Drive + ?Sized>(
+    pub fn after<R: Odometry + StallDetector + ?Sized>(
         &mut self,
         mut goal: impl FnMut(&mut R, f64) -> Result<Pose>,
     ) -> impl Senses<R, Observation = ChaseObservation, Command = Twist, Outcome = ChaseOutcome> {

@@ -8,6 +8,7 @@ use crate::parameter::require_positive;
 /// A turn to the left, a line, or a turn to the right.
 type Word = [f64; 3];
 
+/// The six sequences of turns among which the shortest path is (L. E. Dubins, 1957).
 const WORDS: [Word; 6] = [
     [1.0, 0.0, 1.0],
     [-1.0, 0.0, -1.0],

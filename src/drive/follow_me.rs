@@ -93,18 +93,21 @@ struct Target {
     seen: f64,
 }
 
-/// Metres, and metres for each second without a sight, within which a thing is taken for the robot ahead.
+/// Metres from where the robot ahead is expected within which a thing is taken for it.
 const GATE: f64 = 0.15;
+/// Metres by which that grows for each second without a sight.
 const GATE_GROWTH: f64 = 0.35;
-/// The shares of a new sight in place and velocity.
+/// The share of a new sight in the place of the robot ahead (alpha of an alpha-beta filter).
 const OF_PLACE: f64 = 0.5;
+/// The share of a new sight in its velocity (beta of an alpha-beta filter).
 const OF_VELOCITY: f64 = 0.15;
 /// Metres per second for each metre that the gap is too large.
 const PULL: f64 = 1.2;
 /// Metres that are looked ahead for a free way.
 const AHEAD: f64 = 0.3;
-/// Metres to where a lost robot was seen last at which it looks round, and with how many radians per second.
+/// Metres to where a lost robot was seen last at which it looks round.
 const LOOKING_PLACE: f64 = 0.3;
+/// Radians per second at which it looks round.
 const LOOKING_RATE: f64 = 1.0;
 /// The part of its speed with which it drives to that place.
 const SEARCHING: f64 = 0.9;
@@ -249,8 +252,10 @@ pub fn robots_in(scan: &LidarScan, radius: f64) -> Vec<Point> {
 
 /// The middle of the disc that a row of beams hits, if it may be one.
 fn middle_of(scan: &LidarScan, beams: &[usize], radius: f64) -> Option<Point> {
-    /// The least and the greatest part of the robot's width that may seem to be seen, and beams more or less.
+    /// The least and the greatest share of the robot's width that may seem to be seen: range noise widens it,
+    /// missed beams narrow it.
     const SEEN: [f64; 2] = [0.9, 1.25];
+    /// Beams by which what is seen may be narrower, and wider, than the robot.
     const BEAMS: [f64; 2] = [1.0, 2.0];
     let ranges = || beams.iter().map(|&beam| scan.ranges[beam]).filter(|range| range.is_finite());
     let count = ranges().count();

@@ -24,8 +24,9 @@ pub struct Formation {
 const AIM: f64 = 0.25;
 /// Metres per second for each metre behind its place.
 const PULL: f64 = 1.0;
-/// Metres that are looked ahead for a free way, and the seconds in which it is driven.
+/// Metres that are looked ahead for a free way.
 const AHEAD: f64 = 0.25;
+/// Seconds in which the free way ahead is driven.
 const BRAKING: f64 = 1.0;
 
 impl Formation {

@@ -1,8 +1,9 @@
 use std::ops::ControlFlow;
 
+use crate::ParameterError;
 use crate::geometry::{Point, Pose, Vector, angle_difference, direction, normalize_angle};
 use crate::io::control::{Behaviour, Command, Decision, Senses, halts};
-use crate::io::{Drive, Error, Motors, Result};
+use crate::io::{Error, Motors, Odometry, Result};
 use crate::kinematics::{Omni, PlanarTwist};
 use crate::parameter::{require_finite, require_positive};
 
@@ -10,13 +11,23 @@ use crate::parameter::{require_finite, require_positive};
 /// driving angle to wheel speeds).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OmniDriver {
-    /// The drive's geometry.
-    pub kinematics: Omni<4>,
-    /// The rim speed of the wheels at full motor speed, in m/s.
-    pub full_speed: f64,
+    kinematics: Omni<4>,
+    full_speed: f64,
 }
 
 impl OmniDriver {
+    /// For a drive of a geometry whose wheels have that rim speed, in m/s, at full motor speed. Fails unless it is positive and
+    /// finite.
+    pub fn new(kinematics: Omni<4>, full_speed: f64) -> std::result::Result<Self, ParameterError> {
+        require_positive("full speed", full_speed)?;
+        Ok(Self { kinematics, full_speed })
+    }
+
+    /// The drive's geometry.
+    pub fn kinematics(&self) -> &Omni<4> {
+        &self.kinematics
+    }
+
     /// The motors' fractions of their full speed; slower in the same direction where one would have to exceed it.
     pub fn command(&self, twist: PlanarTwist) -> [f64; 4] {
         let wheels = self.kinematics.inverse_limited(twist, self.full_speed);
@@ -236,7 +247,7 @@ impl Behaviour for OmniPilot<'_> {
     }
 }
 
-impl<R: Drive + ?Sized> Senses<R> for OmniPilot<'_> {
+impl<R: Odometry + ?Sized> Senses<R> for OmniPilot<'_> {
     fn sense(&mut self, robot: &mut R, _time: f64, pose: &mut Pose) -> Result<()> {
         *pose = robot.pose()?;
         Ok(())

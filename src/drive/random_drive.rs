@@ -5,7 +5,7 @@ use super::way::Way;
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference, normalize_angle};
 use crate::io::control::{Behaviour, Decision, Halt, Senses};
-use crate::io::{DistanceSensors, Drive, Error, ErrorKind, Lidar, LidarScan, Psd, Result};
+use crate::io::{DistanceSensors, Error, ErrorKind, Lidar, LidarScan, Odometry, Psd, Result};
 use crate::parameter::require_positive;
 use crate::random::Stream;
 
@@ -195,7 +195,7 @@ impl Behaviour for RandomDrive {
     }
 }
 
-impl<R: DistanceSensors + Drive + Lidar + ?Sized> Senses<R> for RandomDrive {
+impl<R: DistanceSensors + Odometry + Lidar + ?Sized> Senses<R> for RandomDrive {
     fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut RandomDriveObservation) -> Result<()> {
         seen.look(robot)?;
         seen.pose = robot.pose()?;

@@ -48,8 +48,9 @@ pub struct UltimateGain {
     pub period: f64,
 }
 
-/// Swings that are thrown away until the process has settled, and swings that are measured.
+/// Swings that are thrown away until the process has settled.
 const SETTLING: usize = 2;
+/// Swings that are measured.
 const MEASURED: usize = 4;
 /// The relative difference between measured swings up to which they count as the same.
 const STEADY: f64 = 0.05;

@@ -1,4 +1,4 @@
-use crate::geometry::{Point, Vector, cross, direction};
+use crate::geometry::{Point, direction, meeting};
 
 /// How far a round robot can drive among points that it sees, in its own frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -8,24 +8,17 @@ pub(super) struct Way {
     pub(super) margin: f64,
 }
 
-/// Headings that are tried to either side, and radians between them.
+/// Headings that are tried to either side.
 const TRIED: u32 = 18;
+/// Radians between them: all reach somewhat farther than 130 degrees.
 const SPACING: f64 = 0.13;
 
 impl Way {
     /// Metres straight on in a direction until the outline is at a point. What has been passed does not count.
     pub(super) fn free(&self, points: &[Point], towards: f64) -> f64 {
-        let half = self.radius + self.margin;
-        let ahead: Vector = direction(towards);
-        let mut free = f64::INFINITY;
-        for point in points {
-            let (along, aside) = (ahead.dot(&point.coords), cross(ahead, point.coords));
-            if along > 0.0 && aside.abs() < half {
-                let nose = (half * half - aside * aside).sqrt() - self.margin;
-                free = free.min(along - nose.max(0.0));
-            }
-        }
-        free
+        let (ahead, half) = (direction(towards), self.radius + self.margin);
+        let room = |(along, before): (f64, f64)| along - (before - self.margin).max(0.0);
+        points.iter().filter_map(|point| meeting(point, ahead, half)).map(room).fold(f64::INFINITY, f64::min)
     }
 
     /// The direction nearest to a wished one in which so many metres are free, or else the one with the most room; and the

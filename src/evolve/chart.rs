@@ -3,10 +3,13 @@ use crate::geometry::Point;
 use crate::picture::{Picture, Style};
 use crate::world::{Colour, World};
 
-/// Metres on the sheet: panels one above the other, and what is left round them for the scales.
+/// Metres of a panel's width on the sheet.
 const WIDTH: f64 = 1.6;
+/// Metres of the height of the panel of fitness.
 const FITNESS: f64 = 0.7;
+/// Metres of the height of the panel of diversity.
 const DIVERSITY: f64 = 0.3;
+/// Metres that are left round panels for the scales.
 const MARGIN: f64 = 0.12;
 
 /// Draws a run: the best, mean and worst fitness of each generation, and below it the diversity.
@@ -21,8 +24,11 @@ pub fn chart(history: &[GenerationStatistics]) -> Picture {
     ];
     let lower = Panel { history, bottom: MARGIN, height: DIVERSITY };
     let upper = Panel { history, bottom: 2.0 * MARGIN + DIVERSITY, height: FITNESS };
-    lower.draw(&mut picture, &[("diversity", Colour::from_hex(0x002b_8a3e), |row| row.diversity)]);
-    upper.draw(&mut picture, &fitness);
+    lower.draw(&mut picture, &[("diversity", Colour::from_hex(0x002b_8a3e), |row| row.diversity)], 0.0);
+    // One that failed must not flatten what the best have learnt.
+    let bests = || history.iter().map(|row| row.best);
+    let (first, last) = (bests().fold(f64::INFINITY, f64::min), bests().fold(f64::NEG_INFINITY, f64::max));
+    upper.draw(&mut picture, &fitness, first - (last - first).max(0.05 * last.abs()));
     picture
 }
 
@@ -37,13 +43,13 @@ struct Panel<'a> {
 }
 
 impl Panel<'_> {
-    fn draw(&self, picture: &mut Picture, curves: &[Curve<'_>]) {
+    fn draw(&self, picture: &mut Picture, curves: &[Curve<'_>], least: f64) {
         let values = || curves.iter().flat_map(|(_, _, value)| self.history.iter().map(value));
-        let least = values().fold(f64::INFINITY, f64::min).min(0.0);
+        let least = if least.is_finite() { least } else { 0.0 };
         let most = values().fold(f64::NEG_INFINITY, f64::max).max(least + f64::MIN_POSITIVE);
         let last = self.history.len().saturating_sub(1).max(1) as f64;
         let at = |generation: f64, value: f64| {
-            let up = (value - least) / (most - least);
+            let up = ((value - least) / (most - least)).clamp(0.0, 1.0);
             Point::new(MARGIN + WIDTH * generation / last, self.bottom + self.height * up)
         };
         picture.line([at(0.0, most), at(0.0, least), at(last, least)], Style::aid());
@@ -80,7 +86,9 @@ mod tests {
         for length in [0, 1, 2, 50] {
             let history: Vec<_> = (0..length).map(row).collect();
             let svg = chart(&history).to_svg();
-            assert!(["best", "mean", "worst", "diversity"].iter().all(|name| svg.contains(name)), "{length}");
+            let named = ["best", "mean", "worst", "diversity"].iter().all(|name| svg.contains(name));
+            // A legend names what is drawn, and without a generation nothing is.
+            assert_eq!(named, length > 0, "{length}");
             assert!(!svg.contains("NaN") && !svg.contains("inf"), "{length}");
             assert!(!svg.contains(" m<"), "a chart has no scale in metres: {svg}");
         }

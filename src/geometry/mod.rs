@@ -1,17 +1,21 @@
-//! Poses, twists, angles and unit conversions: the plane geometry that every other module shares.
+//! Poses, twists, angles and unit conversions: the geometry that every other module shares.
 //!
 //! Conventions follow ROS REP 103: metres and radians, x forward, y left, angles counter-clockwise. Millimetres
 //! and degrees, which the book, EyeSim's files and the command line use, are converted here and nowhere else.
 
+mod disc;
 mod line;
 pub mod math;
 mod pose;
+mod pose3;
 mod shapes;
 mod side;
 pub mod units;
 
+pub use disc::{free_distance, meeting};
 pub use line::FittedLine;
 pub use pose::{Pose, Twist, angle_difference, normalize_angle};
+pub use pose3::Pose3;
 pub use shapes::{Aabb, Segment};
 pub use side::WallSide;
 
@@ -20,6 +24,12 @@ pub type Point = nalgebra::Point2<f64>;
 
 /// A vector in the plane, in metres.
 pub type Vector = nalgebra::Vector2<f64>;
+
+/// A point in space, in metres.
+pub type Point3 = nalgebra::Point3<f64>;
+
+/// A vector in space, in metres.
+pub type Vector3 = nalgebra::Vector3<f64>;
 
 /// The cross product's z component, `a.x * b.y - a.y * b.x`: positive when `b` lies counter-clockwise of `a`.
 #[inline]

@@ -2,6 +2,9 @@
 
 use std::f64::consts::PI;
 
+/// What gravity accelerates by, in m/s²: standard gravity, 9.80665, as it is usually rounded.
+pub const GRAVITY: f64 = 9.81;
+
 /// Millimetres to metres.
 #[inline]
 pub fn from_mm(millimetres: f64) -> f64 {

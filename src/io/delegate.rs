@@ -6,11 +6,12 @@
 //! ```
 //! use ambassador::Delegate;
 //! use roverlab::io::delegate::*;
-//! use roverlab::io::{Clock, Drive, Keys, MockRobot};
+//! use roverlab::io::{Clock, Drive, Keys, MockRobot, Odometry};
 //!
 //! /// A robot whose clock runs twice as fast.
 //! #[derive(Delegate)]
 //! #[delegate(Drive, target = "inner")]
+//! #[delegate(Odometry, target = "inner")]
 //! #[delegate(Keys, target = "inner")]
 //! struct Hasty<R> {
 //!     inner: R,
@@ -48,7 +49,10 @@ pub use super::actuators::{ambassador_impl_Encoders, ambassador_impl_Motors, amb
 pub use super::camera::ambassador_impl_Camera;
 pub use super::clock::ambassador_impl_Clock;
 pub use super::display::ambassador_impl_Display;
-pub use super::drive::ambassador_impl_Drive;
+pub use super::drive::{
+    ambassador_impl_Drive, ambassador_impl_Manoeuvres, ambassador_impl_Odometry,
+    ambassador_impl_StallDetector,
+};
 pub use super::keys::ambassador_impl_Keys;
 pub use super::lidar::ambassador_impl_Lidar;
 pub use super::psd::ambassador_impl_DistanceSensors;

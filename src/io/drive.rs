@@ -1,10 +1,7 @@
 use super::{Error, Result};
 use crate::geometry::{Pose, Twist, math};
 
-/// The v-omega interface of a drive, as RoBIOS has it: speeds, short manoeuvres, and odometry.
-///
-/// A manoeuvre (`straight`, `turn`, `curve`, `drive_to`) returns at once and replaces whatever was running;
-/// [`wait_done`](Drive::wait_done) blocks until it has ended.
+/// What every drive can: go at a speed.
 #[auto_impl::auto_impl(&mut, Box)]
 #[ambassador::delegatable_trait]
 pub trait Drive {
@@ -12,15 +9,34 @@ pub trait Drive {
     /// curvature stays.
     fn set_speed(&mut self, twist: Twist) -> Result<()>;
 
-    /// The speed that odometry measures.
+    /// Stops: the speed 0, whatever was running.
+    fn stop(&mut self) -> Result<()> {
+        self.set_speed(Twist::STOP)
+    }
+}
+
+/// Where a robot is and how fast it goes, as it measures that by its wheels.
+#[auto_impl::auto_impl(&mut, Box)]
+#[ambassador::delegatable_trait]
+pub trait Odometry {
+    /// The speed.
     fn speed(&mut self) -> Result<Twist>;
 
-    /// The pose by odometry, relative to the start or to the last [`set_pose`](Drive::set_pose).
+    /// The pose, relative to the start or to the last [`set_pose`](Odometry::set_pose).
     fn pose(&mut self) -> Result<Pose>;
 
     /// Sets what odometry takes as the present pose; the robot does not move.
     fn set_pose(&mut self, pose: Pose) -> Result<()>;
+}
 
+/// Short ways that a drive goes by itself, as RoBIOS's v-omega interface does.
+///
+/// A manoeuvre (`straight`, `turn`, `curve`, `drive_to`) returns at once and replaces whatever was running;
+/// [`wait_done`](Manoeuvres::wait_done) blocks until it has ended. A robot without them gets them from its speed and its
+/// odometry by [`Manoeuvring`](crate::io::wrappers::Manoeuvring).
+#[auto_impl::auto_impl(&mut, Box)]
+#[ambassador::delegatable_trait]
+pub trait Manoeuvres {
     /// Drives `distance` metres straight on, backwards if negative, at `speed` m/s (its sign is ignored).
     fn straight(&mut self, distance: f64, speed: f64) -> Result<()>;
 
@@ -46,7 +62,12 @@ pub trait Drive {
 
     /// Blocks until the running manoeuvre has ended or stalled.
     fn wait_done(&mut self) -> Result<()>;
+}
 
+/// What notices that a robot is held.
+#[auto_impl::auto_impl(&mut, Box)]
+#[ambassador::delegatable_trait]
+pub trait StallDetector {
     /// Whether the wheels are commanded to turn and something holds the robot.
     fn is_stalled(&mut self) -> Result<bool>;
 }

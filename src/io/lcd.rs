@@ -20,6 +20,7 @@ const TEXT_TOP: i32 = 6;
 /// The gap between tab stops, in letters.
 const TAB: i32 = 8;
 
+/// The colours of a soft key's label and of the strip behind it, where a program names none.
 const DEFAULT_LABEL: (Colour, Colour) = (Colour::WHITE, Colour::from_hex(0x0040_4040));
 
 /// The display of a simulated robot: a frame buffer of 480 x 320 pixels that can be saved as a picture.

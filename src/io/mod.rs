@@ -3,6 +3,14 @@
 //! One capability is one small trait. An algorithm asks for what it uses, `fn run(robot: &mut (impl Clock + Drive +
 //! Lidar))`, and so runs on a simulated robot, on a recording and on a real one. [`RobotIo`] is all of them at once.
 //! Every trait works behind `&mut R`, `Box<R>` and `dyn`.
+//!
+//! # Robots of one's own
+//!
+//! A robot implements what it has, and nothing else. [`Clock`] and [`Drive`] are enough for a behaviour that looks at
+//! nothing; [`Odometry`], if the robot measures how it moves, and the traits of its sensors open the others. A
+//! behaviour that needs more than the robot has does not compile. [`Manoeuvres`] and a [`StallDetector`], if it has
+//! none of its own, come with [`wrappers::Manoeuvring`]. No method makes up a value: where a program wants a full
+//! [`RobotIo`], what is missing answers [`Error::unsupported`].
 
 mod actuators;
 mod camera;
@@ -32,7 +40,7 @@ pub use actuators::{Encoders, Motors, Servos};
 pub use camera::{Camera, Resolution};
 pub use clock::Clock;
 pub use display::{Display, DisplayImage, DisplayOption, Fill, Font, FontFamily, FontStyle, Pixel, Viewport};
-pub use drive::Drive;
+pub use drive::{Drive, Manoeuvres, Odometry, StallDetector};
 pub use error::{Error, ErrorKind, Result};
 pub use fleet::{FleetIo, FleetStep};
 pub use keys::{Key, Keys};
@@ -45,13 +53,29 @@ pub use truth::{GroundTruth, RobotTruth, TrailPoint};
 
 /// A full robot: every capability at once.
 pub trait RobotIo:
-    Clock + Drive + DistanceSensors + Lidar + Camera + Display + Keys + Radio + Motors + Servos + Encoders
+    Clock
+    + Drive
+    + Odometry
+    + Manoeuvres
+    + StallDetector
+    + DistanceSensors
+    + Lidar
+    + Camera
+    + Display
+    + Keys
+    + Radio
+    + Motors
+    + Servos
+    + Encoders
 {
 }
 
 impl<R> RobotIo for R where
     R: Clock
         + Drive
+        + Odometry
+        + Manoeuvres
+        + StallDetector
         + DistanceSensors
         + Lidar
         + Camera

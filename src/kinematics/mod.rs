@@ -1,7 +1,7 @@
 //! Pure geometry of drives: from wheel motions to robot motions and back, and exact integration over a step.
 //!
 //! [`Differential`] has two driven wheels, [`Ackermann`] is a car, [`Omni`] moves in every direction on three or four
-//! wheels with rollers. Each has `forward`, `inverse`, and `inverse_limited`, which keeps the direction of motion where a
+//! wheels with rollers, [`Tracked`] skids on two belts. The wheeled ones have `forward`, `inverse`, and `inverse_limited`, which keeps the direction of motion where a
 //! wheel would have to turn too fast. [`advance`] and [`advance_planar`] integrate in closed form.
 //! [`OdometryUncertainty`] says how far odometry may be wrong.
 
@@ -10,6 +10,7 @@ mod differential;
 mod integrate;
 mod omni;
 mod planar;
+mod tracked;
 mod uncertainty;
 
 pub use ackermann::{Ackermann, CarState, CarWheels};
@@ -17,5 +18,6 @@ pub use differential::{Differential, WheelSpeeds};
 pub use integrate::{Displacement, advance};
 pub use omni::{Omni, RollerWheel};
 pub use planar::{PlanarMotion, PlanarTwist, advance_planar};
+pub use tracked::Tracked;
 pub use uncertainty::{OdometryErrors, OdometryUncertainty};
 pub(crate) use uncertainty::{OdometryStep, arc_between};

@@ -19,6 +19,7 @@ pub enum Preference {
 impl Preference {
     /// What a step and a turn cost. No route has as many of either as the larger weight is worth.
     const fn weights(self) -> (u64, u64) {
+        /// More than a route of the largest maze has cells, so that costs of two kinds fit one number.
         const MANY: u64 = 1 << 24;
         match self {
             Self::Steps => (MANY, 1),

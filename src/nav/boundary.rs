@@ -31,6 +31,7 @@ pub(super) struct BoundaryFollower {
 
 /// Headings that are tried in a turn.
 const HEADINGS: usize = 180;
+/// Radians between them.
 const SPACING: f64 = TAU / HEADINGS as f64;
 /// The largest jump, in metres, of the anchor between two steps. What is farther away is another part of the wall, and the
 /// anchor, such as the end of a thin wall that is seen along the wall, is there still.

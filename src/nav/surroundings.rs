@@ -1,4 +1,4 @@
-use crate::geometry::{Point, Vector, cross, math};
+use crate::geometry::{Point, Vector, cross, free_distance, math};
 
 /// What a disc-shaped robot sees around it, as points in its own frame, and where it can go.
 ///
@@ -66,23 +66,7 @@ impl Surroundings {
     ///
     /// A radius larger than the present clearance is cut down to it.
     pub(super) fn free_distance(&self, unit: Vector, radius: f64) -> (f64, Option<Point>) {
-        let radius = radius.min(self.clearance - 1e-3);
-        let mut free = (f64::INFINITY, None);
-        for point in &self.points {
-            let along = point.coords.dot(&unit);
-            if along <= 0.0 {
-                continue;
-            }
-            let across = cross(unit, point.coords);
-            let depth = radius * radius - across * across;
-            if depth > 0.0 {
-                let distance = (along - depth.sqrt()).max(0.0);
-                if distance < free.0 {
-                    free = (distance, Some(*point));
-                }
-            }
-        }
-        free
+        free_distance(&self.points, unit, radius.min(self.clearance - 1e-3))
     }
 
     /// Adds a point that is known to be there though it is not seen at the moment.

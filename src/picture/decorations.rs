@@ -10,7 +10,9 @@ use super::items::Picture;
 use super::text;
 use crate::geometry::Vector;
 
+/// Pixels of the title's letters.
 const TITLE: f64 = 17.0;
+/// Pixels of the caption's letters.
 const CAPTION: f64 = 12.5;
 /// Pixels from one line of the caption to the next.
 const LINE: f64 = 17.0;

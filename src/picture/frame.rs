@@ -15,8 +15,9 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// The room for the plot, in pixels.
+    /// Pixels of the plot's width at most.
     const WIDEST: f64 = 560.0;
+    /// Pixels of the plot's height at most.
     const TALLEST: f64 = 480.0;
     /// No region is drawn flatter than this share of its longer side.
     const FLATTEST: f64 = 0.06;

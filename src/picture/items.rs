@@ -291,7 +291,7 @@ impl Picture {
     /// The part of the world that the picture shows: the world, and what was added not too far from it.
     pub(super) fn region(&self) -> Aabb {
         let thickest = self.world.walls.iter().fold(0.0, |most: f64, wall| most.max(wall.thickness));
-        let world = self.world.bounds().inflated(0.5 * thickest);
+        let world = self.world.site().inflated(0.5 * thickest);
         let longest = world.size().max();
         let near = world.inflated(0.5 * longest);
         // A world without extent limits nothing: then what was added is all there is to show.
@@ -357,9 +357,11 @@ impl Figure {
         }
     }
 
-    /// Whether there is anything to see of it.
-    pub(super) fn is_visible(&self) -> bool {
-        self.extent().iter().any(is_finite)
+    /// Whether there is anything to see of it: of a line, more than so many metres.
+    pub(super) fn is_visible(&self, shortest: f64) -> bool {
+        let bounds = Aabb::around(self.extent().into_iter().filter(is_finite));
+        let is_line = matches!(self, Figure::Line { .. });
+        bounds.is_some_and(|bounds| !is_line || bounds.size().max() >= shortest)
     }
 }
 

@@ -54,6 +54,11 @@ impl Labels {
     pub(super) fn place(&mut self, name: &str, at: Pixel, reach: f64) -> Option<Placed> {
         let extent = Vector::new(text::width(name, SIZE) + 2.0, SIZE + 1.0);
         let mut best: Option<(usize, Aabb, Option<Pixel>)> = None;
+        // A text without a symbol stands at its point if it can.
+        let centred = Aabb { min: at - extent * 0.5, max: at + extent * 0.5 };
+        if reach == 0.0 && self.is_free(&centred) {
+            best = Some((0, centred, None));
+        }
         for (ring, gap) in GAPS.into_iter().enumerate() {
             for towards in DIRECTIONS {
                 let bounds = beside(at, towards, reach + gap, extent);

@@ -12,14 +12,19 @@ use super::{Mark, Style, lines, robots, scenery, text};
 use crate::geometry::{Aabb, Vector};
 use crate::world::{Colour, Footprint, Shape};
 
+/// Pixels of the legend's letters.
 const SIZE: f64 = 12.5;
-/// Pixels from the left end of a line's symbol to its text, and from one line to the next.
+/// Pixels from the left end of a line's symbol to its text.
 const INDENT: f64 = 30.0;
+/// Pixels from one line to the next.
 const ROW: f64 = 21.0;
 /// Pixels between entries that share a row.
 const BETWEEN: f64 = 18.0;
 /// More kinds of objects than these are summed up.
 const MOST_KINDS: usize = 8;
+
+/// Lines that go less far than this share of the picture are no more than a dot.
+const LEAST: f64 = 0.005;
 
 /// The name of the gradient of the speed scale.
 const GRADIENT: &str = "speed";
@@ -58,7 +63,8 @@ impl Legend {
     pub(super) fn of(picture: &Picture) -> Self {
         let mut legend = Self { entries: Vec::new() };
         let top = number(picture.top_speed());
-        for item in picture.items.iter().filter(|item| item.figure.is_visible()) {
+        let shortest = LEAST * picture.region().size().max();
+        for item in picture.items.iter().filter(|item| item.figure.is_visible(shortest)) {
             match Key::of(item) {
                 Some(Key::Speed) => legend.add_once(Key::Speed, &format!("true path, 0 to {top} m/s")),
                 Some(key) => item.style.label.iter().for_each(|label| legend.add_once(key.clone(), label)),
@@ -131,7 +137,7 @@ impl Legend {
 
     fn add_marks(&mut self, picture: &Picture) {
         let mut counts: BTreeMap<Mark, usize> = BTreeMap::new();
-        for item in picture.items.iter().filter(|item| item.figure.is_visible()) {
+        for item in picture.items.iter().filter(|item| item.figure.is_visible(0.0)) {
             if let Figure::Mark { mark: Some(mark), .. } = item.figure {
                 *counts.entry(mark).or_default() += 1;
             }

@@ -1,6 +1,7 @@
 //! Areas, clouds of points and lines.
 
 use std::collections::BTreeSet;
+use std::fmt::Write as _;
 use std::ops::Range;
 
 use svg::node::element::{Group, Mask};
@@ -60,12 +61,22 @@ pub(super) fn cloud(points: &[Point], style: &Style, frame: &Frame) -> Group {
 
 /// Dots, one for every place where there are any.
 pub(super) fn dots(pixels: &[Pixel], style: &Style) -> Group {
-    // Places on a grid of half a pixel: more dots would only darken each other.
-    let places: BTreeSet<(i64, i64)> =
-        pixels.iter().map(|p| ((2.0 * p.x).round() as i64, (2.0 * p.y).round() as i64)).collect();
+    // Places on a grid of half a pixel, row by row: more dots would only darken each other.
+    // Far beyond any picture, 32 bits are where places end, so that differences of two always fit.
+    let half_pixels = |value: f64| i64::from((2.0 * value).round() as i32);
+    let places: BTreeSet<(i64, i64)> = pixels.iter().map(|p| (half_pixels(p.y), half_pixels(p.x))).collect();
+    let places: Vec<_> = places.into_iter().collect();
     let half = |twice: i64| number(twice as f64 / 2.0);
-    let data =
-        places.iter().fold(String::new(), |data, (x, y)| data + "M" + &half(*x) + " " + &half(*y) + "h0");
+    let apart = (2.0 * style.width).max(1.0) as i64;
+    // Dots that touch are a line.
+    let runs = places.chunk_by(|a, b| a.0 == b.0 && b.1 - a.1 <= apart);
+    let (mut data, mut at) = (String::new(), (0, 0));
+    for run in runs {
+        let ((y, x), (_, last)) = (run[0], run[run.len() - 1]);
+        // From the end of the run before: short numbers.
+        let _ = write!(data, "m{} {}h{}", half(x - at.1), half(y - at.0), half(last - x));
+        at = (y, last);
+    }
     Group::new().add(line(data, style.colour, style.width).set("stroke-opacity", number(style.opacity)))
 }
 

@@ -73,9 +73,11 @@ impl Mark {
 
 /// A ring with a light edge on both sides.
 fn ring(at: Pixel, radius: f64, colour: Colour) -> Group {
+    // A ring around a robot hides nothing of its way.
+    let fill = if radius > Mark::REACH { "0" } else { "0.5" };
     let circle = |colour: Colour, width: &str| {
         disc(at, radius, PAGE)
-            .set("fill-opacity", "0.5")
+            .set("fill-opacity", fill)
             .set("stroke", colour.to_string())
             .set("stroke-width", width)
     };

@@ -33,6 +33,7 @@ mod legend;
 mod lines;
 mod marks;
 mod names;
+mod panels;
 #[cfg(feature = "png")]
 mod raster;
 mod render;

@@ -35,10 +35,14 @@ fn keep_clear(labels: &mut Labels, item: &Item, frame: &Frame) {
         }
         Figure::Robot { poses, footprint } => {
             let extent = poses.last().and_then(|(_, pose)| robots::extent(pose, footprint, frame));
-            extent.into_iter().for_each(|extent| labels.keep_off(extent));
+            if let Some(extent) = extent {
+                labels.keep_off(extent);
+            }
         }
         Figure::Line { points, .. } => {
-            runs(points).into_iter().for_each(|run| labels.avoid(&thinned(&points[run], frame)));
+            for run in runs(points) {
+                labels.avoid(&thinned(&points[run], frame));
+            }
         }
         _ => {}
     }
@@ -49,7 +53,7 @@ fn name(item: &Item, frame: &Frame, labels: &mut Labels) -> Option<Group> {
     if !is_finite(position) {
         return None;
     }
-    let name = text::fit(&text::clean(name), labels::SIZE, 160.0);
+    let name = text::fit(&text::clean(name), labels::SIZE, 240.0);
     let at = frame.at(*position);
     let reach = if mark.is_some() { Mark::REACH } else { 0.0 };
     let placed = labels.place(&name, at, reach)?;

@@ -14,10 +14,13 @@ use super::lines::{self, Path};
 use super::{Mark, names, robots, scenery};
 use crate::geometry::{Aabb, Point, Vector};
 
+/// Pixels round the plot.
 const MARGIN: f64 = 20.0;
 /// Pixels between plot and legend.
 const GUTTER: f64 = 20.0;
+/// Pixels of the page's width at least, for titles.
 const NARROWEST_PAGE: f64 = 340.0;
+/// Pixels of the page's width at most.
 const WIDEST_PAGE: f64 = 600.0;
 /// Beside a plot narrower than this, and not below it, stands the legend.
 const NARROW_PLOT: f64 = 300.0;
@@ -180,7 +183,8 @@ fn draw(
 /// The radius of a ring around a robot that ends near a place, in pixels; 0 if there is none.
 fn around(picture: &Picture, place: Point, frame: &Frame) -> f64 {
     let near = picture.items.iter().filter_map(|item| match &item.figure {
-        Figure::Robot { poses, footprint } => {
+        // Pale ones show where a robot was, or will be.
+        Figure::Robot { poses, footprint } if item.style.opacity >= 1.0 => {
             let (_, pose) = poses.last()?;
             let (off, reach) = (pose.distance_to(place), footprint.bounding_radius());
             (off < 0.5 * reach).then(|| frame.length(reach + off) + 5.0)
@@ -225,6 +229,14 @@ mod tests {
                     picture.mark_named(Mark::Goal, point, text.clone());
                     picture.disc(point, size, Style::new(Colour::RED).filled(size).labelled(text.clone()));
                     picture.robot(Pose::new(point.x, point.y, size), &Footprint::Disc { radius: 0.1 });
+                    picture.during(point.y..size);
+                    let poses = [(point.x, Pose::default()), (size, Pose::new(point.x, point.y, size))];
+                    picture.drive(&poses, &Footprint::Disc { radius: size });
+                    picture.moving_line(
+                        poses.map(|(time, pose)| (time, vec![pose.position(); 2])),
+                        Style::aid(),
+                    );
+                    picture.trace([(size, point), (point.x, point), (point.y, point)], Style::plan());
                 }
                 picture
             },
@@ -239,6 +251,9 @@ mod tests {
             prop_assert!(usvg::Tree::from_str(&text, &usvg::Options::default()).is_ok(), "{text}");
             prop_assert!(!text.contains("NaN\"") && !text.contains("inf\""));
             prop_assert_eq!(text, picture.to_svg());
+            let moving = picture.to_moving_svg();
+            prop_assert!(usvg::Tree::from_str(&moving, &usvg::Options::default()).is_ok(), "{moving}");
+            prop_assert!(!["NaN", "inf;", "inf\""].iter().any(|wrong| moving.contains(wrong)), "{moving}");
         }
     }
 }

@@ -9,8 +9,9 @@ use super::text;
 use crate::geometry::{Aabb, Point, Vector, direction};
 use crate::world::{Colour, Object, Shape, Terrain, Wall, World};
 
-/// No wall is drawn thinner, and no object smaller, than this many pixels.
+/// No wall is drawn thinner than this many pixels.
 const THINNEST_WALL: f64 = 2.2;
+/// No object is drawn smaller than this many pixels.
 const SMALLEST_OBJECT: f64 = 2.5;
 
 /// The name of the pattern that fills hills.

@@ -13,6 +13,7 @@ pub(super) struct BoxSolver {
     upper: Vec<f64>,
 }
 
+/// Steps at most.
 const ITERATIONS: usize = 40;
 
 impl BoxSolver {
@@ -69,6 +70,7 @@ impl BoxSolver {
 
     /// Goes as far along the step as keeps everything positive. How far that is, 0 to 1.
     fn advance(&mut self, low: &[f64], high: &[f64], x: &mut [f64], target: f64) -> f64 {
+        /// The share of the step to the border that is gone, so that everything stays positive.
         const NEARLY: f64 = 0.995;
         let (mut primal, mut dual) = (1.0_f64, 1.0_f64);
         let moved =

@@ -39,7 +39,9 @@ pub struct CameraSight {
 /// Hues in 255ths of a turn, from and to.
 const HUES: [(ConeColour, u8, u8); 3] =
     [(ConeColour::Orange, 10, 27), (ConeColour::Yellow, 28, 52), (ConeColour::Blue, 140, 185)];
+/// The least saturation of a cone's pixels, of 255.
 const LEAST_SATURATION: u8 = 90;
+/// Pixels of one colour that make a cone.
 const LEAST_PIXELS: usize = 6;
 /// Levels by which the channels of gray ground differ because of noise.
 const GROUND_CHROMA: u8 = 10;
@@ -47,10 +49,12 @@ const GROUND_CHROMA: u8 = 10;
 /// 1296.
 const COARSEST: f64 = 2.0 / 3.0;
 
-/// Metres from the camera within which it finds the colours of nearly all cones that are large enough in the image: so many pixels,
-/// of a cone that is so wide and so high as far as its colour goes, in metres.
+/// Metres from the camera within which it finds the colours of nearly all cones that are large enough in the
+/// image.
 const CERTAIN: f64 = 11.0;
+/// Pixels of a cone that is large enough: twice those that make one.
 const LARGE: f64 = 2.0 * LEAST_PIXELS as f64;
+/// Metres of a cone's width and height as far as its colour goes.
 const CONE: [f64; 2] = [0.12, 0.3];
 /// Metres from the edge of a cone's foot, which an image shows, to its middle.
 const FOOT: f64 = 0.129;

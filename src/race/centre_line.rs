@@ -430,6 +430,7 @@ fn middle(pairs: &[Opposite], closed: bool, step: f64) -> Vec<(Point, Vector, us
 
 /// Metres from a point along a direction to a chain, near one of its points; `otherwise` where it is not met.
 fn reach(chain: &[Point], near: usize, closed: bool, from: Point, along: Vector, otherwise: f64) -> f64 {
+    /// Points of a chain to both sides of one that are looked at.
     const AROUND: usize = 4;
     let n = chain.len();
     let mut least = f64::INFINITY;

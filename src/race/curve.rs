@@ -7,18 +7,24 @@ use crate::geometry::{Point, Pose, Vector, angle_difference, cross, direction};
 
 /// Places at which the curvature is unknown; it is linear in between.
 pub(super) const KNOTS: usize = 12;
-/// What is unknown of a lane: metres aside of where its way begins, radians by which it is turned there, half its width beside the
-/// car, how much that grows with a metre, and the curvatures.
+/// What is unknown of a lane: four numbers of where its way begins and how wide it is, and the curvatures.
 pub(super) const UNKNOWNS: usize = 4 + KNOTS;
+/// Index of the metres aside of where the way begins.
 pub(super) const ASIDE: usize = 0;
+/// Index of the radians by which it is turned there.
 pub(super) const TURNED: usize = 1;
+/// Index of half the lane's width beside the car, in metres.
 pub(super) const WIDTH: usize = 2;
+/// Index of how much that grows with a metre.
 pub(super) const WIDENS: usize = 3;
+/// Index of the first curvature, in 1/m.
 pub(super) const BENDS: usize = 4;
 
-/// Steps in which a curve is followed.
+/// Steps in which a curve is followed from knot to knot.
 const STEPS_TO_KNOT: usize = 4;
+/// Steps from a knot to halfway to the next.
 const AROUND_KNOT: usize = STEPS_TO_KNOT / 2;
+/// Steps of a whole curve.
 pub(super) const STEPS: usize = STEPS_TO_KNOT * (KNOTS - 1);
 /// Metres that a way has at least.
 const SHORTEST: f64 = 1.0;

@@ -32,6 +32,46 @@ pub enum LineError {
     /// No way between cones leads on from where the car is.
     #[error("no way between cones leads on from the car")]
     NoWay,
+    /// The way between cones does not close to a loop.
+    #[error("a way of {length} m that does not close; expected a loop")]
+    Open {
+        /// Metres.
+        length: f64,
+    },
+    /// A loop that leaves out cones: it is that of a part of the track.
+    #[error("a loop that passes {passed} of {all} coloured cones; expected one that passes nearly all")]
+    Passes {
+        /// Those that stand at its edges.
+        passed: u32,
+        /// All.
+        all: u32,
+    },
+    /// A loop with cones on the wrong side.
+    #[error(
+        "a loop with {right} of {all} cones on their side; expected blue ones left and yellow ones right of it"
+    )]
+    WrongSide {
+        /// Those on their side.
+        right: usize,
+        /// All that it passes.
+        all: u32,
+    },
+    /// A loop that turns back on itself.
+    #[error("a loop that turns back at ({x}, {y}) m; expected one that a car can drive")]
+    TurnsBack {
+        /// Where.
+        x: f64,
+        /// Where.
+        y: f64,
+    },
+    /// A loop that crosses itself.
+    #[error("a loop that crosses itself at ({x}, {y}) m; expected one that does not")]
+    Crosses {
+        /// Where.
+        x: f64,
+        /// Where.
+        y: f64,
+    },
     /// A parameter is out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),

@@ -16,9 +16,9 @@ use crate::geometry::{Point, Pose, math};
 
 type Information = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
-/// How far cones of an edge stand off it, for a metre that they may be loose; and how many times as far they are taken for those of
-/// the edge, from round to round.
+/// Metres that cones of an edge stand off it, for a metre that they may be loose.
 const OFF: f64 = 0.25;
+/// How many times as far cones are taken for those of the edge, from round to round.
 const ROUNDS: [f64; 7] = [3.5, 2.5, 1.8, 1.3, 1.0, 1.0, 1.0];
 /// How much more likely it is that a cone stands just at an edge than elsewhere beside the lane.
 const AT_EDGE: f64 = 27.0;
@@ -26,37 +26,47 @@ const AT_EDGE: f64 = 27.0;
 const MISTAKEN: f64 = 0.02;
 /// Below this share, a cone counts for nothing.
 const UNLIKELY: f64 = 0.01;
-/// What is expected of the unknowns, as deviations: metres aside for a metre of looseness, radians, a share of half the width, metres
-/// for a metre; as shares of the greatest curvature, the curvature, and by how much it is greater all the same.
+/// Deviation of where the way begins: metres aside for a metre of looseness.
 const BEGINS: f64 = 0.6;
+/// Deviation of its direction there, in radians.
 const HEADS: f64 = 0.2;
+/// Deviation of half the width, as a share of it.
 const WIDER: f64 = 0.03;
+/// Deviation of how much that grows, in metres for a metre.
 const WIDENING: f64 = 0.02;
+/// Deviation of the curvature, as a share of the greatest.
 const CURVES: f64 = 1.2;
+/// By how much it is greater than that all the same, as a share.
 const TOO_SHARP: f64 = 0.08;
-/// How curvature changes from knot to knot, as a share of the greatest; what a great change costs, which is little, as sharp bends
-/// are what tracks are made of; and how much more it may change where cones are looked for farther off.
+/// How curvature changes from knot to knot, as a share of the greatest.
 const STEERS: f64 = 0.02;
+/// What a great change costs at most: little, as sharp bends are what tracks are made of.
 const SHARP: f64 = 0.4;
+/// How many times as much it may change where cones are looked for farther off.
 const SLOWLY: f64 = 6.0;
-/// What a cone costs that stands in the lane, so many metres or more from its edge, and one that a car would touch; and the metres
-/// over which that grows.
+/// What a cone costs that stands in the lane.
 const INSIDE: f64 = 4.0;
+/// What a cone costs that a car would touch.
 const TOUCHED: f64 = 3.0;
+/// Metres from its edge at which a cone stands in the lane.
 const WITHIN: f64 = 0.45;
+/// Metres over which that cost grows.
 const GROWS: f64 = 0.3;
-/// What it costs at most that an edge has no cones for long, and how soon it costs that.
+/// What it costs at most that an edge has no cones for long.
 const HOLE: f64 = 3.0;
+/// How fast that cost comes: by a factor of e in 1/SOON of the usual distances between cones.
 const SOON: f64 = 0.7;
 /// Of the way ahead, how much is near enough for all of its cones to be known.
 const KNOWN: f64 = 0.7;
 /// Metres along an edge within which two cones count as one.
 const NEARER: f64 = 0.8;
-/// What it costs to lead back where the car came from, to pass between two cones that are known to be of one edge, and to be
-/// another lane than before. Looked at from so many steps to so many.
+/// What it costs to lead back where the car came from.
 const BACK: f64 = 8.0;
+/// What it costs to pass between two cones that are known to be of one edge.
 const THROUGH: f64 = 5.0;
+/// What it costs to be another lane than before.
 const CHANGE: f64 = 2.5;
+/// Steps from place to place at which that is looked at.
 const STRIDE: usize = 4;
 
 /// A lane through cones.

@@ -11,11 +11,11 @@ use crate::parameter::require;
 #[derive(Debug, Clone, PartialEq)]
 pub struct GapDriver {
     /// The share of the motor's full speed that it drives at.
-    pub speed: f64,
+    speed: f64,
     /// Beyond this range nothing is a cone, in metres.
-    pub farthest: f64,
+    farthest: f64,
     /// Beams at each end of the scan that are not looked at, as a share of all.
-    pub edge: f64,
+    edge: f64,
     /// The beam in the middle of the last gap, counted from the left.
     middle: Option<usize>,
 }

@@ -144,8 +144,9 @@ pub fn lined(corridor: &Corridor, spacing: f64) -> Result<GeneratedTrack, LineEr
     Ok(GeneratedTrack { track, corridor })
 }
 
-/// Metres of a corridor that cones are put along, from least to most: no circuit is longer.
+/// Metres of a corridor that cones are put along at least.
 const SHORTEST: f64 = 30.0;
+/// The same at most: no circuit is longer.
 pub(super) const LONGEST: f64 = 50_000.0;
 
 /// Metres within an edge at which a place is on the track for certain.
@@ -321,8 +322,9 @@ fn place_cones(random: &mut Stream, corridor: &Corridor, options: &TrackOptions)
 
 /// Metres from the line to the large cones beside it.
 const GATE: f64 = 0.5;
-/// Metres from the line to the first small cone behind it, and from the last one before it to the line at least.
+/// Metres from the line to the first small cone behind it.
 const FIRST: f64 = 3.0;
+/// Metres from the last small cone before the line to it, at least.
 const LAST: f64 = 2.0;
 
 /// A closed edge along which cones are put.

@@ -100,34 +100,34 @@ mod tests {
         #![proptest_config(crate::testing::cases(256))]
         #[test]
         fn tighter_bends_are_slower(curvature in 0.005..0.38f64, tighter in 1.02..1.5f64) {
-            for hold in [balance(), GripLimit::Ellipse { across: 10.0, turned: 0.5, along: 10.0 }] {
-                let fast = |bend: f64| (hold.across(bend, DRIVE) / bend).sqrt();
-                prop_assert!(fast(curvature * tighter) < fast(curvature), "{hold:?}");
-                prop_assert_eq!(hold.across(-curvature, DRIVE), hold.across(curvature, DRIVE));
+            for grip in [balance(), GripLimit::Ellipse { across: 10.0, turned: 0.5, along: 10.0 }] {
+                let fast = |bend: f64| (grip.across(bend, DRIVE) / bend).sqrt();
+                prop_assert!(fast(curvature * tighter) < fast(curvature), "{grip:?}");
+                prop_assert_eq!(grip.across(-curvature, DRIVE), grip.across(curvature, DRIVE));
             }
         }
 
         #[test]
         fn no_balance_exceeds_the_tyres(curvature in 0.0..0.3f64, share in 0.0..1.0f64) {
-            let (hold, grip) = (balance(), Tyres::default().grip);
-            let most = hold.across(curvature, DRIVE);
+            let (grip, circle) = (balance(), Tyres::default().grip);
+            let most = grip.across(curvature, DRIVE);
             // The front axle gives up first, but turned wheels that drive pull the car around as well.
-            prop_assert!(most < if curvature < 0.05 { 0.9 } else { 0.971 } * grip, "{most}");
+            prop_assert!(most < if curvature < 0.05 { 0.9 } else { 0.971 } * circle, "{most}");
             let across = share * most;
-            for along in [hold.forwards(curvature, across, DRIVE), hold.backwards(curvature, across, 11.0)] {
-                prop_assert!(along >= 0.0 && math::hypot(along, across) < grip, "{along} {across}");
+            for along in [grip.forwards(curvature, across, DRIVE), grip.backwards(curvature, across, 11.0)] {
+                prop_assert!(along >= 0.0 && math::hypot(along, across) < circle, "{along} {across}");
             }
             // Wheels that are turned push against what keeps them from sliding.
-            prop_assert!(hold.forwards(curvature, across, DRIVE) <= 1.1 * DRIVE);
+            prop_assert!(grip.forwards(curvature, across, DRIVE) <= 1.1 * DRIVE);
         }
 
         #[test]
         fn the_more_is_asked_across_the_less_is_left_along(
             curvature in 0.0..0.25f64, share in 0.5..0.95f64,
         ) {
-            let hold = balance();
-            let most = hold.across(curvature, DRIVE);
-            let [less, more] = [share, share + 0.05].map(|share| hold.forwards(curvature, share * most, DRIVE));
+            let grip = balance();
+            let most = grip.across(curvature, DRIVE);
+            let [less, more] = [share, share + 0.05].map(|share| grip.forwards(curvature, share * most, DRIVE));
             prop_assert!(more <= less + 1e-6, "{more} {less}");
         }
     }
@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn what_is_no_hold() {
-        let told = |hold: GripLimit| hold.validate().unwrap_err().to_string();
+        let told = |grip: GripLimit| grip.validate().unwrap_err().to_string();
         assert_eq!(
             told(GripLimit::Ellipse { across: 9.0, turned: 2.0, along: 9.0 }),
             "grip lost by turned wheels is 2; expected 0 to 1"

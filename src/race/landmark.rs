@@ -8,8 +8,9 @@ use crate::geometry::Point;
 const MOST_COLOURS: u16 = 1000;
 /// Looks of a camera that show no colour by which something has none.
 const PALE: u16 = 4;
-/// Votes for an edge by which a cone belongs to it, and votes that are counted.
+/// Votes for an edge by which a cone belongs to it.
 pub(super) const SURE: i16 = 6;
+/// Votes that are counted.
 const MOST_VOTES: i16 = 30;
 /// Sightings after which a cone moves no more slowly.
 const MEMORY: u32 = 80;

@@ -39,7 +39,7 @@ impl Default for LaneParameters {
 }
 
 /// The greatest number, in metres: whoever looks farther makes points without end.
-const FARTHEST: f64 = 1000.0;
+pub(super) const FARTHEST: f64 = 1000.0;
 
 impl LaneParameters {
     /// Fails with the name of the parameter that is out of range.

@@ -80,8 +80,9 @@ const BEHIND: f64 = 7.0;
 const STRIDE: f64 = 2.0;
 /// Metres of the way in which the first cones were seen, at most.
 const BEGINNING: f64 = 30.0;
-/// Metres that a lap takes at least, and metres from a place within which a lap has led back to it.
-const SHORTEST: f64 = 12.0;
+/// Metres that a lap takes at least.
+pub(super) const SHORTEST_LAP: f64 = 12.0;
+/// Metres from a place within which a lap has led back to it.
 const AROUND: f64 = 2.5;
 /// Metres of the way in which the last cones were seen.
 const END: f64 = 8.0;
@@ -333,7 +334,7 @@ impl ConeMap {
         let (pose, way) = (self.pose, self.way);
         let away = |at: &Pose| (at.position() - pose.position()).norm();
         let around = self.trail.iter().enumerate().filter(|(_, (at, then))| {
-            way - then > SHORTEST && away(at) < AROUND && at.forward().dot(&pose.forward()) > ATHWART
+            way - then > SHORTEST_LAP && away(at) < AROUND && at.forward().dot(&pose.forward()) > ATHWART
         });
         // Of all times that it came by here, the last one; there, the place that is nearest.
         let Some((last, _)) = around.clone().next_back() else { return };

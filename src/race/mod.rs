@@ -45,6 +45,7 @@ mod racing_line;
 mod reckoning;
 mod referee;
 mod registration;
+mod round;
 mod rows;
 mod run;
 mod sides;

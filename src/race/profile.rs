@@ -3,17 +3,15 @@ use super::grip::GripLimit;
 use super::racing_line::curvature;
 use super::tyres::Tyres;
 use crate::ParameterError;
-use crate::geometry::Point;
+use crate::geometry::{Point, units};
 use crate::parameter::{require, require_positive};
 use crate::world::{DriveSpec, RobotSpec};
-
-const GRAVITY: f64 = 9.81;
 
 /// What a car's tyres and motors do.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarLimits {
     /// What its tyres give at most.
-    pub hold: GripLimit,
+    pub grip: GripLimit,
     /// The greatest acceleration of the motors, in m/s².
     pub drive: f64,
     /// The greatest deceleration of the brakes, in m/s².
@@ -25,10 +23,10 @@ pub struct CarLimits {
 }
 
 impl CarLimits {
-    /// A car whose tyres hold as well in all directions: those of a friction circle.
+    /// A car whose tyres grip as well in all directions: those of a friction circle.
     pub const fn circle(grip: f64, drive: f64, brake: f64, top_speed: f64) -> Self {
-        let hold = GripLimit::Ellipse { across: grip, turned: 0.0, along: grip };
-        Self { hold, drive, brake, top_speed, turning: f64::INFINITY }
+        let grip = GripLimit::Ellipse { across: grip, turned: 0.0, along: grip };
+        Self { grip, drive, brake, top_speed, turning: f64::INFINITY }
     }
 
     /// What a car with [`CarDynamics`](crate::world::CarDynamics) can do in balance; `None` without them.
@@ -44,13 +42,13 @@ impl CarLimits {
         };
         let tyres = Tyres {
             grip: dynamics.grip,
-            stiffness: dynamics.stiffness * GRAVITY,
+            stiffness: dynamics.stiffness * units::GRAVITY,
             front: dynamics.balance,
             wheelbase,
             lock: max_steering,
         };
         Some(Self {
-            hold: GripLimit::Balance(tyres),
+            grip: GripLimit::Balance(tyres),
             drive: car.motor.max_acceleration,
             brake: dynamics.brake,
             top_speed: car.drive.top_speed(),
@@ -60,7 +58,7 @@ impl CarLimits {
 
     /// Fails with the name of the limit that is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
-        self.hold.validate()?;
+        self.grip.validate()?;
         require("turning", self.turning, self.turning > 0.0, "a positive number")?;
         require_positive("drive", self.drive)?;
         require_positive("brake", self.brake)?;
@@ -147,7 +145,7 @@ impl SpeedProfile {
             let change = (curvatures[around[1]] - curvatures[around[0]]).abs();
             let turns = limits.turning * (lengths[around[0]] + lengths[i]) / change.max(1e-9);
             let holds =
-                (limits.hold.across(curvatures[i], limits.drive) / curvatures[i].abs().max(1e-9)).sqrt();
+                (limits.grip.across(curvatures[i], limits.drive) / curvatures[i].abs().max(1e-9)).sqrt();
             holds.min(turns).min(limits.top_speed)
         };
         let speeds = (0..n).map(speed).collect();
@@ -158,8 +156,8 @@ impl SpeedProfile {
 
     fn limit(&mut self, limits: &CarLimits, closed: bool) {
         let n = self.speeds.len();
-        let forwards = |bend, across| limits.hold.forwards(bend, across, limits.drive);
-        let backwards = |bend, across| limits.hold.backwards(bend, across, limits.brake);
+        let forwards = |bend, across| limits.grip.forwards(bend, across, limits.drive);
+        let backwards = |bend, across| limits.grip.backwards(bend, across, limits.brake);
         // Twice around, so that the beginning knows of the end.
         let steps = if closed { 2 * n } else { n - 1 };
         for k in 0..steps {
@@ -258,7 +256,7 @@ mod tests {
     #[test]
     fn tighter_circles_are_slower_in_the_balance() {
         use crate::race::{GripLimit, Tyres};
-        let limits = CarLimits { hold: GripLimit::Balance(Tyres::default()), ..LIMITS };
+        let limits = CarLimits { grip: GripLimit::Balance(Tyres::default()), ..LIMITS };
         let speeds = [5.0, 9.0, 20.0, 40.0]
             .map(|radius| SpeedProfile::closed(&ellipse(120, radius, radius), &limits).unwrap().speeds[60]);
         assert!(speeds.windows(2).all(|pair| pair[0] < pair[1]), "{speeds:?}");

@@ -7,7 +7,7 @@ use super::grip::GripLimit;
 use super::lane::lane_where;
 use super::lane_model::{Lane, LaneParameters, Way};
 use super::lap::around_lap;
-use super::map::{ConeMap, ConeMapParameters};
+use super::map::{ConeMap, ConeMapParameters, SHORTEST_LAP};
 use super::pair::CentreLineParameters;
 use super::profile::{CarLimits, SpeedProfile};
 use super::racing_line::{CarOutline, LineSolver, RacingLineParameters};
@@ -52,7 +52,7 @@ impl Default for RacerParameters {
             laps: 10,
             limits: CarLimits {
                 // A thirtieth of the grip and a fifteenth of the steering are left for what the controller is wrong by.
-                hold: GripLimit::Balance(Tyres { grip: 11.6, lock: 0.58, ..Tyres::default() }),
+                grip: GripLimit::Balance(Tyres { grip: 11.6, lock: 0.58, ..Tyres::default() }),
                 drive: 8.0,
                 brake: 9.5,
                 top_speed: 30.0,
@@ -60,7 +60,7 @@ impl Default for RacerParameters {
             },
             // What is seen late is driven slowly: tight bends, in which a car answers late as well.
             first_lap: CarLimits {
-                hold: GripLimit::Ellipse { across: 5.0, turned: 1.0, along: 5.0 },
+                grip: GripLimit::Ellipse { across: 5.0, turned: 1.0, along: 5.0 },
                 ..CarLimits::circle(5.0, 3.0, 5.0, 6.0)
             },
             outline: CarOutline { half_width: 0.7, nose: 2.15, ahead: 0.9, room: 0.5 },
@@ -155,8 +155,6 @@ const BEFORE: f64 = 3.0;
 const BEHIND_POSES: usize = 4;
 /// Metres within which the lane tells on which side of it cones are: what is farther off changes from look to look.
 const VOTES: f64 = 5.0;
-/// Metres that a lap takes at least.
-const SHORTEST: f64 = 12.0;
 /// Metres from the line within which another car is in the way, metres ahead at which it begins to matter, and metres, from the
 /// middle of a car to the end of another one, that are kept.
 const OTHERS: (f64, f64, f64) = (1.5, 24.0, 4.5);
@@ -177,7 +175,7 @@ const ASTRAY: f64 = 10.0;
 /// Seconds of sights that do not fit the map before it is lost.
 const DOUBT: f64 = 0.7;
 /// Metres per second below which it stands.
-const STILL: f64 = 0.05;
+pub(super) const STILL: f64 = 0.05;
 
 impl Racer {
     /// A racer at the start. Fails with the name of the parameter that is out of range.
@@ -335,7 +333,7 @@ impl Racer {
         // A line that was crossed lately is not crossed again.
         let ahead = pose.forward().dot(&line.forward());
         self.in_front |= line.to_local(pose.position()).x < -BEFORE || ahead < 0.0;
-        if !self.in_front || self.since_line < SHORTEST || !self.is_behind(line) {
+        if !self.in_front || self.since_line < SHORTEST_LAP || !self.is_behind(line) {
             return;
         }
         if !self.map.is_closed() {
@@ -488,7 +486,7 @@ fn holds(corridor: &Corridor, lap: &[Point]) -> bool {
     let driven =
         |station: &CrossSection| lap.iter().any(|place| near(station.position, *place, BESIDE + 1.0));
     corridor.is_closed()
-        && corridor.length() > SHORTEST
+        && corridor.length() > SHORTEST_LAP
         && lap.iter().all(inside)
         && stations.iter().all(driven)
 }

@@ -2,7 +2,7 @@ use super::*;
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::control::run;
 use crate::io::sim::{SimOptions, Simulation, TICK};
-use crate::io::{Clock, Drive, Lidar, LidarScan};
+use crate::io::{Clock, Drive, Lidar, LidarScan, Odometry};
 use crate::random::Stream;
 
 /// What came of a race on a generated track.

@@ -144,6 +144,7 @@ impl LineSolver {
         free: &[[f64; 2]],
         step: &mut [f64],
     ) {
+        /// The step of a central difference.
         const H: f64 = 1e-4;
         let n = stations.len();
         let mut matrix = CyclicBand::zeros(n);

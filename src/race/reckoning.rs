@@ -1,7 +1,8 @@
 //! Where a car is by its odometry and by how its tyres slip.
 
-use super::tyres::{SLIPS, Tyres};
+use super::tyres::Tyres;
 use crate::geometry::{Pose, Twist, math};
+use crate::world::CarDynamics;
 
 /// Adds up odometry, and what odometry does not know of: that the rear axle slides in bends.
 #[derive(Debug, Clone, Copy, Default)]
@@ -21,7 +22,7 @@ impl Reckoning {
         let step =
             self.last.replace(odometry).map_or(Pose::default(), |last| last.inverse().compose(&odometry));
         let across = speed.linear * speed.angular;
-        let slip = if speed.linear > SLIPS { tyres.slips(across, 0.0)[1] } else { 0.0 };
+        let slip = if speed.linear > CarDynamics::SLIPS { tyres.slips(across, 0.0)[1] } else { 0.0 };
         let aside = Pose::new(0.0, -step.x * math::tan(slip), 0.0);
         self.pose = self.pose.compose(&aside.compose(&step));
         step.position().coords.norm()

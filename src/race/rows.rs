@@ -41,22 +41,23 @@ const NEXT: usize = 10;
 const BESIDE: f64 = 2.0;
 /// How much farther apart than usual the cones of a pair are at most: where they are farther, one row is missing.
 const FARTHER: f64 = 1.7;
-/// What it costs that a leg is aslant to the lane, for a radian squared, that it is long, for a metre, that a cone is missing on it,
-/// that it turns otherwise than the last one, for a radian squared, that the known edge of a cone is the other one, that the other
-/// row is missing, that a pair is narrower or wider than usual, in the square of its share, and that a cone stands between the
-/// rows. One more cone is worth 1, and each of a row less than the one before by a share: of what is farther off, less is seen.
+/// What it costs that a leg is aslant to the lane, for a radian squared. One more cone is worth 1.
 const SLANT: f64 = 0.35;
+/// What it costs that a leg is long, for a metre.
 const FAR: f64 = 0.07;
+/// What it costs that a cone is missing on a leg.
 const MISSING: f64 = 0.15;
+/// What it costs that a leg turns otherwise than the last one, for a radian squared.
 const CHANGE: f64 = 0.3;
+/// What it costs that the known edge of a cone is the other one.
 const OTHER_EDGE: f64 = 2.5;
+/// What it costs that the other row is missing.
 const ALONE: f64 = 0.3;
-const WIDTH: f64 = 1.0;
+/// What it costs that a cone stands between the rows.
 const BETWEEN: f64 = 1.5;
+/// What a cone of a row is worth as a share of the one before: of what is farther off, less is seen.
 const LESS: f64 = 0.85;
-/// What it costs that the cone goes on far better with the other row, and by how much a leg of that has to cost less, from where
-/// that begins to count to where it counts fully.
-const TAKEN: f64 = 1.0;
+/// By how much a leg of the other row has to cost less, from where that begins to count to where it counts fully.
 const BETTER: [f64; 2] = [0.1, 0.43];
 /// What a cone may cost that is followed all the same.
 const DEAREST: f64 = 2.4;
@@ -332,10 +333,10 @@ impl<'c> Search<'c> {
             return None;
         }
         let turn = angle_difference(leg.heading, pair.ends[side].heading);
-        let taken = TAKEN * other.takes(place, leg_cost(turn, leg.length), self.p.reach);
+        let taken = other.takes(place, leg_cost(turn, leg.length), self.p.reach);
         let apart = (place - pair.ends[1 - side].place).norm();
         let narrow = if apart < self.widest() { (1.0 - width / (2.0 * narrowest)).max(0.0) } else { 0.0 };
-        Some(taken + WIDTH * 16.0 * narrow * narrow + self.cost_apart(pair, side, leg))
+        Some(taken + 16.0 * narrow * narrow + self.cost_apart(pair, side, leg))
     }
 
     /// The part of that for how far apart the ends of both rows are.
@@ -345,7 +346,7 @@ impl<'c> Search<'c> {
             return ALONE;
         }
         let wide = (apart / (2.0 * self.p.half_width) - 1.2).max(0.0);
-        WIDTH * wide * wide
+        wide * wide
     }
 
     /// How many cones stand where a leg leaves no room for them: between it and the other cone of a pair, and beside it.

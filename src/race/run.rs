@@ -4,7 +4,7 @@ use super::event::{EventPhase, EventRacer};
 use super::racer::{RacePhase, Racer};
 use crate::geometry::Twist;
 use crate::io::control::{Behaviour, Decision, LidarObservation, Senses, halts};
-use crate::io::{Drive, Lidar, Result};
+use crate::io::{Lidar, Odometry, Result};
 
 /// How a race, or an event, ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -44,7 +44,7 @@ macro_rules! races {
             }
         }
 
-        impl<R: Drive + Lidar + ?Sized> Senses<R> for $racer {
+        impl<R: Odometry + Lidar + ?Sized> Senses<R> for $racer {
             fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LidarObservation) -> Result<()> {
                 seen.read(robot)
             }

@@ -1,8 +1,10 @@
+use super::lane_model::FARTHEST;
 use super::profile::SpeedProfile;
-use super::tyres::{SLIPS, Tyres};
+use super::tyres::Tyres;
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, angle_difference, cross, math};
 use crate::parameter::{require, require_positive, require_up_to};
+use crate::world::CarDynamics;
 
 /// How a car is kept on a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,8 +73,8 @@ impl LineTrackerParameters {
 impl LineTrackerParameters {
     /// Fails with the name of the parameter that is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
-        require("ahead", self.ahead, self.ahead.abs() <= MOST, "-1000 to 1000 m")?;
-        require_up_to("length", self.length, MOST)?;
+        require("ahead", self.ahead, self.ahead.abs() <= FARTHEST, "-1000 to 1000 m")?;
+        require_up_to("length", self.length, FARTHEST)?;
         for (name, value) in [
             ("length by speed", self.length_by_speed),
             ("steering lag", self.steering_lag),
@@ -82,7 +84,7 @@ impl LineTrackerParameters {
             ("yaw", self.yaw),
             ("swing", self.swing),
         ] {
-            require(name, value, (0.0..=MOST).contains(&value), "0 to 1000")?;
+            require(name, value, (0.0..=FARTHEST).contains(&value), "0 to 1000")?;
         }
         require_positive("greatest curvature", self.curvature)?;
         self.tyres.validate().map_err(|error| error.of("tyres"))
@@ -102,12 +104,11 @@ pub struct LineTracker {
     reached: bool,
 }
 
-/// Metres and seconds that a parameter is at most: what lies farther along a line takes as long to find.
-const MOST: f64 = 1000.0;
 /// What no car's place, in metres, speed or rate of turn comes to.
 const BEYOND_ALL: f64 = 1e6;
-/// Metres from a line within which a car is on it, and metres per second at which it comes to it if it stands.
+/// Metres from a line within which a car is on it.
 const ON_LINE: f64 = 0.3;
+/// Metres per second at which it comes to its line if it stands.
 const SLOW: f64 = 2.0;
 /// The share of the metres in which an error dies out by which one counts at most: what is farther off is approached at 14 degrees.
 const SLANTED: f64 = 0.4;
@@ -195,7 +196,8 @@ impl LineTracker {
         let beyond = speed.max(0.0) * p.steering_lag - p.ahead;
         let curvature = self.at(&self.profile.curvatures, i, share, beyond);
         let length = p.length + p.length_by_speed * speed.abs();
-        let swing = if speed > SLIPS { p.swing * self.swing(i, share, beyond, push) } else { 0.0 };
+        let swing =
+            if speed > CarDynamics::SLIPS { p.swing * self.swing(i, share, beyond, push) } else { 0.0 };
         // Without a bound, a line that begins far beside the car would be driven at athwart.
         let most = (SLANTED * length).min(BACK * p.tyres.grip * length * length / (speed * speed));
         let back = aside.clamp(-most, most);
@@ -205,7 +207,7 @@ impl LineTracker {
         // Near the limit, tyres answer the less the more is asked, to what brings the car back as well.
         let tyres = p.tyres.steering(wanted, speed * speed * wanted, push) - wanted;
         // They answer late as well: a car that does not turn yet is steered more.
-        let late = if speed > SLIPS { p.yaw * (wanted - moving.angular / speed) } else { 0.0 };
+        let late = if speed > CarDynamics::SLIPS { p.yaw * (wanted - moving.angular / speed) } else { 0.0 };
         let curvature = (wanted / inside + tyres + late).clamp(-p.curvature, p.curvature);
         let planned = self.at(&self.profile.speeds, i, share, (speed.max(0.0) + 0.5) * p.speed_lag);
         let most = self.left_along(wanted, moving) * p.speed_time;
@@ -221,7 +223,7 @@ impl LineTracker {
     /// that has to come back to its line can. Brakes do, as there is no other way to be slower.
     fn left_along(&self, wanted: f64, moving: Twist) -> f64 {
         let (tyres, speed) = (&self.parameters.tyres, moving.linear);
-        if speed <= SLIPS {
+        if speed <= CarDynamics::SLIPS {
             return tyres.grip;
         }
         let across = (speed * moving.angular).abs().max(speed * speed * wanted.abs());

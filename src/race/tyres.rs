@@ -45,9 +45,6 @@ impl Tyres {
         Self { grip: 12.0, stiffness: f64::INFINITY, front: 1.0, wheelbase: 1.55, lock: 0.6 };
 }
 
-/// Metres per second above which tyres slip. Below, wheels roll, and turn the car at once.
-pub(super) const SLIPS: f64 = 4.0;
-
 /// The share of what an axle can give beyond which no more is asked of it.
 const MOST: f64 = 0.97;
 
@@ -186,7 +183,7 @@ mod tests {
     use super::*;
     use crate::geometry::{Pose, Twist};
     use crate::io::sim::{SimOptions, Simulation, TICK};
-    use crate::io::{Clock, Drive};
+    use crate::io::{Clock, Drive, Odometry};
     use crate::kinematics::PlanarMotion;
     use crate::race::ConeTrack;
     use proptest::prelude::*;

@@ -5,8 +5,9 @@ use crate::geometry::{Point, Pose, direction, math};
 
 /// Metres from station to station beyond the end of what is known.
 const STEP: f64 = 1.0;
-/// Metres ahead of the car, or away from it, at which the way beside a row begins.
+/// Metres ahead of the car at which the way beside a row begins.
 const AHEAD: f64 = 1.0;
+/// Metres away from the car within which it begins.
 const AWAY: f64 = 4.0;
 /// Points of a lane that are enough to go on along it.
 const ENOUGH: usize = 3;

@@ -27,6 +27,7 @@ impl Causes {
     /// The driver presses a pedal, holds the wheel, or presses the button that disengages: not a fault.
     pub const DRIVER: Self = Self(1 << 8);
 
+    /// Those that take the power away at once.
     const HARD: Self = Self::EMERGENCY_BUTTON.with(Self::REMOTE_STOP);
 
     /// These and others.
@@ -69,6 +70,7 @@ impl Causes {
 
     /// What the causes are called, in the order of their bits.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
+        /// The causes' names, in the order of their bits.
         const NAMES: [&str; 9] = [
             "emergency button",
             "remote stop",

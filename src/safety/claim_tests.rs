@@ -5,7 +5,9 @@ use super::*;
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::sim::{SimOptions, Simulation};
 use crate::io::wrappers::{Fault, Faulty};
-use crate::io::{Clock, DistanceSensors, Drive, Lidar, LidarScan, MockRobot, Motors, Psd, Script};
+use crate::io::{
+    Clock, DistanceSensors, Drive, Lidar, LidarScan, Manoeuvres, MockRobot, Motors, Odometry, Psd, Script,
+};
 use crate::world::{DriveSpec, RobotSpec, Scene, World};
 
 /// A mock under the safety system that goes wrong in the way of a text.

@@ -23,8 +23,9 @@ const MISSING: f64 = 0.01;
 /// Metres that a turn of one radian counts as.
 const ARM: f64 = 0.1;
 
-/// Metres, and radians, by which a pose may differ from what the speeds give, beside a share of the way.
+/// Metres, and radians, by which a pose may differ from what the speeds give.
 const STEP: (f64, f64) = (0.05, 0.08);
+/// The share of the way by which it may differ beside that.
 const SHARE: f64 = 0.5;
 
 impl OdometryHealth {
@@ -36,7 +37,7 @@ impl OdometryHealth {
             step: limits.speed_step,
             repeats: u16::MAX,
         };
-        Self { last: None, speed: SignalMonitor::new(signal), frozen: 0, missing: 0.0 }
+        Self { last: None, speed: SignalMonitor::checked(signal), frozen: 0, missing: 0.0 }
     }
 
     /// Takes in a reading. Whether it is to be trusted.

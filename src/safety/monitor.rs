@@ -8,8 +8,8 @@ pub struct Deadline {
 }
 
 impl Deadline {
-    /// Over when nothing has happened for so many seconds.
-    pub const fn new(limit: f64) -> Self {
+    /// Over when nothing has happened for so many seconds, a positive, finite number.
+    pub(super) const fn checked(limit: f64) -> Self {
         Self { limit, last: None }
     }
 
@@ -104,8 +104,8 @@ pub struct SignalMonitor {
 }
 
 impl SignalMonitor {
-    /// A monitor that has not seen a reading: lost, until one comes.
-    pub const fn new(limits: SignalLimits) -> Self {
+    /// A monitor that has not seen a reading, with limits that are in range.
+    pub(super) const fn checked(limits: SignalLimits) -> Self {
         Self { limits, last: None, repeats: 0, health: SignalHealth::Lost }
     }
 
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn a_deadline_needs_to_be_fed() {
-        let mut deadline = Deadline::new(0.5);
+        let mut deadline = Deadline::checked(0.5);
         assert!(deadline.is_over(0.0));
         deadline.feed(1.0);
         assert!(!deadline.is_over(1.0) && !deadline.is_over(1.5));
@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn every_way_of_going_wrong_has_its_name() {
         let limits = SignalLimits { age: 0.2, rate: 2.0, step: 0.1, repeats: 3 };
-        let mut signal = SignalMonitor::new(limits);
+        let mut signal = SignalMonitor::checked(limits);
         assert_eq!(signal.health(0.0), SignalHealth::Lost);
         signal.read(0.0, 1.0, true);
         signal.read(0.1, 1.2, true);

@@ -1,5 +1,5 @@
 use super::health::HealthLimits;
-use super::{SafetyState, SpeedError, StoppingModel};
+use super::{Deadline, SafetyState, SignalLimits, SignalMonitor, SpeedError, StoppingModel};
 use crate::ParameterError;
 use crate::geometry::Point;
 use crate::parameter::{require, require_finite, require_not_negative, require_positive};
@@ -106,5 +106,24 @@ impl SupervisedParameters {
         }
         let mut coordinates = self.fence.iter().flat_map(|corner| [corner.x, corner.y]);
         coordinates.try_for_each(|metres| require_finite("corner of the fence", metres))
+    }
+}
+
+impl Deadline {
+    /// Over when nothing has happened for so many seconds. Fails unless that is a positive, finite number.
+    pub fn new(limit: f64) -> std::result::Result<Self, ParameterError> {
+        require_positive("limit of a deadline", limit)?;
+        Ok(Self::checked(limit))
+    }
+}
+
+impl SignalMonitor {
+    /// A monitor that has not seen a reading: lost, until one comes. Fails with the name of the limit that is out of range.
+    pub fn new(limits: SignalLimits) -> std::result::Result<Self, ParameterError> {
+        require_positive("age of readings", limits.age)?;
+        require_not_negative("rate of the signal", limits.rate)?;
+        require_not_negative("step of the signal", limits.step)?;
+        require_positive("repeats: equal readings in a row", f64::from(limits.repeats))?;
+        Ok(Self::checked(limits))
     }
 }

@@ -1,4 +1,5 @@
 use super::{Causes, Deadline, Requests, SafetyState};
+use crate::ParameterError;
 
 /// What people and the base station tell a vehicle's safety system in one control period.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -56,7 +57,7 @@ impl<F: FnMut(f64, Heartbeat) -> Panel> Station for F {
 ///
 /// ```
 /// use roverlab::safety::{BaseStation, Heartbeat, Causes, SafetyState, Station};
-/// let mut station = BaseStation::new(0.5);
+/// let mut station = BaseStation::new(0.5)?;
 /// let heartbeat = |count| Heartbeat { count, state: SafetyState::Auto, causes: Causes::NONE };
 /// station.look(10.0);
 /// assert!(!station.exchange(0.0, heartbeat(1)).remote_stop);
@@ -66,6 +67,7 @@ impl<F: FnMut(f64, Heartbeat) -> Panel> Station for F {
 /// assert!(station.exchange(0.7, heartbeat(2)).remote_stop, "an order stays");
 /// station.take_back();
 /// assert!(!station.look(10.7) && !station.exchange(0.8, heartbeat(3)).remote_stop);
+/// # Ok::<(), roverlab::ParameterError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct BaseStation {
@@ -84,18 +86,18 @@ pub struct BaseStation {
 }
 
 impl BaseStation {
-    /// A station that waits so many seconds for a heartbeat.
-    pub fn new(limit: f64) -> Self {
-        Self {
+    /// A station that waits so many seconds for a heartbeat. Fails unless that is a positive, finite number.
+    pub fn new(limit: f64) -> Result<Self, ParameterError> {
+        Ok(Self {
             panel: Panel::default(),
-            vehicle: Deadline::new(limit),
+            vehicle: Deadline::new(limit)?,
             last: None,
             count: 0,
             stop: false,
             time: None,
             hears: true,
             is_heard: true,
-        }
+        })
     }
 
     /// Somebody presses a stop button.
@@ -160,7 +162,7 @@ mod tests {
 
     #[test]
     fn nothing_of_a_station_comes_through_a_broken_link() {
-        let mut station = BaseStation::new(0.5);
+        let mut station = BaseStation::new(0.5).unwrap();
         let heartbeat = |count| Heartbeat { count, state: SafetyState::Auto, causes: Causes::NONE };
         station.panel = Panel { remote_stop: true, heartbeat: Some(7), brake: 0.5, ..Panel::default() };
         station.panel.emergency_button = true;

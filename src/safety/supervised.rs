@@ -4,7 +4,7 @@ use super::{
     SupervisedParameters, is_inside,
 };
 use crate::geometry::{Pose, Twist};
-use crate::io::{Clock, Drive, Error, ErrorKind, Result};
+use crate::io::{Clock, Drive, Error, ErrorKind, Odometry, Result};
 
 /// A stop that has begun.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,7 +49,7 @@ pub struct StopRecord {
 ///
 /// While the program's last command keeps the vehicle going without an end, a [speed](Drive::set_speed) or a
 /// [motor](crate::io::Motors), it lives as long as it commands again in time: that it reads sensors, or waits, shows no more that it
-/// drives. While the vehicle is told to stand, or to drive a way that has an end, as by [`straight`](Drive::straight), any call
+/// drives. While the vehicle is told to stand, or to drive a way that has an end, as by [`straight`](crate::io::Manoeuvres::straight), any call
 /// shows that it lives, and so does a wait while it goes on; a call of the robot inside that hangs does not.
 ///
 /// # What it cannot notice
@@ -71,7 +71,7 @@ pub struct StopRecord {
 /// ```
 /// use roverlab::safety::{Heartbeat, Panel, Requests, SafetyState, Supervised, SupervisedParameters};
 /// use roverlab::geometry::Twist;
-/// use roverlab::io::{Clock, Drive, MockRobot};
+/// use roverlab::io::{Clock, Drive, MockRobot, Odometry};
 ///
 /// # fn main() -> roverlab::io::Result<()> {
 /// // Armed and started at once; the stop button is pressed after a second.
@@ -161,20 +161,20 @@ pub(super) const LONGEST: f64 = 86_400.0;
 /// Metres per second above which speeds tell a curvature.
 const ROLLS: f64 = 0.05;
 
-impl<R: Clock + Drive, S: Station> Supervised<R, S> {
+impl<R: Clock + Drive + Odometry, S: Station> Supervised<R, S> {
     /// A robot in the hands of a person, with somebody at the other end.
     ///
     /// Fails with the name of the parameter that is out of range.
     pub fn new(inner: R, station: S, parameters: SupervisedParameters) -> Result<Self> {
         parameters.validate()?;
-        let mut watchdog = Deadline::new(parameters.watchdog);
+        let mut watchdog = Deadline::checked(parameters.watchdog);
         watchdog.feed(0.0);
         Ok(Self {
             inner,
             station,
             core: SafetyCore::new(),
             seen: Causes::NONE,
-            heartbeat: Deadline::new(parameters.heartbeat),
+            heartbeat: Deadline::checked(parameters.heartbeat),
             heard: None,
             sent: 0,
             waited: 0.0,

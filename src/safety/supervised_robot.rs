@@ -9,15 +9,15 @@ use crate::geometry::{Pose, Twist};
 use crate::io::wrappers::signatures;
 use crate::io::{
     Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
-    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage,
-    Resolution, Result, Servos, Viewport,
+    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
+    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
 /// Capabilities that drive nothing and tell nothing of the surroundings: calls take time all the same.
 macro_rules! passed_on {
     ($capability:ident { $( fn $name:ident($($arg:ident: $type:ty),*) -> $result:ty; )* }) => {
-        impl<R: Clock + Drive + $capability, S: Station> $capability for Supervised<R, S> {
+        impl<R: Clock + Drive + Odometry + $capability, S: Station> $capability for Supervised<R, S> {
             $( fn $name(&mut self $(, $arg: $type)*) -> Result<$result> {
                 self.alive();
                 self.inner.$name($($arg),*)
@@ -26,11 +26,12 @@ macro_rules! passed_on {
     };
 }
 
+signatures! { StallDetector => passed_on!() }
 signatures! { Display => passed_on!() }
 signatures! { Radio => passed_on!() }
 signatures! { Encoders => passed_on!() }
 
-impl<R: Clock + Drive + Keys, S: Station> Keys for Supervised<R, S> {
+impl<R: Clock + Drive + Odometry + Keys, S: Station> Keys for Supervised<R, S> {
     fn read_key(&mut self) -> Result<Option<Key>> {
         self.alive();
         self.inner.read_key()
@@ -52,7 +53,7 @@ impl<R: Clock + Drive + Keys, S: Station> Keys for Supervised<R, S> {
     }
 }
 
-impl<R: Clock + Drive, S: Station> Clock for Supervised<R, S> {
+impl<R: Clock + Drive + Odometry, S: Station> Clock for Supervised<R, S> {
     fn now(&mut self) -> Result<f64> {
         self.alive();
         self.inner.now()
@@ -90,7 +91,7 @@ impl<R: Clock + Drive, S: Station> Clock for Supervised<R, S> {
     }
 }
 
-impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
+impl<R: Clock + Drive + Odometry, S: Station> Drive for Supervised<R, S> {
     fn set_speed(&mut self, twist: Twist) -> Result<()> {
         if !self.may_drive(twist != Twist::STOP) {
             self.steer_on(twist);
@@ -103,7 +104,9 @@ impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
         }
         self.note(answer)
     }
+}
 
+impl<R: Clock + Drive + Odometry, S: Station> Odometry for Supervised<R, S> {
     fn speed(&mut self) -> Result<Twist> {
         self.reading(R::speed)
     }
@@ -120,7 +123,9 @@ impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
         }
         self.note(answer)
     }
+}
 
+impl<R: Clock + Drive + Odometry + Manoeuvres + StallDetector, S: Station> Manoeuvres for Supervised<R, S> {
     fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
         if !self.may_drive(false) {
             return Ok(());
@@ -171,14 +176,9 @@ impl<R: Clock + Drive, S: Station> Drive for Supervised<R, S> {
         }
         Ok(())
     }
-
-    fn is_stalled(&mut self) -> Result<bool> {
-        self.alive();
-        self.inner.is_stalled()
-    }
 }
 
-impl<R: Clock + Drive + Motors, S: Station> Motors for Supervised<R, S> {
+impl<R: Clock + Drive + Odometry + Motors, S: Station> Motors for Supervised<R, S> {
     fn set_motor(&mut self, motor: u8, fraction: f64) -> Result<()> {
         if !self.may_turn(motor, fraction != 0.0) {
             return Ok(());
@@ -191,7 +191,7 @@ impl<R: Clock + Drive + Motors, S: Station> Motors for Supervised<R, S> {
     }
 }
 
-impl<R: Clock + Drive + Servos, S: Station> Servos for Supervised<R, S> {
+impl<R: Clock + Drive + Odometry + Servos, S: Station> Servos for Supervised<R, S> {
     fn set_servo(&mut self, servo: u8, position: f64) -> Result<()> {
         if !self.commanded() {
             return Ok(());
@@ -204,7 +204,7 @@ impl<R: Clock + Drive + Servos, S: Station> Servos for Supervised<R, S> {
     }
 }
 
-impl<R: Clock + Drive + Lidar, S: Station> Lidar for Supervised<R, S> {
+impl<R: Clock + Drive + Odometry + Lidar, S: Station> Lidar for Supervised<R, S> {
     fn scan_into(&mut self, scan: &mut LidarScan) -> Result<()> {
         let answer = self.reading(|inner| inner.scan_into(scan));
         if answer.is_ok() {
@@ -223,7 +223,7 @@ impl<R: Clock + Drive + Lidar, S: Station> Lidar for Supervised<R, S> {
     }
 }
 
-impl<R: Clock + Drive + DistanceSensors, S: Station> DistanceSensors for Supervised<R, S> {
+impl<R: Clock + Drive + Odometry + DistanceSensors, S: Station> DistanceSensors for Supervised<R, S> {
     fn distance(&mut self, sensor: Psd) -> Result<f64> {
         let answer = self.reading(|inner| inner.distance(sensor));
         if let Ok(distance) = answer {
@@ -236,7 +236,7 @@ impl<R: Clock + Drive + DistanceSensors, S: Station> DistanceSensors for Supervi
     }
 }
 
-impl<R: Clock + Drive + Camera, S: Station> Camera for Supervised<R, S> {
+impl<R: Clock + Drive + Odometry + Camera, S: Station> Camera for Supervised<R, S> {
     fn set_resolution(&mut self, resolution: Resolution) -> Result<()> {
         self.alive();
         self.inner.set_resolution(resolution)

@@ -4,8 +4,8 @@ use crate::io::control;
 use crate::io::sim::{SimOptions, Simulation, TICK};
 use crate::io::wrappers::{Fault, Faulty};
 use crate::io::{
-    Camera, Clock, Display, DistanceSensors, Drive, ErrorKind, Key, Keys, Lidar, LidarScan, MockRobot,
-    Motors, Psd, Servos,
+    Camera, Clock, Display, DistanceSensors, Drive, ErrorKind, Key, Keys, Lidar, LidarScan, Manoeuvres,
+    MockRobot, Motors, Odometry, Psd, Servos,
 };
 use crate::kinematics::PlanarMotion;
 use crate::race::GapDriver;
@@ -22,7 +22,7 @@ pub(super) fn station(change: impl Fn(f64, &mut Panel)) -> impl FnMut(f64, Heart
 }
 
 /// Drives with 0.5 m/s for some seconds, a command every 0.1 s.
-pub(super) fn drive<R: Clock + Drive, S: Station>(car: &mut Supervised<R, S>, seconds: f64) {
+pub(super) fn drive<R: Clock + Drive + Odometry, S: Station>(car: &mut Supervised<R, S>, seconds: f64) {
     for _ in 0..(10.0 * seconds).round() as usize {
         let _ = car.set_speed(Twist::new(0.5, 0.1));
         let _ = car.wait(0.1);
@@ -35,7 +35,8 @@ pub(super) fn mock() -> MockRobot {
 
 /// A car with a base station, armed and started.
 pub(super) fn stationed() -> Supervised<MockRobot, BaseStation> {
-    let mut car = Supervised::new(mock(), BaseStation::new(0.5), SupervisedParameters::default()).unwrap();
+    let mut car =
+        Supervised::new(mock(), BaseStation::new(0.5).unwrap(), SupervisedParameters::default()).unwrap();
     drive(&mut car, 0.1);
     car.station_mut().panel.requests.arm = true;
     drive(&mut car, 0.2);

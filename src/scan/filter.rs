@@ -31,6 +31,9 @@ struct Beam {
     weight: f64,
 }
 
+/// The standard deviation of a range, in metres, that is expected before anything was measured: that of an EyeBot's lidar.
+const EXPECTED_NOISE: f64 = 0.010;
+/// A beam that has met nothing.
 const UNKNOWN: Beam = Beam { range: f64::INFINITY, weight: 0.0 };
 /// The most readings that an estimate counts for, so that it still follows small changes.
 const MAX_WEIGHT: f64 = 20.0;
@@ -45,14 +48,20 @@ const SMOOTHING_ARC: f64 = 0.015;
 /// Neighbours on either side that are averaged at most.
 const MAX_SMOOTHING: usize = 10;
 /// Averages over the inner and the outer half of the neighbours that differ by more than this many standard
-/// deviations of their noise, and by more than so many metres, show that the surface bends.
+/// deviations show that the surface bends.
 const BEND_GATE: f64 = 3.0;
+/// Metres by which they have to differ as well.
 const MIN_BEND: f64 = 0.0005;
 
+impl Default for ScanFilter {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl ScanFilter {
-    /// A filter without a scan. `noise` is the standard deviation in metres that one range of the sensor is expected
-    /// to have; the filter finds the actual one by itself.
-    pub fn new(noise: f64) -> Self {
+    /// A filter without a scan. It finds the noise of the sensor by itself.
+    pub fn new() -> Self {
         Self {
             beams: Vec::new(),
             predicted: Vec::new(),
@@ -61,7 +70,7 @@ impl ScanFilter {
             angle_increment: 0.0,
             mount: Pose::default(),
             pose: Pose::default(),
-            noise,
+            noise: EXPECTED_NOISE,
             scratch: Vec::new(),
         }
     }

@@ -35,8 +35,9 @@ pub struct ScanMatcher {
 const REFERENCE_REACH: f64 = 0.8;
 /// How many references a scan is matched against at most.
 const ACTIVE_REFERENCES: usize = 3;
-/// After so many metres they are chosen anew: usually, and when the present ones share little with the scan.
+/// After so many metres they are chosen anew.
 const CHOICE_SPACING: f64 = 0.1;
+/// The same where the present ones share little with the scan.
 const HASTY_CHOICE_SPACING: f64 = 0.03;
 /// References stand at least so many metres apart.
 const REFERENCE_SPACING: f64 = 0.08;
@@ -48,18 +49,23 @@ const MAX_REFERENCES: usize = 10_000;
 const MAX_CORRECTION: f64 = 0.05;
 /// A match below this share is not believed.
 const MIN_MATCH: f64 = 0.3;
+/// Rounds of finding counterparts and solving.
 const ITERATIONS: usize = 6;
-/// Points farther from the reference's surface than this, in metres, have no counterpart: first and last iteration.
+/// Points farther from the reference's surface than this, in metres, have no counterpart in the first round.
 const COARSE_GATE: f64 = 0.10;
+/// The same in the last round.
 const FINE_GATE: f64 = 0.03;
-/// Odometry's error as a part of the distance driven and of the angle turned in one step.
+/// Odometry's error as a share of the distance driven in one step.
 const DISTANCE_ERROR: f64 = 0.01;
+/// Odometry's error as a share of the angle turned in one step.
 const TURN_ERROR: f64 = 0.006;
-/// The standard deviations of wheels' size and of the track before anything has been matched.
+/// The standard deviation of wheels' size, as a share, before anything has been matched.
 const SCALE_ERROR: f64 = 0.015;
+/// The same of the track.
 const TRACK_ERROR: f64 = 0.005;
-/// The variance that slip adds to the heading: radians squared per metre and per radian.
+/// The variance that slip adds to the heading in a metre, in radians squared.
 const SLIP_PER_METRE: f64 = 6e-5;
+/// The same in a turn of a radian.
 const SLIP_PER_RADIAN: f64 = 2.5e-6;
 /// The least variance of a step, so that no direction ever counts as exactly known.
 const LEAST_VARIANCE: f64 = 1e-10;

@@ -23,6 +23,8 @@ pub use lidar::{
     Extremum, ExtremumKind, ScanCorner, ScanFeatures, ScanFeaturesParameters, ScanObject, ScanWall,
     extract_features, local_extrema, plot_scan,
 };
+#[cfg(feature = "nav")]
+pub(crate) use localisation::HEIGHT;
 pub use localisation::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
 pub use log_odds::{LogOddsMap, LogOddsMapParameters};
 pub use matcher::ScanMatcher;

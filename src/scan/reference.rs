@@ -38,15 +38,19 @@ const POINT_NOISE: f64 = 0.01;
 /// after the other; counted singly they would drown what odometry knows where the surfaces say little, as in a round
 /// room. Found by trial: 2 lets spirals turn the pose by degrees, 200 lets odometry's drift through.
 const POINTS_PER_FACT: f64 = 40.0;
-/// How far, in metres, neighbours reach that a line is fitted to, and how many they are on either side.
+/// Metres that neighbours reach that a line is fitted to.
 const LINE_REACH: f64 = 0.06;
+/// How many neighbours on either side there are at least.
 const MIN_NEIGHBOURS: usize = 2;
+/// How many there are at most.
 const MAX_NEIGHBOURS: usize = 25;
-/// Neighbouring beams that hit farther apart than this, in metres and as a part of the range, see two surfaces.
+/// Neighbouring beams that hit farther apart than this, in metres, see two surfaces.
 const EDGE_GAP: f64 = 0.02;
+/// The same as a share of the range: surfaces that are seen at less than about 10 degrees.
 const EDGE_SLANT: f64 = 0.1;
-/// How far neighbours may lie from their line: as a part of its length, and in metres.
+/// How far neighbours may lie from their line, as a share of its length.
 const FLATNESS: f64 = 0.05;
+/// The same in metres, for short lines.
 const ROUGHNESS: f64 = 0.003;
 
 impl Reference {

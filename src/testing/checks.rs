@@ -1,4 +1,4 @@
-use super::lines::{between_walls, entered, squeezed};
+use super::lines::{TOLERANCE, between_walls, entered, squeezed};
 use crate::nav::grid::{AnyAngle, GridPath, GridPlanner, GridSearch, PlanError};
 use crate::parameter::debug_as_sentence;
 use crate::world::{BitGrid, GridCell};
@@ -25,9 +25,6 @@ pub struct Violation {
 }
 
 debug_as_sentence!(Violation);
-
-/// Costs that differ by less are the same: sums are rounded.
-const TOLERANCE: f64 = 1e-6;
 
 /// Whether two costs are the same. NaN is no cost.
 fn same(a: f64, b: f64) -> bool {

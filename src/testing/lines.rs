@@ -4,7 +4,7 @@ use crate::geometry::{Point, Vector};
 use crate::world::{BitGrid, GridCell};
 
 /// How far, in cells, a line may be inside of what it should not meet: sums are rounded.
-const TOLERANCE: f64 = 1e-6;
+pub(super) const TOLERANCE: f64 = 1e-6;
 
 /// A blocked cell, or a place outside, whose inside a segment meets.
 pub(super) fn entered(grid: &BitGrid, a: Point, b: Point) -> Option<GridCell> {

@@ -146,7 +146,9 @@ pub fn teach_hue<'a>(
     limits: HueLimits,
 ) -> Result<Option<u8>, ImageError> {
     // Hues of RoBIOS's circle, and how far those may be that help one.
+    /// Hues of a full turn.
     const CIRCLE: usize = 252;
+    /// Hues to both sides over which a histogram is summed.
     const REACH: usize = 4;
     let view = image.try_into().map_err(Into::into)?;
     let (width, height) = view.size();

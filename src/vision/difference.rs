@@ -55,8 +55,9 @@ pub(super) fn subtract_portable(first: GrayView<'_>, second: GrayView<'_>, outpu
     }
 }
 
-/// Pixels that are summed up side by side, and how many such blocks fit sums of 16 bits.
+/// Pixels that are summed up side by side.
 const LANES: usize = 256;
+/// How many such blocks fit sums of 16 bits: 257 times 255 is 65535.
 const BLOCKS: usize = 257;
 
 #[inline(always)]

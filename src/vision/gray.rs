@@ -78,6 +78,7 @@ fn triple_row(row: &[u8], out: &mut [u8]) {
 
 /// Pixels of three bytes before one that begins with a cache line.
 fn pixels_to_line(out: &[u8]) -> usize {
+    /// Pixels that are converted at a time.
     const LINE: usize = 64;
     /// `3 * THIRD` is 1 and whole lines.
     const THIRD: usize = 43;

@@ -156,6 +156,7 @@ pub(super) fn orient_portable(
     magnitudes: &mut [u16],
     bins: &mut [u8],
 ) {
+    /// Pixels of a row that are worked on at a time.
     const PIECE: usize = 64;
     let width = row.len();
     let (mut dxs, mut dys) = ([0_i16; PIECE], [0_i16; PIECE]);

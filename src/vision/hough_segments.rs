@@ -55,9 +55,11 @@ pub struct HoughSegments {
     size: (usize, usize),
 }
 
-/// What the mask has for a pixel that is no edge, or none any more, for an edge, and for one that has voted.
+/// What the mask has for a pixel that is no edge, or none any more.
 const NO_EDGE: u8 = 0;
+/// What it has for an edge.
 const EDGE: u8 = 1;
+/// What it has for an edge that has voted.
 const VOTED: u8 = 2;
 
 /// Fixed-point fractions of a pixel in a walk along a line.

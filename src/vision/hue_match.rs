@@ -39,6 +39,26 @@ impl HueRange {
         Ok(Self { low: wrap(middle - reach), high: wrap(middle + reach) })
     }
 
+    /// The hues less than `threshold` away from that of a sample: `like([255, 0, 0], 20, scale)` is red on either scale.
+    /// Fails for a gray sample, which has no hue.
+    ///
+    /// ```
+    /// use roverlab::vision::{HueRange, HueScale};
+    /// let red = HueRange::like([200, 30, 20], 20, HueScale::Robios)?;
+    /// assert!(red.contains(42) && !red.contains(126));
+    /// assert!(HueRange::like([90, 90, 90], 20, HueScale::Robios).is_err());
+    /// # Ok::<(), roverlab::vision::ImageError>(())
+    /// ```
+    pub fn like(sample: [u8; 3], threshold: u8, scale: HueScale) -> Result<Self, ImageError> {
+        let [red, green, blue] = sample;
+        if red == green && green == blue {
+            return Err(
+                ParameterError::new("colour of the sample", f64::from(red), "a colour, not a gray").into()
+            );
+        }
+        Self::around(hue(sample, scale, HueLimits::NONE), threshold, scale)
+    }
+
     /// Whether a hue belongs to the range. [`NO_HUE`] never does.
     #[inline(always)]
     pub fn contains(&self, hue: u8) -> bool {

@@ -19,6 +19,8 @@
 //! [`motion`] has what moves in an image. The robots that drive by what they see are in
 //! [`drive`](crate::drive).
 //!
+//! The module `images` (feature `image`) has the same kernels on images of the crate `image`, which return new images.
+//!
 //! The functions in `_into` write into memory of the caller's and allocate nothing. The loops are plain Rust that the
 //! compiler vectorises for several generations of processors; the best one that the processor has is chosen at run
 //! time, and all give the same bits.
@@ -51,7 +53,7 @@ mod hsv;
 mod hue;
 mod hue_match;
 #[cfg(feature = "image")]
-mod images;
+pub mod images;
 mod laplace;
 pub mod motion;
 #[cfg(feature = "rayon")]

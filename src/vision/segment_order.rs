@@ -50,6 +50,7 @@ impl Draw {
 pub(super) struct MultiplyWithCarry(u64);
 
 impl MultiplyWithCarry {
+    /// OpenCV's multiplier of its multiply-with-carry generator.
     const FACTOR: u64 = 4_164_903_690;
 
     fn next(&mut self) -> u32 {

@@ -29,7 +29,8 @@ impl Raster {
         let cells_along = |length: f64| (length / resolution).ceil().max(1.0);
         let (columns, rows) = (cells_along(size.x), cells_along(size.y));
         if columns * rows > Self::MAX_CELLS {
-            let expected = format!("at most {}; raise the resolution of {resolution} m", Self::MAX_CELLS);
+            let expected =
+                format!("at most {} of {resolution} m over {} x {} m", Self::MAX_CELLS, size.x, size.y);
             return Err(ParameterError::new("number of cells", columns * rows, expected));
         }
         Ok(Self { corner: bounds.min, resolution, columns: columns as usize, rows: rows as usize })
@@ -141,14 +142,14 @@ pub struct Clearance {
 }
 
 impl Clearance {
-    /// Measures a world. The raster covers the floor and all solids, and `limit` metres more on each side, so that
+    /// Measures a world. The raster covers the world's [site](World::site), and `limit` metres more on each side, so that
     /// there is a way around a world without a border.
     ///
     /// Takes time in proportion to the cells, plus those within the limit of each solid.
     pub fn new(world: &World, resolution: f64, limit: f64) -> Result<Self, ParameterError> {
         require_positive("clearance limit", limit)?;
         let thickest = world.walls.iter().map(|wall| 0.5 * wall.thickness).fold(0.0, f64::max);
-        let bounds = world.bounds().inflated(limit + thickest + 2.0 * resolution);
+        let bounds = world.site().inflated(limit + thickest + 2.0 * resolution);
         let raster = Raster::over(bounds, resolution)?;
         let distances = vec![limit; raster.cells()];
         let mut field = Self { raster, limit, distances };

@@ -68,6 +68,7 @@ impl Mesh {
     /// Adds what turns about the upright axis through the foot: rings of a radius at a height, each joined to
     /// the next.
     pub(super) fn turned(&mut self, rings: &[[f64; 2]], material: usize) {
+        /// Sides of the prism that stands for a cylinder.
         const SIDES: usize = 20;
         let at = |[radius, height]: [f64; 2], side: usize| {
             let (sin, cos) = math::sin_cos(std::f64::consts::TAU * (side % SIDES) as f64 / SIDES as f64);

@@ -15,7 +15,9 @@ mod mesh;
 mod object;
 mod robot;
 mod scene;
+mod site;
 pub mod space;
+mod terrain;
 mod texture;
 mod wall;
 
@@ -29,6 +31,7 @@ pub use object::{Billboard, Marker, Object, ObjectKind, Shape};
 pub use robot::{
     CameraSpec, CarDynamics, DriveSpec, Footprint, LidarSpec, Mast, MotorSpec, Mount, PsdSpec, RobotSpec,
 };
-pub use scene::{Place, RobotPlacement, Scene, Settings, Terrain, World};
+pub use scene::{Place, RobotPlacement, Scene, Settings, World};
+pub use terrain::{HeightField, Terrain};
 pub use texture::Texture;
 pub use wall::Wall;

@@ -1,6 +1,7 @@
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use super::Body;
+use super::{Body, Mesh};
 use crate::ParameterError;
 use crate::geometry::Aabb;
 use crate::parameter::{require, require_finite, require_not_negative, require_positive};
@@ -22,14 +23,18 @@ pub struct RobotSpec {
     pub mast: Option<Mast>,
     /// Kilograms.
     pub mass: f64,
+    /// The coefficient of friction between the ground and its wheels or belts, which counts on hills.
+    pub friction: f64,
     /// Its position-sensitive devices: single-ray distance sensors.
     pub psds: Vec<PsdSpec>,
     /// Its laser scanner, if it has one.
     pub lidar: Option<LidarSpec>,
     /// Its camera, if it has one.
     pub camera: Option<CameraSpec>,
-    /// The 3D model that EyeSim shows, if any. Cameras here see the outline.
+    /// The file of its 3D model, if it has one.
     pub model: Option<PathBuf>,
+    /// The surface that cameras see; without it, they see the outline.
+    pub mesh: Option<Arc<Mesh>>,
     /// What its description file says about its solid beyond footprint and height.
     pub body: Body,
 }
@@ -67,6 +72,21 @@ pub enum DriveSpec {
         /// slip.
         dynamics: Option<CarDynamics>,
     },
+    /// Two belts side by side, which turn their robot by skidding. Its origin is in the middle between them.
+    Tracked {
+        /// Metres across the wheel that drives a belt.
+        wheel_diameter: f64,
+        /// Metres between the belts' middles.
+        track: f64,
+        /// Metres of a belt that lie on the ground.
+        length: f64,
+        /// Metres across a belt.
+        width: f64,
+        /// The fastest that a driving wheel turns, in radians per second.
+        max_wheel_speed: f64,
+        /// Encoder ticks in one turn of a driving wheel.
+        ticks_per_turn: f64,
+    },
     /// Four Mecanum wheels.
     Omni {
         /// Metres.
@@ -88,6 +108,7 @@ impl DriveSpec {
         match *self {
             Self::Differential { wheel_diameter, max_wheel_speed, .. }
             | Self::Ackermann { wheel_diameter, max_wheel_speed, .. }
+            | Self::Tracked { wheel_diameter, max_wheel_speed, .. }
             | Self::Omni { wheel_diameter, max_wheel_speed, .. } => 0.5 * wheel_diameter * max_wheel_speed,
         }
     }
@@ -96,7 +117,7 @@ impl DriveSpec {
     pub fn dynamics(&self) -> Option<CarDynamics> {
         match *self {
             Self::Ackermann { dynamics, .. } => dynamics,
-            Self::Differential { .. } | Self::Omni { .. } => None,
+            Self::Differential { .. } | Self::Tracked { .. } | Self::Omni { .. } => None,
         }
     }
 }
@@ -123,6 +144,11 @@ pub struct CarDynamics {
     pub brake: f64,
     /// Radians per second at which the steering turns.
     pub steering_rate: f64,
+}
+
+impl CarDynamics {
+    /// Metres per second above which tyres slip. Below half of it wheels roll; between, it is a mixture.
+    pub const SLIPS: f64 = 4.0;
 }
 
 impl Default for CarDynamics {
@@ -182,6 +208,13 @@ impl Footprint {
         }
     }
 
+    fn validate(&self) -> Result<(), ParameterError> {
+        match self {
+            Self::Disc { radius } => require_positive("radius", *radius),
+            Self::Rectangle(outline) => validate_outline(outline),
+        }
+    }
+
     /// Whether a rectangle of the robot's frame lies within the outline.
     fn holds(&self, part: &Aabb) -> bool {
         match self {
@@ -194,6 +227,18 @@ impl Footprint {
             }
         }
     }
+}
+
+/// Fails unless a rectangle has a finite width and depth above zero.
+fn validate_outline(outline: &Aabb) -> Result<(), ParameterError> {
+    for (name, least, most) in
+        [("outline along x", outline.min.x, outline.max.x), ("outline along y", outline.min.y, outline.max.y)]
+    {
+        require_finite(name, least)?;
+        require_finite(name, most)?;
+        require(name, most - least, most > least, "a corner beyond the other one")?;
+    }
+    Ok(())
 }
 
 /// A part of a robot that is higher and narrower than the rest: a handle, a pole. Rays meet it; what drives
@@ -311,9 +356,13 @@ impl CameraSpec {
 }
 
 impl RobotSpec {
+    /// The coefficient of friction of rubber on a dry floor, for robots that state none.
+    pub const DEFAULT_FRICTION: f64 = 0.8;
+
     /// Checks that a mast stands on the robot.
     pub(super) fn validate_mast(&self) -> Result<(), ParameterError> {
         let Some(Mast { outline, top }) = self.mast else { return Ok(()) };
+        validate_outline(&outline).map_err(|error| error.of(&format!("robot {}: mast", self.name)))?;
         let good = top.is_finite() && top > self.height;
         let reach = Footprint::Rectangle(outline).bounding_radius();
         let holds = self.footprint.holds(&outline);
@@ -353,7 +402,8 @@ impl RobotSpec {
                 require_positive("wheel diameter", wheel_diameter)?;
                 require_positive("track", track)?;
                 require_positive("wheelbase", wheelbase)?;
-                require_positive("maximal steering", max_steering)?;
+                let good = max_steering > 0.0 && max_steering < std::f64::consts::FRAC_PI_2;
+                require("maximal steering", max_steering, good, "more than 0 and less than a right angle")?;
                 require_positive("maximal wheel speed", max_wheel_speed)?;
                 require_positive("ticks per turn", ticks_per_turn)?;
                 if let Some(dynamics) = dynamics {
@@ -370,6 +420,15 @@ impl RobotSpec {
                     within("steering rate", dynamics.steering_rate, 100.0, "more than 0 and less than 100")?;
                 }
             }
+            DriveSpec::Tracked { wheel_diameter, track, length, width, max_wheel_speed, ticks_per_turn } => {
+                require_positive("wheel diameter", wheel_diameter)?;
+                require_positive("track", track)?;
+                require_positive("belt length", length)?;
+                require_positive("belt width", width)?;
+                require("belt width", width, width <= track, "at most the distance between the belts")?;
+                require_positive("maximal wheel speed", max_wheel_speed)?;
+                require_positive("ticks per turn", ticks_per_turn)?;
+            }
             DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn } => {
                 require_positive("wheel diameter", wheel_diameter)?;
                 require_positive("track", track)?;
@@ -381,9 +440,10 @@ impl RobotSpec {
         let lag = self.motor.time_constant;
         require("motor time constant", lag, lag.is_finite() && lag >= 0.0, "a finite number of at least 0")?;
         require_positive("maximal acceleration", self.motor.max_acceleration)?;
-        require_positive("footprint radius", self.footprint.bounding_radius())?;
+        self.footprint.validate().map_err(|error| error.of("footprint"))?;
         require_positive("height", self.height)?;
         require_not_negative("mass", self.mass)?;
+        require_not_negative("friction", self.friction)?;
         for psd in &self.psds {
             require_positive("PSD maximal range", psd.max_range)?;
             psd.mount.validate()?;

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use super::{Billboard, Marker, Object, Occupancy, OccupancyGrid, RobotSpec, Texture, Wall};
+use super::{Billboard, Marker, Object, Occupancy, OccupancyGrid, RobotSpec, Terrain, Texture, Wall};
 use crate::geometry::{Aabb, Point, Pose, Vector};
 
 /// A place without robots: floor, walls, objects and marks.
@@ -24,7 +24,7 @@ pub struct World {
     pub start: Option<Pose>,
     /// Named places: the letters of a maze.
     pub places: Vec<Place>,
-    /// Hills.
+    /// Hills, instead of a level floor.
     pub terrain: Option<Terrain>,
     /// Metres of the water's surface above the floor.
     pub water_level: Option<f64>,
@@ -99,19 +99,6 @@ pub struct Place {
     pub position: Point,
     /// The heading that the letter stands for, if it stands for one.
     pub heading: Option<f64>,
-}
-
-/// Hills as a height image over the floor.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Terrain {
-    /// Metres along x that the image covers.
-    pub width: f64,
-    /// Metres along y that the image covers.
-    pub height: f64,
-    /// Metres above the floor of a white pixel; black is 0.
-    pub max_elevation: f64,
-    /// The gray image.
-    pub image: Texture,
 }
 
 /// A robot placed in a world.

@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use image::RgbaImage;
 
-/// An image that a file of a world names: the picture on a floor, the heights of hills.
+/// An image that a file of a world names: the picture on a floor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
     /// The image's file as the world's file names it.

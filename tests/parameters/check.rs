@@ -149,6 +149,29 @@ macro_rules! check {
 }
 pub(crate) use check;
 
+/// The same for every field of a variant of an enum.
+macro_rules! check_variant {
+    ($type:ident::$variant:ident = $base:expr, |$parameters:ident| $new:expr,
+     { $($takes:ident: $($field:ident),+;)+ } $(but $($rest:ident),+)?) => {{
+        let base: $type = $base;
+        let mut wrong: Vec<String> = Vec::new();
+        let $type::$variant { $($($field: _,)+)+ $($($rest: _,)+)? } = base else { panic!("another variant") };
+        $($(
+            for value in $crate::check::nonsense() {
+                let mut $parameters = base;
+                if let $type::$variant { $field, .. } = &mut $parameters {
+                    $crate::check::Slots::put($field, 0, value);
+                }
+                let made = || -> Result<(), Box<dyn std::error::Error>> { $new; Ok(()) };
+                let (field, takes) = (stringify!($field), $crate::check::Takes::$takes);
+                wrong.extend($crate::check::Given { field, takes, slot: 0, value, answer: made() }.wrong());
+            }
+        )+)+
+        assert!(wrong.is_empty(), "{}:\n{}", stringify!($variant), wrong.join("\n"));
+    }};
+}
+pub(crate) use check_variant;
+
 /// Runs a behaviour for a moment; how it ends does not matter, but that it does.
 pub(crate) fn ends<B>(spec: RobotSpec, mut behaviour: B)
 where

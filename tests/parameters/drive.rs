@@ -3,19 +3,19 @@ use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::{
     AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters,
     CoverageMap, CoverageMapParameters, Cruise, CruiseParameters, Follower, FollowerParameters, Formation,
-    Goal, LidarWallFollower, LidarWallFollowerParameters, Method, OmniParameters, OmniTracker, Path,
-    PathFollower, PathFollowerParameters, Pid, PidParameters, PidWallFollower, PidWallFollowerParameters,
-    RandomDrive, RandomDriveParameters, Tour, TourParameters, TwoLevelWallFollower, WallFollower,
-    WallFollowerParameters,
+    Goal, LidarWallFollower, LidarWallFollowerParameters, Method, OmniDriver, OmniParameters, OmniTracker,
+    Path, PathFollower, PathFollowerParameters, Pid, PidParameters, PidWallFollower,
+    PidWallFollowerParameters, RandomDrive, RandomDriveParameters, Steering, Tour, TourParameters,
+    TwoLevelWallFollower, WallFollower, WallFollowerParameters, WallSensors,
 };
 use roverlab::geometry::{Point, Pose};
-use roverlab::kinematics::Ackermann;
+use roverlab::kinematics::{Ackermann, Omni};
 use roverlab::random::Stream;
 use roverlab::vision::motion::MotionParameters;
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
 use roverlab::world::{RobotSpec, World};
 
-use crate::check::{check, ends};
+use crate::check::{check, check_variant, ends};
 
 const GOAL: Point = Point::new(2.0, 1.5);
 
@@ -51,13 +51,27 @@ fn from_a_to_b() {
             let _ = follower.step(Pose::default());
         },
         { Positive: speed, turn_rate, deceleration, approach_rate, lag; } but steering);
+    let follows = |steering| {
+        PathFollower::new(
+            Path::straight(Point::origin(), GOAL)?,
+            PathFollowerParameters { steering, ..Default::default() },
+        )
+    };
+    check_variant!(Steering::PurePursuit = Steering::PurePursuit { lookahead: 0.1 }, |p| follows(p)?, { Positive: lookahead; });
+    check_variant!(Steering::CrossTrack = Steering::CrossTrack { reach: 0.1 }, |p| follows(p)?, { Positive: reach; });
+    for full_speed in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
+        let kinematics = Ackermann::new(0.12, 0.1, 0.5).unwrap();
+        assert_eq!(CarDriver::new(kinematics, full_speed).unwrap_err().name(), "full speed", "{full_speed}");
+        let kinematics = Omni::mecanum(0.2, 0.2).unwrap();
+        assert_eq!(OmniDriver::new(kinematics, full_speed).unwrap_err().name(), "full speed", "{full_speed}");
+    }
     check!(AToBParameters = AToBParameters::default(),
         |p| ends(RobotSpec::s4(), AToB::new(Method::Spline, Goal::point(GOAL), p)?),
         { Positive: turn_speed, creep_speed, tolerance, heading_tolerance, period; Bounded: spline_scale;
           AnyCount: corrections; } but follower);
     check!(ChaseParameters = ChaseParameters::default(), |p| Chase::new(Method::Dog, p)?.step(Pose::new(1.0, 0.5, 0.0))?,
         { Positive: distance, turn_threshold, period; Bounded: spline_scale; } but follower);
-    let driver = CarDriver { kinematics: Ackermann::new(0.12, 0.1, 0.5).unwrap(), full_speed: 0.5 };
+    let driver = CarDriver::new(Ackermann::new(0.12, 0.1, 0.5).unwrap(), 0.5).unwrap();
     check!(CarToBParameters = CarToBParameters::default(),
         |p| ends(RobotSpec::car(), CarToB::new(Method::Arc, Goal::point(GOAL), driver, p)?),
         { Positive: tolerance, heading_tolerance, steering_time, period, margin; Bounded: spline_scale;
@@ -67,6 +81,13 @@ fn from_a_to_b() {
           Finite: spin; });
     check!(PidParameters = PidParameters::default(), |p| Pid::new(p)?.step(1.0, 0.0, 0.1)?,
         { Finite: proportional, integral, derivative; NotNegative: derivative_filter; } but limits);
+    let limited = |limits| Pid::new(PidParameters { limits, ..PidParameters::default() });
+    for limits in [[f64::NAN, 1.0], [-1.0, f64::NAN], [1.0, -1.0], [1.0, 1.0], [f64::INFINITY, f64::INFINITY]]
+    {
+        let error = limited(limits).unwrap_err().to_string();
+        assert!(error.contains("output limits") && error.contains("expected"), "{limits:?}: {error}");
+    }
+    assert!(limited([f64::NEG_INFINITY, 1e300]).is_ok());
 }
 
 #[test]
@@ -100,6 +121,23 @@ fn walls() {
     check!(LidarWallFollowerParameters = LidarWallFollowerParameters::default(),
         |p| ends(RobotSpec::s4(), AlongWall::new(LidarWallFollower::new(p)?)),
         { Positive: distance, speed, turn_rate, reach, lag, period; } but side);
+    // A sensor that is nowhere, or that points elsewhere.
+    let sensors = WallSensors::default;
+    let nowhere = Pose::new(f64::NAN, 0.0, 0.0);
+    for (sensors, name) in [
+        (WallSensors { front: nowhere, ..sensors() }, "front PSD: x"),
+        (WallSensors { left: Pose::new(0.0, 0.0, f64::NAN), ..sensors() }, "left PSD: direction"),
+        (WallSensors { right: sensors().left, ..sensors() }, "right PSD: direction"),
+    ] {
+        assert_eq!(sensors.validate().unwrap_err().name(), name);
+        let refused = [
+            WallFollower::new(WallFollowerParameters { sensors, ..Default::default() }).map(|_| ()),
+            PidWallFollower::new(PidWallFollowerParameters { sensors, ..Default::default() }).map(|_| ()),
+        ];
+        for answer in refused {
+            assert!(answer.unwrap_err().to_string().contains(name));
+        }
+    }
     for (safe, speed) in [(f64::NAN, 0.2), (0.0, 0.2), (0.3, -1.0), (0.3, f64::INFINITY)] {
         assert!(TwoLevelWallFollower::new(safe, speed).is_err(), "{safe} {speed}");
     }

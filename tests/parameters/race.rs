@@ -8,7 +8,7 @@ use roverlab::race::{
 };
 use roverlab::world::RobotSpec;
 
-use crate::check::{check, ends};
+use crate::check::{check, check_variant, ends};
 
 fn cones() -> Vec<Cone> {
     let edge = |y: f64| (0..6).map(move |k| Cone::unknown(Point::new(3.0 * f64::from(k), y)));
@@ -42,11 +42,11 @@ fn racers() {
     check!(RacerParameters = racer(), |p| ends(RobotSpec::s4(), Racer::new(p)?),
         { AnyCount: laps; Positive: period; } but limits, first_lap, outline, centre_line, map, lane, tracker);
     check!(CarLimits = racer().limits, |p| ends(RobotSpec::s4(), Racer::new(RacerParameters { limits: p, ..racer() })?),
-        { Positive: drive, brake, top_speed; Above: turning; } but hold);
+        { Positive: drive, brake, top_speed; Above: turning; } but grip);
     check!(CarLimits = racer().first_lap, |p| Racer::new(RacerParameters { first_lap: p, ..racer() })?,
-        { Positive: drive, brake, top_speed; Above: turning; } but hold);
+        { Positive: drive, brake, top_speed; Above: turning; } but grip);
     check!(Tyres = Tyres::default(), |p| {
-            let limits = CarLimits { hold: GripLimit::Balance(p), ..racer().limits };
+            let limits = CarLimits { grip: GripLimit::Balance(p), ..racer().limits };
             Racer::new(RacerParameters { limits, ..racer() })?;
             let _ = SpeedProfile::closed(&ring(9.0), &limits)?;
         },
@@ -58,6 +58,9 @@ fn racers() {
             ends(RobotSpec::s4(), EventRacer::acceleration(p)?);
         },
         { Bounded: strip; Positive: entry, patience, period; BoundedFromZero: stop; } but limits, outline, map, tracker);
+    check_variant!(GripLimit::Ellipse = GripLimit::Ellipse { across: 5.0, turned: 0.5, along: 5.0 },
+        |p| Racer::new(RacerParameters { limits: CarLimits { grip: p, ..racer().limits }, ..racer() })?,
+        { Positive: across, along; BoundedFromZero: turned; });
     for speed in [f64::NAN, -1.0, 0.0, 1e300] {
         assert!(GapDriver::with_speed(speed).is_err(), "{speed}");
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use roverlab::geometry::{Point, Pose, Segment, Twist, math};
 use roverlab::io::sim::{Fleet, SimOptions, Simulation};
-use roverlab::io::{Clock, Drive, Motors};
+use roverlab::io::{Clock, Drive, Manoeuvres, Motors, Odometry, StallDetector};
 use roverlab::world::{Object, ObjectKind, RobotSpec, Scene, Shape, Wall, World};
 
 use crate::common::{degrees_between, robots, start};

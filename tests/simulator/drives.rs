@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use proptest::prelude::*;
 use roverlab::geometry::{Pose, Twist};
 use roverlab::io::sim::{SimOptions, SimRobot, Truth};
-use roverlab::io::{Clock, Drive, Encoders, ErrorKind, Motors, Servos};
+use roverlab::io::{Clock, Drive, Encoders, ErrorKind, Manoeuvres, Motors, Odometry, Servos};
 use roverlab::kinematics::{Displacement, PlanarTwist, advance, advance_planar};
 use roverlab::world::{RobotSpec, Scene, World};
 

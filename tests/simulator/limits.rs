@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use roverlab::geometry::{Pose, Twist};
 use roverlab::io::sim::{Fleet, NoiseModel, SimOptions, SimRobot, Simulation, TICK};
 use roverlab::io::{
-    Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Key, Keys, Lidar, LidarSettings, Motors, Psd,
-    Radio, Servos,
+    Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Key, Keys, Lidar, LidarSettings, Manoeuvres,
+    Motors, Odometry, Psd, Radio, Servos,
 };
 use roverlab::world::{DriveSpec, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 

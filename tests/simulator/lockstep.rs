@@ -7,7 +7,9 @@ use std::time::Duration;
 use roverlab::geometry::{Pose, Twist, direction};
 use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
 use roverlab::io::wrappers::Traced;
-use roverlab::io::{Clock, DistanceSensors, Drive, Keys, Lidar, Psd, Radio, Result};
+use roverlab::io::{
+    Clock, DistanceSensors, Drive, Keys, Lidar, Manoeuvres, Odometry, Psd, Radio, Result, StallDetector,
+};
 use roverlab::random::Stream;
 
 use crate::common::robots;

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use proptest::prelude::*;
 use roverlab::geometry::{Pose, Twist, math};
 use roverlab::io::sim::{SimOptions, SimRobot, TICK};
-use roverlab::io::{Clock, Drive, Encoders, Motors};
+use roverlab::io::{Clock, Drive, Encoders, Manoeuvres, Motors, Odometry};
 use roverlab::kinematics::{Displacement, advance};
 use roverlab::world::{MotorSpec, RobotSpec, Scene, World};
 

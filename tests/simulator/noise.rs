@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use roverlab::geometry::{Pose, angle_difference};
 use roverlab::io::sim::{NoiseModel, SimOptions};
-use roverlab::io::{DistanceSensors, Drive, Lidar, Psd};
+use roverlab::io::{DistanceSensors, Lidar, Manoeuvres, Odometry, Psd};
 use roverlab::kinematics::{Displacement, advance};
 use roverlab::world::{RobotSpec, Scene, World};
 

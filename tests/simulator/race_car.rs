@@ -6,7 +6,10 @@ use std::thread;
 use roverlab::geometry::{Point, Pose, Twist, angle_difference, math};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::wrappers::Traced;
-use roverlab::io::{Camera, Clock, Drive, Encoders, ErrorKind, Lidar, Motors, Radio, Resolution, RobotIo};
+use roverlab::io::{
+    Camera, Clock, Drive, Encoders, ErrorKind, Lidar, Manoeuvres, Motors, Odometry, Radio, Resolution,
+    RobotIo, StallDetector,
+};
 use roverlab::race::{Cone, ConeColour, ConeTrack};
 use roverlab::world::formats::{MemoryFiles, esobj, robi, sim};
 use roverlab::world::{RobotSpec, Scene, World};

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use roverlab::geometry::{Pose, Twist};
 use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
-use roverlab::io::{Clock, Drive, Error, ErrorKind, Radio};
+use roverlab::io::{Clock, Drive, Error, ErrorKind, Manoeuvres, Radio};
 use roverlab::world::World;
 
 use crate::common::robots;

@@ -66,7 +66,9 @@ fn numbers<const N: usize>(value: &Value) -> Option<[f64; N]> {
 }
 
 fn wish(wish: &Value) -> Result<Wish, String> {
-    let refused = || format!("wishes: found {wish}; expected a time with a robot or an object and its pose, or with a key");
+    let refused = || {
+        format!("wishes: found {wish}; expected a time with a robot or an object and its pose, or with a key")
+    };
     let time = wish["time"].as_f64().ok_or_else(refused)?;
     let index = |name: &str| wish[name].as_u64().and_then(|index| usize::try_from(index).ok());
     let pose = numbers::<3>(&wish["pose"]).map(|[x, y, heading]| Pose::new(x, y, heading));

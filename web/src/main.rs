@@ -16,7 +16,8 @@ fn main() -> std::io::Result<()> {
     let told = Arc::clone(&ended);
     run(Job { words, ..Job::default() }, move |message, bytes| {
         if message == Message::Ended {
-            *told.lock().unwrap_or_else(PoisonError::into_inner) = String::from_utf8_lossy(bytes).into_owned();
+            *told.lock().unwrap_or_else(PoisonError::into_inner) =
+                String::from_utf8_lossy(bytes).into_owned();
         }
     });
     writeln!(out, "{}", ended.lock().unwrap_or_else(PoisonError::into_inner))

@@ -17,14 +17,16 @@ use crate::{Digest, Job, Message, Thing, Wish, overlay, scene};
 /// Runs a job, and tells what happens in messages.
 pub fn run(job: Job, tell: impl FnMut(Message, &[u8]) + Send + 'static) {
     let Job { words, files, wishes, walls, from } = job;
-    let mouth = Mouth(Arc::new(Mutex::new(Telling { tell: Box::new(tell), digest: Digest::default(), time: 0.0 })));
+    let mouth =
+        Mouth(Arc::new(Mutex::new(Telling { tell: Box::new(tell), digest: Digest::default(), time: 0.0 })));
     let page = Page { mouth: mouth.clone(), files, wishes, walls, from };
     let ended = run_words(words.into_iter().map(OsString::from), Some(Box::new(page)));
     let digest = mouth.with(|telling| {
         telling.digest.add(ended.output.as_bytes());
         telling.digest.to_string()
     });
-    let ended = json!({ "status": ended.status, "output": ended.output, "errors": ended.errors, "digest": digest });
+    let ended =
+        json!({ "status": ended.status, "output": ended.output, "errors": ended.errors, "digest": digest });
     mouth.say(Message::Ended, ended.to_string().as_bytes());
 }
 
@@ -80,7 +82,9 @@ impl Onlooker for Page {
     fn file(&mut self, name: &str) -> Option<Vec<u8>> {
         let last = |name: &str| name.rsplit(['/', '\\']).next().unwrap_or_default().to_lowercase();
         let found = self.files.get(name);
-        found.or_else(|| self.files.iter().find(|(other, _)| last(other) == last(name)).map(|(_, file)| file)).cloned()
+        found
+            .or_else(|| self.files.iter().find(|(other, _)| last(other) == last(name)).map(|(_, file)| file))
+            .cloned()
     }
 
     fn scene(&mut self, scene: &mut Scene) -> Box<dyn Watcher> {

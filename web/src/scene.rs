@@ -57,8 +57,12 @@ fn robot(robot: &RobotPlacement) -> Value {
     };
     let (kind, wheel, track, wheelbase) = match spec.drive {
         DriveSpec::Differential { wheel_diameter, track, .. } => ("differential", wheel_diameter, track, 0.0),
-        DriveSpec::Ackermann { wheel_diameter, track, wheelbase, .. } => ("car", wheel_diameter, track, wheelbase),
-        DriveSpec::Omni { wheel_diameter, track, wheelbase, .. } => ("omni", wheel_diameter, track, wheelbase),
+        DriveSpec::Ackermann { wheel_diameter, track, wheelbase, .. } => {
+            ("car", wheel_diameter, track, wheelbase)
+        }
+        DriveSpec::Omni { wheel_diameter, track, wheelbase, .. } => {
+            ("omni", wheel_diameter, track, wheelbase)
+        }
         _ => ("other", 0.0, 0.0, 0.0),
     };
     let psds = spec.psds.iter().map(|psd| {

@@ -1,13 +1,13 @@
 use roverlab::drive::{Chase, ChaseOutcome, ChaseParameters};
 use roverlab::geometry::{Pose, Twist, units};
-use roverlab::io::{self, Clock, Drive, control};
+use roverlab::io::{self, Clock, Drive, Odometry, StallDetector, control};
 use roverlab::kinematics::{Displacement, advance};
 use roverlab::picture::{Mark, Picture, Style};
 
 use super::Args;
 use super::drive::Options;
 use crate::common::{Failure, Outcome, Report, Trip, millimetres, point_in_mm, rounded};
-use crate::driving::{Conditions, Run, drawn, paced};
+use crate::driving::{Conditions, Run, paced};
 
 /// A goal that drives ahead from where it is, along an arc.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,7 +48,7 @@ pub(super) fn parse_moving(text: &str) -> Result<Twist, String> {
 }
 
 /// Drives a robot after a goal that moves. Where that is, the robot is told in the frame of its odometry.
-fn chase<R: Clock + Drive + ?Sized>(
+fn chase<R: Clock + Drive + Odometry + StallDetector + ?Sized>(
     robot: &mut R,
     options: &Options,
     quarry: &Quarry,
@@ -85,20 +85,19 @@ pub(super) fn work(
         conditions.run(&trip.scene, paced(common), |robot, step| chase(robot, options, &quarry, step))?;
     let seconds = run.ending.as_ref().map_or(run.sim_time, |hunt| hunt.seconds);
     let goal = start.compose(&quarry.at(seconds));
-    let (file, trouble) = drawn(common, "a_to_b.svg", || picture(args, trip, &run, &quarry, seconds));
     let report = run.report(|hunt| match hunt.outcome {
         ChaseOutcome::Caught => Outcome::verdict("caught"),
         ChaseOutcome::Blocked => Outcome::failure("blocked"),
         _ => Outcome::failure("timed_out"),
     });
-    Ok(Report { trouble, ..report }
+    let report = report
         .field("method", args.method.name())
         .field("goal", point_in_mm(goal.position()))
         .field("goal_heading_deg", rounded(units::to_deg(goal.heading)))
         .field("position_error_mm", millimetres(run.truth.pose.distance_to(goal.position())))
         .field("heading_error_deg", None::<f64>)
-        .field("time_limit_s", conditions.time_limit)
-        .field("picture", file))
+        .field("time_limit_s", conditions.time_limit);
+    Ok(common.draw(report, "a_to_b.svg", || picture(args, trip, &run, &quarry, seconds)))
 }
 
 /// The ways of both.
@@ -114,15 +113,9 @@ fn picture(args: &Args, trip: &Trip, run: &Run<Hunt>, quarry: &Quarry, seconds: 
     picture.title(format!("After a moving goal by {}: {ending}", args.method.name()));
     picture.caption(format!("{seconds:.0} s, noise {}, seed {}", args.common.noise, args.common.seed));
     let times = (0..=STEPS).map(|step| seconds * f64::from(step) / f64::from(STEPS));
-    let way = times.map(|time| start.to_world(quarry.at(time).position()));
-    picture.line(way, Style::plan().labelled("the goal"));
-    picture.true_path(run.positions());
-    picture.odometry_path(run.odometry_path.iter().copied());
-    picture.robot(run.truth.pose, &trip.spec().footprint);
-    picture.mark(Mark::Start, start.position());
+    let way = times.map(|time| (time, start.to_world(quarry.at(time).position())));
+    picture.trace(way, Style::plan().labelled("the goal"));
+    run.draw(&mut picture, trip.spec());
     picture.mark(Mark::Goal, start.to_world(quarry.at(seconds).position()));
-    for &point in &run.truth.contact_places {
-        picture.mark(Mark::Contact, point);
-    }
     picture
 }

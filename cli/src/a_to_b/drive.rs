@@ -1,6 +1,6 @@
 use roverlab::drive::{AToB, AToBOutcome, AToBParameters, Goal, Method, Path};
 use roverlab::geometry::Point;
-use roverlab::io::{self, Clock, Drive, Lidar, LidarScan, control};
+use roverlab::io::{self, Clock, Drive, Lidar, LidarScan, Manoeuvres, Odometry, StallDetector, control};
 use roverlab::kinematics::{Differential, OdometryErrors, OdometryUncertainty};
 use roverlab::scan::{Landmark, LandmarkFilter};
 
@@ -41,7 +41,7 @@ pub(crate) struct Arrival {
 }
 
 /// Drives a robot to a goal. `watch` is called after each step.
-pub(crate) fn drive<R: Clock + Drive + Lidar + ?Sized>(
+pub(crate) fn drive<R: Clock + Drive + Odometry + Manoeuvres + StallDetector + Lidar + ?Sized>(
     robot: &mut R,
     options: &Options,
     mut watch: impl FnMut(),

@@ -8,7 +8,7 @@ use roverlab::world::{DriveSpec, RobotSpec};
 use super::drive::{Arrival, Options, drive};
 use super::{Args, campaign, chase, picture, scene};
 use crate::common::{Failure, Outcome, Report, StandIn, Trip, millimetres, point_in_mm, rounded};
-use crate::driving::{self, Conditions, Run, check_drive, drawn, paced};
+use crate::driving::{self, Conditions, Run, check_drive, paced};
 
 /// Half of the robots' squared distances, in standard deviations, are below 1.39; 95 of 100 below this.
 pub(crate) const NINETY_FIVE: f64 = 5.991;
@@ -45,10 +45,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     }
     common.tell(format_args!("{} to {} mm by {}", trip.spec().name, in_words(trip.goal), args.method.name()));
     let run = conditions.run(&trip.scene, paced(common), |robot, step| drive(robot, &options, step))?;
-    let (file, trouble) =
-        drawn(common, "a_to_b.svg", || picture::of(args, &trip, &run, &conditions, heading));
-    let report = report(args, &trip, &run, heading, conditions.time_limit).field("picture", file);
-    Ok(Report { trouble, ..report })
+    let report = report(args, &trip, &run, heading, conditions.time_limit);
+    Ok(common.draw(report, "a_to_b.svg", || picture::of(args, &trip, &run, &conditions, heading)))
 }
 
 /// Metres to the goal by way of all places on the way.

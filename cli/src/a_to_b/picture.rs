@@ -7,7 +7,7 @@ use super::Args;
 use super::drive::Arrival;
 use super::job::ellipse;
 use crate::common::Trip;
-use crate::driving::{Conditions, Run};
+use crate::driving::{Conditions, Run, pale};
 
 /// A picture of a run: the plan, where the robot was and believed to be, and where odometry may be wrong.
 pub(crate) fn of(
@@ -18,7 +18,6 @@ pub(crate) fn of(
     heading: Option<f64>,
 ) -> Picture {
     let start = trip.start();
-    let pale = Style::new(Colour::from_hex(0x8a_90_9c)).opacity(0.5);
     let mut picture = Picture::new(&trip.scene.world);
     picture.title(title(args, run)).caption(caption(trip, run, conditions, heading));
     if let Ok(arrival) = &run.ending {
@@ -30,18 +29,12 @@ pub(crate) fn of(
             Style::new(Colour::from_hex(0xb0_60_20)).filled(0.15).labelled("95 % ellipse of odometry");
         picture.polygon(outline(start, arrival), style);
     }
-    picture.true_path(run.positions());
-    picture.odometry_path(run.odometry_path.iter().copied());
-    picture.robot_with(start, &trip.spec().footprint, pale.clone());
+    picture.robot_with(start, &trip.spec().footprint, pale());
     if let Some(heading) = heading {
-        picture.robot_with(Pose::new(trip.goal.x, trip.goal.y, heading), &trip.spec().footprint, pale);
+        picture.robot_with(Pose::new(trip.goal.x, trip.goal.y, heading), &trip.spec().footprint, pale());
     }
-    picture.robot(run.truth.pose, &trip.spec().footprint);
-    picture.mark(Mark::Start, start.position());
+    run.draw(&mut picture, trip.spec());
     picture.mark(Mark::Goal, trip.goal);
-    for &point in &run.truth.contact_places {
-        picture.mark(Mark::Contact, point);
-    }
     picture
 }
 

@@ -3,7 +3,7 @@
 use roverlab::drive::{CarDriver, CarOutcome, CarToB, CarToBParameters, Goal, Method, Path};
 use roverlab::geometry::{Pose, angle_difference, normalize_angle, units};
 use roverlab::io::control::run;
-use roverlab::io::{self, Clock, Drive, Motors, Servos};
+use roverlab::io::{self, Clock, Motors, Odometry, Servos, StallDetector};
 use roverlab::kinematics::Ackermann;
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, Marker, RobotSpec, Scene, World};
@@ -11,7 +11,7 @@ use roverlab::world::{Colour, DriveSpec, Marker, RobotSpec, Scene, World};
 use crate::common::{
     CommonArgs, Failure, GoalOption, Outcome, Report, StandIn, Trip, millimetres, point_in_mm, rounded,
 };
-use crate::driving::{Conditions, Run, Way, check_drive, drawn, paced};
+use crate::driving::{Conditions, Run, Way, check_drive, paced, pale};
 
 /// The command line of `ackermann`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -59,7 +59,7 @@ pub(crate) struct Arrival {
 }
 
 /// Drives a car to a goal. `watch` is called after each step.
-pub(crate) fn drive<R: Clock + Drive + Motors + Servos + ?Sized>(
+pub(crate) fn drive<R: Clock + Odometry + StallDetector + Motors + Servos + ?Sized>(
     robot: &mut R,
     options: &Options,
     mut watch: impl FnMut(),
@@ -99,12 +99,10 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         time_limit: conditions.time_limit,
     };
     let run = conditions.run(&trip.scene, paced(common), |robot, step| drive(robot, &options, step))?;
-    let (file, trouble) = drawn(common, "ackermann.svg", || picture(args, &trip, &run, &conditions, heading));
     let report = report(args, &trip, &run, heading)
-        .field("turning_radius_mm", millimetres(driver.kinematics.turning_radius()))
-        .field("time_limit_s", conditions.time_limit)
-        .field("picture", file);
-    Ok(Report { trouble, ..report })
+        .field("turning_radius_mm", millimetres(driver.kinematics().turning_radius()))
+        .field("time_limit_s", conditions.time_limit);
+    Ok(common.draw(report, "ackermann.svg", || picture(args, &trip, &run, &conditions, heading)))
 }
 
 /// The heading at the goal of the command's own scene.
@@ -136,7 +134,7 @@ fn driver(spec: &RobotSpec) -> Result<CarDriver, Failure> {
         return Err(Failure::input("found no car; expected one"));
     };
     let kinematics = Ackermann::new(wheelbase, track, max_steering).map_err(Failure::input)?;
-    Ok(CarDriver { kinematics, full_speed: 0.5 * wheel_diameter * max_wheel_speed })
+    CarDriver::new(kinematics, 0.5 * wheel_diameter * max_wheel_speed).map_err(Failure::input)
 }
 
 fn report(args: &Args, trip: &Trip, run: &Run<Arrival>, heading: Option<f64>) -> Report {
@@ -164,7 +162,6 @@ fn picture(
     heading: Option<f64>,
 ) -> Picture {
     let (start, outline) = (trip.start(), trip.spec().footprint);
-    let pale = Style::new(Colour::from_hex(0x8a_90_9c)).opacity(0.5);
     let mut picture = Picture::new(&trip.scene.world);
     let ending = match &run.ending {
         Ok(arrival) if arrival.outcome == CarOutcome::Reached => "goal reached",
@@ -179,17 +176,11 @@ fn picture(
         let points = plan.points().iter().map(|point| start.to_world(point.pose.position()));
         picture.line(points, Style::plan());
     }
-    picture.true_path(run.positions());
-    picture.odometry_path(run.odometry_path.iter().copied());
-    picture.robot_with(start, &outline, pale.clone());
+    picture.robot_with(start, &outline, pale());
     if let Some(heading) = heading {
-        picture.robot_with(Pose::new(trip.goal.x, trip.goal.y, heading), &outline, pale);
+        picture.robot_with(Pose::new(trip.goal.x, trip.goal.y, heading), &outline, pale());
     }
-    picture.robot(run.truth.pose, &outline);
-    picture.mark(Mark::Start, start.position());
+    run.draw(&mut picture, trip.spec());
     picture.mark(Mark::Goal, trip.goal);
-    for &point in &run.truth.contact_places {
-        picture.mark(Mark::Contact, point);
-    }
     picture
 }

@@ -42,15 +42,14 @@ pub(super) fn campaign(args: &Args) -> Result<Report, Failure> {
     args.common.tell(text(args.bugs(), &checked));
     let good = checked.iter().all(|run| (run.correct || !run.complete) && !breaks(run));
     let outcome = if good { Outcome::verdict("passed") } else { Outcome::failure("wrong") };
-    Ok(Report {
+    let report = Report {
         sim_time: Some(checked.iter().map(|run| run.sim_time).sum()),
         collisions: Some(checked.iter().map(|run| u64::from(run.contacts)).sum()),
-        trouble: job::drawn(args, None).err().map(|failure| failure.to_string()),
         ..Report::new(outcome)
     }
     .field("courses", courses)
-    .table("bugs", json(args.bugs(), &checked))
-    .field("picture", args.common.picture.as_deref()))
+    .table("bugs", json(args.bugs(), &checked));
+    job::drawn(args, report, None)
 }
 
 /// Lets all algorithms drive through the course of one seed.

@@ -19,22 +19,18 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     // Errors of odometry can lead any algorithm astray: verdicts are judged without noise alone.
     let good = args.common.noise > 0.0 || table::all_correct(&rows);
     let outcome = if good { Outcome::verdict("compared") } else { Outcome::failure("wrong") };
-    let trouble =
-        drawn(args, entries.first().filter(|_| is_recorded)).err().map(|failure| failure.to_string());
-    Ok(summed(outcome, &entries, trouble)
-        .table("rows", table::json(&rows))
-        .table("runs", table::json_runs(&rows))
-        .field("picture", args.common.picture.as_deref()))
+    let report =
+        summed(outcome, &entries).table("rows", table::json(&rows)).table("runs", table::json_runs(&rows));
+    drawn(args, report, entries.first().filter(|_| is_recorded))
 }
 
 /// A report with the sums over all rides.
-pub(super) fn summed(outcome: Outcome, entries: &[Entry], trouble: Option<String>) -> Report {
+pub(super) fn summed(outcome: Outcome, entries: &[Entry]) -> Report {
     let rides = || entries.iter().flat_map(|entry| &entry.rides);
     Report {
         sim_time: Some(rides().map(|ride| ride.sim_time).sum()),
         collisions: Some(rides().map(|ride| u64::from(ride.contacts)).sum()),
         path_length: Some(rides().map(|ride| ride.path_length).sum()),
-        trouble,
         ..Report::new(outcome)
     }
 }
@@ -76,8 +72,11 @@ pub(super) fn own_trip(args: &Args) -> Result<Trip, Failure> {
 }
 
 /// Draws the paths of all algorithms on one world, if asked for: those that were recorded, or new ones.
-pub(super) fn drawn(args: &Args, recorded: Option<&Entry>) -> Result<(), Failure> {
-    let Some(file) = &args.common.picture else { return Ok(()) };
+pub(super) fn drawn(args: &Args, report: Report, recorded: Option<&Entry>) -> Result<Report, Failure> {
+    let common = &args.common;
+    if common.picture.is_none() && common.animation.is_none() {
+        return Ok(report.field("picture", None::<&str>));
+    }
     let new;
     let Entry { setting, rides } = if let Some(recorded) = recorded {
         recorded
@@ -89,7 +88,5 @@ pub(super) fn drawn(args: &Args, recorded: Option<&Entry>) -> Result<(), Failure
         new = Entry { setting, rides };
         &new
     };
-    picture::of(setting, rides, setting.conditions(args)).save(file)?;
-    args.common.tell(format_args!("picture: {}", file.display()));
-    Ok(())
+    Ok(common.draw(report, "bug_compare.svg", || picture::of(setting, rides, setting.conditions(args))))
 }

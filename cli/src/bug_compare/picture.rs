@@ -1,41 +1,39 @@
-use std::f64::consts::TAU;
-
-use roverlab::geometry::{Point, direction};
-use roverlab::picture::{Mark, Picture, Style, ramp};
+use roverlab::geometry::Point;
+use roverlab::picture::{Mark, Picture, SERIES, Style};
 
 use super::contest::Setting;
 use super::ride::{Conditions, Ending, Ride};
 
-/// Metres that paths are moved aside by, so that those along the same wall do not hide each other.
-const ASIDE: f64 = 0.012;
-
-/// A picture of one world with the paths of all algorithms.
+/// The world once for each algorithm, with its path.
 pub(super) fn of(setting: &Setting, rides: &[Ride], conditions: Conditions) -> Picture {
     let trip = &setting.trip;
-    let mut picture = Picture::new(&trip.scene.world);
+    let panel = |(index, ride): (usize, &Ride)| {
+        let mut panel = Picture::new(&trip.scene.world);
+        let style = Style::new(SERIES[index % SERIES.len()]).width(2.0);
+        panel.title(label(ride)).mark(Mark::Start, trip.start().position()).mark(Mark::Goal, trip.goal);
+        panel.trace(timed(ride), style);
+        panel
+    };
+    let panels: Vec<Picture> = rides.iter().enumerate().map(panel).collect();
+    let mut picture = Picture::panels(&panels, 4);
     let way = setting.shortest.map_or("no way to the goal".into(), |way| format!("shortest way {way:.1} m"));
-    picture.title(format!("The bug family: {}", setting.family)).caption(format!(
-        "{way}, noise {}, seed {}; lines are moved aside by up to {:.0} mm",
-        conditions.noise,
-        conditions.seed,
-        1e3 * ASIDE
-    ));
-    for (index, ride) in rides.iter().enumerate() {
-        let share = index as f64 / rides.len() as f64;
-        let aside = direction(TAU * share) * ASIDE;
-        let style = Style::new(ramp(share)).width(1.6).labelled(label(ride));
-        picture.line(ride.path.iter().map(|point: &Point| point + aside), style);
-    }
-    picture.robot(trip.start(), &trip.spec().footprint);
-    picture.mark(Mark::Start, trip.start().position());
-    picture.mark(Mark::Goal, trip.goal);
     picture
+        .title(format!("The bug family: {}", setting.family))
+        .caption(format!("{way}, noise {}, seed {}", conditions.noise, conditions.seed));
+    picture
+}
+
+/// When it was where: its steps take equally long.
+fn timed(ride: &Ride) -> impl Iterator<Item = (f64, Point)> {
+    let step = ride.sim_time / ride.path.len().saturating_sub(1).max(1) as f64;
+    (0_u32..).zip(&ride.path).map(move |(index, point)| (f64::from(index) * step, *point))
 }
 
 fn label(ride: &Ride) -> String {
     let (name, metres) = (ride.kind.name(), ride.path_length);
     match &ride.ending {
-        Ending::Verdict(_) => format!("{name}: {}, {metres:.1} m", ride.ending.word().replace('_', " ")),
-        Ending::Failed(_) => format!("{name}: the robot failed"),
+        Ending::Verdict(_) if ride.ending.word() == "reached" => format!("{name}: {metres:.1} m"),
+        Ending::Verdict(_) => format!("{name}: {}", ride.ending.word().replace('_', " ")),
+        Ending::Failed(_) => format!("{name}: failed"),
     }
 }

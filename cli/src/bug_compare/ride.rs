@@ -31,6 +31,7 @@ impl Ending {
         match self {
             Self::Verdict(BugOutcome::Reached) => "reached",
             Self::Verdict(BugOutcome::Unreachable) => "unreachable",
+            Self::Verdict(BugOutcome::NoRoom) => "no_room",
             Self::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped) => "timed_out",
             Self::Failed(_) => "failed",
         }
@@ -64,7 +65,7 @@ impl Ride {
         let tolerance = if noise == 0.0 { 0.050 } else { 0.250 };
         match self.ending {
             Ending::Verdict(BugOutcome::Reached) => reachable && self.goal_distance <= tolerance,
-            Ending::Verdict(BugOutcome::Unreachable) => !reachable,
+            Ending::Verdict(BugOutcome::Unreachable | BugOutcome::NoRoom) => !reachable,
             _ => false,
         }
     }

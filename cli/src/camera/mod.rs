@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 
 use image::RgbImage;
+use roverlab::geometry::{Pose, direction};
 use roverlab::io::{self, Camera, Clock, Display, DisplayImage, Resolution, Servos, Viewport};
-use roverlab::picture::Picture;
+use roverlab::picture::{Picture, Style};
 use roverlab::vision::{GrayView, GrayViewMut, GrayWeights, ImageError, gray_into};
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, Stopwatch, rounded, write_image};
-use crate::driving::{Conditions, Run, drawn, paced};
+use crate::driving::{Conditions, Run, paced, pale};
 use crate::room;
+use roverlab::world::Scene;
 
 /// The command line of `camera`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -57,7 +59,7 @@ pub(crate) struct Args {
 }
 
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
-    ("always", &["goal"]),
+    ("always", &["goal", "animation"]),
 ]);
 
 /// A size of images by its name on the command line.
@@ -108,15 +110,6 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let run =
         conditions.run(&scene, paced(common), |robot, step| look(robot, size, head, args.images, step))?;
     let output = save(args, &run)?;
-    let (file, trouble) = drawn(common, "camera.svg", || {
-        let mut drawing = Picture::new(&scene.world);
-        drawing.title("What the camera has before it");
-        for other in &scene.robots[1..] {
-            drawing.robot(other.pose, &other.spec.footprint);
-        }
-        drawing.robot(run.truth.pose, &scene.robots[0].spec.footprint);
-        drawing
-    });
     let seen = run.ending.as_ref().ok();
     let (width, height) = seen.map_or((0, 0), |seen| seen.image.dimensions());
     let report = run
@@ -126,13 +119,34 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         .field("images", args.images)
         .field("output", output)
         .field("mean_brightness", seen.and_then(|seen| brightness(&seen.image).ok()).map(rounded))
-        .timing("images_per_s", seen.map_or(f64::NAN, |seen| f64::from(args.images) / seen.seconds.max(1e-9)))
-        .field("picture", file);
-    Ok(Report { trouble, ..report })
+        .timing(
+            "images_per_s",
+            seen.map_or(f64::NAN, |seen| f64::from(args.images) / seen.seconds.max(1e-9)),
+        );
+    Ok(common.draw(report, "camera.svg", || drawing(&scene, run.truth.pose)))
+}
+
+/// The scene from above, with what the camera can see.
+fn drawing(scene: &Scene, pose: Pose) -> Picture {
+    let spec = &scene.robots[0].spec;
+    let mut drawing = Picture::new(&scene.world);
+    drawing.title("What the camera has before it");
+    if let Some(camera) = spec.camera {
+        let half = 0.5 * camera.field_of_view;
+        let reach = 0.25 * scene.world.floor.size().max();
+        let rim = (-8..=8).map(|i| direction(pose.heading + half * f64::from(i) / 8.0) * reach);
+        let corners = std::iter::once(pose.position()).chain(rim.map(|edge| pose.position() + edge));
+        drawing.polygon(corners, Style::aid().filled(0.15).labelled("field of view"));
+    }
+    for other in &scene.robots[1..] {
+        drawing.robot_with(other.pose, &other.spec.footprint, pale().labelled("another robot"));
+    }
+    drawing.robot(pose, &spec.footprint);
+    drawing
 }
 
 /// Positions of the head's servos for the angles of the options, behind those of the drive.
-fn head(args: &Args, scene: &roverlab::world::Scene) -> Result<[(u8, f64); 2], Failure> {
+fn head(args: &Args, scene: &Scene) -> Result<[(u8, f64); 2], Failure> {
     let spec = &scene.robots[0].spec;
     let Some(camera) = spec.camera else {
         return Err(Failure::input(format!(

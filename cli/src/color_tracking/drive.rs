@@ -4,7 +4,10 @@ use roverlab::drive::colour::{
 };
 use roverlab::geometry::Point;
 use roverlab::io::control::run;
-use roverlab::io::{self, Camera, Clock, Display, DisplayImage, Drive, ErrorKind, Lidar, Pixel, Viewport};
+use roverlab::io::{
+    self, Camera, Clock, Display, DisplayImage, Drive, ErrorKind, Lidar, Odometry, Pixel, StallDetector,
+    Viewport,
+};
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod, Sighting, teach_hue};
 use roverlab::world::Colour;
 
@@ -45,7 +48,7 @@ fn failure(error: &roverlab::vision::ImageError) -> io::Error {
 }
 
 /// Drives by a hue. `watch` is called after each step.
-pub(crate) fn drive<R: Camera + Clock + Display + Drive + Lidar + ?Sized>(
+pub(crate) fn drive<R: Camera + Clock + Display + Drive + Odometry + StallDetector + Lidar + ?Sized>(
     robot: &mut R,
     hue: u8,
     options: &Options,

@@ -1,5 +1,5 @@
 use roverlab::io::Key;
-use roverlab::picture::{Mark, Picture};
+use roverlab::picture::Picture;
 use roverlab::vision::{CameraGeometry, ColourFinder};
 use roverlab::vision::{HueRange, HueScale, hue};
 use roverlab::world::{Colour, Footprint, Object, Scene};
@@ -7,7 +7,7 @@ use roverlab::world::{Colour, Footprint, Object, Scene};
 use super::drive::{Ended, Options, drive, nearest, teach};
 use super::{Args, Job, campaign, scene};
 use crate::common::{Failure, Outcome, Report, millimetres};
-use crate::driving::{Conditions, Run, drawn, paced};
+use crate::driving::{Conditions, Run, paced};
 
 /// The hue that is taught, if none is given: a red card's.
 const CARD: Colour = Colour::new(200, 24, 24);
@@ -28,11 +28,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         ..Conditions::new(common, TIME_LIMIT)?
     };
     let (hue, run) = one(args, &scene, &conditions, &mut paced(common))?;
-    let (file, trouble) = drawn(common, "color_tracking.svg", || picture(&scene, &run));
-    let report = report(args, &scene, (hue, &run))?
-        .field("time_limit_s", conditions.time_limit)
-        .field("picture", file);
-    Ok(Report { trouble, ..report })
+    let report = report(args, &scene, (hue, &run))?.field("time_limit_s", conditions.time_limit);
+    Ok(common.draw(report, "color_tracking.svg", || picture(&scene, &run)))
 }
 
 /// Teaches the robot the card's hue unless one is given, then lets it drive. Returns the hue as well.
@@ -145,14 +142,7 @@ fn picture(scene: &Scene, run: &Run<Ended>) -> Picture {
         (object.pose.x, object.pose.y) = (place.x, place.y);
     }
     let mut picture = Picture::new(&world);
-    let start = scene.robots[0].pose;
     picture.title("Driving by colour");
-    picture.true_path(run.positions());
-    picture.odometry_path(run.odometry_path.iter().copied());
-    picture.robot(run.truth.pose, &scene.robots[0].spec.footprint);
-    picture.mark(Mark::Start, start.position());
-    for &point in &run.truth.contact_places {
-        picture.mark(Mark::Contact, point);
-    }
+    run.draw(&mut picture, &scene.robots[0].spec);
     picture
 }

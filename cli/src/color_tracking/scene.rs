@@ -9,8 +9,15 @@ use roverlab::world::{Billboard, Colour, Object, ObjectKind, RobotSpec, Scene, S
 /// Metres across the room, and between the rims of two things at least.
 const ROOM: f64 = 4.0;
 const BETWEEN: f64 = 0.35;
-/// Hues of other things: yellow, green, cyan, blue, violet.
-const OTHERS: [u32; 6] = [0xe0_c0_10, 0x30_a0_30, 0x20_a0_a0, 0x20_50_c8, 0x70_30_b0, 0x10_80_50];
+/// Hues of other things.
+const OTHERS: [(&str, u32); 6] = [
+    ("yellow", 0xe0_c0_10),
+    ("green", 0x30_a0_30),
+    ("cyan", 0x20_a0_a0),
+    ("blue", 0x20_50_c8),
+    ("violet", 0x70_30_b0),
+    ("sea-green", 0x10_80_50),
+];
 
 /// A room with a red can and things of other hues, everything where the seed puts it. The can is the first object.
 pub(crate) fn drawn(seed: u64) -> Scene {
@@ -25,13 +32,14 @@ pub(crate) fn drawn(seed: u64) -> Scene {
     let can = ObjectKind::predefined("can").unwrap_or_else(|| ObjectKind::new("can", CAN, Colour::RED));
     add(&mut world, &mut stream, &mut places, can, 1.0);
     for _ in 0..3 + stream.below(5) {
-        let colour = Colour::from_hex(OTHERS[stream.below(OTHERS.len())]);
-        let shape = match stream.below(3) {
-            0 => CAN,
-            1 => Shape::Sphere { radius: stream.between(0.05, 0.12) },
-            _ => Shape::Box { length: 0.2, width: 0.15, height: stream.between(0.08, 0.25) },
+        let (hue, colour) = OTHERS[stream.below(OTHERS.len())];
+        let (form, shape) = match stream.below(3) {
+            0 => ("can", CAN),
+            1 => ("ball", Shape::Sphere { radius: stream.between(0.05, 0.12) }),
+            _ => ("box", Shape::Box { length: 0.2, width: 0.15, height: stream.between(0.08, 0.25) }),
         };
-        add(&mut world, &mut stream, &mut places, ObjectKind::new("thing", shape, colour), 0.0);
+        let kind = ObjectKind::new(format!("{hue} {form}"), shape, Colour::from_hex(colour));
+        add(&mut world, &mut stream, &mut places, kind, 0.0);
     }
     Scene::with_robot(world, RobotSpec::s4(), start)
 }

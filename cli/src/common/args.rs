@@ -6,10 +6,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use roverlab::geometry::Pose;
 use roverlab::io::wrappers::Fault;
+use roverlab::picture::{Picture, SaveError};
 
-use super::values::{GoalOption, parse_goal, parse_noise, parse_picture, parse_pose, parse_seconds};
 use super::library::Library;
-use super::{Failure, Origin, is_same_file, onlooker};
+use super::values::{
+    GoalOption, parse_animation, parse_goal, parse_noise, parse_picture, parse_pose, parse_seconds,
+};
+use super::{Failure, Origin, Report, is_same_file, onlooker};
 
 /// The folder of files that no option names.
 const UNNAMED: &str = "target/pictures";
@@ -50,6 +53,10 @@ pub(crate) struct CommonArgs {
     /// Draw the run into a .svg or .png file.
     #[arg(long, value_name = "FILE", value_parser = parse_picture)]
     pub(crate) picture: Option<PathBuf>,
+
+    /// Draw the run as it moves, again and again, into an .svg file.
+    #[arg(long, value_name = "FILE.svg", value_parser = parse_animation)]
+    pub(crate) animation: Option<PathBuf>,
 
     /// Record the run.
     #[arg(long, value_name = "FILE.mcap")]
@@ -96,6 +103,14 @@ pub(crate) struct CommonArgs {
 /// The options of a command that drives no robot.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct PlainArgs {
+    /// Draw what was done into a .svg or .png file.
+    #[arg(long, value_name = "FILE", value_parser = parse_picture)]
+    pub(crate) picture: Option<PathBuf>,
+
+    /// Draw how it was done, again and again, into an .svg file.
+    #[arg(long, value_name = "FILE.svg", value_parser = parse_animation)]
+    pub(crate) animation: Option<PathBuf>,
+
     /// Seed of what the command draws by itself.
     #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true)]
     pub(crate) seed: u64,
@@ -168,6 +183,7 @@ impl CommonArgs {
             ("--start", self.start.is_some()),
             ("--goal", self.goal.is_some()),
             ("--picture", self.picture.is_some()),
+            ("--animation", self.animation.is_some()),
             ("--fault", !self.fault.is_empty()),
         ];
         refuse(&options, |_| says)
@@ -189,7 +205,17 @@ impl CommonArgs {
 
     /// Fails if pictures cannot be written where the options ask for one, before a long run is in vain.
     pub(crate) fn check_picture(&self) -> Result<(), Failure> {
-        self.picture.as_deref().map_or(Ok(()), |file| check_writable("--picture", file))
+        check_pictures(self.picture.as_deref(), self.animation.as_deref())
+    }
+
+    /// Adds a picture of the run to a report: still, and moving if the options ask for that.
+    pub(crate) fn draw(&self, report: Report, name: &str, picture: impl FnOnce() -> Picture) -> Report {
+        if onlooker::is_there() {
+            onlooker::pictured(picture);
+            return report.field("picture", None::<&str>);
+        }
+        let files = (self.picture_file(name), self.animation.clone());
+        drawn(report, files, |file| self.tell(file), picture)
     }
 
     /// The picture's file: the one that `--picture` names, or one in the folder for what nobody named.
@@ -200,14 +226,8 @@ impl CommonArgs {
     /// The file for an output that no option names: in a folder of its own, and only without `--json`. `None`
     /// if an option names that very file for something else.
     pub(crate) fn unnamed_file(&self, name: &str) -> Option<PathBuf> {
-        if self.json || onlooker::is_there() {
-            return None;
-        }
-        let folder = Path::new(UNNAMED);
-        // If it cannot be made, then saving the file fails, and says why.
-        let _ = fs::create_dir_all(folder);
-        let file = folder.join(name);
-        let named = [&self.picture, &self.record, &self.replay, &self.world, &self.robot];
+        let file = unnamed_file(self.json || onlooker::is_there(), name)?;
+        let named = [&self.picture, &self.animation, &self.record, &self.replay, &self.world, &self.robot];
         let is_named = named.into_iter().flatten().any(|other| is_same_file(other, &file));
         (!is_named).then_some(file)
     }
@@ -217,6 +237,63 @@ impl CommonArgs {
         let parse = |text: &String| text.parse().map_err(|error| Failure::input(format!("--fault: {error}")));
         self.fault.iter().map(parse).collect()
     }
+}
+
+impl PlainArgs {
+    /// As [`CommonArgs::check_picture`].
+    pub(crate) fn check_picture(&self) -> Result<(), Failure> {
+        check_pictures(self.picture.as_deref(), self.animation.as_deref())
+    }
+
+    /// As [`CommonArgs::draw`].
+    pub(crate) fn draw(&self, report: Report, name: &str, picture: impl FnOnce() -> Picture) -> Report {
+        let still = self.picture.clone().or_else(|| unnamed_file(self.json, name));
+        drawn(report, (still, self.animation.clone()), |_| (), picture)
+    }
+}
+
+/// A file in the folder for what no option names; none where a program reads the report.
+fn unnamed_file(json: bool, name: &str) -> Option<PathBuf> {
+    let folder = Path::new(UNNAMED);
+    // If it cannot be made, then saving the file fails, and says why.
+    (!json).then(|| fs::create_dir_all(folder)).map(|_| folder.join(name))
+}
+
+fn check_pictures(still: Option<&Path>, moving: Option<&Path>) -> Result<(), Failure> {
+    still.map_or(Ok(()), |file| check_writable("--picture", file))?;
+    moving.map_or(Ok(()), |file| check_writable("--animation", file))
+}
+
+/// Saves a picture, still and moving, and says where.
+fn drawn(
+    report: Report,
+    (still, moving): (Option<PathBuf>, Option<PathBuf>),
+    tell: impl Fn(String),
+    picture: impl FnOnce() -> Picture,
+) -> Report {
+    let picture = if still.is_some() || moving.is_some() { Some(picture()) } else { None };
+    let mut trouble = Vec::new();
+    let mut saved = |file: Option<PathBuf>, save: fn(&Picture, &Path) -> Result<(), SaveError>| {
+        let (file, picture) = (file?, picture.as_ref()?);
+        match save(picture, &file) {
+            Ok(()) => {
+                tell(format!("picture: {}", file.display()));
+                Some(file)
+            }
+            Err(error) => {
+                trouble.push(Failure::from(error).to_string());
+                None
+            }
+        }
+    };
+    let wants_motion = moving.is_some();
+    let (still, moving) = (saved(still, |p, f| p.save(f)), saved(moving, |p, f| p.save_moving(f)));
+    let mut report = report.field("picture", still);
+    if wants_motion {
+        report = report.field("animation", moving);
+    }
+    report.add_trouble(trouble);
+    report
 }
 
 /// Fails if a library cannot be loaded.

@@ -26,7 +26,7 @@ impl FreeFloor {
         /// Cells along the longer side of the floor, and the finest ones in metres.
         const CELLS: f64 = 800.0;
         const FINEST: f64 = 0.01;
-        let size = scene.world.bounds().size();
+        let size = scene.world.site().size();
         let resolution = (size.x.max(size.y) / CELLS).max(FINEST);
         let ways = Reachability::new(&scene.world, spec.footprint.bounding_radius(), resolution).ok();
         Self { ways, from: scene.robots[0].pose.position() }
@@ -36,7 +36,7 @@ impl FreeFloor {
     /// around.
     pub(crate) fn place(&self, scene: &Scene, spec: &Arc<RobotSpec>, wished: Pose) -> Option<Pose> {
         let space = space_with(scene, &scene.robots);
-        let bounds = scene.world.bounds();
+        let bounds = scene.world.site();
         let is_free = |pose: &Pose| {
             let solid = Solid::from(&RobotPlacement::new(Arc::clone(spec), *pose));
             let span = Span { bottom: solid.bottom, top: solid.top };

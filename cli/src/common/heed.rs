@@ -19,8 +19,19 @@ pub(crate) trait Heeds {
 }
 
 /// Options about the one robot of one run, which many runs do not heed.
-pub(crate) const OF_ONE_RUN: &[&str] =
-    &["world", "robot", "start", "goal", "picture", "robios", "quantised", "realtime", "fault", "supervised"];
+pub(crate) const OF_ONE_RUN: &[&str] = &[
+    "world",
+    "robot",
+    "start",
+    "goal",
+    "picture",
+    "animation",
+    "robios",
+    "quantised",
+    "realtime",
+    "fault",
+    "supervised",
+];
 
 /// Fails if an option was given that a command line does not heed. `counts` says which of them count.
 pub(super) fn check(

@@ -34,7 +34,10 @@ impl Library {
     /// There are no libraries in a browser.
     #[cfg(not(feature = "native"))]
     pub(super) fn open(path: &Path, _start: Pose) -> Result<Self, Failure> {
-        Err(Failure::input(format!("{}: found a library; expected a program that can load one", path.display())))
+        Err(Failure::input(format!(
+            "{}: found a library; expected a program that can load one",
+            path.display()
+        )))
     }
 
     /// Takes the robot, once.

@@ -68,7 +68,7 @@ pub(crate) fn run_plain<A: clap::Parser + AsRef<PlainArgs> + Heeds>(
         let stopwatch = Stopwatch::start();
         let mut report = work(args)?;
         report.timing.insert(0, ("wall_time_s", rounded(stopwatch.seconds())));
-        let &PlainArgs { seed, json, timing } = args.as_ref();
+        let &PlainArgs { seed, json, timing, .. } = args.as_ref();
         Ok(report.printed(Header { command, seed, noise: None, timing }, json))
     })
 }

@@ -377,9 +377,7 @@ impl Stage {
             Play::Simulation(simulation) => self.faulty(Box::new(simulated(simulation, index)?), index)?,
             Play::Apart(simulations) => self.faulty(Box::new(simulated(&simulations[index], 0)?), index)?,
             Play::Library(library) => self.faulty(library.robot()?, index)?,
-            Play::Recording(player) => {
-                self.recording.recorder(replayed_robot(player, index)?, index)
-            }
+            Play::Recording(player) => self.recording.recorder(replayed_robot(player, index)?, index),
         };
         let Some(guard) = &self.guard else { return Ok(Claimed { robot, guard: None }) };
         let models = &guard.models;
@@ -461,12 +459,20 @@ impl Claimed {
 
 /// A robot of a recording.
 fn replayed_robot(player: &Player, index: usize) -> Result<Driven, Failure> {
-    if RECORDS { Ok(Box::new(player.robot(index).map_err(|error| foreign(&error))?)) } else { Err(no_recordings()) }
+    if RECORDS {
+        Ok(Box::new(player.robot(index).map_err(|error| foreign(&error))?))
+    } else {
+        Err(no_recordings())
+    }
 }
 
 /// What is true about a robot of a recording.
 fn replayed_truth(player: &Player, index: usize) -> Result<StageTruth, Failure> {
-    if RECORDS { Ok(Box::new(player.truth(index).map_err(|error| foreign(&error))?)) } else { Err(no_recordings()) }
+    if RECORDS {
+        Ok(Box::new(player.truth(index).map_err(|error| foreign(&error))?))
+    } else {
+        Err(no_recordings())
+    }
 }
 
 fn no_recordings() -> Failure {

@@ -7,12 +7,13 @@ use roverlab::geometry::{Pose, Twist, angle_difference};
 use roverlab::io::delegate::{
     GrayImage, RgbImage, ambassador_impl_Camera, ambassador_impl_Clock, ambassador_impl_Display,
     ambassador_impl_DistanceSensors, ambassador_impl_Drive, ambassador_impl_Encoders, ambassador_impl_Keys,
-    ambassador_impl_Lidar, ambassador_impl_Motors, ambassador_impl_Radio, ambassador_impl_Servos,
+    ambassador_impl_Lidar, ambassador_impl_Manoeuvres, ambassador_impl_Motors, ambassador_impl_Odometry,
+    ambassador_impl_Radio, ambassador_impl_Servos, ambassador_impl_StallDetector,
 };
 use roverlab::io::{
     Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key,
-    Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage, Resolution, Result,
-    Servos, Viewport,
+    Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
+    Resolution, Result, Servos, StallDetector, Viewport,
 };
 use roverlab::safety::{
     Causes, Heartbeat, Panel, Requests, SafetyState, StopRecord, StoppingModel, Supervised,
@@ -169,6 +170,9 @@ type Exchange = Box<dyn FnMut(f64, Heartbeat) -> Panel + Send>;
 #[expect(clippy::duplicated_attributes, reason = "every capability has the same target")]
 #[delegate(Clock, target = "inner")]
 #[delegate(Drive, target = "inner")]
+#[delegate(Odometry, target = "inner")]
+#[delegate(Manoeuvres, target = "inner")]
+#[delegate(StallDetector, target = "inner")]
 #[delegate(DistanceSensors, target = "inner")]
 #[delegate(Lidar, target = "inner")]
 #[delegate(Camera, target = "inner")]

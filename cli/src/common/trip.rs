@@ -112,7 +112,20 @@ impl CommonArgs {
             Some(file) => self.parsed(self.load_scene("world", file))?,
             None => own(),
         };
+        self.warn_of_strays(&scene);
         self.placed_in(scene, stand_in)
+    }
+
+    /// Tells of what stands so far from all else that maps and pictures leave it out.
+    fn warn_of_strays(&self, scene: &Scene) {
+        let strays = scene.world.strays();
+        if strays > 0 {
+            self.warn(format_args!(
+                "{}: walls and objects that reach far out of the rest, which is {}: {strays}; maps and pictures leave them out",
+                self.world_name(),
+                within(&scene.world.site())
+            ));
+        }
     }
 
     /// A scene with the robot and the start that the options give, or else the scene.

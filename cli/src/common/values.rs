@@ -55,6 +55,14 @@ pub(crate) fn parse_seconds(text: &str) -> Result<f64, String> {
     if seconds > 0.0 { Ok(seconds) } else { Err(wrong(expected)) }
 }
 
+/// The name of a file that a moving picture can be saved to.
+pub(crate) fn parse_animation(text: &str) -> Result<PathBuf, String> {
+    match FileType::of(text) {
+        Ok(FileType::Svg) => Ok(text.into()),
+        _ => Err("expected a name that ends in .svg".into()),
+    }
+}
+
 /// The name of a file that a picture can be saved to.
 pub(crate) fn parse_picture(text: &str) -> Result<PathBuf, String> {
     FileType::of(text).map(|_| PathBuf::from(text)).map_err(|error| error.to_string())

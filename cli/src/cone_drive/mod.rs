@@ -2,15 +2,15 @@
 
 use std::path::PathBuf;
 
-use roverlab::geometry::{Point, Pose};
+use roverlab::geometry::Pose;
 use roverlab::io::sim::{RobotTruth, SimOptions};
 use roverlab::io::{self, LidarScan, LidarSettings, RobotIo};
-use roverlab::picture::{Picture, Style};
+use roverlab::picture::Picture;
 use roverlab::race::{GapDriver, RaceScore};
 use roverlab::world::RobotSpec;
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, Stage, onlooker, rounded};
-use crate::cones::{Course, Judge, check_campaign, check_race, pass};
+use crate::common::{CommonArgs, Failure, Outcome, Report, Stage, rounded};
+use crate::cones::{Course, Judge, Passed, check_campaign, check_race, drawing, pass};
 
 /// The command line of `cone-drive`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -60,7 +60,7 @@ struct Driven {
     truth: RobotTruth,
     time: f64,
     clean: f64,
-    trail: Vec<(Pose, f64)>,
+    trail: Vec<Passed>,
 }
 
 /// The work of the command.
@@ -80,15 +80,12 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     };
     let stage = common.stage(&course.scene(&[course.start]), options(args, common.seed))?;
     let driven = drive(&course, args, &stage)?;
-    onlooker::pictured(|| picture(&course, &driven));
-    let file = common.picture_file("cone_drive.svg");
-    let saved = file.as_ref().map(|file| picture(&course, &driven).save(file)).transpose();
-    let trouble = saved.err().map(|error| error.to_string());
-    Ok(Report { trouble, ..report(args, &course, driven).field("picture", file) })
+    let report = report(args, &course, &driven);
+    Ok(common.draw(report, "cone_drive.svg", || picture(&course, &driven)))
 }
 
 /// What is told about a drive.
-fn report(args: &Args, course: &Course, driven: Driven) -> Report {
+fn report(args: &Args, course: &Course, driven: &Driven) -> Report {
     let verdict = &driven.verdict;
     let done = verdict.lap_times.len() >= usize::from(args.laps);
     let word = match (done, verdict.cones_hit + verdict.off_course) {
@@ -110,7 +107,7 @@ fn report(args: &Args, course: &Course, driven: Driven) -> Report {
         path_length: Some(driven.truth.path_length),
         pose: Some(driven.truth.pose),
         odometry: Some(course.start.compose(&driven.truth.odometry)),
-        error: driven.error,
+        error: driven.error.clone(),
         ..report
     }
 }
@@ -193,11 +190,8 @@ fn campaign(args: &Args, tracks: u32) -> Result<Report, Failure> {
 
 fn picture(course: &Course, driven: &Driven) -> Picture {
     let mut picture = Picture::new(&course.frame(&driven.trail));
-    picture.title("Cone drive, as printed");
-    for cone in &course.cones {
-        picture.disc(cone.position, 0.3, Style::aid().colour(cone.colour.paint()).filled(1.0));
-    }
-    picture
-        .speed_path(driven.trail.iter().map(|(pose, speed)| (pose.to_world(Point::new(0.8, 0.0)), *speed)));
+    picture.title("Cone drive, as printed").caption(drawing::caption(&driven.verdict));
+    drawing::cones(&mut picture, course, |_| true);
+    drawing::car(&mut picture, &driven.trail);
     picture
 }

@@ -9,7 +9,7 @@ use crate::cones::{Course, Spoils, check_campaign, refuse};
 pub(crate) fn run(args: &Args, tracks: u32, spoils: Spoils) -> Result<Report, Failure> {
     let common = &args.common;
     check_campaign(common)?;
-    let given = [("--line", args.line.is_some()), ("--animation", args.animation.is_some())];
+    let given = [("--line", args.line.is_some())];
     refuse(&given, "found a campaign; expected it with one race")?;
     let (mut clean, mut finished, mut laps, mut cones, mut off) = (0_u32, 0_u32, 0, 0, 0);
     let (mut times, mut ratios, mut unclean) = (Vec::new(), Vec::new(), Vec::new());

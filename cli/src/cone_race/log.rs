@@ -60,7 +60,7 @@ fn check(args: &Args) -> Result<(), Failure> {
     let options = args.common.origin.facts().options;
     let names = options.iter().map(|option| option.split('=').next().unwrap_or(option));
     let mut given: Vec<_> = names.map(|name| (name, !OF_LOGS.contains(&name))).collect();
-    given.push(("--animation", args.animation.is_some()));
+    given.push(("--animation", args.common.animation.is_some()));
     refuse(&given, "found the log of a drive; expected a track, or a command line without it")
 }
 

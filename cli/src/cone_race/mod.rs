@@ -11,9 +11,7 @@ use std::path::{Path, PathBuf};
 use roverlab::geometry::{Point, Segment};
 use roverlab::race::{ClosedSpline, Event, EventCourse, TrackFile, parse_track};
 
-use crate::common::{
-    CommonArgs, Failure, Outcome, Report, check_writable, is_same_file, onlooker, rounded,
-};
+use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
 use crate::cones::{Course, Spoils, check_race, refuse};
 use race::{Ending, Settings};
 
@@ -97,10 +95,6 @@ pub(crate) struct Args {
     #[arg(long)]
     pub(crate) other: bool,
 
-    /// Draw the race as a moving picture.
-    #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
-    pub(crate) animation: Option<PathBuf>,
-
     /// Race on so many tracks of our own, from --seed on, and print a table.
     #[arg(long, value_name = "TRACKS", conflicts_with = "track", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) campaign: Option<u32>,
@@ -147,12 +141,6 @@ fn metres(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| "expected 0 to 200 m".into())
 }
 
-fn svg_file(text: &str) -> Result<PathBuf, String> {
-    let file = PathBuf::from(text);
-    let is_svg = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
-    if is_svg { Ok(file) } else { Err("expected a name that ends in .svg".into()) }
-}
-
 /// The work of the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let common = &args.common;
@@ -166,7 +154,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     if let Some(tracks) = args.campaign {
         return campaign::run(args, tracks, spoils);
     }
-    check_pictures(args)?;
+    common.check_picture()?;
     let published = args.line.as_ref().map(|file| published(common, file)).transpose()?;
     let mut course = match &args.track {
         Some(path) => match Course::read(common, path)? {
@@ -188,13 +176,9 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let settings = args.settings(common.seed);
     let stage = common.stage(&settings.scene(&course), settings.options())?;
     let outcome = race::race(&course, &settings, &stage)?;
-    let (picture, animation, trouble) = draw(args, &course, &outcome);
     let rms = published.and_then(|other| distance(&other, &outcome.line));
-    let report = report(&course, &outcome)
-        .field("racing_line_rms_m", rms.map(rounded))
-        .field("picture", picture)
-        .field("animation", animation);
-    Ok(Report { trouble, ..report })
+    let report = report(&course, &outcome).field("racing_line_rms_m", rms.map(rounded));
+    Ok(common.draw(report, "cone_race.svg", || drawing::picture(&course, &outcome)))
 }
 
 /// What is told about a track on which no race begins.
@@ -327,43 +311,4 @@ fn check_event(args: &Args) -> Result<(), Failure> {
         &given,
         "found a track of an acceleration or a skidpad; expected one of laps, or a command line without it",
     )
-}
-
-/// Fails when the pictures cannot be drawn where they are asked for.
-fn check_pictures(args: &Args) -> Result<(), Failure> {
-    args.common.check_picture()?;
-    args.animation.as_deref().map_or(Ok(()), |file| check_writable("--animation", file))?;
-    let (Some(still), Some(moving)) = pictures(args) else { return Ok(()) };
-    if is_same_file(&still, &moving) {
-        return Err(Failure::input(format!(
-            "--picture and --animation: found the same file, {}; expected two",
-            still.display()
-        )));
-    }
-    Ok(())
-}
-
-/// Where the still picture and the moving one are saved: where the options say, or else if a person looks on.
-fn pictures(args: &Args) -> (Option<PathBuf>, Option<PathBuf>) {
-    let moving = args.animation.clone().or_else(|| args.common.unnamed_file("cone_race_moving.svg"));
-    (args.common.picture_file("cone_race.svg"), moving)
-}
-
-/// Saves the pictures.
-fn draw(
-    args: &Args,
-    course: &Course,
-    outcome: &race::Outcome,
-) -> (Option<PathBuf>, Option<PathBuf>, Option<String>) {
-    onlooker::pictured(|| drawing::picture(course, outcome));
-    let (still, moving) = pictures(args);
-    let mut trouble = Vec::new();
-    if let Some(file) = &still {
-        trouble.extend(drawing::picture(course, outcome).save(file).err().map(|error| error.to_string()));
-    }
-    if let Some(file) = &moving {
-        let saved = drawing::animation(course, outcome, file);
-        trouble.extend(saved.err().map(|error| format!("{}: {error}", file.display())));
-    }
-    (still, moving, (!trouble.is_empty()).then(|| trouble.join("\n")))
 }

@@ -15,7 +15,7 @@ use roverlab::world::{RobotSpec, Scene};
 use super::Sensors;
 use super::event;
 use crate::common::{Claimed, Failure, Stage};
-use crate::cones::{Course, Judge, pass};
+use crate::cones::{Course, Judge, Passed, pass};
 
 /// What a race is made of, beside its course.
 #[derive(Debug, Clone, Copy)]
@@ -126,7 +126,7 @@ fn pursue(line: &[Point], rear: Pose) -> Twist {
 #[derive(Debug, Clone)]
 pub(crate) struct Second {
     pub(crate) cones_hit: usize,
-    pub(crate) trail: Vec<(Pose, f64)>,
+    pub(crate) trail: Vec<Passed>,
 }
 
 /// How a race ended.
@@ -151,7 +151,7 @@ pub(crate) struct Outcome {
     pub(crate) truth: RobotTruth,
     pub(crate) time: f64,
     /// Where the car was, and how fast, at every decision.
-    pub(crate) trail: Vec<(Pose, f64)>,
+    pub(crate) trail: Vec<Passed>,
     /// The racing line in the frame of the world.
     pub(crate) line: Vec<Point>,
     /// Of each flying lap on a racing line, the lap time over the quasi-steady optimum on that line.

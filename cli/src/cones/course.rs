@@ -5,12 +5,13 @@ use std::path::Path;
 use roverlab::geometry::{Aabb, Point, Pose, math};
 use roverlab::io::Resolution;
 use roverlab::race::{
-    CarOutline, CentreLine, CentreLineParameters, Cone, ConeColour, ConeTrack, Corridor, EventCourse,
-    GeneratedTrack, LaneParameters, RacerParameters, TrackFile, TrackOptions, generate, lined, parse_track,
+    CarOutline, CentreLine, Cone, ConeColour, ConeTrack, Corridor, EventCourse, GeneratedTrack,
+    LaneParameters, RacerParameters, TrackFile, TrackOptions, generate, lined, parse_track,
 };
 use roverlab::random::Stream;
 use roverlab::world::{Scene, World};
 
+use super::Passed;
 use crate::common::{CommonArgs, Failure};
 
 /// Cones, the corridor that the referee goes by, and the start.
@@ -127,13 +128,8 @@ impl Course {
             let [blue, yellow] = [ConeColour::Blue, ConeColour::Yellow].map(|paint| track.of(paint).count());
             refused(format!("no start, {blue} blue and {yellow} yellow cones"))
         })?;
-        // Colours in a file are right.
-        let parameters = CentreLineParameters { colour: f64::INFINITY, ..CentreLineParameters::default() };
-        let line = CentreLine::from_cones(&track.cones, start, &parameters)
-            .map_err(|error| refused(error.to_string()))?;
-        if !line.corridor.is_closed() {
-            return Err(refused(format!("a way of {:.0} m that does not close", line.corridor.length())));
-        }
+        let line =
+            CentreLine::round_track(&track.cones, start).map_err(|error| refused(error.to_string()))?;
         let corridor = line.corridor.beginning_near(line_of(track, start));
         Ok(Self { cones: track.cones.clone(), corridor, start, wide: false, event: None })
     }
@@ -202,10 +198,10 @@ impl Course {
     }
 
     /// The ground around the cones and around what was driven, for pictures; far off the track, a car may leave it.
-    pub(crate) fn frame(&self, trail: &[(Pose, f64)]) -> World {
+    pub(crate) fn frame(&self, trail: &[Passed]) -> World {
         let mut world = self.ground();
         let most = world.floor.inflated(BEYOND);
-        let driven = trail.iter().map(|(pose, _)| pose.position()).filter(|place| most.contains(*place));
+        let driven = trail.iter().map(|passed| passed.pose.position()).filter(|place| most.contains(*place));
         if let Some(around) = Aabb::around(driven) {
             world.floor = world.floor.union(&around.inflated(MARGIN));
         }

@@ -38,6 +38,14 @@ impl Whistle {
     }
 }
 
+/// When a car was where, and how fast, at the end of a pass.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Passed {
+    pub(crate) time: f64,
+    pub(crate) pose: Pose,
+    pub(crate) speed: f64,
+}
+
 /// Watches one car.
 pub(crate) struct Judge {
     truth: StageTruth,
@@ -50,7 +58,7 @@ pub(crate) struct Judge {
     last: RobotTruth,
     time: f64,
     /// Where the car was, and how fast, at the end of every pass.
-    trail: Vec<(Pose, f64)>,
+    trail: Vec<Passed>,
     /// Metres to the first cone or off the course.
     clean: Option<f64>,
 }
@@ -96,7 +104,7 @@ impl Judge {
     }
 
     /// Where the car was and how fast.
-    pub(crate) fn trail(&self) -> &[(Pose, f64)] {
+    pub(crate) fn trail(&self) -> &[Passed] {
         &self.trail
     }
 
@@ -145,6 +153,6 @@ pub(crate) fn pass<R: Clock + ?Sized>(robot: &mut R, judge: &mut Judge, seconds:
         judge.look()?;
     }
     let speed = (judge.last.path_length - metres) / (judge.time - time).max(TICK);
-    judge.trail.push((judge.last.pose, speed));
+    judge.trail.push(Passed { time: judge.time, pose: judge.last.pose, speed });
     Ok(())
 }

@@ -1,9 +1,10 @@
 //! What the commands that drive between cones share.
 
 mod course;
+pub(crate) mod drawing;
 mod judge;
 mod options;
 
 pub(crate) use course::{Course, Spoils};
-pub(crate) use judge::{Judge, pass};
+pub(crate) use judge::{Judge, Passed, pass};
 pub(crate) use options::{check_campaign, check_race, refuse};

@@ -16,14 +16,14 @@ use roverlab::drive::{
 use roverlab::geometry::{Point, Pose, units};
 use roverlab::io::control::{self, SensedBy};
 use roverlab::io::sim::{NoiseModel, SimOptions, Simulation};
-use roverlab::io::{self, Clock, Drive, Lidar, LidarScan};
+use roverlab::io::{self, Clock, Drive, Lidar, LidarScan, Odometry};
 use roverlab::picture::{Mark, Picture, Style};
 use roverlab::random::Stream;
 use roverlab::scan::{LocalisationMap, Localiser, LocaliserParameters};
 use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Wall, World};
 
 use crate::common::{CommonArgs, Failure, OF_ONE_RUN, Outcome, Report, rounded};
-use crate::driving::{Conditions, Run, check_lidar, drawn, paced, world_with_others};
+use crate::driving::{Conditions, Run, check_lidar, draw_contacts, paced, world_with_others};
 
 /// The command line of `coverage`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -79,20 +79,19 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     check_lidar(scene)?;
     let done = cover(scene, |limit| Conditions::new(common, limit), paced(common))?;
     let Covered { plan, run, map, ratio, .. } = &done;
-    let (file, trouble) = drawn(common, "coverage.svg", || picture(args, scene, &done));
     let report = run.report(|outcome| match outcome {
         TourOutcome::TimedOut => Outcome::failure("timed_out"),
         _ if map.share() >= ENOUGH => Outcome::verdict("covered"),
         _ => Outcome::failure("incomplete"),
     });
-    Ok(Report { trouble, ..report }
+    let report = report
         .field("coverage_percent", rounded(100.0 * map.share()))
         .field("area_m2", rounded(map.area()))
         .field("planned_length_mm", rounded(units::to_mm(plan.length())))
         .field("path_ratio", rounded(*ratio))
         .field("random_drive_percent", rounded(100.0 * done.random))
-        .field("time_limit_s", done.time_limit)
-        .field("picture", file))
+        .field("time_limit_s", done.time_limit);
+    Ok(common.draw(report, "coverage.svg", || picture(args, scene, &done)))
 }
 
 /// What came of a room.
@@ -152,7 +151,7 @@ fn scene() -> Scene {
 }
 
 /// Drives a tour. `watch` is called after each step.
-fn drive<R: Clock + Drive + Lidar + ?Sized>(
+fn drive<R: Clock + Drive + Odometry + Lidar + ?Sized>(
     robot: &mut R,
     localiser: &mut Localiser,
     tour: &mut Tour,
@@ -209,12 +208,9 @@ fn picture(args: &Args, scene: &Scene, done: &Covered) -> Picture {
     ));
     let left_out = Style::new(Colour::from_hex(0xd0_20_20)).labelled("left out");
     picture.line(plan.points().iter().copied(), Style::plan());
-    picture.true_path(run.positions());
     picture.points(map.cells(false), left_out);
-    picture.robot(run.truth.pose, &scene.robots[0].spec.footprint);
+    picture.drive(&run.trail, &scene.robots[0].spec.footprint);
     picture.mark(Mark::Start, scene.robots[0].pose.position());
-    for &place in &run.truth.contact_places {
-        picture.mark(Mark::Contact, place);
-    }
+    draw_contacts(&mut picture, &run.truth.contact_places);
     picture
 }

@@ -29,7 +29,7 @@ JSON fields:
   error                      why the robot failed, only if it did
   worlds, levels             with --campaign only: how many courses; what came of them at each level of noise
   timing                     with --timing and --campaign: real_time_factor
-Outcomes: reached, unreachable, timed_out, collided, failed; with --campaign: passed, wrong."
+Outcomes: reached, unreachable, no_room (the robot's own size forbids the goal), timed_out, collided, failed; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// Drive through many generated courses and compare the verdicts with the truth. Their noise is that of

@@ -6,6 +6,7 @@ use roverlab::io::{self, ErrorKind};
 use roverlab::nav::{BugEvent, BugOutcome, BugParameters, DistBug, WallSide};
 
 use crate::common::{Failure, Stage, StageTruth, Trip};
+use crate::driving::Trail;
 
 /// How to drive.
 #[derive(Debug, Clone)]
@@ -58,8 +59,8 @@ pub(crate) struct Drive {
     /// Metres from the robot to the goal, truly.
     pub(crate) goal_distance: f64,
     /// Where the robot was at each step, truly and by odometry.
-    pub(crate) true_path: Vec<Point>,
-    pub(crate) odometry_path: Vec<Point>,
+    pub(crate) trail: Trail,
+    pub(crate) odometry_path: Vec<(f64, Point)>,
     /// What the robot saw last, in the world as the robot takes it.
     pub(crate) seen: Vec<Point>,
 }
@@ -130,8 +131,8 @@ struct Log {
     start: Pose,
     events: Vec<Event>,
     contacts: usize,
-    true_path: Vec<Point>,
-    odometry_path: Vec<Point>,
+    trail: Trail,
+    odometry_path: Vec<(f64, Point)>,
 }
 
 impl Log {
@@ -141,8 +142,8 @@ impl Log {
             start,
             events: Vec::new(),
             contacts: 0,
-            true_path: vec![start.position()],
-            odometry_path: vec![start.position()],
+            trail: vec![(0.0, start)],
+            odometry_path: vec![(0.0, start.position())],
         }
     }
 
@@ -154,8 +155,8 @@ impl Log {
             let touched = truth.contact_places.iter().skip(self.contacts);
             self.events.extend(touched.map(|&point| Event { time, happening: Happening::Contact { point } }));
             self.contacts = truth.contact_places.len();
-            self.true_path.push(truth.pose.position());
-            self.odometry_path.push(self.start.compose(&truth.odometry).position());
+            self.trail.push((time, truth.pose));
+            self.odometry_path.push((time, self.start.compose(&truth.odometry).position()));
         }
         let distance = bug.goal_distance();
         for event in bug.take_events() {
@@ -175,15 +176,16 @@ impl Log {
 
     fn finish(mut self, bug: &DistBug, goal: Point, ending: Ending) -> Result<Drive, Failure> {
         let truth = self.truth.robot(0).map_err(Failure::run)?;
-        self.true_path.push(truth.pose.position());
         let believed = self.start.compose(&bug.pose());
+        let sim_time = self.truth.time().map_err(Failure::run)?;
+        self.trail.push((sim_time, truth.pose));
         Ok(Drive {
             ending,
             events: self.events,
             odometry: self.start.compose(&truth.odometry),
-            sim_time: self.truth.time().map_err(Failure::run)?,
+            sim_time,
             goal_distance: truth.pose.distance_to(goal),
-            true_path: self.true_path,
+            trail: self.trail,
             odometry_path: self.odometry_path,
             seen: bug.visible_points().iter().map(|&point| believed.to_world(point)).collect(),
             truth,

@@ -1,14 +1,10 @@
 use std::fmt::Display;
-use std::path::{Path, PathBuf};
 
 use roverlab::geometry::{Point, units};
 use roverlab::nav::{BugOutcome, WallSide};
 
 use super::{Args, Drive, Ending, Event, Happening, Options, campaign, drive, picture, scene, sim_options};
-use crate::common::{CommonArgs, Failure, Outcome, Pacer, Progress, Report, Trip, millimetres, onlooker, point_in_mm};
-
-/// The picture that is drawn unless another file is named.
-const PICTURE: &str = "distbug.svg";
+use crate::common::{CommonArgs, Failure, Outcome, Pacer, Progress, Report, Trip, millimetres, point_in_mm};
 
 /// The work of the command: drives, tells what happens, draws.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
@@ -23,11 +19,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let options = Options { seed: common.seed, noise: common.noise, time_limit };
 
     let drive = watched(common, &trip, &options)?;
-    let (picture, trouble) = match drawn(common, &trip, &drive, &options) {
-        Ok(picture) => (picture, None),
-        Err(failure) => (None, Some(failure.to_string())),
-    };
-    Ok(Report { trouble, ..report(&trip, &drive, &options, picture.as_deref()) })
+    let report = report(&trip, &drive, &options);
+    Ok(common.draw(report, "distbug.svg", || picture::of(&trip, &drive, &options)))
 }
 
 /// Drives and tells what happens.
@@ -103,6 +96,9 @@ fn verdict(drive: &Drive) -> String {
         Ending::Verdict(BugOutcome::Unreachable) => {
             "all round the obstacle without a place to leave it: the goal cannot be reached".into()
         }
+        Ending::Verdict(BugOutcome::NoRoom) => {
+            "there is no room for the robot at the goal: the goal cannot be reached".into()
+        }
         Ending::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped) => {
             format!("the time is over, {off} mm from the goal")
         }
@@ -110,26 +106,11 @@ fn verdict(drive: &Drive) -> String {
     }
 }
 
-/// Draws the run, though never unasked where a program reads the report. Returns the file, if there is one.
-fn drawn(
-    common: &CommonArgs,
-    trip: &Trip,
-    drive: &Drive,
-    options: &Options,
-) -> Result<Option<PathBuf>, Failure> {
-    onlooker::pictured(|| picture::of(trip, drive, options));
-    let file = common.picture_file(PICTURE);
-    if let Some(file) = &file {
-        picture::of(trip, drive, options).save(file)?;
-        common.tell(format_args!("picture: {}", file.display()));
-    }
-    Ok(file)
-}
-
-fn report(trip: &Trip, drive: &Drive, options: &Options, picture: Option<&Path>) -> Report {
+fn report(trip: &Trip, drive: &Drive, options: &Options) -> Report {
     let (outcome, error) = match &drive.ending {
         Ending::Verdict(BugOutcome::Reached) => (Outcome::verdict("reached"), None),
         Ending::Verdict(BugOutcome::Unreachable) => (Outcome::verdict("unreachable"), None),
+        Ending::Verdict(BugOutcome::NoRoom) => (Outcome::verdict("no_room"), None),
         Ending::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped) => (Outcome::failure("timed_out"), None),
         Ending::Failed(error) => (Outcome::failure("failed"), Some(error.clone())),
     };
@@ -149,7 +130,6 @@ fn report(trip: &Trip, drive: &Drive, options: &Options, picture: Option<&Path>)
     .field("leave_points", points(&drive.leave_points()))
     .field("contact_points", points(&drive.truth.contact_places))
     .field("time_limit_s", options.time_limit)
-    .field("picture", picture)
 }
 
 fn mm(metres: f64) -> f64 {

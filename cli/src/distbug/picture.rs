@@ -1,33 +1,38 @@
 use roverlab::geometry::units;
 use roverlab::nav::BugOutcome;
 use roverlab::picture::{Mark, Picture, Style};
-use roverlab::world::Colour;
 
-use super::{Drive, Ending, Options};
+use super::{Drive, Ending, Happening, Options};
 use crate::common::Trip;
+use crate::driving::pale;
 
 /// A picture of a run: the world, where the robot was and believed to be, and what it met and saw.
 pub(crate) fn of(trip: &Trip, drive: &Drive, options: &Options) -> Picture {
     let spec = trip.spec();
     let mut picture = Picture::new(&trip.scene.world);
     picture.title(title(drive)).caption(caption(drive, options));
-    picture.points(drive.seen.iter().copied(), Style::lidar());
-    picture.true_path(drive.true_path.iter().copied());
-    picture.odometry_path(drive.odometry_path.iter().copied());
+    picture.during(drive.sim_time..).points(drive.seen.iter().copied(), Style::lidar()).during(..);
     for other in &trip.scene.robots[1..] {
-        picture.robot_with(other.pose, &other.spec.footprint, Style::new(Colour::from_hex(0x8a_90_9c)));
+        picture.robot_with(other.pose, &other.spec.footprint, pale());
     }
-    picture.robot(drive.truth.pose, &spec.footprint);
+    picture.drive(&drive.trail, &spec.footprint);
+    picture.trace(drive.odometry_path.iter().copied(), Style::odometry());
     picture.mark(Mark::Start, trip.start().position());
     picture.mark(Mark::Goal, trip.goal);
-    for (number, point) in (1..).zip(drive.hit_points()) {
-        picture.mark_named(Mark::HitPoint, point, format!("H{number}"));
-    }
-    for (number, point) in (1..).zip(drive.leave_points()) {
-        picture.mark_named(Mark::LeavePoint, point, format!("L{number}"));
-    }
-    for &point in &drive.truth.contact_places {
-        picture.mark(Mark::Contact, point);
+    let (mut hits, mut leaves) = (0, 0);
+    for event in &drive.events {
+        picture.during(event.time..);
+        match event.happening {
+            Happening::Hit { point, .. } => {
+                hits += 1;
+                picture.mark_named(Mark::HitPoint, point, format!("H{hits}"))
+            }
+            Happening::Leave { point, .. } => {
+                leaves += 1;
+                picture.mark_named(Mark::LeavePoint, point, format!("L{leaves}"))
+            }
+            Happening::Contact { point } => picture.mark(Mark::Contact, point),
+        };
     }
     picture
 }
@@ -36,6 +41,7 @@ fn title(drive: &Drive) -> String {
     let ending = match &drive.ending {
         Ending::Verdict(BugOutcome::Reached) => "goal reached",
         Ending::Verdict(BugOutcome::Unreachable) => "the goal cannot be reached",
+        Ending::Verdict(BugOutcome::NoRoom) => "no room at the goal",
         Ending::Verdict(BugOutcome::TimedOut | BugOutcome::Stopped) => "the time is over",
         Ending::Failed(_) => "the robot failed",
     };

@@ -86,7 +86,7 @@ fn line(row: &Row<'_>) -> String {
         row.runs.len(),
         row.percent(),
         row.ended(BugOutcome::Reached),
-        row.ended(BugOutcome::Unreachable),
+        row.ended(BugOutcome::Unreachable) + row.ended(BugOutcome::NoRoom),
         row.ended(BugOutcome::TimedOut),
     );
     for (judgement, _) in Judgement::WRONG {
@@ -152,6 +152,7 @@ fn level(row: &Row<'_>, index: usize, trials: &[Trial]) -> Value {
         "correct_percent": row.percent(),
         "reached": row.ended(BugOutcome::Reached),
         "unreachable": row.ended(BugOutcome::Unreachable),
+        "no_room": row.ended(BugOutcome::NoRoom),
         "timed_out": row.ended(BugOutcome::TimedOut),
         "runs_with_contact": row.contacts(),
         "mean_path_ratio": row.path_ratio().map(rounded),

@@ -60,14 +60,13 @@ impl Judgement {
         match (ending, reachable) {
             (Ending::Failed(_), _) => Self::Failed,
             (Ending::Verdict(Outcome::TimedOut | Outcome::Stopped), _) => Self::TimedOut,
-            (Ending::Verdict(Outcome::Unreachable), true) => Self::NotUnreachable,
+            (Ending::Verdict(Outcome::Unreachable | Outcome::NoRoom), true) => Self::NotUnreachable,
             (Ending::Verdict(Outcome::Reached), false) => Self::NotReached,
             (Ending::Verdict(Outcome::Reached), true) if goal_distance > tolerance(noise) => {
                 Self::FarFromGoal
             }
-            (Ending::Verdict(Outcome::Unreachable), false) | (Ending::Verdict(Outcome::Reached), true) => {
-                Self::Correct
-            }
+            (Ending::Verdict(Outcome::Unreachable | Outcome::NoRoom), false)
+            | (Ending::Verdict(Outcome::Reached), true) => Self::Correct,
         }
     }
 }

@@ -2,7 +2,6 @@
 
 mod way;
 
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use roverlab::geometry::{Point, Pose, Twist};
@@ -10,12 +9,10 @@ use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::{NoiseModel, RobotTruth, SimOptions};
 use roverlab::io::{self, Drive, Key};
 use roverlab::kinematics::OdometryErrors;
-use roverlab::picture::{Picture, SaveError};
+use roverlab::picture::{Mark, Picture, Style};
 use roverlab::world::{Colour, DriveSpec, Object, ObjectKind, RobotSpec, Scene, Shape, World};
 
-use crate::common::{
-    CommonArgs, Driven, Failure, Outcome, Pacer, Report, Stage, StageTruth, onlooker,
-};
+use crate::common::{CommonArgs, Driven, Failure, Outcome, Pacer, Report, Stage};
 
 pub(crate) use way::Way;
 
@@ -39,6 +36,9 @@ pub(crate) struct Conditions {
     pub(crate) common: Option<CommonArgs>,
 }
 
+/// When a robot was where, in seconds.
+pub(crate) type Trail = Vec<(f64, Pose)>;
+
 /// How a robot's program ended: what it says, or why the robot failed.
 pub(crate) type Ending<T> = Result<T, String>;
 
@@ -51,8 +51,11 @@ pub(crate) struct Run<T> {
     pub(crate) odometry: Pose,
     /// Simulated seconds.
     pub(crate) sim_time: f64,
-    pub(crate) true_path: Vec<Pose>,
-    pub(crate) odometry_path: Vec<Point>,
+    /// When it was where, truly and by odometry.
+    pub(crate) trail: Trail,
+    pub(crate) odometry_path: Vec<(f64, Point)>,
+    /// The same of the robots that keep a speed, truly.
+    pub(crate) others: Vec<Trail>,
     /// Where the scene's objects are at the end.
     pub(crate) objects: Vec<Point>,
 }
@@ -125,14 +128,20 @@ impl Conditions {
         }
         let mut robot = stage.robot(0)?;
         let mut truth = stage.truth(0)?;
-        let (mut true_path, mut odometry_path) = (vec![start], vec![start.position()]);
+        let (mut trail, mut odometry_path) = (vec![(0.0, start)], vec![(0.0, start.position())]);
+        let mut others: Vec<Trail> = self.others.iter().map(|_| Trail::new()).collect();
         let result = program(&mut robot, &mut || {
-            if let Ok(robot) = truth.robot(0) {
-                true_path.push(robot.pose);
-                odometry_path.push(start.compose(&robot.odometry).position());
+            let seen = truth.robot(0);
+            let time = truth.time().unwrap_or_default();
+            if let Ok(robot) = seen {
+                trail.push((time, robot.pose));
+                odometry_path.push((time, start.compose(&robot.odometry).position()));
             }
-            watch(truth.time().unwrap_or_default());
-            *true_path.last().unwrap_or(&start)
+            for (other, trail) in self.others.iter().zip(&mut others) {
+                trail.extend(truth.pose(other.0).ok().map(|pose| (time, pose)));
+            }
+            watch(time);
+            trail.last().map_or(start, |(_, pose)| *pose)
         });
         // The robot lets go of the world, so that what is true stays as it is.
         drop(robot);
@@ -142,28 +151,18 @@ impl Conditions {
             moved.unwrap_or(object.pose).position()
         });
         let objects = objects.collect();
-        let run = finish(result, &mut truth, start, true_path, odometry_path)?;
-        Ok(Run { objects, ..run })
+        let end = truth.robot(0).map_err(Failure::run)?;
+        Ok(Run {
+            ending: result.map_err(|error| Failure::from(error).to_string()),
+            odometry: start.compose(&end.odometry),
+            sim_time: truth.time().map_err(Failure::run)?,
+            truth: end,
+            trail,
+            odometry_path,
+            others,
+            objects,
+        })
     }
-}
-
-fn finish<T>(
-    result: io::Result<T>,
-    truth: &mut StageTruth,
-    start: Pose,
-    true_path: Vec<Pose>,
-    odometry_path: Vec<Point>,
-) -> Result<Run<T>, Failure> {
-    let end = truth.robot(0).map_err(Failure::run)?;
-    Ok(Run {
-        ending: result.map_err(|error| Failure::from(error).to_string()),
-        odometry: start.compose(&end.odometry),
-        sim_time: truth.time().map_err(Failure::run)?,
-        truth: end,
-        true_path,
-        odometry_path,
-        objects: Vec::new(),
-    })
 }
 
 impl<T> Run<T> {
@@ -187,7 +186,15 @@ impl<T> Run<T> {
 
     /// Where the robot really was.
     pub(crate) fn positions(&self) -> impl Iterator<Item = Point> {
-        self.true_path.iter().map(Pose::position)
+        self.trail.iter().map(|(_, pose)| pose.position())
+    }
+
+    /// Draws a robot as it drove, where it started, where it believed to be and what it touched.
+    pub(crate) fn draw(&self, picture: &mut Picture, spec: &RobotSpec) {
+        picture.drive(&self.trail, &spec.footprint);
+        picture.trace(self.odometry_path.iter().copied(), Style::odometry());
+        picture.mark(Mark::Start, self.trail[0].1.position());
+        draw_contacts(picture, &self.truth.contact_places);
     }
 }
 
@@ -201,30 +208,16 @@ pub(crate) fn paced(common: &CommonArgs) -> impl FnMut(f64) {
     }
 }
 
-/// Draws a run, though never unasked where a program reads the report. Returns the file, if there is one, and what went
-/// wrong.
-pub(crate) fn drawn(
-    common: &CommonArgs,
-    name: &str,
-    picture: impl FnOnce() -> Picture,
-) -> (Option<PathBuf>, Option<String>) {
-    // Who looks on wants the picture itself.
-    let mut picture = Some(picture);
-    if onlooker::is_there() {
-        picture.take().map(onlooker::pictured);
-    }
-    let (Some(picture), Some(file)) = (picture, common.picture_file(name)) else { return (None, None) };
-    match save(&picture(), &file) {
-        Ok(()) => {
-            common.tell(format_args!("picture: {}", file.display()));
-            (Some(file), None)
-        }
-        Err(error) => (None, Some(Failure::from(error).to_string())),
+/// Draws where robots touched something.
+pub(crate) fn draw_contacts(picture: &mut Picture, places: &[Point]) {
+    for &place in places {
+        picture.mark(Mark::Contact, place);
     }
 }
 
-fn save(picture: &Picture, file: &Path) -> Result<(), SaveError> {
-    picture.save(file)
+/// The style of robots that stand by, or of where one was.
+pub(crate) fn pale() -> Style {
+    Style::new(Colour::from_hex(0x8a_90_9c)).opacity(0.5)
 }
 
 /// Some things by their number.
@@ -237,6 +230,7 @@ pub(crate) fn track(spec: &RobotSpec) -> f64 {
     match spec.drive {
         DriveSpec::Differential { track, .. }
         | DriveSpec::Ackermann { track, .. }
+        | DriveSpec::Tracked { track, .. }
         | DriveSpec::Omni { track, .. } => track,
         _ => f64::NAN,
     }

@@ -33,10 +33,10 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         show(robot, &mut runner, args.repeat, &mut count)
     })?;
     let mut report = run.report(|_| Outcome::verdict("shown"));
-    if let Ok(shown) = &run.ending
-        && let Some(output) = &args.output
-    {
+    let output = args.output.clone().or_else(|| common.unnamed_file("edges.png"));
+    if let (Ok(shown), Some(output)) = (&run.ending, &output) {
         file::save(&DynamicImage::from(shown.clone()), output)?;
+        common.tell(format_args!("image: {}", output.display()));
     }
     let (width, height) = run.ending.as_ref().map_or((0, 0), RgbImage::dimensions);
     report = report
@@ -44,7 +44,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         .field("definition", args.definition.name())
         .field("width", width)
         .field("height", height)
-        .field("output", args.output.clone())
+        .field("output", output)
         .field("frames", frames);
     Ok(report)
 }

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use roverlab::geometry::{Point, units};
 use roverlab::io::sim::SimOptions;
-use roverlab::picture::{Mark, Picture, Style};
+use roverlab::picture::{Figure, Mark, Picture, SERIES, Style};
 use roverlab::random::Stream;
 use roverlab::world::{RobotPlacement, RobotSpec, Scene};
 
@@ -12,7 +12,7 @@ use super::swarm::{SwarmRun, run};
 use crate::common::{
     CommonArgs, Failure, FreeFloor, OF_ONE_RUN, Outcome, Report, StandIn, millimetres, rounded,
 };
-use crate::driving::{counted, drawn, paced};
+use crate::driving::{counted, draw_contacts, paced};
 
 /// The command line of `follow-me`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -37,7 +37,7 @@ JSON fields:
   time_limit_s, picture
   rows                        with --campaign only: the table
 Collisions, pose, odometry and path length: contacts are those of all robots, the rest is the leader's.
-Outcomes: followed, lost, collided; with --campaign: passed, wrong."
+Outcomes: followed, lost, blocked (the leader found no way on: it drove less than a third of what it could), collided; with --campaign: passed, wrong."
 )]
 pub(crate) struct Args {
     /// How many robots follow [default: those of the world, or 1].
@@ -89,16 +89,18 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let mut fleet = common.fleet(&scene, options)?;
     let run = run(&mut *fleet, &scene, &waypoints, mode, seconds, paced(common))?;
     drop(fleet);
-    let (file, trouble) = drawn(common, "follow_me.svg", || picture(args, &scene, &run, mode));
-    let outcome = if run.lost.is_empty() { Outcome::verdict("followed") } else { Outcome::failure("lost") };
-    let leader = run.paths[0].last().copied();
-    Ok(Report {
+    let outcome = match () {
+        () if run.is_leader_held() => Outcome::failure("blocked"),
+        () if run.lost.is_empty() => Outcome::verdict("followed"),
+        () => Outcome::failure("lost"),
+    };
+    let leader = run.paths[0].last().map(|(_, pose)| *pose);
+    let report = Report {
         sim_time: Some(run.sim_time),
         collisions: Some(run.contacts),
         path_length: Some(run.leader_path),
         pose: leader,
         odometry: run.odometry.first().copied(),
-        trouble,
         ..Report::new(outcome)
     }
     .field("followers", followers)
@@ -107,8 +109,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     .field("mean_gap_mm", millimetres(run.mean_gap))
     .field("max_gap_mm", millimetres(run.largest_gap))
     .field("obstacles", scene.world.objects.len())
-    .field("time_limit_s", rounded(seconds))
-    .field("picture", file))
+    .field("time_limit_s", rounded(seconds));
+    Ok(common.draw(report, "follow_me.svg", || picture(args, &scene, &run, mode)))
 }
 
 /// What the robots of a fleet cannot do.
@@ -207,21 +209,15 @@ fn picture(args: &Args, scene: &Scene, run: &SwarmRun, mode: Mode) -> Picture {
         args.common.noise,
         args.common.seed
     ));
-    for (index, path) in run.paths.iter().enumerate().rev() {
-        let points = path.iter().map(roverlab::geometry::Pose::position);
-        match index {
-            0 => picture.line(points, Style::true_path().width(3.0).labelled("leader")),
-            _ => picture.line(points, Style::plan().labelled("followers")),
-        };
-    }
-    for (robot, path) in scene.robots.iter().zip(&run.paths) {
-        if let Some(&pose) = path.last() {
-            picture.robot(pose, &robot.spec.footprint);
-        }
+    for (index, (robot, path)) in scene.robots.iter().zip(&run.paths).enumerate() {
+        let name = if index == 0 { "leader".into() } else { format!("follower {index}") };
+        let style =
+            Style::new(SERIES[index % SERIES.len()]).width(if index == 0 { 3.0 } else { 1.6 }).labelled(name);
+        picture.trace(path.iter().map(|(time, pose)| (*time, pose.position())), style.clone());
+        let figure = Figure::Robot { poses: path.clone(), footprint: robot.spec.footprint };
+        picture.add(figure, style);
     }
     picture.mark(Mark::Start, scene.robots[0].pose.position());
-    for &point in &run.contact_places {
-        picture.mark(Mark::Contact, point);
-    }
+    draw_contacts(&mut picture, &run.contact_places);
     picture
 }

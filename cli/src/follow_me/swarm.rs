@@ -11,13 +11,15 @@ use roverlab::io::log::FleetIo;
 use roverlab::io::{self, LidarScan, Psd, RobotIo};
 use roverlab::world::{Footprint, Scene};
 
+use crate::driving::Trail;
+
 use super::scene::Mode;
 
 /// What became of a swarm.
 #[derive(Debug, Clone)]
 pub(crate) struct SwarmRun {
     /// Where the robots were, the leader first.
-    pub(crate) paths: Vec<Vec<Pose>>,
+    pub(crate) paths: Vec<Trail>,
     pub(crate) odometry: Vec<Pose>,
     pub(crate) contacts: u64,
     pub(crate) contact_places: Vec<Point>,
@@ -28,6 +30,13 @@ pub(crate) struct SwarmRun {
     pub(crate) largest_gap: f64,
     pub(crate) sim_time: f64,
     pub(crate) leader_path: f64,
+}
+
+impl SwarmRun {
+    /// Whether the leader hardly got anywhere, so that there was little to follow.
+    pub(crate) fn is_leader_held(&self) -> bool {
+        self.leader_path < CruiseParameters::default().speed * self.sim_time / 3.0
+    }
 }
 
 /// Seconds in which a swarm forms.
@@ -134,7 +143,7 @@ pub(crate) fn run<'a>(
         }
     }
     let mut run = SwarmRun {
-        paths: scene.robots.iter().map(|robot| vec![robot.pose]).collect(),
+        paths: scene.robots.iter().map(|robot| vec![(0.0, robot.pose)]).collect(),
         odometry: Vec::new(),
         contacts: 0,
         contact_places: Vec::new(),
@@ -147,11 +156,12 @@ pub(crate) fn run<'a>(
     let mut gaps = 0_u64;
     while fleet.time()? + 0.5 * PERIOD < seconds {
         fleet.run_for(PERIOD)?;
+        let time = fleet.time()?;
         for (path, robot) in run.paths.iter_mut().zip(0..) {
-            path.push(fleet.pose(robot)?);
+            path.push((time, fleet.pose(robot)?));
         }
-        watch(fleet.time()?);
-        if fleet.time()? < FORMING {
+        watch(time);
+        if time < FORMING {
             continue;
         }
         for follower in 1..robots {
@@ -182,8 +192,8 @@ pub(crate) fn run<'a>(
     Ok(run)
 }
 
-fn gap_now(paths: &[Vec<Pose>], mode: Mode, follower: usize) -> f64 {
-    let last = |robot: usize| paths[robot].last().copied().unwrap_or_default();
+fn gap_now(paths: &[Trail], mode: Mode, follower: usize) -> f64 {
+    let last = |robot: usize| paths[robot].last().map_or(Pose::default(), |(_, pose)| *pose);
     last(follower).distance_to(last(ahead_of(mode, follower)).position())
 }
 

@@ -4,11 +4,10 @@ mod evolve;
 mod spline;
 mod wall;
 
-use std::path::PathBuf;
-
+use roverlab::evolve::chart;
 use roverlab::picture::Picture;
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, onlooker, rounded};
+use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
 use evolve::{evolve, inside};
 use spline::Spline;
 use wall::Wall;
@@ -98,8 +97,6 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         Task::Spline => (spline.found(&genes)?, spline.picture(&population, &genes)),
         Task::Wall => (Wall::found(&genes), wall.picture(common, &genes)?),
     };
-    onlooker::pictured(|| picture.clone());
-    let (file, trouble) = draw(common, &picture);
     let report = Report::new(Outcome::verdict("evolved"))
         .field("task", format!("{:?}", args.task).to_lowercase())
         .field("method", format!("{:?}", args.method))
@@ -108,9 +105,17 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let report = fields.into_iter().fold(report, |report, (name, value)| report.field(&name, value));
     let report = report
         .field("best", population.history.iter().map(|row| rounded(row.best)).collect::<Vec<_>>())
-        .field("mean", population.history.iter().map(|row| rounded(row.mean)).collect::<Vec<_>>())
-        .field("picture", file);
-    Ok(Report { trouble, ..report })
+        .field("mean", population.history.iter().map(|row| rounded(row.mean)).collect::<Vec<_>>());
+    Ok(common.draw(report, "genetic.svg", || {
+        let mut curve = chart(&population.history);
+        curve.title("fitness and diversity by generation");
+        let mut both = Picture::panels(&[picture, curve], 1);
+        both.title(match args.task {
+            Task::Spline => "The scale of a spline, evolved",
+            Task::Wall => "The gains of a wall follower, evolved",
+        });
+        both
+    }))
 }
 
 /// Fails when an option has no meaning here.
@@ -128,11 +133,4 @@ fn check(args: &Args) -> Result<(), Failure> {
         Failure::input(format!("{option}: has no meaning for evolution; expected a command line without it"))
     };
     given.iter().find(|(_, given)| *given).map_or(Ok(()), |(option, _)| Err(refused(option)))
-}
-
-/// Saves the picture where the options say, or else if a person looks on.
-fn draw(common: &CommonArgs, picture: &Picture) -> (Option<PathBuf>, Option<String>) {
-    let file = common.picture_file("genetic.svg");
-    let saved = file.as_ref().map(|file| picture.save(file)).transpose();
-    (file, saved.err().map(|error| error.to_string()))
 }

@@ -54,7 +54,7 @@ impl Spline {
         let (start, goal) = (self.start, self.goal);
         let corner = |a: f64, b: f64| a.max(b) + 0.5;
         let mut picture = Picture::new(&World::empty(corner(start.x, goal.x), corner(start.y, goal.y)));
-        picture.title("The scale of a spline, evolved");
+        picture.title("splines of the last generation");
         for genes in &population.genomes {
             let style = Style::aid().labelled("last generation");
             picture.line(self.points(&super::evolve::inside(genes)), style);

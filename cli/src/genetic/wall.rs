@@ -1,15 +1,16 @@
 use roverlab::drive::{AlongWall, PidParameters, PidWallFollower, PidWallFollowerParameters};
 use roverlab::evolve::Trial;
-use roverlab::geometry::{Point, Pose, math};
+use roverlab::geometry::{Pose, math};
 use roverlab::io::control::run;
 use roverlab::io::log::GroundTruth;
 use roverlab::io::sim::{SimOptions, Simulation};
-use roverlab::io::{Clock, DistanceSensors, Drive, Result};
+use roverlab::io::{Clock, DistanceSensors, Drive, Odometry, Result, StallDetector};
 use roverlab::picture::{Mark, Picture};
 use roverlab::world::{RobotSpec, Scene, World};
 use serde_json::{Map, Value, json};
 
 use crate::common::{CommonArgs, Failure, rounded};
+use crate::driving::Trail;
 
 /// A wall to follow, for which the gains of a PID controller are to be found.
 #[derive(Debug, Clone, Copy)]
@@ -64,11 +65,11 @@ impl Wall {
         let mut picture = Picture::new(&World::walled(FLOOR.0, FLOOR.1));
         let stage = common.stage(&scene(), self.options(common.seed))?;
         let (_, way) = drive(best, &mut stage.robot(0)?, &mut stage.truth(0)?)?;
-        picture.title("The gains of a wall follower, evolved");
-        if let Some(start) = way.first() {
-            picture.mark(Mark::Start, *start);
+        picture.title("a drive with the best gains");
+        if let Some((_, start)) = way.first() {
+            picture.mark(Mark::Start, start.position());
         }
-        picture.true_path(way);
+        picture.drive(&way, &RobotSpec::s4().footprint);
         Ok(picture)
     }
 }
@@ -79,11 +80,11 @@ fn scene() -> Scene {
 }
 
 /// Drives along the wall: what it costs, and where the robot was.
-fn drive<R: Clock + DistanceSensors + Drive>(
+fn drive<R: Clock + DistanceSensors + Drive + Odometry + StallDetector>(
     genes: &[f64],
     robot: &mut R,
     truth: &mut impl GroundTruth,
-) -> Result<(f64, Vec<Point>)> {
+) -> Result<(f64, Trail)> {
     let parameters = Wall::parameters(genes);
     let mut along = AlongWall::new(PidWallFollower::new(parameters)?);
     let (mut squares, mut count, mut way) = (0.0, 0.0, Vec::new());
@@ -94,7 +95,7 @@ fn drive<R: Clock + DistanceSensors + Drive>(
             squares += error * error;
             count += 1.0;
         }
-        way.push(pose.position());
+        way.push((step.time, pose));
         Result::Ok(())
     })?;
     let contacts = truth.robot(0)?.contacts;

@@ -1,10 +1,12 @@
+use std::path::Path;
+
 use roverlab::nav::grid::{
     AnyAngle, GridPlanner, GridSearch, JumpPointSearch, PlanError, PreparedJumps, Quadtree, QuadtreePlanner,
 };
-use roverlab::world::BitGrid;
 use roverlab::world::formats::movingai::{self, Query};
+use roverlab::world::{BitGrid, GridCell};
 
-use super::{Algorithm, Args, own_map};
+use super::{Algorithm, Args, own_map, picture};
 use crate::common::{Failure, Outcome, Progress, Report, Stopwatch, rounded};
 
 /// What came of all queries.
@@ -15,6 +17,8 @@ pub(crate) struct Result {
     pub(crate) width: usize,
     pub(crate) height: usize,
     pub(crate) queries: usize,
+    /// Queries that are none, because an end of them is blocked.
+    pub(crate) skipped: usize,
     pub(crate) solved: usize,
     pub(crate) optimal: usize,
     /// Lengths in terms of the published ones, of the queries that have got a path and a length.
@@ -30,7 +34,8 @@ pub(crate) struct Result {
 impl Result {
     /// Whether all is as it should be.
     pub(crate) fn is_good(&self) -> bool {
-        self.solved == self.queries && (!self.algorithm.is_octile() || self.optimal == self.queries)
+        let asked = self.queries - self.skipped;
+        self.solved == asked && (!self.algorithm.is_octile() || self.optimal == asked)
     }
 
     /// The time that a share of the queries stays below.
@@ -40,35 +45,62 @@ impl Result {
     }
 }
 
+/// Cells between which ways lead, and the planner for them, once there was a query.
+struct Domain {
+    grid: BitGrid,
+    planner: Option<Box<dyn GridPlanner>>,
+}
+
+impl Domain {
+    fn new(grid: BitGrid) -> Self {
+        Self { grid, planner: None }
+    }
+
+    fn has_both_ends(&self, query: &Query) -> bool {
+        self.grid.is_free(query.start) && self.grid.is_free(query.goal)
+    }
+}
+
 /// The work of the command.
 pub(crate) fn work(args: &Args) -> std::result::Result<Report, Failure> {
-    let (name, grid, queries) = match (&args.map, &args.scen) {
-        (Some(map), Some(scen)) => {
-            let grid = movingai::load_map(map).map_err(Failure::input)?.value.grid();
-            let queries = movingai::load_scenarios(scen).map_err(Failure::input)?.value;
-            if queries.is_empty() {
-                return Err(Failure::input(format!(
-                    "{}: found no queries; expected at least one",
-                    scen.display()
-                )));
-            }
-            if let Some(query) = queries.iter().find(|q| (q.width, q.height) != (grid.width(), grid.height()))
-            {
-                return Err(Failure::input(format!(
-                    "{}: found queries for a map of {} x {} cells; expected {} x {}, as in {}",
-                    scen.display(),
-                    query.width,
-                    query.height,
-                    grid.width(),
-                    grid.height(),
-                    map.display()
-                )));
-            }
-            (map.display().to_string(), grid, queries)
-        }
-        _ => own_map::with_queries(args.plain.seed),
+    args.plain.check_picture()?;
+    let (name, grids, queries) = if let (Some(map), Some(scen)) = (&args.map, &args.scen) {
+        published(map, scen)?
+    } else {
+        let (name, grid, queries) = own_map::with_queries(args.plain.seed);
+        (name, vec![grid], queries)
     };
-    Ok(report(&answer(name, &grid, &queries, args)?))
+    let mut domains: Vec<Domain> = grids.into_iter().map(Domain::new).collect();
+    let result = answer(name, &mut domains, &queries, args)?;
+    let longest = queries.iter().max_by(|a, b| a.optimal.total_cmp(&b.optimal));
+    let report = report(&result);
+    let domain_of = |query| domains.iter().find(|domain| domain.has_both_ends(query));
+    let Some((query, domain)) = longest.and_then(|query| Some((query, domain_of(query)?))) else {
+        return Ok(report);
+    };
+    Ok(args.plain.draw(report, "grid_benchmark.svg", || picture::of(&result.map, &domain.grid, query)))
+}
+
+/// The name, the grids to plan on (ground, then water) and the queries of published files.
+fn published(map: &Path, scen: &Path) -> std::result::Result<(String, Vec<BitGrid>, Vec<Query>), Failure> {
+    let map_of_all = movingai::load_map(map).map_err(Failure::input)?.value;
+    let (grid, water) = (map_of_all.grid(), map_of_all.water());
+    let queries = movingai::load_scenarios(scen).map_err(Failure::input)?.value;
+    if queries.is_empty() {
+        return Err(Failure::input(format!("{}: found no queries; expected at least one", scen.display())));
+    }
+    if let Some(query) = queries.iter().find(|q| (q.width, q.height) != (grid.width(), grid.height())) {
+        return Err(Failure::input(format!(
+            "{}: found queries for a map of {} x {} cells; expected {} x {}, as in {}",
+            scen.display(),
+            query.width,
+            query.height,
+            grid.width(),
+            grid.height(),
+            map.display()
+        )));
+    }
+    Ok((map.display().to_string(), vec![grid, water], queries))
 }
 
 fn report(result: &Result) -> Report {
@@ -80,6 +112,7 @@ fn report(result: &Result) -> Report {
         .field("width", result.width)
         .field("height", result.height)
         .field("queries", result.queries)
+        .field("skipped", result.skipped)
         .field("solved", result.solved)
         .field("optimal", result.optimal)
         .field("mean_ratio", mean(&result.ratios))
@@ -114,30 +147,40 @@ fn planner(algorithm: Algorithm, grid: &BitGrid) -> Box<dyn GridPlanner> {
 
 fn answer(
     map: String,
-    grid: &BitGrid,
+    domains: &mut [Domain],
     queries: &[Query],
     args: &Args,
 ) -> std::result::Result<Result, Failure> {
-    let stopwatch = Stopwatch::start();
-    let mut planner = planner(args.algorithm, grid);
+    let (width, height) = domains.first().map_or((0, 0), |land| (land.grid.width(), land.grid.height()));
     let mut result = Result {
         map,
         algorithm: args.algorithm,
-        width: grid.width(),
-        height: grid.height(),
+        width,
+        height,
         queries: queries.len(),
+        skipped: 0,
         solved: 0,
         optimal: 0,
         ratios: Vec::new(),
         times: Vec::new(),
-        preprocess_ms: 1e3 * stopwatch.seconds(),
+        preprocess_ms: 0.0,
         expanded: 0,
         without_way: None,
     };
     let mut progress = Progress::start();
     for (index, query) in queries.iter().enumerate() {
         progress.show(|| format!("{index} of {} queries", queries.len()));
-        if let Err(error) = ask(&mut *planner, query, args.repeat.get(), &mut result) {
+        let Some(domain) = domains.iter_mut().find(|domain| domain.has_both_ends(query)) else {
+            result.skipped += 1;
+            continue;
+        };
+        let planner = domain.planner.get_or_insert_with(|| {
+            let stopwatch = Stopwatch::start();
+            let planner = planner(args.algorithm, &domain.grid);
+            result.preprocess_ms += 1e3 * stopwatch.seconds();
+            planner
+        });
+        if let Err(error) = ask(&mut **planner, query, args.repeat.get(), &mut result) {
             let file = args.scen.as_ref().map_or(String::new(), |scen| format!("{}: ", scen.display()));
             let wrong = format!("{file}query {}: {error}", index + 1);
             if !matches!(error, PlanError::Unreachable { .. }) {
@@ -146,8 +189,24 @@ fn answer(
             result.without_way.get_or_insert(wrong);
         }
     }
+    if result.skipped == result.queries {
+        return Err(Failure::input(no_query(&queries[0], domains, args)));
+    }
     result.times.sort_by(f64::total_cmp);
     Ok(result)
+}
+
+/// What is wrong if all queries begin or end where nothing can be.
+fn no_query(query: &Query, domains: &[Domain], args: &Args) -> String {
+    let is_free = |cell: GridCell| domains.iter().any(|domain| domain.grid.is_free(cell));
+    let (start, goal) = (query.start, query.goal);
+    let what = match (is_free(start), is_free(goal)) {
+        (false, _) => format!("the start {start} is blocked"),
+        (_, false) => format!("the goal {goal} is blocked"),
+        _ => format!("no way leads from {start} to {goal}, of which one is in water"),
+    };
+    let file = args.scen.as_ref().map_or(String::new(), |scen| format!("{}: ", scen.display()));
+    format!("{file}no query begins and ends in free cells; in query 1 {what}")
 }
 
 fn ask(

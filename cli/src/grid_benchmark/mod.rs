@@ -2,6 +2,7 @@
 
 mod job;
 mod own_map;
+pub(crate) mod picture;
 
 pub(crate) use job::work;
 
@@ -21,13 +22,16 @@ Dijkstra's.
 JSON fields:
   map, algorithm, width, height
   queries                     how many
+  skipped                     those that start or end in a blocked cell, or lead from water to land or from land to water
   solved                      those with a path
   optimal                     those whose path is as long as published, within max(0.006, 2e-5 of the length)
   mean_ratio, worst_ratio     length in terms of the published one
   mean_expanded               nodes taken off the queue, per query
   timing                      with --timing: median_us and p95_us of a query, preprocess_ms to get ready for the map
-Outcomes: solved; wrong if a query got no path, or one of an octile planner is not as long as published. A query that starts
-or ends in a blocked cell or outside of the map is no query."
+  picture                     the longest query, by four planners
+Outcomes: solved; wrong if a query that was not skipped got no path, or one of an octile planner is not as long as published.
+Water (`W`) is a map of its own: ways lead within it and within the land. A query that starts or ends outside of the map is
+none."
 )]
 pub(crate) struct Args {
     /// MovingAI map.

@@ -15,7 +15,7 @@ use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, World};
 use serde_json::{Value, json};
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
-use crate::driving::{Conditions, Run, check_lidar, drawn, paced};
+use crate::driving::{Conditions, Run, check_lidar, paced};
 
 /// The command line of `lidar-scan`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -90,16 +90,14 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         step();
         seen
     })?;
-    let (file, trouble) =
-        drawn(common, "lidar_scan.svg", || picture(&scene, &run, conditions.noise, conditions.seed));
     let report = run.report(|_| Outcome::verdict("scanned"));
     let report = match &run.ending {
         Ok(seen) => fields(report, seen, &scene),
         Err(_) => report,
     };
     let (lcd, lcd_trouble) = save_display(args, &run);
-    let trouble = trouble.or(lcd_trouble);
-    Ok(Report { trouble, ..report.field("lcd", lcd).field("picture", file) })
+    let report = Report { trouble: lcd_trouble, ..report.field("lcd", lcd) };
+    Ok(common.draw(report, "lidar_scan.svg", || picture(&scene, &run, conditions.noise, conditions.seed)))
 }
 
 fn save_display(args: &Args, run: &Run<Seen>) -> (Option<PathBuf>, Option<String>) {

@@ -1,61 +1,115 @@
 use std::fmt::Write as _;
 
 use roverlab::geometry::units::{to_deg, to_mm};
-use roverlab::scan::Localisation;
+use roverlab::geometry::{Pose, angle_difference};
+use roverlab::scan::Hypothesis;
 use roverlab::world::{RobotSpec, Scene};
 use serde_json::{Value, json};
 
-use super::Args;
-use super::job::{errors, run};
-use super::worlds::{Place, start, worlds};
+use super::job::run;
+use super::worlds::{Place, Starts, worlds};
+use super::{Args, Finding};
 use crate::common::{Failure, Outcome, Progress, Report, millimetres, rounded};
 use crate::driving::Conditions;
 
 /// What came of many starts in one world.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
-    pub(crate) world: &'static str,
+    pub(crate) world: String,
     /// From how many places the world looks the same.
     pub(crate) symmetry: usize,
     pub(crate) starts: u64,
+    /// The share that has to be right, in percent.
+    pub(crate) share: u64,
     /// One place, and the right one; or as many as look the same, the right one among them.
     pub(crate) right: u64,
-    /// Several places where there is one.
+    /// More or fewer places, the right one among them.
     pub(crate) several: u64,
+    pub(crate) lost: u64,
+    /// Answers that are not true.
+    pub(crate) wrong: u64,
     pub(crate) contacts: u64,
-    /// Metres and radians, of those that are right.
+    /// Metres, stated deviations and radians, of those that are right.
     pub(crate) worst_position: f64,
+    pub(crate) worst_deviations: f64,
     pub(crate) worst_heading: f64,
     pub(crate) sim_time: f64,
-    /// Seeds of the others: the first ones.
+    /// Seeds of the wrong ones: the first ones.
     pub(crate) amiss: Vec<u64>,
 }
 
-/// A place is right within so many millimetres and degrees.
-const NEAR: (f64, f64) = (50.0, 3.0);
-/// The share that has to be right, in percent.
-const SHARE: u64 = 98;
+/// A place is right within so many metres, stated deviations and radians.
+const NEAR: Error = Error { position: 0.1, deviations: 5.0, heading: 3.0 * std::f64::consts::PI / 180.0 };
 const LISTED: usize = 10;
+
+/// How far a place is from the robot's: metres, the same in stated deviations, radians.
+#[derive(Debug, Clone, Copy)]
+struct Error {
+    position: f64,
+    deviations: f64,
+    heading: f64,
+}
+
+impl Error {
+    fn of(place: &Hypothesis, truth: &Pose) -> Self {
+        let position = place.pose.distance_to(truth.position());
+        let heading = angle_difference(place.pose.heading, truth.heading).abs();
+        Self { position, deviations: position / place.deviation(), heading }
+    }
+
+    fn is_small(&self) -> bool {
+        let Self { position, deviations, heading } = NEAR;
+        self.position <= position && self.deviations <= deviations && self.heading <= heading
+    }
+}
 
 impl Row {
     fn new(place: &Place, starts: u64) -> Self {
         Self {
-            world: place.name,
+            world: place.name.clone(),
             symmetry: place.symmetry,
             starts,
+            share: place.share,
             right: 0,
             several: 0,
+            lost: 0,
+            wrong: 0,
             contacts: 0,
             worst_position: 0.0,
+            worst_deviations: 0.0,
             worst_heading: 0.0,
             sim_time: 0.0,
             amiss: Vec::new(),
         }
     }
 
-    /// Whether enough places are right and nothing was touched.
+    /// Whether enough is right, nothing is wrong, and nothing was touched.
     pub(crate) fn is_good(&self) -> bool {
-        100 * self.right >= SHARE * self.starts && self.contacts == 0
+        100 * self.right >= self.share * self.starts && self.wrong == 0 && self.contacts == 0
+    }
+
+    /// Judges an answer.
+    fn judge(&mut self, finding: Option<&Finding>, truth: &Pose, seed: u64) {
+        let count = finding.map_or(0, |finding| finding.localisation.count());
+        let places = finding.iter().flat_map(|finding| finding.hypotheses.iter().take(count));
+        let errors = places.map(|place| Error::of(place, truth));
+        let nearest = errors.min_by(|a, b| a.position.total_cmp(&b.position));
+        match nearest {
+            None => self.lost += 1,
+            Some(error) if error.is_small() && (count == self.symmetry) => {
+                self.right += 1;
+                self.worst_position = self.worst_position.max(error.position);
+                self.worst_deviations = self.worst_deviations.max(error.deviations);
+                self.worst_heading = self.worst_heading.max(error.heading);
+            }
+            Some(error) if error.is_small() && count > self.symmetry => self.several += 1,
+            Some(_) => {
+                self.wrong += 1;
+                if self.amiss.len() < LISTED {
+                    self.amiss.push(seed);
+                }
+            }
+        }
     }
 }
 
@@ -75,92 +129,75 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
 
 /// A row for each world.
 pub(crate) fn rows(args: &Args) -> Result<Vec<Row>, Failure> {
-    let mut progress = Progress::start();
-    let mut rows = Vec::new();
-    for place in worlds() {
-        let starts = if place.symmetry > 1 { args.starts.div_ceil(5) } else { args.starts };
-        let mut row = Row::new(&place, starts);
-        for index in 0..starts {
-            progress.show(|| format!("{}: {index} of {starts} starts", place.name));
-            add_start(&mut row, args, &place, args.common.seed.wrapping_add(index))?;
+    let places = match &args.common.world {
+        None => worlds(),
+        Some(file) => {
+            let scene = args.common.load_scene("world", file).map_err(Failure::input)?.value;
+            let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            vec![Place { name, world: scene.world, symmetry: 1, share: 0 }]
         }
-        rows.push(row);
-    }
-    Ok(rows)
-}
-
-fn add_start(row: &mut Row, args: &Args, place: &Place, seed: u64) -> Result<(), Failure> {
-    let spec = RobotSpec::s4();
-    let pose = start(&place.world, spec.footprint.bounding_radius(), seed);
-    let pose = pose.ok_or_else(|| Failure::run(format!("no free floor in the world {}", place.name)))?;
-    let scene = Scene::with_robot(place.world.clone(), spec, pose);
-    let conditions =
-        Conditions { seed, common: None, ..Conditions::new(&args.common, args.patience + 30.0)? };
-    let run = run(args, &scene, &conditions, |_| {})?;
-    row.sim_time += run.sim_time;
-    row.contacts += u64::from(run.truth.contacts);
-    let found = run.ending.as_ref().map_or(Localisation::Lost, |finding| finding.localisation);
-    let (position, heading) = if place.symmetry == 1 {
-        errors(&run).unwrap_or((f64::INFINITY, f64::INFINITY))
-    } else {
-        nearest_of_all(&run)
     };
-    let near = to_mm(position) <= NEAR.0 && to_deg(heading) <= NEAR.1;
-    if near && found.count() == place.symmetry {
-        row.right += 1;
-        row.worst_position = row.worst_position.max(position);
-        row.worst_heading = row.worst_heading.max(heading);
-        return Ok(());
-    }
-    row.several += u64::from(found.count() > place.symmetry);
-    if row.amiss.len() < LISTED {
-        row.amiss.push(seed);
-    }
-    Ok(())
+    let mut progress = Progress::start();
+    places.iter().map(|place| row(place, args, &mut progress)).collect()
 }
 
-/// The errors of that of several places that is the right one.
-fn nearest_of_all(run: &crate::driving::Run<super::Finding>) -> (f64, f64) {
-    let Ok(finding) = &run.ending else { return (f64::INFINITY, f64::INFINITY) };
-    let truth = run.truth.pose;
-    finding
-        .hypotheses
-        .iter()
-        .map(|hypothesis| {
-            let turn = roverlab::geometry::angle_difference(hypothesis.pose.heading, truth.heading);
-            (hypothesis.pose.distance_to(truth.position()), turn.abs())
-        })
-        .min_by(|a, b| (a.0 + a.1).total_cmp(&(b.0 + b.1)))
-        .unwrap_or((f64::INFINITY, f64::INFINITY))
+fn row(place: &Place, args: &Args, progress: &mut Progress) -> Result<Row, Failure> {
+    let starts = if place.symmetry > 1 { args.starts.div_ceil(5) } else { args.starts };
+    let mut row = Row::new(place, starts);
+    let spec = RobotSpec::s4();
+    let free = Starts::new(&place.world, spec.footprint.bounding_radius()).map_err(Failure::input)?;
+    for index in 0..starts {
+        progress.show(|| format!("{}: {index} of {starts} starts", place.name));
+        let seed = args.common.seed.wrapping_add(index);
+        let pose = free.draw(seed);
+        let pose = pose.ok_or_else(|| Failure::run(format!("no free floor in the world {}", place.name)))?;
+        let scene = Scene::with_robot(place.world.clone(), spec.clone(), pose);
+        let conditions =
+            Conditions { seed, common: None, ..Conditions::new(&args.common, args.patience + 30.0)? };
+        let run = run(args, &scene, &conditions, |_| {})?;
+        row.sim_time += run.sim_time;
+        row.contacts += u64::from(run.truth.contacts);
+        row.judge(run.ending.as_ref().ok(), &run.truth.pose, seed);
+    }
+    Ok(row)
 }
 
 /// The table. Holds nothing that differs between machines.
 pub(crate) fn text(rows: &[Row]) -> String {
     let mut text = String::from(
-        "world      looks alike  starts  right  too many  contacts  worst mm  worst deg  mean s  good\n",
+        "world        looks alike  starts  right  several  lost  wrong  contacts  worst mm  deviations  worst deg  mean s  good\n",
     );
     for row in rows {
         writeln!(
             text,
-            "{:<10} {:>11}  {:>6}  {:>5}  {:>8}  {:>8}  {:>8.2}  {:>9.2}  {:>6.1}  {}",
+            "{:<12} {:>11}  {:>6}  {:>5}  {:>7}  {:>4}  {:>5}  {:>8}  {:>8.2}  {:>10.2}  {:>9.2}  {:>6.1}  {}",
             row.world,
             row.symmetry,
             row.starts,
             row.right,
             row.several,
+            row.lost,
+            row.wrong,
             row.contacts,
             to_mm(row.worst_position),
+            row.worst_deviations,
             to_deg(row.worst_heading),
             row.sim_time / row.starts as f64,
             if row.is_good() { "yes" } else { "NO" },
         )
         .expect("writing to a string does not fail");
         if !row.amiss.is_empty() {
-            writeln!(text, "  amiss with seeds {:?}", row.amiss).expect("writing to a string does not fail");
+            writeln!(text, "  wrong with seeds {:?}", row.amiss).expect("writing to a string does not fail");
         }
     }
-    write!(text, "right: within {} mm and {} degrees, and as many places as look alike", NEAR.0, NEAR.1)
-        .expect("writing to a string does not fail");
+    let Error { position, deviations, heading } = NEAR;
+    write!(
+        text,
+        "right: as many places as look alike, one within {} mm, {deviations} deviations and {:.0} degrees; lost: nothing said",
+        to_mm(position),
+        to_deg(heading),
+    )
+    .expect("writing to a string does not fail");
     text
 }
 
@@ -171,9 +208,12 @@ fn json(rows: &[Row]) -> Vec<Value> {
             "looks_alike": row.symmetry,
             "starts": row.starts,
             "right": row.right,
-            "too_many": row.several,
+            "several": row.several,
+            "lost": row.lost,
+            "wrong": row.wrong,
             "contacts": row.contacts,
             "worst_position_error_mm": millimetres(row.worst_position),
+            "worst_deviations": rounded(row.worst_deviations),
             "worst_heading_error_deg": rounded(to_deg(row.worst_heading)),
             "amiss": row.amiss,
             "good": row.is_good(),

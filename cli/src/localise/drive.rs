@@ -1,6 +1,7 @@
 use roverlab::drive::{RandomDrive, RandomDriveParameters};
+use roverlab::geometry::Pose;
 use roverlab::io::control::{self, until};
-use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar, LidarScan};
+use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar, LidarScan, Odometry};
 use roverlab::random::Stream;
 use roverlab::scan::{Hypothesis, Localisation, LocalisationMap, Localiser, LocaliserParameters};
 
@@ -24,6 +25,8 @@ pub(crate) struct Finding {
     pub(crate) scans: u32,
     /// The last scan.
     pub(crate) scan: LidarScan,
+    /// When it took itself to be where, after each scan.
+    pub(crate) history: Vec<(f64, Vec<Pose>)>,
 }
 
 /// Scans in a row with one place after which the robot is content.
@@ -34,7 +37,7 @@ const EVERY: u32 = 4;
 const REST: f64 = 1.0;
 
 /// Drives about until one place explains all scans, or patience is over. `watch` is called after each step.
-pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
+pub(crate) fn drive<R: Clock + Drive + Odometry + DistanceSensors + Lidar + ?Sized>(
     robot: &mut R,
     options: &Options,
     mut watch: impl FnMut(),
@@ -42,10 +45,13 @@ pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
     let mut localiser = Localiser::new(options.map.clone(), options.localiser)?;
     let mut wander = RandomDrive::new(options.random, Stream::new(options.seed).child("random drive", 0))?;
     let (mut content, mut scans, mut steps) = (0, 0, 0_u32);
+    let mut history = Vec::new();
+    let poses = |localiser: &Localiser| localiser.hypotheses().iter().map(|place| place.pose).collect();
     control::run(robot, &mut wander, options.patience, |_, _, at| {
         if steps.is_multiple_of(EVERY) {
             localiser.update(at.seen.pose, &at.seen.scan)?;
             scans += 1;
+            history.push((at.time, poses(&localiser)));
             let one = matches!(localiser.localisation(), Localisation::One(_));
             content = if one { content + 1 } else { 0 };
         }
@@ -63,5 +69,6 @@ pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
         hypotheses: localiser.hypotheses().to_vec(),
         scans: scans + 1,
         scan,
+        history,
     })
 }

@@ -1,5 +1,5 @@
 use roverlab::geometry::units;
-use roverlab::picture::{Mark, Picture, Style};
+use roverlab::picture::{Picture, Style};
 use roverlab::scan::Localisation;
 use roverlab::world::{Colour, Scene};
 
@@ -12,7 +12,8 @@ pub(crate) fn of(scene: &Scene, run: &Run<Finding>, noise: f64, seed: u64) -> Pi
     let outline = scene.robots[0].spec.footprint;
     let mut picture = Picture::new(&scene.world);
     let Ok(finding) = &run.ending else {
-        picture.title("Localisation: failed").true_path(run.positions());
+        run.draw(&mut picture, &scene.robots[0].spec);
+        picture.title("Localisation: failed");
         return picture;
     };
     picture.title(match finding.localisation {
@@ -25,19 +26,31 @@ pub(crate) fn of(scene: &Scene, run: &Run<Finding>, noise: f64, seed: u64) -> Pi
         "most probable place {off} off; {} scans, {:.1} s, noise {noise}, seed {seed}",
         finding.scans, run.sim_time
     ));
-    picture.true_path(run.positions());
+    let ends = finding.history.iter().skip(1).map(|(time, _)| *time).chain([run.sim_time]);
+    for (index, ((from, places), until)) in finding.history.iter().zip(ends).enumerate() {
+        // The first places stay in the still picture: of them, those that are left were chosen.
+        let first =
+            Style::new(Colour::from_hex(0xe2_85_2b)).opacity(0.35).labelled("where it might be, by one scan");
+        let (style, until) = if index == 0 { (first, f64::INFINITY) } else { (guess(), until) };
+        for &place in places {
+            picture.during(*from..until).robot_with(place, &outline, style.clone());
+        }
+    }
+    picture.during(run.sim_time..);
     if let Some(best) = finding.localisation.best() {
         picture.points(finding.scan.points().map(|point| best.pose.to_world(point)), Style::lidar());
     }
-    picture.robot(run.truth.pose, &outline);
     for (index, place) in finding.hypotheses.iter().take(finding.localisation.count()).enumerate() {
-        let style = Style::new(Colour::from_hex(0xd0_60_10)).width(2.0);
-        let style = if index == 0 { style.labelled("place found") } else { style };
-        picture.robot_with(place.pose, &outline, style);
+        let style = if index == 0 { guess().labelled("place found") } else { guess() };
+        picture.robot_with(place.pose, &outline, style.clone());
+        picture.disc(place.pose.position(), 1.7 * outline.bounding_radius(), style.width(2.4));
     }
-    picture.mark(Mark::Start, scene.robots[0].pose.position());
-    for &point in &run.truth.contact_places {
-        picture.mark(Mark::Contact, point);
-    }
+    picture.during(..);
+    run.draw(&mut picture, &scene.robots[0].spec);
     picture
+}
+
+/// Where the robot takes itself to be.
+fn guess() -> Style {
+    Style::new(Colour::from_hex(0xd0_60_10))
 }

@@ -1,18 +1,23 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use roverlab::geometry::{Point, Pose};
+use roverlab::ParameterError;
+use roverlab::geometry::{Point, Pose, direction};
 use roverlab::nav::Reachability;
 use roverlab::random::Stream;
 use roverlab::world::generate::{CourseOptions, RoomOptions, obstacle_course, room};
 use roverlab::world::{Object, ObjectKind, Wall, World};
 
-/// A world of the campaign, and in how many ways it looks the same.
+/// A world of the campaign.
 #[derive(Debug, Clone)]
 pub(crate) struct Place {
-    pub(crate) name: &'static str,
+    pub(crate) name: String,
     pub(crate) world: World,
+    /// From how many places it looks the same.
     pub(crate) symmetry: usize,
+    /// The share of starts in percent from which the robot has to find out all that there is to know. In a large hall it may
+    /// see nothing but the floor.
+    pub(crate) share: u64,
 }
 
 /// Some rooms with doors between them: the command's own world.
@@ -31,50 +36,85 @@ pub(crate) fn office() -> World {
     world
 }
 
-/// An L, a hall with crates, an office, a generated room and a generated course; then a rectangle and a square, which
-/// look the same from two and from four places.
+/// An L, a hall with crates, an office, a generated room and a generated course; a rectangle and a square, which look the
+/// same from two and from four places; empty halls, and halls with one to four marks.
 pub(crate) fn worlds() -> Vec<Place> {
     let mut angle = World::empty(4.0, 3.0);
     let corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 1.6), (2.2, 1.6), (2.2, 3.0), (0.0, 3.0)];
     angle.add_loop(&corners.map(|(x, y)| Point::new(x, y)));
-    let mut hall = World::walled(4.0, 3.0);
+    let mut crates = World::walled(4.0, 3.0);
     let kind = ObjectKind::predefined("crate").map(Arc::new);
     for (x, y) in [(1.0, 0.8), (2.9, 2.1), (3.2, 0.6)] {
-        hall.objects.extend(kind.iter().map(|kind| Object::new(Arc::clone(kind), Pose::new(x, y, 0.3))));
+        crates.objects.extend(kind.iter().map(|kind| Object::new(Arc::clone(kind), Pose::new(x, y, 0.3))));
     }
     let room = room(&mut Stream::new(5), &RoomOptions::default()).expect("default options are valid");
     let options = CourseOptions { unreachable_share: 0.0, ..CourseOptions::default() };
     let course = obstacle_course(&mut Stream::new(7), &options).expect("these options are valid");
-    [
+    let small = [
         ("L", angle, 1),
-        ("crates", hall, 1),
+        ("crates", crates, 1),
         ("office", office(), 1),
         ("room", room.world, 1),
         ("course", course.world, 1),
         ("rectangle", World::walled(3.0, 2.0), 2),
         ("square", World::walled(2.4, 2.4), 4),
-    ]
-    .map(|(name, world, symmetry)| Place { name, world, symmetry })
-    .into()
+    ];
+    let small = small.map(|(name, world, symmetry)| Place { name: name.into(), world, symmetry, share: 98 });
+    let halls = [10, 14, 20, 28, 40, 60, 100].map(|size| (size, 0));
+    let marked = [(12, 1), (14, 2), (20, 1), (20, 3), (28, 2), (40, 4), (60, 4)];
+    small.into_iter().chain(halls.into_iter().chain(marked).map(|(size, marks)| hall(size, marks))).collect()
 }
 
-/// A random pose with room for a robot: where the world's own start can be reached, or else inside of the walls round it.
-pub(crate) fn start(world: &World, radius: f64, seed: u64) -> Option<Pose> {
-    const TRIES: usize = 10_000;
-    let free = Reachability::new(world, radius + 0.05, 0.02).ok()?;
-    let bounds = world.bounds();
-    let outside = bounds.inflated(0.1).min;
-    let is_inside = |place| match world.start {
-        Some(start) => free.connected(place, start.position()),
-        None => !free.connected(place, outside),
-    };
-    let mut stream = Stream::new(seed).child("start", 0);
-    (0..TRIES).find_map(|_| {
-        let place = Point::new(
-            stream.between(bounds.min.x, bounds.max.x),
-            stream.between(bounds.min.y, bounds.max.y),
-        );
-        let heading = stream.between(-PI, PI);
-        (free.is_free(place) && is_inside(place)).then(|| Pose::new(place.x, place.y, heading))
-    })
+/// A square hall with some short walls as marks. Where the lidar sees from wall to wall, all can be found out.
+fn hall(size: u32, marks: u32) -> Place {
+    const SEEN: u32 = 14;
+    let metres = f64::from(size);
+    let mut world = World::walled(metres, metres);
+    let mut stream = Stream::new(u64::from(size)).child("marks", marks.into());
+    for _ in 0..marks {
+        let inside = |stream: &mut Stream| stream.between(1.0, metres - 1.0);
+        let from = Point::new(inside(&mut stream), inside(&mut stream));
+        let along = direction(stream.between(-PI, PI)) * stream.between(0.3, 0.8);
+        world.walls.push(Wall::new(from, from + along));
+    }
+    let name = if marks == 0 { format!("hall {size}") } else { format!("hall {size}, {marks}") };
+    let symmetry = if marks == 0 { 4 } else { 1 };
+    Place { name, world, symmetry, share: if size <= SEEN { 98 } else { 0 } }
+}
+
+/// Where a robot may start: with room for it, where the world's own start can be reached, or else inside of the walls round it.
+pub(crate) struct Starts<'w> {
+    world: &'w World,
+    free: Reachability,
+}
+
+impl<'w> Starts<'w> {
+    /// Fails for a world that is too large.
+    pub(crate) fn new(world: &'w World, radius: f64) -> Result<Self, ParameterError> {
+        /// Metres along a cell; in a large world, so many cells along it.
+        const RESOLUTION: f64 = 0.02;
+        const CELLS: f64 = 2000.0;
+        let resolution = RESOLUTION.max(world.site().size().max() / CELLS);
+        Ok(Self { world, free: Reachability::new(world, radius + 0.05, resolution)? })
+    }
+
+    /// A random pose, unless there is no room.
+    pub(crate) fn draw(&self, seed: u64) -> Option<Pose> {
+        const TRIES: usize = 10_000;
+        let bounds = self.world.site();
+        let outside = bounds.inflated(0.1).min;
+        let is_inside = |place| match self.world.start {
+            Some(start) => self.free.connected(place, start.position()),
+            None => !self.free.connected(place, outside),
+        };
+        let mut stream = Stream::new(seed).child("start", 0);
+        (0..TRIES).find_map(|_| {
+            let place = Point::new(
+                stream.between(bounds.min.x, bounds.max.x),
+                stream.between(bounds.min.y, bounds.max.y),
+            );
+            let heading = stream.between(-PI, PI);
+            (self.free.is_free(place) && is_inside(place)).then(|| Pose::new(place.x, place.y, heading))
+        })
+    }
 }

@@ -7,7 +7,7 @@ use roverlab::maze::{
 
 use super::place::{Place, unexplored};
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres, rounded};
-use crate::driving::{Conditions, drawn, paced};
+use crate::driving::{Conditions, paced};
 
 /// The command line of `maze-explore`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -86,13 +86,6 @@ pub(crate) fn work(args: &ExploreArgs) -> Result<Report, Failure> {
         Ok(Told { exploration, known: runner.maze().clone(), route, at_goal, pose: runner.pose() })
     })?;
     let told = run.ending.as_ref().ok();
-    let (picture, trouble) = drawn(&args.common, "maze_explore.svg", || {
-        let caption = told.map_or(String::new(), |told| {
-            let Exploration { visited, looks, time, .. } = told.exploration;
-            format!("{visited} of {} cells visited, {looks} looks, {time:.0} s", maze.cell_count())
-        });
-        place.picture_of("Recursive exploration", caption, &run)
-    });
     let report = run.report(|told| match (&told.route, told.at_goal) {
         (None, _) => Outcome::verdict("unreachable"),
         (Some(_), true) => Outcome::verdict("returned"),
@@ -110,9 +103,14 @@ pub(crate) fn work(args: &ExploreArgs) -> Result<Report, Failure> {
         .field("exploration_s", told.map(|told| rounded(told.exploration.time)))
         .field("steps", told.and_then(|told| told.route.as_ref().map(Route::steps)))
         .field("at_goal", told.is_some_and(|told| told.at_goal))
-        .field("localisation_error_mm", lost.map(millimetres))
-        .field("picture", picture);
-    Ok(Report { trouble, ..report })
+        .field("localisation_error_mm", lost.map(millimetres));
+    Ok(args.common.draw(report, "maze_explore.svg", || {
+        let caption = told.map_or(String::new(), |told| {
+            let Exploration { visited, looks, time, .. } = told.exploration;
+            format!("{visited} of {} cells visited, {looks} looks, {time:.0} s", maze.cell_count())
+        });
+        place.picture_of("Recursive exploration", caption, &run)
+    }))
 }
 
 fn wrong_walls(known: &Maze, truth: &Maze) -> usize {

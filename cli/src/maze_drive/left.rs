@@ -4,7 +4,7 @@ use roverlab::maze::{CellDriveParameters, LeftHand, LeftHandOutcome, LeftHandPar
 
 use super::place::Place;
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres};
-use crate::driving::{Conditions, drawn, paced};
+use crate::driving::{Conditions, paced};
 
 /// How to drive from cell to cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -93,9 +93,6 @@ pub(crate) fn work(args: &LeftArgs) -> Result<Report, Failure> {
     let really = at.is_some() && place.scale.cell_of(maze, end) == at;
     let at_goal = at.is_some_and(|cell| maze.is_goal(cell));
     let off = at.map(|cell| (place.scale.centre(cell) - end).norm());
-    let (picture, trouble) = drawn(&args.common, "maze_left.svg", || {
-        place.picture_of("Left hand on the wall", format!("{cells} cells"), &run)
-    });
     let report = run.report(|&outcome| match outcome {
         LeftHandOutcome::Stalled => Outcome::failure("stuck"),
         LeftHandOutcome::Stopped if !really => Outcome::failure("lost"),
@@ -115,7 +112,8 @@ pub(crate) fn work(args: &LeftArgs) -> Result<Report, Failure> {
         .field("at_goal", at_goal)
         .field("back", at == Some(maze.start()))
         .field("really", really)
-        .field("off_middle_mm", off.map(millimetres))
-        .field("picture", picture);
-    Ok(Report { trouble, ..report })
+        .field("off_middle_mm", off.map(millimetres));
+    Ok(args.common.draw(report, "maze_left.svg", || {
+        place.picture_of("Left hand on the wall", format!("{cells} cells"), &run)
+    }))
 }

@@ -8,7 +8,7 @@ use roverlab::world::Wall;
 
 use super::place::Place;
 use crate::common::{CommonArgs, Failure, Outcome, Report, millimetres};
-use crate::driving::{Conditions, drawn, paced};
+use crate::driving::{Conditions, paced};
 
 /// The command line of `maze-lidar`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -64,11 +64,6 @@ pub(crate) fn work(args: &LidarArgs) -> Result<Report, Failure> {
         })
     })?;
     let at_goal = place.is_at_goal(run.truth.pose.position());
-    let (picture, trouble) = drawn(&args.common, "maze_lidar.svg", || {
-        let mut picture = place.picture_of("Left wall by lidar", format!("{} points", map.len()), &run);
-        picture.points(map.iter().copied(), Style::lidar().labelled("map by odometry"));
-        picture
-    });
     let walls = NearWalls::new(&scene.world.walls, scale.cell);
     let error = map.iter().map(|&point| walls.distance(point)).sum::<f64>() / map.len().max(1) as f64;
     let report = run.report(|outcome| match outcome {
@@ -82,9 +77,12 @@ pub(crate) fn work(args: &LidarArgs) -> Result<Report, Failure> {
         .field("cells", visited.iter().filter(|&&visited| visited).count())
         .field("map_points", map.len())
         .field("map_error_mm", millimetres(error))
-        .field("odometry_error_mm", millimetres(lost))
-        .field("picture", picture);
-    Ok(Report { trouble, ..report })
+        .field("odometry_error_mm", millimetres(lost));
+    Ok(args.common.draw(report, "maze_lidar.svg", || {
+        let mut picture = place.picture_of("Left wall by lidar", format!("{} points", map.len()), &run);
+        picture.points(map.iter().copied(), Style::lidar().labelled("map by odometry"));
+        picture
+    }))
 }
 
 /// Walls by the squares of a grid that they come near, as a map has millions of points.

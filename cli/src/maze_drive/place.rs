@@ -2,7 +2,7 @@ use roverlab::geometry::{Point, Vector};
 use roverlab::io::{Error, ErrorKind, Result as IoResult};
 use roverlab::maze::files::{self, MazeFile};
 use roverlab::maze::{Cell, Maze, Scale, mouse};
-use roverlab::picture::{Mark, Picture, SERIES, Style};
+use roverlab::picture::{Picture, SERIES, Style};
 use roverlab::world::{RobotSpec, Scene};
 
 use crate::common::{CommonArgs, Failure};
@@ -78,7 +78,6 @@ impl Place {
             let style = Style::new(SERIES[2]).filled(0.25).width(0.5).labelled("goal");
             picture.polygon(corners.map(|(x, y)| centre + Vector::new(x, y)), style);
         }
-        picture.mark(Mark::Start, self.scale.centre(self.maze().start()));
         picture.title(title);
         picture
     }
@@ -87,12 +86,7 @@ impl Place {
     pub(super) fn picture_of<T>(&self, title: &str, caption: String, run: &Run<T>) -> Picture {
         let mut picture = self.picture(title);
         picture.caption(caption);
-        picture.true_path(run.positions());
-        picture.odometry_path(run.odometry_path.iter().copied());
-        picture.robot(run.truth.pose, &self.spec.footprint);
-        for &place in &run.truth.contact_places {
-            picture.mark(Mark::Contact, place);
-        }
+        run.draw(&mut picture, &self.spec);
         picture
     }
 

@@ -118,6 +118,6 @@ impl Args {
 crate::common::shares_options!(Args, common: CommonArgs, unheeded: [
     ("campaign", OF_ONE_RUN),
     ("plan", &["seed", "noise", "time_limit", "quantised", "realtime", "fault", "supervised", "doubled"]),
-    ("mms_run", &["seed", "noise", "time_limit", "quantised", "realtime", "fault", "supervised", "picture", "doubled"]),
+    ("mms_run", &["seed", "noise", "time_limit", "quantised", "realtime", "fault", "supervised", "picture", "animation", "doubled"]),
     ("!mms_run", &["patience", "mms_limit"]),
 ]);

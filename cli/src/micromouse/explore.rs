@@ -1,6 +1,6 @@
 use std::cell::Cell;
 
-use roverlab::geometry::{Point, Pose};
+use roverlab::geometry::Pose;
 use roverlab::io;
 use roverlab::io::sim::NoiseModel;
 use roverlab::maze::files::MazeFile;
@@ -8,13 +8,13 @@ use roverlab::maze::{
     Exploration, ExplorationOutcome, FastPlan, Goals, Maze, MazeRunner, MazeRunnerParameters, Rig, Scale,
     TwoPhaseExplorer, mouse,
 };
-use roverlab::picture::Picture;
+use roverlab::picture::{Figure, Picture, SERIES, Style};
 use roverlab::world::{RobotSpec, Scene};
 
 use super::plan::with_maze;
 use super::{Args, picture, scene};
 use crate::common::{Driven, Failure, Outcome, Report, millimetres, rounded};
-use crate::driving::{Conditions, Run, drawn, paced};
+use crate::driving::{Conditions, Run, draw_contacts, paced};
 
 /// What the robot says after its drive.
 #[derive(Debug, Clone)]
@@ -54,7 +54,6 @@ pub(crate) fn explore(args: &Args) -> Result<Report, Failure> {
         drive(robot, args, &file.maze, &conditions, &mut told, step)
     })?;
     let told = told.as_ref();
-    let (drawing, trouble) = drawn(&args.common, "micromouse.svg", || picture_of(&file, &run, told, scale));
     let report = run.report(|()| match told {
         Some(Told { exploration: Exploration { verdict: ExplorationOutcome::Unreachable, .. }, .. }) => {
             Outcome::verdict("unreachable")
@@ -66,7 +65,7 @@ pub(crate) fn explore(args: &Args) -> Result<Report, Failure> {
     let at_goal = goal_error(run.truth.pose, &file.maze, scale);
     let report = with_run(report, told, run.truth.pose, scale)
         .field("goal_error_mm", told.and_then(|told| told.race).map(|_| millimetres(at_goal)));
-    Ok(Report { trouble, ..report.field("picture", drawing) })
+    Ok(args.common.draw(report, "micromouse.svg", || picture_of(&file, &run, told, (&spec, scale))))
 }
 
 /// Metres from where a robot is to the middle of the nearest cell of the goal.
@@ -139,9 +138,13 @@ fn with_run(report: Report, told: Option<&Told>, truth: Pose, scale: Scale) -> R
         .field("cell_mm", millimetres(scale.cell))
 }
 
-fn picture_of(file: &MazeFile, run: &Run<()>, told: Option<&Told>, scale: Scale) -> Picture {
-    let path: Vec<Point> = run.positions().collect();
-    let split = told.map_or(path.len(), |told| told.explored_steps.min(path.len()));
+fn picture_of(
+    file: &MazeFile,
+    run: &Run<()>,
+    told: Option<&Told>,
+    (spec, scale): (&RobotSpec, Scale),
+) -> Picture {
+    let split = told.map_or(run.trail.len(), |told| told.explored_steps.min(run.trail.len()));
     let mut picture = picture::of_maze(&file.maze, scale);
     let caption = match told.map(|told| (told, told.race)) {
         Some((told, Some(race))) => format!(
@@ -155,9 +158,9 @@ fn picture_of(file: &MazeFile, run: &Run<()>, told: Option<&Told>, scale: Scale)
         None => "the drive failed".into(),
     };
     picture.title("Micromouse").caption(caption);
-    picture::add_drive(&mut picture, &path, split);
-    for &place in &run.truth.contact_places {
-        picture.mark(roverlab::picture::Mark::Contact, place);
-    }
+    picture::add_drive(&mut picture, &run.trail, split);
+    let figure = Figure::Robot { poses: run.trail.clone(), footprint: spec.footprint };
+    picture.add(figure, Style::new(SERIES[0]));
+    draw_contacts(&mut picture, &run.truth.contact_places);
     picture
 }

@@ -1,4 +1,4 @@
-use roverlab::geometry::{Point, Vector};
+use roverlab::geometry::{Point, Pose, Vector};
 use roverlab::io::sim::TICK;
 use roverlab::maze::files::MazeFile;
 use roverlab::maze::{Cell, Maze, Route, Scale};
@@ -50,10 +50,12 @@ fn points(route: &Route, scale: Scale, shift: f64) -> Vec<Point> {
 }
 
 /// Where the robot drove: pale while it explored, coloured by its speed on the fast run.
-pub(crate) fn add_drive(picture: &mut Picture, path: &[Point], split: usize) {
+pub(crate) fn add_drive(picture: &mut Picture, trail: &[(f64, Pose)], split: usize) {
     let style = Style::new(SERIES[1]).width(1.6).opacity(0.6).labelled("exploration");
-    picture.line(path[..split].iter().copied(), style);
-    let fast = &path[split.saturating_sub(1)..];
-    let speeds = fast.windows(2).map(|pair| (pair[1], (pair[1] - pair[0]).norm() / TICK));
-    picture.speed_path(speeds);
+    picture.trace(trail[..split].iter().map(|(time, pose)| (*time, pose.position())), style);
+    let fast = trail[split.saturating_sub(1)..].windows(2);
+    picture.speed_trace(fast.map(|pair| {
+        let [(before, from), (time, to)] = [pair[0], pair[1]];
+        (time, to.position(), from.distance_to(to.position()) / (time - before).max(TICK))
+    }));
 }

@@ -5,7 +5,6 @@ use roverlab::maze::{
 
 use super::{Args, picture, scene};
 use crate::common::{Failure, Outcome, Report};
-use crate::driving::drawn;
 
 /// Plans the way through a maze.
 pub(crate) fn plan(args: &Args) -> Result<Report, Failure> {
@@ -19,11 +18,10 @@ pub(crate) fn plan(args: &Args) -> Result<Report, Failure> {
     for defect in &file.defects {
         args.common.tell(format_args!("defect: {defect}"));
     }
-    let (drawing, trouble) =
-        drawn(&args.common, "micromouse.svg", || picture::of_plan(&file, short.as_ref(), straight.as_ref()));
     let report = with_maze(Report::new(outcome), args, &file);
-    let report = with_routes(report, short.as_ref(), straight.as_ref()).field("picture", drawing);
-    Ok(Report { trouble, ..report })
+    let report = with_routes(report, short.as_ref(), straight.as_ref());
+    let draw = || picture::of_plan(&file, short.as_ref(), straight.as_ref());
+    Ok(args.common.draw(report, "micromouse.svg", draw))
 }
 
 /// Adds what the file says.

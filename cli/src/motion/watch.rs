@@ -1,11 +1,12 @@
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
-use roverlab::geometry::{Twist, angle_difference, math, units};
+use roverlab::geometry::{Twist, angle_difference, direction, math, units};
 use roverlab::io::{self, Display, DisplayImage, Viewport, control};
-use roverlab::picture::Picture;
+use roverlab::picture::{Figure, Picture, SERIES, Style};
+use roverlab::world::{Colour, Scene};
 
 use super::{Args, campaign, scene};
 use crate::common::{Failure, Outcome, Report, rounded};
-use crate::driving::{Conditions, drawn, paced};
+use crate::driving::{Conditions, Run, paced};
 
 /// Simulated seconds of watching.
 const TIME_LIMIT: f64 = 10.0;
@@ -18,6 +19,8 @@ struct Seen {
     images: u32,
     sectors: [u32; 3],
     strongest: f64,
+    /// When there was motion, in which sector, and how the robot stood then.
+    alarms: Vec<(f64, usize)>,
 }
 
 /// The work of the command.
@@ -58,21 +61,15 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
             if let Some(motion) = watch.motion() {
                 seen.images += 1;
                 seen.strongest = seen.strongest.max(motion.largest());
-                motion.strongest.iter().for_each(|&sector| seen.sectors[sector] += 1);
+                if let Some(sector) = motion.strongest {
+                    seen.sectors[sector] += 1;
+                    seen.alarms.push((at.time, sector));
+                }
             }
             io::Result::Ok(())
         })?;
         Ok(seen)
     })?;
-    let (file, trouble) = drawn(common, "motion.svg", || {
-        let mut drawing = Picture::new(&scene.world);
-        drawing.title("Watching for motion");
-        for other in &scene.robots[1..] {
-            drawing.robot(other.pose, &other.spec.footprint);
-        }
-        drawing.robot(run.truth.pose, &spec.footprint);
-        drawing
-    });
     let turned = angle_difference(run.truth.pose.heading, scene.robots[0].pose.heading);
     let seen = run.ending.clone().unwrap_or_default();
     let report = run
@@ -82,10 +79,50 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         .field("sectors", seen.sectors)
         .field("strongest", rounded(seen.strongest))
         .field("turned_deg", rounded(units::to_deg(turned)))
-        .field("time_limit_s", seconds)
-        .field("picture", file);
-    Ok(Report { trouble, ..report })
+        .field("time_limit_s", seconds);
+    Ok(common.draw(report, "motion.svg", || picture(&scene, &run)))
 }
+
+/// The other robot's way, and the sector of each alarm as the robot looked then.
+fn picture(scene: &Scene, run: &Run<Seen>) -> Picture {
+    let spec = &scene.robots[0].spec;
+    let mut drawing = Picture::new(&scene.world);
+    let alarms = run.ending.as_ref().map_or(&[][..], |seen| &seen.alarms);
+    drawing.title("Watching for motion").caption(format!(
+        "{} alarms, turned by {:.0} deg in {:.0} s",
+        alarms.len(),
+        units::to_deg(angle_difference(run.truth.pose.heading, scene.robots[0].pose.heading)),
+        run.sim_time
+    ));
+    for trail in &run.others {
+        let way = trail.iter().map(|(time, pose)| (*time, pose.position()));
+        drawing.trace(way, Style::new(SERIES[1]).labelled("what moves"));
+    }
+    let red = Style::new(Colour::from_hex(0xc8_3e_4d)).width(0.6).labelled("alarm: its sector");
+    let angle = spec.camera.map_or(0.0, |camera| camera.field_of_view);
+    for &(time, sector) in alarms {
+        let before = run.trail.partition_point(|(then, _)| *then <= time);
+        let (_, pose) = run.trail[before.saturating_sub(1)];
+        let left = pose.heading + angle * (0.5 - sector as f64 / 3.0);
+        let rim = [left, left - angle / 6.0, left - angle / 3.0];
+        let corners = || rim.map(|bearing| pose.position() + direction(bearing) * REACH);
+        drawing
+            .during(time..time + 0.4)
+            .polygon([pose.position()].into_iter().chain(corners()), red.clone().filled(0.3));
+        drawing.during(time..).line(corners(), red.clone().width(2.0));
+    }
+    drawing.during(..);
+    for (index, other) in scene.robots.iter().enumerate().skip(1) {
+        let still = vec![(0.0, other.pose)];
+        let poses = run.others.get(index - 1).cloned().unwrap_or(still);
+        drawing.add(Figure::Robot { poses, footprint: other.spec.footprint }, Style::new(SERIES[1]));
+    }
+    run.draw(&mut drawing, spec);
+    drawing
+}
+
+/// Metres to the arcs of alarms.
+const REACH: f64 = 0.6;
 
 /// The image on the display, with a bar under the sector where something moves.
 fn show<R: Display + ?Sized>(robot: &mut R, watch: &MotionWatch, image: &image::GrayImage) -> io::Result<()> {

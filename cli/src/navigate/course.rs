@@ -64,7 +64,7 @@ pub(crate) fn generated(seed: u64) -> Result<Course, Failure> {
 pub(crate) fn changed(mut trip: Trip, count: u32, stream: &mut Stream) -> Result<Course, Failure> {
     let known = trip.scene.world.clone();
     let radius = PASSAGE * trip.spec().footprint.bounding_radius();
-    let size = known.bounds().size();
+    let size = known.site().size();
     let resolution = (radius / 6.0).max((size.x * size.y / MAX_CELLS).sqrt());
     let (start, goal) = (trip.start().position(), trip.goal);
     let mut unmapped = 0;
@@ -72,22 +72,16 @@ pub(crate) fn changed(mut trip: Trip, count: u32, stream: &mut Stream) -> Result
         let ways = Reachability::new(&trip.scene.world, radius, resolution).map_err(Failure::run)?;
         let Some(way) = ways.shortest_path(start, goal) else { break };
         for _ in 0..TRIES {
-            // Half of them lie near the way.
-            let near = stream.chance(0.5);
-            let spread = if near { 0.15 } else { 0.0 };
-            let place = if near {
-                way.points[stream.below(way.points.len())]
-            } else {
-                let floor = known.floor;
-                Point::new(stream.between(floor.min.x, floor.max.x), stream.between(floor.min.y, floor.max.y))
-            };
+            let way_point = way.points[stream.below(way.points.len())];
             let place = Point::new(
-                place.x + stream.between(-1.0, 1.0) * spread,
-                place.y + stream.between(-1.0, 1.0) * spread,
+                way_point.x + stream.between(-SPREAD, SPREAD),
+                way_point.y + stream.between(-SPREAD, SPREAD),
             );
             let mut world = trip.scene.world.clone();
             add(&mut world, place, stream);
-            let apart = |point: Point| (place - point).norm() > APART + WALL;
+            // Half in a wall it would hardly be seen.
+            let in_wall = known.walls.iter().any(|wall| wall.line.distance_to(place) < 0.5 * APART);
+            let apart = |point: Point| (place - point).norm() > APART + WALL && !in_wall;
             let ways = Reachability::new(&world, radius, resolution).map_err(Failure::run)?;
             if apart(start) && apart(goal) && ways.connected(start, goal) {
                 trip.scene.world = world;
@@ -99,6 +93,8 @@ pub(crate) fn changed(mut trip: Trip, count: u32, stream: &mut Stream) -> Result
     Ok(Course { trip, known, unmapped })
 }
 
+/// An unmapped obstacle lies at most so far from the known way, in metres along each axis, so that it matters.
+const SPREAD: f64 = 0.15;
 /// Half the length of the longest unmapped wall, in metres.
 const WALL: f64 = 0.3;
 

@@ -1,5 +1,5 @@
 use roverlab::geometry::{Point, Pose};
-use roverlab::io::{self, Clock, Drive, Lidar, control};
+use roverlab::io::{self, Clock, Drive, Lidar, Odometry, control};
 use roverlab::nav::{Navigator, NavigatorEvent, NavigatorOutcome, NavigatorParameters};
 use roverlab::world::World;
 
@@ -40,7 +40,7 @@ impl Arrival {
 }
 
 /// Drives a robot through a world that it is told of. `watch` is called after each step with what happened in it.
-pub(crate) fn drive<R: Clock + Drive + Lidar + ?Sized>(
+pub(crate) fn drive<R: Clock + Drive + Odometry + Lidar + ?Sized>(
     robot: &mut R,
     (known, start, goal): (&World, Pose, Point),
     parameters: NavigatorParameters,

@@ -1,5 +1,3 @@
-use std::path::PathBuf;
-
 use roverlab::geometry::{Point, units};
 use roverlab::nav::{NavigatorEvent, NavigatorOutcome};
 use roverlab::random::Stream;
@@ -8,7 +6,7 @@ use super::course::{self, Course};
 use super::drive::{Arrival, drive};
 use super::{Args, campaign, picture};
 use crate::common::{Failure, Outcome, Report, millimetres, point_in_mm};
-use crate::driving::{Conditions, Run, drawn, paced};
+use crate::driving::{Conditions, Run, paced};
 
 /// Obstacles of the command's own world that the robot is not told of, unless the command line says how many.
 const UNMAPPED: u32 = 3;
@@ -44,8 +42,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
             step();
         })
     })?;
-    let (file, trouble) = drawn(common, "navigate.svg", || picture::of(&course, &run, &conditions));
-    Ok(Report { trouble, ..report(&course, &run, conditions.time_limit, file) })
+    let report = report(&course, &run, conditions.time_limit);
+    Ok(common.draw(report, "navigate.svg", || picture::of(&course, &run, &conditions)))
 }
 
 fn told(event: &NavigatorEvent) -> String {
@@ -74,7 +72,7 @@ pub(super) fn verdict(outcome: NavigatorOutcome) -> &'static str {
     }
 }
 
-fn report(course: &Course, run: &Run<Arrival>, limit: f64, file: Option<PathBuf>) -> Report {
+fn report(course: &Course, run: &Run<Arrival>, limit: f64) -> Report {
     let arrival = run.ending.as_ref().ok();
     let planned = arrival.and_then(Arrival::planned);
     let error = arrival.map(|arrival| run.truth.pose.distance_to(arrival.believed.position()));
@@ -95,7 +93,6 @@ fn report(course: &Course, run: &Run<Arrival>, limit: f64, file: Option<PathBuf>
     .field("unmapped", course.unmapped)
     .field("contact_points", contacts)
     .field("time_limit_s", limit)
-    .field("picture", file)
 }
 
 fn in_words(point: Point) -> String {

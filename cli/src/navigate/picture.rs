@@ -5,7 +5,7 @@ use roverlab::world::Colour;
 use super::course::Course;
 use super::drive::Arrival;
 use super::job::verdict;
-use crate::driving::{Conditions, Run};
+use crate::driving::{Conditions, Run, pale};
 
 /// A picture of a run: the first plan, where the robot was and believed to be, and what it has seen that it was not told of.
 pub(crate) fn of(course: &Course, run: &Run<Arrival>, conditions: &Conditions) -> Picture {
@@ -20,17 +20,11 @@ pub(crate) fn of(course: &Course, run: &Run<Arrival>, conditions: &Conditions) -
         let style = Style::new(Colour::from_hex(0xc0_40_20)).labelled("seen, not told of");
         picture.points(arrival.seen.iter().copied(), style);
     }
-    picture.true_path(run.positions());
-    picture.odometry_path(run.odometry_path.iter().copied());
     for other in &trip.scene.robots[1..] {
-        picture.robot_with(other.pose, &other.spec.footprint, Style::new(Colour::from_hex(0x8a_90_9c)));
+        picture.robot_with(other.pose, &other.spec.footprint, pale());
     }
-    picture.robot(run.truth.pose, &spec.footprint);
-    picture.mark(Mark::Start, trip.start().position());
+    run.draw(&mut picture, spec);
     picture.mark(Mark::Goal, trip.goal);
-    for &point in &run.truth.contact_places {
-        picture.mark(Mark::Contact, point);
-    }
     picture
 }
 

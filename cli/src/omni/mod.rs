@@ -2,13 +2,13 @@
 
 use roverlab::drive::{OmniDriver, OmniOutcome, OmniParameters, OmniTracker};
 use roverlab::geometry::{Point, Pose, Segment, angle_difference, math, units};
-use roverlab::io::{self, Clock, Drive, Motors, control};
+use roverlab::io::{self, Clock, Motors, Odometry, control};
 use roverlab::kinematics::Omni;
 use roverlab::picture::{Mark, Picture, Style};
-use roverlab::world::{Colour, DriveSpec, RobotSpec, Scene, World};
+use roverlab::world::{DriveSpec, RobotSpec, Scene, World};
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, StandIn, Trip, millimetres, point_in_mm, rounded};
-use crate::driving::{Conditions, Run, check_drive, drawn, paced};
+use crate::driving::{Conditions, Run, check_drive, paced, pale};
 
 /// The command line of `omni`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -79,7 +79,7 @@ pub(crate) struct Options {
 }
 
 /// Drives a robot along a route. `watch` is called after each step.
-pub(crate) fn drive<R: Clock + Drive + Motors + ?Sized>(
+pub(crate) fn drive<R: Clock + Odometry + Motors + ?Sized>(
     robot: &mut R,
     options: &Options,
     mut watch: impl FnMut(),
@@ -105,9 +105,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let way: Vec<Point> = std::iter::once(start.position())
         .chain(options.route.iter().map(|&point| start.to_world(point)))
         .collect();
-    let (file, trouble) = drawn(common, "omni.svg", || picture(args, &trip, &run, &way, &conditions));
-    let report = report(args, &run, &way).field("time_limit_s", conditions.time_limit).field("picture", file);
-    Ok(Report { trouble, ..report })
+    let report = report(args, &run, &way).field("time_limit_s", conditions.time_limit);
+    Ok(common.draw(report, "omni.svg", || picture(args, &trip, &run, &way, &conditions)))
 }
 
 /// The trip that the options describe. An Omni takes the place of a robot on other wheels.
@@ -156,7 +155,7 @@ fn driver(common: &CommonArgs, spec: &RobotSpec) -> Result<OmniDriver, Failure> 
         return Err(Failure::input(format!("found another robot; expected {expected}")));
     };
     let kinematics = Omni::mecanum(track, wheelbase).map_err(Failure::input)?;
-    Ok(OmniDriver { kinematics, full_speed: 0.5 * wheel_diameter * max_wheel_speed })
+    OmniDriver::new(kinematics, 0.5 * wheel_diameter * max_wheel_speed).map_err(Failure::input)
 }
 
 fn report(args: &Args, run: &Run<OmniOutcome>, way: &[Point]) -> Report {
@@ -174,13 +173,13 @@ fn report(args: &Args, run: &Run<OmniOutcome>, way: &[Point]) -> Report {
         .field("max_deviation_mm", millimetres(deviation));
     match args.task {
         Task::Square => {
-            let first = run.true_path[0].heading;
-            let errors = run.true_path.iter().map(|pose| angle_difference(pose.heading, first).abs());
+            let first = run.trail[0].1.heading;
+            let errors = run.trail.iter().map(|(_, pose)| angle_difference(pose.heading, first).abs());
             report.field("max_heading_error_deg", rounded(units::to_deg(errors.fold(0.0, f64::max))))
         }
         Task::Spin => {
             let turns =
-                run.true_path.windows(2).map(|pair| angle_difference(pair[1].heading, pair[0].heading));
+                run.trail.windows(2).map(|pair| angle_difference(pair[1].1.heading, pair[0].1.heading));
             report.field("turned_deg", rounded(units::to_deg(turns.sum())))
         }
     }
@@ -210,25 +209,19 @@ fn picture(
     let (seconds, noise, seed) = (run.sim_time, conditions.noise, conditions.seed);
     picture.caption(format!("{off:.1} mm off after {seconds:.0} s, noise {noise}, seed {seed}"));
     picture.line(way.iter().copied(), Style::plan());
-    picture.true_path(run.positions());
-    picture.odometry_path(run.odometry_path.iter().copied());
     for pose in stations(run) {
-        picture.robot_with(pose, &outline, Style::new(Colour::from_hex(0x8a_90_9c)).opacity(0.4));
+        picture.robot_with(pose, &outline, pale());
     }
-    picture.robot(run.truth.pose, &outline);
-    picture.mark(Mark::Start, trip.start().position());
+    run.draw(&mut picture, trip.spec());
     picture.mark(Mark::Goal, way[way.len() - 1]);
-    for &point in &run.truth.contact_places {
-        picture.mark(Mark::Contact, point);
-    }
     picture
 }
 
 /// Poses of the run that are some way apart.
 fn stations(run: &Run<OmniOutcome>) -> Vec<Pose> {
     const APART: f64 = 0.33;
-    let mut stations = vec![run.true_path[0]];
-    for &pose in &run.true_path {
+    let mut stations = vec![run.trail[0].1];
+    for &(_, pose) in &run.trail {
         let last = stations[stations.len() - 1];
         if math::hypot(pose.x - last.x, pose.y - last.y) >= APART {
             stations.push(pose);

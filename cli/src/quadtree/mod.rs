@@ -2,13 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use roverlab::geometry::Point;
 use roverlab::nav::grid::{GridPath, GridPlanner, Leaf, Quadtree, QuadtreePlanner};
+use roverlab::picture::{Mark, Picture, SERIES, Style};
 use roverlab::random::Stream;
 use roverlab::world::formats::{bitmap, movingai, ros_map};
 use roverlab::world::{BitGrid, GridCell};
 use serde_json::{Value, json};
 
 use crate::common::{Failure, Outcome, PlainArgs, Report, Stopwatch};
+use crate::grid_benchmark::picture::{draw_path, of_grid, place};
 
 /// The command line of `quadtree`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -54,7 +57,7 @@ pub(crate) struct Args {
     pub(crate) plain: PlainArgs,
 }
 
-crate::common::shares_options!(Args, plain: PlainArgs, unheeded: [("map", &["seed"])]);
+crate::common::shares_options!(Args, plain: PlainArgs, unheeded: [("map", &["seed"]), ("always", &["animation"])]);
 
 fn cell(text: &str) -> Result<GridCell, String> {
     let numbers: Option<Vec<usize>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
@@ -66,6 +69,7 @@ fn cell(text: &str) -> Result<GridCell, String> {
 
 /// The work of the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
+    args.plain.check_picture()?;
     let (name, grid) = match &args.map {
         Some(map) => (map.display().to_string(), load(map)?),
         None => (format!("discs of seed {}", args.plain.seed), own_map(args.plain.seed)),
@@ -100,6 +104,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         Some(path) => report.field("path", path_json(&path)),
         None => report,
     };
+    let report = args.plain.draw(report, "quadtree.svg", || picture(args, &grid, &tree));
     if !args.list {
         return Ok(report);
     }
@@ -115,6 +120,36 @@ fn plan(tree: &Quadtree, from: GridCell, to: GridCell) -> Result<Option<GridPath
         Err(PlanError::Unreachable { .. }) => Ok(None),
         Err(error) => Err(Failure::input(format!("--from, --to: {error}"))),
     }
+}
+
+/// The leaves, and a path: the one that was asked for, or one between the first free leaf and the last.
+fn picture(args: &Args, grid: &BitGrid, tree: &Quadtree) -> Picture {
+    let free = tree.free_leaves();
+    let mut picture = of_grid(grid);
+    picture.title(format!("A quadtree: {} free leaves", free.len()));
+    let middle = |leaf: &Leaf| GridCell::new(leaf.column + leaf.size / 2, leaf.row + leaf.size / 2);
+    let ends = args.from.zip(args.to).or_else(|| Some((middle(free.first()?), middle(free.last()?))));
+    let (width, height) = (grid.width(), grid.height());
+    let squares = free.iter().flat_map(|leaf| {
+        let (left, top) = (leaf.column, leaf.row);
+        let (right, bottom) = ((left + leaf.size).min(width), (top + leaf.size).min(height));
+        let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
+        let corner = |(x, y): (usize, usize)| place(grid, Point::new(x as f64, y as f64));
+        corners.map(corner).into_iter().chain([Point::new(f64::NAN, f64::NAN)])
+    });
+    picture.line(squares, Style::new(SERIES[1]).width(0.8).labelled("free leaf"));
+    let Some((from, to)) = ends else { return picture };
+    picture.mark(Mark::Start, place(grid, from.centre())).mark(Mark::Goal, place(grid, to.centre()));
+    match plan(tree, from, to) {
+        Ok(Some(path)) => {
+            picture.caption(format!("a path of {:.1} cells through {width} x {height}", path.cost));
+            draw_path(&mut picture, grid, &path, 0.0);
+        }
+        _ => {
+            picture.caption("no path");
+        }
+    }
+    picture
 }
 
 fn path_json(path: &GridPath) -> Value {

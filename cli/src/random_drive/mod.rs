@@ -10,12 +10,12 @@ use roverlab::geometry::{Point, Pose, units};
 use roverlab::io::RobotIo;
 use roverlab::io::control::{self, Behaviour};
 use roverlab::io::sim::SimOptions;
-use roverlab::picture::{Mark, Picture, Style};
+use roverlab::picture::{Mark, Picture};
 use roverlab::random::Stream;
 use roverlab::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
 
 use crate::common::{CommonArgs, Failure, FreeFloor, Outcome, Report, rounded};
-use crate::driving::{Conditions, counted, drawn, paced};
+use crate::driving::{Conditions, Trail, counted, draw_contacts, paced};
 
 /// The command line of `random-drive`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -54,7 +54,7 @@ const STEP: f64 = 0.1;
 
 /// What became of the robots.
 struct Outing {
-    paths: Vec<Vec<Pose>>,
+    paths: Vec<Trail>,
     turns: u32,
     contacts: u64,
     contact_places: Vec<Point>,
@@ -77,14 +77,12 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
         together(args, &scene, seconds)?
     };
     let share = covered(&scene, &outing.paths);
-    let (file, trouble) = drawn(common, "random_drive.svg", || picture(args, &scene, &outing, share));
-    let Outing { report, turns, contacts, paths, .. } = outing;
-    Ok(Report { collisions: Some(contacts), trouble, ..report }
-        .field("robots", paths.len())
-        .field("turns", turns)
+    let report = Report { collisions: Some(outing.contacts), ..outing.report.clone() }
+        .field("robots", outing.paths.len())
+        .field("turns", outing.turns)
         .field("coverage_percent", share.map(|share| rounded(100.0 * share)))
-        .field("time_limit_s", seconds)
-        .field("picture", file))
+        .field("time_limit_s", seconds);
+    Ok(common.draw(report, "random_drive.svg", || picture(args, &scene, &outing, share)))
 }
 
 /// A room with two crates and a can, and robots in it, larger and smaller ones, as in the book.
@@ -119,7 +117,7 @@ fn add_robots(scene: &mut Scene, robots: usize, seed: u64) -> Result<(), Failure
             "--robots {robots}: found {found} robots in the world; expected at least as many"
         )));
     }
-    let (spec, floor) = (Arc::clone(&scene.robots[0].spec), scene.world.bounds());
+    let (spec, floor) = (Arc::clone(&scene.robots[0].spec), scene.world.site());
     let free = FreeFloor::new(scene, &spec);
     let mut stream = Stream::new(seed).child("places", 0);
     for _ in found..robots {
@@ -160,7 +158,7 @@ fn alone(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure> {
         contacts: run.truth.contacts.into(),
         contact_places: run.truth.contact_places.clone(),
         report: run.report(|_| Outcome::verdict("driven")),
-        paths: vec![run.true_path],
+        paths: vec![run.trail],
     })
 }
 
@@ -184,14 +182,15 @@ fn together(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure>
         };
         fleet.control(robot, period, Box::new(step))?;
     }
-    let mut paths: Vec<Vec<Pose>> = scene.robots.iter().map(|robot| vec![robot.pose]).collect();
+    let mut paths: Vec<Trail> = scene.robots.iter().map(|robot| vec![(0.0, robot.pose)]).collect();
     let mut pace = paced(common);
     while fleet.time()? + 0.5 * STEP < seconds {
         fleet.run_for(STEP)?;
+        let time = fleet.time()?;
         for (robot, path) in paths.iter_mut().enumerate() {
-            path.push(fleet.pose(robot)?);
+            path.push((time, fleet.pose(robot)?));
         }
-        pace(fleet.time()?);
+        pace(time);
     }
     let first = fleet.truth(0)?;
     let (mut contacts, mut contact_places) = (0, Vec::new());
@@ -211,11 +210,11 @@ fn together(args: &Args, scene: &Scene, seconds: f64) -> Result<Outing, Failure>
 }
 
 /// The share of the floor that the robots have passed over.
-fn covered(scene: &Scene, paths: &[Vec<Pose>]) -> Option<f64> {
+fn covered(scene: &Scene, paths: &[Trail]) -> Option<f64> {
     let radius = scene.robots[0].spec.footprint.bounding_radius();
     let parameters = CoverageMapParameters { radius, ..CoverageMapParameters::default() };
     let mut map = CoverageMap::new(&scene.world, scene.robots[0].pose.position(), parameters).ok()?;
-    paths.iter().flatten().for_each(|pose| map.cover(pose.position()));
+    paths.iter().flatten().for_each(|(_, pose)| map.cover(pose.position()));
     Some(map.share())
 }
 
@@ -229,21 +228,9 @@ fn picture(args: &Args, scene: &Scene, outing: &Outing, share: Option<f64>) -> P
         "{share} of the floor, {} turns, noise {}, seed {}",
         outing.turns, args.common.noise, args.common.seed
     ));
-    for (number, path) in outing.paths.iter().enumerate() {
-        let points = path.iter().map(Pose::position);
-        match number {
-            0 => picture.true_path(points),
-            _ => picture.line(points, Style::plan().labelled("other robots")),
-        };
-    }
     for (robot, path) in scene.robots.iter().zip(&outing.paths) {
-        picture.mark(Mark::Start, robot.pose.position());
-        if let Some(&pose) = path.last() {
-            picture.robot(pose, &robot.spec.footprint);
-        }
+        picture.mark(Mark::Start, robot.pose.position()).drive(path, &robot.spec.footprint);
     }
-    for &place in &outing.contact_places {
-        picture.mark(Mark::Contact, place);
-    }
+    draw_contacts(&mut picture, &outing.contact_places);
     picture
 }

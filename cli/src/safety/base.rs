@@ -1,5 +1,6 @@
 //! The other end of the radio link: the base station with its crew, and a camera that sees how far the car truly goes.
 
+use roverlab::ParameterError;
 use roverlab::geometry::Pose;
 use roverlab::safety::{BaseStation, Causes, Heartbeat, Panel, SafetyState, Station};
 
@@ -69,9 +70,9 @@ pub(crate) struct Base {
 const STANDING: f64 = 0.005;
 
 impl Base {
-    pub(crate) fn new(crew: Crew, truth: StageTruth, heartbeat: f64) -> Self {
-        Self {
-            station: BaseStation::new(heartbeat),
+    pub(crate) fn new(crew: Crew, truth: StageTruth, heartbeat: f64) -> Result<Self, ParameterError> {
+        Ok(Self {
+            station: BaseStation::new(heartbeat)?,
             crew,
             truth,
             last: Look::default(),
@@ -82,7 +83,7 @@ impl Base {
             asked: 0.0,
             answered: None,
             states: vec![(0.0, SafetyState::Manual)],
-        }
+        })
     }
 
     fn look(&mut self) -> Look {

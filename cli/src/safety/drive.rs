@@ -5,7 +5,7 @@ use std::fmt;
 use roverlab::ParameterError;
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::wrappers::{Fault, FaultKind};
-use roverlab::io::{Clock, Drive, Lidar, LidarScan};
+use roverlab::io::{Clock, Drive, Lidar, LidarScan, Odometry};
 use roverlab::race::{Racer, RacerParameters, sightings};
 use roverlab::safety::{Causes, SafetyState, SpeedError, StoppingModel, Supervised, SupervisedParameters};
 use roverlab::world::RobotSpec;
@@ -102,7 +102,7 @@ pub(crate) fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Drive
         ..SupervisedParameters::default()
     };
     let crew = Crew::new(events, well(&args.common.faults()?));
-    let base = Base::new(crew, stage.truth(0)?, parameters.heartbeat);
+    let base = Base::new(crew, stage.truth(0)?, parameters.heartbeat)?;
     let mut car = Supervised::new(stage.robot(0)?, base, parameters.clone()).map_err(Failure::run)?;
     let done = program(&mut car, &mut judge, limit)?;
     let base = car.station_mut();

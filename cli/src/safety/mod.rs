@@ -10,8 +10,8 @@ use roverlab::io::sim::SimOptions;
 use roverlab::picture::{Picture, Style};
 use roverlab::world::Colour;
 
-use crate::common::{CommonArgs, Failure, Outcome, Report, onlooker, rounded};
-use crate::cones::{Course, check_race};
+use crate::common::{CommonArgs, Failure, Outcome, Report, rounded};
+use crate::cones::{Course, check_race, drawing};
 use crew::Event;
 use drive::{Driven, Stopped};
 
@@ -77,11 +77,7 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     for takeover in &driven.takeovers {
         common.tell(takeover);
     }
-    onlooker::pictured(|| picture(&course, &driven));
-    let file = common.picture_file("safety.svg");
-    let saved = file.as_ref().map(|file| picture(&course, &driven).save(file)).transpose();
-    let trouble = saved.err().map(|error| error.to_string());
-    Ok(Report { trouble, ..report(&course, &driven).field("picture", file) })
+    Ok(common.draw(report(&course, &driven), "safety.svg", || picture(&course, &driven)))
 }
 
 fn report(course: &Course, driven: &Driven) -> Report {
@@ -115,15 +111,17 @@ fn report(course: &Course, driven: &Driven) -> Report {
 fn picture(course: &Course, driven: &Driven) -> Picture {
     let mut picture = Picture::new(&course.ground());
     picture.title("Stops under the safety system");
-    for cone in &course.cones {
-        picture.disc(cone.position, 0.3, Style::aid().colour(cone.colour.paint()).filled(1.0));
-    }
-    picture.speed_path(driven.judge.trail().iter().map(|(pose, speed)| (pose.position(), *speed)));
+    drawing::cones(&mut picture, course, |_| true);
     for stop in &driven.stops {
         let [from, to] = stop.places().map(|pose| pose.position());
-        picture.disc(from, 0.5, Style::new(Colour::RED).filled(1.0).labelled("a stop begins"));
-        picture.disc(to, 0.5, Style::new(Colour::GREEN).filled(1.0).labelled("it stands"));
+        picture.disc(
+            from,
+            1.6,
+            Style::new(Colour::from_hex(0xc8_3e_4d)).filled(0.5).labelled("a stop begins"),
+        );
+        picture.disc(to, 1.6, Style::new(Colour::from_hex(0x2e_8b_57)).filled(0.5).labelled("it stands"));
     }
+    drawing::car(&mut picture, driven.judge.trail());
     let worst = driven.stops.iter().map(Stopped::share).fold(0.0, f64::max);
     picture.caption(format!("{} stops, {:.0} % of the bound at worst", driven.stops.len(), 100.0 * worst));
     picture

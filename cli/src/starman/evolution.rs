@@ -6,7 +6,7 @@ use roverlab::evolve::{
     Trial, checkpoint,
 };
 use roverlab::io::sim::starman::{LIMBS, Starman, StarmanSpec};
-use roverlab::io::{Clock, Drive, Result, Servos};
+use roverlab::io::{Clock, Odometry, Result, Servos};
 use roverlab::random::Stream;
 use roverlab::world::{Scene, World};
 

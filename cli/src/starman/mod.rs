@@ -2,19 +2,17 @@
 
 mod compare;
 mod evolution;
-mod moving;
 mod options;
 mod steps;
 mod strip;
 
 use std::ffi::OsString;
-use std::path::PathBuf;
 
 use clap::ValueEnum;
 use roverlab::evolve::{GenerationStatistics, chart, serve, table};
 use roverlab::geometry::units;
 
-use crate::common::{Failure, Outcome, Report, is_same_file, rounded};
+use crate::common::{Failure, Outcome, Report, rounded};
 pub(crate) use options::Args;
 use options::Figure;
 
@@ -51,8 +49,7 @@ fn walk(args: &Args) -> Result<Report, Failure> {
     let way = evolution::walk(args, &evolved.best)?;
     let walk = strip::Walk::of(&args.trials(), &evolved.best)?;
     args.common.tell(format_args!("the best gait goes {:.0} mm", units::to_mm(way)));
-    let (picture, trouble) = draw(args, &walk);
-    let trouble = trouble.or(keep_statistics(args, &evolved.history).err());
+    let trouble = keep_statistics(args, &evolved.history).err();
     let report = Report::new(Outcome::verdict("evolved"))
         .field("generations", evolved.generations)
         .field("evaluations", evolved.evaluations)
@@ -64,9 +61,9 @@ fn walk(args: &Args) -> Result<Report, Failure> {
         .field("population_hash", format!("{:016x}", evolved.hash))
         .field("best_gait", &evolved.best)
         .field("way_mm", rounded(units::to_mm(way)))
-        .field("threads", evolved.threads)
-        .field("picture", picture.map(|file| file.display().to_string()));
-    Ok(Report { sim_time: Some(args.seconds * evolved.evaluations as f64), trouble, ..report })
+        .field("threads", evolved.threads);
+    let report = Report { sim_time: Some(args.seconds * evolved.evaluations as f64), trouble, ..report };
+    Ok(args.common.draw(report, "starman.svg", || strip::picture(args, &walk)))
 }
 
 /// Writes the statistics of all generations where the option says.
@@ -78,18 +75,4 @@ fn keep_statistics(args: &Args, history: &[GenerationStatistics]) -> Result<(), 
     } else {
         chart(history).save(file).map_err(|error| told(&error))
     }
-}
-
-/// Draws a walk where the options say. Returns the file of the strip, and what went wrong.
-fn draw(args: &Args, walk: &strip::Walk) -> (Option<PathBuf>, Option<String>) {
-    let moving = |file: &PathBuf| args.animation.as_ref().is_some_and(|other| is_same_file(other, file));
-    let strip = args.common.picture_file("starman.svg").filter(|file| !moving(file));
-    let drawn = strip.as_ref().map(|file| strip::picture(args, walk).save(file)).transpose();
-    let moved = args.animation.as_ref().map(|file| moving::save(file, walk)).transpose();
-    if let Some(file) = &strip {
-        args.common.tell(format_args!("its picture: {}", file.display()));
-    }
-    let unmoved = |error| format!("--animation: {error}");
-    let trouble = drawn.err().map(|error| error.to_string()).or(moved.err().map(unmoved));
-    (strip, trouble)
 }

@@ -81,10 +81,6 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     pub(crate) checkpoint: Option<PathBuf>,
 
-    /// Write the walk as an SVG that moves.
-    #[arg(long, value_name = "FILE.svg")]
-    pub(crate) animation: Option<PathBuf>,
-
     /// Write the statistics of all generations, as a table (.csv) or drawn (.svg or .png).
     #[arg(long, value_name = "FILE")]
     pub(crate) statistics: Option<PathBuf>,
@@ -223,7 +219,6 @@ impl Args {
     fn check_files(&self) -> Result<(), Failure> {
         let forms = [
             ("--checkpoint", &self.checkpoint, &[][..]),
-            ("--animation", &self.animation, &["svg"]),
             ("--statistics", &self.statistics, &["csv", "svg", "png"]),
         ];
         for (option, file, endings) in forms {

@@ -1,6 +1,6 @@
-use roverlab::geometry::Point;
+use roverlab::geometry::{Point, direction};
 use roverlab::io::sim::starman::{Starman, StarmanPosture};
-use roverlab::io::{Clock, Drive, Result, Servos};
+use roverlab::io::{Clock, Odometry, Result, Servos};
 use roverlab::picture::{Picture, Style};
 use roverlab::world::{Colour, Wall, World};
 
@@ -16,7 +16,6 @@ pub(crate) struct Walk {
     pub(crate) way: f64,
     pub(crate) postures: Vec<StarmanPosture>,
     pub(crate) body_radius: f64,
-    pub(crate) limb_radius: f64,
 }
 
 impl Walk {
@@ -26,8 +25,12 @@ impl Walk {
         let mut watched = Watched { robot: Starman::new(&spec)?, postures: Vec::new() };
         let way = trials.walk(bytes, &mut watched, |watched| Ok(watched.robot.pose()?.x))?;
         watched.look();
-        let (body_radius, limb_radius) = (spec.body_radius, spec.limb_radius);
-        Ok(Self { interval: Watched::INTERVAL, way, postures: watched.postures, body_radius, limb_radius })
+        Ok(Self {
+            interval: Watched::INTERVAL,
+            way,
+            postures: watched.postures,
+            body_radius: spec.body_radius,
+        })
     }
 }
 
@@ -68,47 +71,75 @@ impl Servos for Watched {
 }
 
 /// Postures of the strip.
-const FIGURES: usize = 8;
-/// Between two figures of the strip, in metres.
+const FIGURES: usize = 5;
+/// Between two figures of the strip, in metres, and from its floor to that of the walk.
 const GAP: f64 = 0.42;
+const ROW: f64 = 0.42;
 
-/// The walk as a strip: figures side by side, each on its own piece of floor with a mark where it started.
+/// The walk, and above it some of its postures side by side, each on its own piece of floor.
 pub(crate) fn picture(args: &Args, walk: &Walk) -> Picture {
-    let mut world = World::empty(GAP * FIGURES as f64, 0.40);
-    world.walls.push(Wall::new(Point::new(0.0, FLOOR), Point::new(GAP * FIGURES as f64, FLOOR)));
+    let width = GAP * FIGURES as f64;
+    let mut world = World::empty(width, 2.0 * ROW);
+    for floor in [FLOOR, FLOOR + ROW] {
+        world.walls.push(Wall::new(Point::new(0.0, floor), Point::new(width, floor)));
+    }
     let mut picture = Picture::new(&world);
-    picture.title("Starman's evolved gait");
     let last = walk.postures.len().saturating_sub(1);
-    picture.caption(format!(
-        "{} generations of {}: {:.0} mm in {} s; green where it started",
+    picture.title("Starman's evolved gait").caption(format!(
+        "{} generations of {}: {:.0} mm in {} s",
         args.generations,
         args.population,
         1000.0 * walk.way,
         args.seconds
     ));
+    let start = |picture: &mut Picture, place| {
+        picture.disc(place, 0.01, Style::new(Colour::from_hex(0x2e_8b_57)).filled(1.0).labelled("start"));
+    };
     for figure in 0..FIGURES {
         let index = last * figure / (FIGURES - 1);
         let Some(posture) = walk.postures.get(index) else { continue };
-        let middle = GAP * (figure as f64 + 0.5);
-        let start = Point::new(middle, FLOOR);
-        picture.disc(start, 0.008, Style::new(Colour::GREEN).filled(1.0).labelled("start"));
-        draw(&mut picture, walk, posture, middle);
-        picture.text(Point::new(middle, 0.02), format!("{:.1} s", index as f64 * walk.interval));
+        let (middle, time) = (GAP * (figure as f64 + 0.5), index as f64 * walk.interval);
+        picture.during(time..);
+        start(&mut picture, Point::new(middle, FLOOR + ROW));
+        draw(&mut picture, walk, [(time, posture)], Point::new(middle, FLOOR + ROW));
+        picture.text(Point::new(middle, ROW + 0.02), format!("{time:.1} s"));
     }
+    picture.during(..);
+    let middle = Point::new(0.5 * (width - walk.way), FLOOR);
+    start(&mut picture, middle);
+    let times = (0..).map(|i| f64::from(i) * walk.interval);
+    draw(&mut picture, walk, times.zip(&walk.postures), middle);
     picture
 }
 
 /// The height of the floor in the picture, in metres.
 const FLOOR: f64 = 0.05;
 
-fn draw(picture: &mut Picture, walk: &Walk, posture: &StarmanPosture, shift: f64) {
-    let at = |(x, y): (f64, f64)| Point::new(x + shift, y + FLOOR);
-    let part = |colour| Style::new(colour).width(4.0);
-    let (blue, red) = (Colour::from_hex(0x001f_6fb4), Colour::from_hex(0x00c0_392b));
-    picture.disc(at(posture.body), walk.body_radius, part(blue).filled(0.25).labelled("body"));
-    for (limb, [hinge, tip]) in posture.segments.into_iter().enumerate() {
+/// A body and its limbs as they move.
+fn draw<'a>(
+    picture: &mut Picture,
+    walk: &Walk,
+    postures: impl IntoIterator<Item = (f64, &'a StarmanPosture)>,
+    origin: Point,
+) {
+    let postures: Vec<_> = postures.into_iter().collect();
+    let at = |(x, y): (f64, f64)| Point::new(x, y) + origin.coords;
+    let part = |colour| Style::new(Colour::from_hex(colour)).width(4.0);
+    let rim = |(x, y): (f64, f64)| {
+        (0..=16)
+            .map(|i| at((x, y)) + direction(f64::from(i) * std::f64::consts::TAU / 16.0) * walk.body_radius)
+            .collect()
+    };
+    let bodies = postures.iter().map(|(time, posture)| (*time, rim(posture.body)));
+    picture.moving_line(bodies, part(0x26_2d_3a).width(2.5).labelled("body"));
+    for limb in 0..postures.first().map_or(0, |(_, posture)| posture.segments.len()) {
+        let shapes = postures.iter().map(|(time, posture)| (*time, posture.segments[limb].map(at).to_vec()));
         // The first limb shows how far the body has rolled.
-        let style = if limb == 0 { part(red).labelled("first limb") } else { part(blue).labelled("limb") };
-        picture.line([at(hinge), at(tip)], style);
+        let style = if limb == 0 {
+            part(0xc0_39_2b).labelled("first limb")
+        } else {
+            part(0x1f_6f_b4).labelled("limb")
+        };
+        picture.moving_line(shapes, style);
     }
 }

@@ -322,6 +322,6 @@ fn what_happens_is_told_in_order() {
     assert!(told.iter().enumerate().all(|(i, event)| is_hit(event) == (i % 2 == 0)), "{told:?}");
     // The robot knows where it is: the points lie on its true path, give or take its error.
     for point in drive.hit_points().iter().chain(&drive.leave_points()) {
-        assert!(drive.true_path.iter().any(|place| (place - point).norm() < 0.1), "{point}");
+        assert!(drive.trail.iter().any(|(_, pose)| pose.distance_to(*point) < 0.1), "{point}");
     }
 }

@@ -75,8 +75,6 @@ fn what_is_wrong_with_files_is_named() {
     fs::write(&map, "type octile\nheight 2\nwidth 5\nmap\n..@..\n..@..\n").unwrap();
     let options = ["--map", map.to_str().unwrap(), "--scen", scen.to_str().unwrap()];
     for (query, expected, part) in [
-        ("2 1 0 0 1", 2, "parted.scen: query 2: the start (2, 1) is blocked; expected a free cell"),
-        ("0 0 2 0 1", 2, "parted.scen: query 2: the goal (2, 0) is blocked; expected a free cell"),
         ("5 1 0 0 1", 2, "parted.scen:3:14: found `5`"),
         ("0 0 0 2 1", 2, "parted.scen:3:20: found `2`"),
         ("0 0 0 1 nan", 2, "parted.scen:3:22: found `nan`"),
@@ -91,6 +89,14 @@ fn what_is_wrong_with_files_is_named() {
             assert_eq!(report["outcome"].as_str(), (expected == 1).then_some("wrong"), "{report}");
         }
     }
+    for (query, part) in [
+        ("2 1 0 0 1", "in query 1 the start (2, 1) is blocked"),
+        ("0 0 2 0 1", "in query 1 the goal (2, 0) is blocked"),
+    ] {
+        fs::write(&scen, format!("version 1\n0 parted 5 2 {query}\n")).unwrap();
+        let (status, _, err) = run(&options);
+        assert!(status == 2 && err.contains(part) && err.lines().count() == 1, "{err}");
+    }
     let (status, _, err) = run(&["--map", "nowhere.map", "--scen", "nowhere.scen"]);
     assert!(status == 2 && err.contains("nowhere.map:1:1: found"), "{err}");
     fs::write(&scen, "version 1\n").unwrap();
@@ -98,6 +104,49 @@ fn what_is_wrong_with_files_is_named() {
     assert!(status == 2 && err.contains("found no queries"), "{err}");
     let (status, _, err) = run(&["--map", "nowhere.map"]);
     assert!(status == 2 && err.contains("--scen"), "{err}");
+}
+
+/// Ways lead within water and within land, not from the one to the other; other queries are counted and left out.
+#[test]
+fn water_is_a_map_of_its_own_and_blocked_ends_are_skipped() {
+    let folder = folder();
+    let (map, scen) = (folder.join("pond.map"), folder.join("pond.scen"));
+    fs::write(&map, "type octile\nheight 3\nwidth 6\nmap\n...WWW\n.@.W@W\n..SWWT\n").unwrap();
+    let lines = [
+        "0 0 2 2 4", // round the corner of the blocked cell
+        "3 0 5 1 3", // in water
+        "3 2 5 0 4",
+        "0 0 3 0 3", // from land into water
+        "1 1 0 0 1", // blocked
+        "5 2 3 2 2", // trees
+    ];
+    let text = lines.map(|line| format!("0 pond 6 3 {line}\n")).concat();
+    fs::write(&scen, format!("version 1\n{text}")).unwrap();
+    let options = ["--map", map.to_str().unwrap(), "--scen", scen.to_str().unwrap()];
+    for algorithm in ["dijkstra", "astar", "jps", "jps_plus"] {
+        let (status, report, err) = run(&[&options[..], &["--algorithm", algorithm]].concat());
+        assert_eq!((status, report["outcome"].as_str(), err.as_str()), (0, Some("solved"), ""), "{report}");
+        let count = |field: &str| report[field].as_u64().unwrap();
+        assert_eq!([count("queries"), count("skipped"), count("solved"), count("optimal")], [6, 3, 3, 3]);
+    }
+}
+
+/// The published Warcraft III maps, with the queries whose lengths are of other maps than those that are published: one
+/// map has gained blocked cells, another one water.
+#[test]
+#[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
+fn published_lengths_with_water_are_met() {
+    let folder = published("movingai_water");
+    for (name, skipped, others) in [("darkforest", 15, 0), ("petrifiedforest", 11, 72), ("theglaive", 4, 1)] {
+        let map = folder.join(format!("{name}.map"));
+        let scen = folder.join(format!("{name}.map.scen"));
+        let options = ["--map", map.to_str().unwrap(), "--scen", scen.to_str().unwrap()];
+        let (_, report, _) = run(&options);
+        let count = |field: &str| report[field].as_u64().unwrap();
+        assert_eq!(count("skipped"), skipped, "{report}");
+        assert_eq!(count("solved"), count("queries") - skipped, "{report}");
+        assert_eq!(count("optimal"), count("solved") - others, "{report}");
+    }
 }
 
 fn files(folder: &Path) -> Vec<PathBuf> {

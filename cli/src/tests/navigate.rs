@@ -105,3 +105,31 @@ fn what_makes_no_sense_is_refused() {
         assert!(err.contains(part), "{options:?}: {err}");
     }
 }
+
+/// A wall with some digits too many is left out of maps and told of, and the rest is as without it.
+#[test]
+fn a_stray_wall_changes_nothing_but_a_warning() {
+    let file = temporary("stray.wld");
+    let world = file.to_str().unwrap();
+    let room =
+        "0 0 3000 0\n3000 0 3000 2000\n3000 2000 0 2000\n0 2000 0 0\n0 900 1500 900\nposition 500 600 20\n";
+    let commands: [(&str, &[&str]); 5] = [
+        ("navigate", &["--goal", "2500,1500"]),
+        ("localise", &["--patience", "8"]),
+        ("distbug", &["--goal", "2500,1500"]),
+        ("random_drive", &["--time-limit", "5"]),
+        ("wall_following", &["--time-limit", "20"]),
+    ];
+    for (command, options) in commands {
+        let options = [options, &["--world", world]].concat();
+        fs::write(&file, format!("floor 3000 2000\n{room}")).unwrap();
+        let (_, without, _) = support::run(command, &options);
+        for far in ["1000000", "1000000000"] {
+            fs::write(&file, format!("{far} 0 {far} 1000\n{room}")).unwrap();
+            let (_, report, err) = support::run(command, &options);
+            assert!(err.contains("maps and pictures leave them out"), "{command}: {err}");
+            assert_eq!(report["outcome"], without["outcome"], "{command}");
+            assert_eq!(report["pose"], without["pose"], "{command}");
+        }
+    }
+}

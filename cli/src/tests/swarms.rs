@@ -126,3 +126,13 @@ fn the_table_of_a_campaign() {
     assert!(rows.iter().all(follow_me::Row::is_good), "{text}");
     assert!(text.lines().count() >= rows.len() + 2);
 }
+
+/// A leader that finds no way on leads nobody.
+#[test]
+fn a_leader_without_room_is_blocked() {
+    let world = temporary("box.wld");
+    let walls = "0 0 900 0\n900 0 900 900\n900 900 0 900\n0 900 0 0";
+    std::fs::write(&world, format!("floor 900 900\n{walls}\nposition 450 450 0\n")).unwrap();
+    let (status, report, _) = run("follow_me", &["--world", world.to_str().unwrap()]);
+    assert_eq!((status, report["outcome"].as_str()), (1, Some("blocked")), "{report}");
+}

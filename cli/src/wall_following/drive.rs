@@ -6,7 +6,7 @@ use roverlab::drive::{
     WallReading, WallSensors, WallSide,
 };
 use roverlab::io::control::run;
-use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar};
+use roverlab::io::{self, Clock, DistanceSensors, Drive, Lidar, Odometry, StallDetector};
 
 use super::Controller;
 
@@ -42,7 +42,7 @@ pub(crate) struct Beside {
 }
 
 /// Lets a robot follow a wall. `watch` is called after each step.
-pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
+pub(crate) fn drive<R: Clock + Drive + Odometry + StallDetector + DistanceSensors + Lidar + ?Sized>(
     robot: &mut R,
     options: &Options,
     watch: &mut dyn FnMut(Beside) -> ControlFlow<()>,
@@ -95,7 +95,7 @@ pub(crate) fn drive<R: Clock + Drive + DistanceSensors + Lidar + ?Sized>(
     }
 }
 
-fn walk<R: Clock + Drive + ?Sized, C: FollowsWalls<Observation: WallReading<R>>>(
+fn walk<R: Clock + Drive + StallDetector + ?Sized, C: FollowsWalls<Observation: WallReading<R>>>(
     robot: &mut R,
     controller: &mut C,
     time_limit: f64,

@@ -8,7 +8,7 @@ use roverlab::world::{RobotSpec, Scene};
 use super::drive::{Options, Walk, drive};
 use super::{Args, Watch, campaign, picture};
 use crate::common::{Failure, Outcome, Report, millimetres, rounded};
-use crate::driving::{Conditions, Run, drawn, paced};
+use crate::driving::{Conditions, Run, paced};
 
 /// The work of the command.
 pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
@@ -21,11 +21,8 @@ pub(crate) fn work(args: &Args) -> Result<Report, Failure> {
     let scene = common.placed_without_goal("following a wall leads round it", own)?;
     let conditions = Conditions::new(common, time_limit(args, &scene))?;
     let (run, watch) = run(args, &scene, &conditions, paced(common))?;
-    let (file, trouble) =
-        drawn(common, "wall_following.svg", || picture::of(args, &scene, &run, &watch, &conditions));
-    let report =
-        report(args, &run, &watch).field("time_limit_s", conditions.time_limit).field("picture", file);
-    Ok(Report { trouble, ..report })
+    let report = report(args, &run, &watch).field("time_limit_s", conditions.time_limit);
+    Ok(common.draw(report, "wall_following.svg", || picture::of(args, &scene, &run, &watch, &conditions)))
 }
 
 /// The room of a seed, with an S4.

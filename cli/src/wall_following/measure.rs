@@ -52,6 +52,9 @@ pub(crate) struct Watch {
     driven: f64,
     /// Where the wall was found, and how far the robot had driven by then.
     begin: Option<(Pose, f64)>,
+    /// Whether the robot has left the place where the lap began, and how far it has turned since.
+    away: bool,
+    turned: f64,
     pub(crate) laps: u32,
     pub(crate) lap_length: Option<f64>,
     pub(crate) away_from_corners: Errors,
@@ -69,8 +72,9 @@ const BEAMS: usize = 161;
 const FARTHEST: f64 = 4.0;
 /// Metres behind the place where the wall was found from which errors count.
 const SETTLING: f64 = 0.3;
-/// A lap ends within so many metres of its begin, with a heading like then, and not before so many metres.
-const LAP: (f64, f64, f64) = (0.2, 0.8, 1.0);
+/// A lap ends within so many metres of its begin, with a heading like then, once the robot has been farther away and has turned
+/// round.
+const LAP: (f64, f64) = (0.2, 0.8);
 
 impl Watch {
     pub(crate) fn new(scene: &Scene, distance: f64, laps: u32) -> Self {
@@ -97,6 +101,8 @@ impl Watch {
             last: scene.robots[0].pose,
             driven: 0.0,
             begin: None,
+            away: false,
+            turned: 0.0,
             laps: 0,
             lap_length: None,
             away_from_corners: Errors::default(),
@@ -110,6 +116,7 @@ impl Watch {
         let beside_wall = beside.wall;
         self.side = beside.side.or(self.side);
         self.driven += pose.distance_to(self.last.position());
+        self.turned += angle_difference(pose.heading, self.last.heading);
         self.last = pose;
         let Some((begin, since)) = self.begin else {
             if beside_wall {
@@ -121,13 +128,16 @@ impl Watch {
         if way < SETTLING {
             // The lap begins where the robot has been beside the wall for a while.
             self.begin = beside_wall.then_some((pose, since));
+            (self.away, self.turned) = (false, 0.0);
             return ControlFlow::Continue(());
         }
         self.measure(pose);
-        let (near, alike, least) = LAP;
-        let back = pose.distance_to(begin.position()) < near
-            && angle_difference(pose.heading, begin.heading).abs() < alike;
-        if back && way > SETTLING + least {
+        let (near, alike) = LAP;
+        let is_near = pose.distance_to(begin.position()) < near;
+        self.away |= !is_near;
+        let back = is_near && angle_difference(pose.heading, begin.heading).abs() < alike;
+        if back && self.away && self.turned.abs() > PI {
+            (self.away, self.turned) = (false, 0.0);
             self.laps += 1;
             self.lap_length.get_or_insert(way - SETTLING);
             self.begin = Some((begin, self.driven - SETTLING));

@@ -1,11 +1,11 @@
 use roverlab::drive::WallOutcome;
 use roverlab::geometry::units;
-use roverlab::picture::{Mark, Picture, Style};
+use roverlab::picture::{Picture, Style};
 use roverlab::world::{Colour, Scene};
 
 use super::drive::Walk;
 use super::{Args, Watch};
-use crate::driving::{Conditions, Run};
+use crate::driving::{Conditions, Run, pale};
 
 /// A picture of a run: the room, where the robot was, and where its error was largest.
 pub(crate) fn of(
@@ -36,18 +36,11 @@ pub(crate) fn of(
         conditions.noise,
         conditions.seed
     ));
-    picture.true_path(run.positions());
-    picture.odometry_path(run.odometry_path.iter().copied());
-    let pale = Style::new(Colour::from_hex(0x8a_90_9c)).opacity(0.5);
-    picture.robot_with(start, &outline, pale);
+    picture.robot_with(start, &outline, pale());
     if let Some(worst) = watch.worst_place {
         let style = Style::new(Colour::from_hex(0xd0_20_20)).width(2.5).labelled("largest error");
         picture.disc(worst.position(), 0.05, style);
     }
-    picture.robot(run.truth.pose, &outline);
-    picture.mark(Mark::Start, start.position());
-    for &point in &run.truth.contact_places {
-        picture.mark(Mark::Contact, point);
-    }
+    run.draw(&mut picture, &scene.robots[0].spec);
     picture
 }

@@ -1,6 +1,6 @@
 use std::ffi::{c_char, c_int, c_uint};
 
-use super::memory::{bytes, input, output, output_text};
+use super::memory::{bytes, input, output, output_text, text};
 use super::runtime::{code, enter};
 
 #[unsafe(no_mangle)]
@@ -113,12 +113,12 @@ extern "C" fn ANALOGTransfer(buffer: *mut u8) -> c_int {
 
 #[unsafe(no_mangle)]
 pub(super) extern "C" fn AUBeep() -> c_int {
-    code(enter("AUBeep", |robios| robios.au_play()))
+    code(enter("AUBeep", |robios| robios.au_beep()))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn AUPlay(sample: *const c_char) -> c_int {
-    if sample.is_null() { 1 } else { AUBeep() }
+    code(text(sample).and_then(|sample| enter("AUPlay", |robios| robios.au_play(&sample))))
 }
 
 #[unsafe(no_mangle)]

@@ -46,8 +46,8 @@ extern "C" fn SIMGetRobot(id: c_int, x: *mut c_int, y: *mut c_int, z: *mut c_int
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn SIMSetRobot(id: c_int, x: c_int, y: c_int, _z: c_int, phi: c_int) {
-    enter("SIMSetRobot", |robios| robios.sim_set_robot(id, [x, y, phi]));
+extern "C" fn SIMSetRobot(id: c_int, x: c_int, y: c_int, z: c_int, phi: c_int) {
+    enter("SIMSetRobot", |robios| robios.sim_set_robot(id, [x, y, z, phi]));
 }
 
 #[unsafe(no_mangle)]
@@ -83,7 +83,7 @@ extern "C" fn SIMGetPose(x: *mut c_int, y: *mut c_int, phi: *mut c_int) {
 
 #[unsafe(no_mangle)]
 extern "C" fn SIMSetPose(x: c_int, y: c_int, phi: c_int) {
-    enter("SIMSetPose", |robios| robios.sim_set_robot(0, [x, y, phi]));
+    enter("SIMSetPose", |robios| robios.sim_set_robot(0, [x, y, 0, phi]));
 }
 
 #[unsafe(no_mangle)]

@@ -3,7 +3,8 @@
 //! A real time would not do: on a busy machine a thread may have to wait long for a processor.
 
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, File};
+use std::io::Read;
 
 /// What the other threads have done since one of them looked for the first time.
 #[derive(Debug, Default)]
@@ -117,8 +118,11 @@ fn others() -> Vec<u32> {
     numbers.filter(|&thread| thread != own).collect()
 }
 
+/// The beginning of what the system tells of a thread, in one look, as there are many of them.
 fn file(thread: u32, name: &str) -> Option<String> {
-    fs::read_to_string(format!("/proc/self/task/{thread}/{name}")).ok()
+    let mut text = [0; 256];
+    let length = File::open(format!("/proc/self/task/{thread}/{name}")).ok()?.read(&mut text).ok()?;
+    Some(String::from_utf8_lossy(&text[..length]).into_owned())
 }
 
 /// A thread's state: `R` runs or could run, `S` waits, `Z` has ended.

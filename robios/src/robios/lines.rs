@@ -1,6 +1,7 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use roverlab::io::Result;
+use roverlab::world::formats::DiskFiles;
 
 use super::{Robios, invalid};
 
@@ -164,8 +165,17 @@ impl Robios {
         self.charge()
     }
 
-    /// `AUBeep` and `AUPlay`: counted.
-    pub fn au_play(&mut self) -> Result<()> {
+    /// `AUPlay`: counted, whether or not there is such a file.
+    pub fn au_play(&mut self, sample: &str) -> Result<()> {
+        // A program runs in its own folder.
+        if DiskFiles::new().find(sample, "").is_none() {
+            self.note(&format!("`{sample}` does not exist"));
+        }
+        self.au_beep()
+    }
+
+    /// `AUBeep`: counted.
+    pub fn au_beep(&mut self) -> Result<()> {
         self.sounds += 1;
         self.charge()?;
         self.sound_ends = self.now() + SOUND;

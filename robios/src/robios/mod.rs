@@ -212,6 +212,7 @@ impl Robios {
             self.report.known = true;
             self.report.world_time = truth.time;
             self.report.pose = truth.pose;
+            self.report.stance = truth.stance;
             self.report.odometry = truth.odometry;
             self.report.path_length = truth.path_length;
             self.report.contacts = u64::from(truth.contacts);

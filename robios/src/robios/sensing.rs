@@ -117,10 +117,12 @@ impl Robios {
         Ok(placed(self.pose_of(&Request::RobotAt(id))?))
     }
 
-    /// `SIMSetRobot`.
-    pub fn sim_set_robot(&mut self, id: i32, pose: [i32; 3]) -> Result<()> {
+    /// `SIMSetRobot`: x, y, z and phi. On hills the robot drops from z, unless the ground is higher; on a level floor
+    /// it stays as high as it is.
+    pub fn sim_set_robot(&mut self, id: i32, [x, y, z, phi]: [i32; 4]) -> Result<()> {
         let id = u32::try_from(id).map_err(|_| invalid("robot", id, "0 or more"))?;
-        self.order(&Request::PlaceRobot(id, pose_from(pose)))
+        let z = units::from_mm(f64::from(z));
+        self.order(&Request::PlaceRobot(id, pose_from([x, y, phi]), z))
     }
 
     /// `SIMGetObject`, numbered from 1.

@@ -12,7 +12,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use eyesim::memory::Memory;
-use eyesim::plan::{Plan, names};
+use eyesim::plan::{BUILD, Plan, names};
 use eyesim::process;
 use eyesim::report::{Report, Stage};
 use roverlab::world::Scene;
@@ -28,6 +28,7 @@ pub(crate) struct Running {
     child: Child,
     memory: Arc<Memory>,
     relays: Vec<Relay>,
+    /// How long the run has taken.
     stopwatch: Stopwatch,
 }
 
@@ -55,7 +56,7 @@ pub(crate) fn run_alone(
         (plan.robot, plan.start) = (None, None);
     }
     let variables = plan.variables().into_iter().map(|(name, value)| (name, OsString::from(value))).collect();
-    let (ending, report) = match start(program, variables, options, folder)? {
+    let (ending, report) = match start(program, variables, options, folder, Stopwatch::start())? {
         Ok(running) => running.wait(options.real_limit),
         Err(message) => (Ending::NotStarted(message), Report::default()),
     };
@@ -66,6 +67,7 @@ pub(crate) fn run_alone(
             // A call that waits past the end of time is cut off there.
             time: report.time.min(options.time_limit),
             pose: report.pose,
+            stance: report.stance,
             odometry: report.odometry,
             path_length: report.path_length,
             contacts: report.contacts,
@@ -75,12 +77,14 @@ pub(crate) fn run_alone(
     Ok(vec![Verdict::new(program, ending, &report, truth)])
 }
 
-/// Starts a program. The inner error says why it cannot run, which is the program's own affair.
+/// Starts a program in a run that has begun with a stopwatch. The inner error says why it cannot run, which is the
+/// program's own affair.
 pub(crate) fn start(
     program: &Program,
     variables: BTreeMap<&'static str, OsString>,
     options: &Options,
     folder: &WorkFolder,
+    stopwatch: Stopwatch,
 ) -> Result<Result<Running, String>, String> {
     let file = match &program.file {
         Ok(file) => file,
@@ -103,7 +107,7 @@ pub(crate) fn start(
     command.env(names::CPU_TIME, options.cpu_time.to_string());
     command.env_remove(names::KEYBOARD);
     let keyboard = if options.is_live() { keyboard(program, &mut command)? } else { None };
-    command.env(names::LIBRARY, &library).env("PYTHONDONTWRITEBYTECODE", "1");
+    command.env(names::LIBRARY, &library).env(names::BUILD, BUILD).env("PYTHONDONTWRITEBYTECODE", "1");
     if let Some(lcd) = &options.lcd {
         command.env(names::LCD, whole(lcd));
     }
@@ -124,7 +128,7 @@ pub(crate) fn start(
             let stdout = child.stdout.take().map(Relay::start);
             let stderr = child.stderr.take().map(Relay::start);
             let relays = stdout.into_iter().chain(stderr).collect();
-            Ok(Ok(Running { child, memory, relays, stopwatch: Stopwatch::start() }))
+            Ok(Ok(Running { child, memory, relays, stopwatch }))
         }
     }
 }

@@ -10,7 +10,7 @@ use eyesim::ask::{Request, Seat, Terms};
 use eyesim::memory::{Asked, Memory};
 use eyesim::plan::{Plan, names};
 use eyesim::process;
-use eyesim::report::Report;
+use eyesim::report::{Report, Stance};
 use eyesim::wire::{Answer, LONGEST_REQUEST, Question};
 use roverlab::geometry::Pose;
 use roverlab::io::log::{Header, LogWriter};
@@ -78,7 +78,7 @@ pub(crate) fn run_together(
         let (seed, index) = (options.seed.to_string().into(), program.robot.to_string().into());
         let variables =
             BTreeMap::from([(names::SHARED, "1".into()), (names::SEED, seed), (names::INDEX, index)]);
-        Ok((seat, start(program, variables, options, folder)?))
+        Ok((seat, start(program, variables, options, folder, stopwatch)?))
     });
     for (number, (seat, running)) in tables.collect::<Result<Vec<_>, String>>()?.into_iter().enumerate() {
         processes.extend(running.as_ref().ok().map(Running::id));
@@ -166,12 +166,13 @@ fn recording(file: &Path, plan: &Plan, scene: &Scene) -> Result<LogWriter<BufWri
     Ok(log)
 }
 
-fn truth(world: &World, robot: usize, time: f64, contacts: u64) -> Truth {
-    world.robot(robot).map_or_else(
+fn truth(world: &World, index: usize, time: f64, contacts: u64) -> Truth {
+    world.robot(index).map_or_else(
         |_| Truth::default(),
         |robot| Truth {
             time,
             pose: robot.pose,
+            stance: Stance::of(world, index),
             odometry: robot.odometry,
             path_length: robot.path_length,
             contacts,

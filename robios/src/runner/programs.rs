@@ -222,14 +222,16 @@ pub(crate) fn home() -> Result<PathBuf, String> {
     })
 }
 
-/// The library: beside this program, or where the project or an installation has it.
+/// The library: beside this program, or where the project or an installation has it. Of several it is the newest:
+/// `cargo test` builds one without replacing what `cargo build` has put beside this program.
 pub(crate) fn library() -> Result<PathBuf, String> {
     let name = if cfg!(target_os = "macos") { "libeyesim.dylib" } else { "libeyesim.so" };
     let program = std::env::current_exe().map_err(|error| error.to_string())?;
     let folder = program.parent().unwrap_or(Path::new("."));
     let places = [folder.to_owned(), folder.join("deps"), folder.join("../lib"), folder.join("..")];
-    let found = places.iter().map(|place| place.join(name)).find(|file| file.is_file());
-    found.ok_or_else(|| {
+    let files = places.iter().map(|place| place.join(name));
+    let built = files.filter_map(|file| Some((file.metadata().ok()?.modified().ok()?, file)));
+    built.max().map(|(_, file)| file).ok_or_else(|| {
         format!("no {name} beside {}; expected one from `cargo build -p robios`", program.display())
     })
 }

@@ -1,6 +1,6 @@
 use std::time::Instant;
 
-use eyesim::report::Report;
+use eyesim::report::{Report, Stance};
 use roverlab::geometry::{Pose, normalize_angle, units};
 use serde_json::{Value, json};
 
@@ -41,6 +41,7 @@ pub(crate) struct Truth {
     /// Seconds that its program took.
     pub(crate) time: f64,
     pub(crate) pose: Pose,
+    pub(crate) stance: Stance,
     pub(crate) odometry: Pose,
     pub(crate) path_length: f64,
     /// Until its program ended, and since.
@@ -123,13 +124,16 @@ impl Verdict {
             "exit": exit,
             "outcome": self.outcome(),
             "sim_time_s": rounded(self.truth.time),
-            "pose": pose(self.truth.pose),
+            "pose": place(self.truth.pose, &self.truth.stance),
             "odometry": pose(self.truth.odometry),
             "path_length_mm": rounded(units::to_mm(self.truth.path_length)),
             "collisions": self.truth.contacts,
             "lcd_text": self.lcd_text,
             "sounds": self.sounds,
         });
+        if let Some(mishap) = self.truth.stance.mishap {
+            value["mishap"] = mishap.to_string().into();
+        }
         if self.truth.later_contacts > 0 {
             value["collisions_after_end"] = self.truth.later_contacts.into();
         }
@@ -213,6 +217,9 @@ impl Summary {
             let (x, y) = (units::to_mm(truth.pose.x).round(), units::to_mm(truth.pose.y).round());
             let heading = units::to_deg(normalize_angle(truth.pose.heading));
             lines.push(format!("  pose               {x}, {y} mm, {heading:.1} deg"));
+            if truth.stance != Stance::default() {
+                lines.push(format!("  on hills           {}", stance(&truth.stance)));
+            }
             lines.push(format!("  path length        {:.0} mm", units::to_mm(truth.path_length)));
             lines.push(format!("  collisions         {}", truth.contacts));
             lines.push(format!("  simulated time     {:.2} s", truth.time));
@@ -236,6 +243,22 @@ pub(crate) fn refusal(message: &str, warnings: &[String]) -> String {
         "robots": [],
     });
     value.to_string()
+}
+
+/// A pose in space: the angles are turns about the axes forward, left and up, in this order.
+fn place(at: Pose, stance: &Stance) -> Value {
+    let mut value = pose(at);
+    value["z_mm"] = rounded(units::to_mm(stance.elevation)).into();
+    value["roll_deg"] = rounded(units::to_deg(stance.roll)).into();
+    value["pitch_deg"] = rounded(units::to_deg(stance.pitch)).into();
+    value
+}
+
+fn stance(stance: &Stance) -> String {
+    let (roll, pitch) = (units::to_deg(stance.roll), units::to_deg(stance.pitch));
+    let mishap = stance.mishap.map_or_else(String::new, |mishap| format!(", {mishap}"));
+    let height = units::to_mm(stance.elevation).round();
+    format!("{height} mm up, roll {roll:.1}, pitch {pitch:.1} deg{mishap}")
 }
 
 fn pose(pose: Pose) -> Value {

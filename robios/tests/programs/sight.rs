@@ -86,6 +86,47 @@ fn without_its_image_a_floor_is_gray_and_somebody_says_so() {
 }
 
 #[test]
+fn a_robot_of_a_file_is_seen_as_its_model_says() {
+    if !python() {
+        return;
+    }
+    let folder = Folder::new("model");
+    write(&folder, "robots/cart.robi", "drive DIFFERENTIAL_DRIVE\nwheel 54 3600 1100 45\nmodel cart.obj\n");
+    write(&folder, "look.py", LOOK);
+    let script =
+        folder.write("look.sim", "robot ../robots/cart.robi\nS4 500 1000 0 look.py\ncart 1000 1000 0\n");
+    let outline = run(&script);
+    assert_eq!(numbers(&outline)[3], 0, "{outline}");
+    let [warning] = warnings(&outline)[..] else { panic!("{outline}") };
+    assert!(warning.contains("cart.robi:3:7: found `cart.obj`, which does not exist"), "{warning}");
+    // A red plate across the robot's way, 200 mm wide and 300 mm high.
+    write(&folder, "robots/cart.mtl", "newmtl red\nKd 0.9 0 0\n");
+    let plate = "mtllib cart.mtl\nv -0.1 0 0\nv 0.1 0 0\nv 0.1 0.3 0\nv -0.1 0.3 0\nusemtl red\nf 1 2 3 4\n";
+    write(&folder, "robots/cart.obj", plate);
+    let seen = run(&script);
+    assert!(warnings(&seen).is_empty(), "{seen}");
+    assert!(numbers(&seen)[3] > 1000, "{seen}");
+}
+
+#[test]
+fn a_sound_that_is_not_there_is_reported() {
+    if !python() {
+        return;
+    }
+    let folder = Folder::new("sound");
+    write(&folder, "bell.wav", "a sound");
+    let file = write(
+        &folder,
+        "play.py",
+        "from eye import *\nfor name in 'BELL.wav', 'gong.wav':\n    AUPlay(name)\n",
+    );
+    let all = run(&file);
+    assert_eq!(all["sounds"], 2, "{all}");
+    let [warning] = warnings(&all)[..] else { panic!("{all}") };
+    assert!(warning.ends_with("AUPlay: `gong.wav` does not exist"), "{warning}");
+}
+
+#[test]
 fn a_sign_of_a_file_shows_its_picture() {
     if !python() {
         return;

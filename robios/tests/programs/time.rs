@@ -1,11 +1,10 @@
 //! What calls take, what a run reports beyond its outcome, and that it is the same each time.
 
-use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde_json::Value;
 
-use super::{Folder, compiler, programs, report, robios};
+use super::{Folder, compiled, compiler, programs, report, robios};
 
 /// A program that counts what it can do in two seconds.
 const COUNT: &str = "#include \"eyebot.h\"\nint main() { int n = 0; while (OSGetCount() < 2000) { CALLS; n++; }\n\
@@ -226,20 +225,6 @@ const TURNS: &str = "#include \"eyebot.h\"\nstatic pthread_mutex_t lock = PTHREA
     pthread_mutex_lock(&lock); LCDPrintf(\"%d.%d \", id, i); pthread_mutex_unlock(&lock); sleep(id); } return NULL; }\n\
     int main() { pthread_t threads[3]; intptr_t i; for (i = 1; i < 4; i++)\n\
     pthread_create(&threads[i - 1], NULL, print, (void *)i); KEYWait(KEY4); pthread_exit(NULL); }\n";
-
-/// Compiles a program as the script for it does, beside its source text.
-fn compiled(file: &Path) -> PathBuf {
-    let folder = Path::new(env!("CARGO_BIN_EXE_robios")).parent().unwrap();
-    let library =
-        [folder.to_owned(), folder.join("deps")].into_iter().find(|f| f.join("libeyesim.so").is_file());
-    let program = file.with_extension("x");
-    let done = Command::new(Path::new(env!("CARGO_MANIFEST_DIR")).join("bin/gccsim"))
-        .args([file.as_os_str(), "-o".as_ref(), program.as_os_str()])
-        .env("ROBIOS_LIBRARY_DIR", library.unwrap_or_default())
-        .status();
-    assert!(done.unwrap().success());
-    program
-}
 
 /// Of programs with threads, those whose threads sleep or wait for each other.
 #[test]

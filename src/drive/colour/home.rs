@@ -9,7 +9,7 @@ use super::{ColourTracker, ColourTrackerParameters};
 use crate::ParameterError;
 use crate::geometry::{Point, Pose, Twist, Vector, angle_difference, direction, math, normalize_angle};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
-use crate::io::{self, Camera, Drive, Lidar, Resolution};
+use crate::io::{self, Camera, Lidar, Odometry, Resolution, StallDetector};
 use crate::parameter::{require_finite, require_not_negative, require_positive};
 use crate::scan::ScanMatcher;
 use crate::vision::ColourFinder;
@@ -299,7 +299,7 @@ impl Behaviour for PushHome {
     }
 }
 
-impl<R: Camera + Drive + Lidar + ?Sized> Senses<R> for PushHome {
+impl<R: Camera + Odometry + StallDetector + Lidar + ?Sized> Senses<R> for PushHome {
     fn prepare(&mut self, robot: &mut R) -> io::Result<()> {
         robot.set_resolution(Resolution::Qqvga)
     }

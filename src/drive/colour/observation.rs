@@ -1,7 +1,7 @@
 use image::RgbImage;
 
 use crate::geometry::Pose;
-use crate::io::{Camera, Drive, Lidar, LidarScan, Result};
+use crate::io::{Camera, Lidar, LidarScan, Odometry, Result, StallDetector};
 
 /// What a colour-driven behaviour is told at each step.
 #[derive(Debug, Clone, Default)]
@@ -17,7 +17,7 @@ pub struct ColourObservation {
 }
 
 impl ColourObservation {
-    pub(super) fn read<R: Camera + Drive + Lidar + ?Sized>(
+    pub(super) fn read<R: Camera + Odometry + StallDetector + Lidar + ?Sized>(
         &mut self,
         robot: &mut R,
         looks: bool,

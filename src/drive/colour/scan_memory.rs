@@ -12,8 +12,9 @@ pub(super) struct ScanMemory {
     cells: BTreeMap<(i32, i32), (Point, f64)>,
 }
 
-/// Metres across a cell, and from the robot to the farthest point that is kept.
+/// Metres across a cell.
 const CELL: f64 = 0.03;
+/// Metres from the robot to the farthest point that is kept.
 const FARTHEST: f64 = 2.5;
 /// Seconds for which a point is kept.
 const MEMORY: f64 = 60.0;

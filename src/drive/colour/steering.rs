@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::geometry::{Point, Twist, cross, direction, normalize_angle};
+use crate::geometry::{Point, Twist, direction, free_distance, normalize_angle};
 use crate::io::LidarScan;
 
 /// How a round robot drives in a direction without touching anything.
@@ -32,17 +32,8 @@ impl Exempt {
 impl Steering {
     /// How far the robot can drive straight on in a direction, at most `reach` metres.
     pub(super) fn free(&self, points: &[Point], angle: f64, reach: f64) -> f64 {
-        let ahead = direction(angle);
-        let half = self.radius + self.margin;
-        points.iter().fold(reach, |free, point| {
-            let (along, aside) = (ahead.dot(&point.coords), cross(ahead, point.coords));
-            if along <= 0.0 || aside.abs() >= half {
-                return free;
-            }
-            // A round robot touches the point before its middle is beside it.
-            let touch = along - (half * half - aside * aside).sqrt();
-            free.min(touch.max(0.0))
-        })
+        let (free, _) = free_distance(points, direction(angle), self.radius + self.margin);
+        free.clamp(0.0, reach)
     }
 
     /// The direction nearest to a wished one in which the robot can drive so far; `None` if it cannot anywhere.

@@ -4,7 +4,7 @@ use image::{Rgb, RgbImage};
 
 use super::*;
 use crate::geometry::{Point, Pose, Twist};
-use crate::io::Drive;
+use crate::io::Odometry;
 use crate::io::control::{Behaviour, run};
 use crate::io::sim::{SimOptions, Simulation};
 use crate::vision::{CameraGeometry, ColourFinder, FindMethod};

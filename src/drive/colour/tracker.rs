@@ -6,7 +6,7 @@ use super::steering::{Exempt, Steering, nearest, obstacles};
 use crate::ParameterError;
 use crate::geometry::{Point, Twist, angle_difference, math};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
-use crate::io::{self, Camera, Drive, Lidar, LidarScan, Resolution};
+use crate::io::{self, Camera, Lidar, LidarScan, Odometry, Resolution, StallDetector};
 use crate::parameter::{require_not_negative, require_positive};
 use crate::vision::{ColourFinder, Sighting};
 
@@ -295,7 +295,7 @@ impl Behaviour for ColourTracker {
     }
 }
 
-impl<R: Camera + Drive + Lidar + ?Sized> Senses<R> for ColourTracker {
+impl<R: Camera + Odometry + StallDetector + Lidar + ?Sized> Senses<R> for ColourTracker {
     fn prepare(&mut self, robot: &mut R) -> io::Result<()> {
         robot.set_resolution(Resolution::Qqvga)
     }

@@ -67,7 +67,7 @@ impl CoverageMap {
         let CoverageMapParameters { radius, margin, resolution, .. } = parameters;
         let reach = radius + margin;
         let clearance = Clearance::new(world, resolution, reach + 2.0 * resolution).map_err(|error| {
-            Error::new(ErrorKind::InvalidInput, "the world cannot be mapped").with_source(error)
+            Error::new(ErrorKind::InvalidInput, format!("the world cannot be mapped: {error}"))
         })?;
         let raster = clearance.raster().clone();
         let inside = |cell: usize| world.floor.contains(raster.centre(cell));

@@ -2,7 +2,7 @@ use std::ops::ControlFlow;
 
 use crate::geometry::{Point, Pose, Twist, angle_difference, math};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
-use crate::io::{Drive, Error, Result};
+use crate::io::{Error, Odometry, Result};
 use crate::parameter::require_positive;
 
 /// What [`Tour`] goes by.
@@ -41,8 +41,9 @@ pub struct Tour {
 
 /// Legs shorter than this, in metres, are left out.
 const LEAST_LEG: f64 = 0.008;
-/// Heading errors, in radians, at which a turn on the spot ends, and at which one is needed again.
+/// The heading error in radians at which a turn on the spot ends.
 const ALIGNED: f64 = 0.03;
+/// The heading error in radians at which a turn on the spot is needed again.
 const ASTRAY: f64 = 0.5;
 
 impl Tour {
@@ -131,7 +132,7 @@ impl Behaviour for Tour {
 }
 
 /// By odometry.
-impl<R: Drive + ?Sized> Senses<R> for Tour {
+impl<R: Odometry + ?Sized> Senses<R> for Tour {
     fn sense(&mut self, robot: &mut R, _time: f64, place: &mut Option<Pose>) -> Result<()> {
         *place = Some(robot.pose()?);
         Ok(())

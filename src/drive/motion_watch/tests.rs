@@ -6,7 +6,7 @@ use super::*;
 use crate::geometry::{Pose, Twist, units};
 use crate::io::control::run;
 use crate::io::sim::{SimOptions, SimRobot, Simulation};
-use crate::io::{Camera, Clock, Drive, Resolution};
+use crate::io::{Camera, Clock, Drive, Manoeuvres, Odometry, Resolution};
 use crate::vision::GrayView;
 use crate::vision::motion::{MotionDetector, MotionParameters, TurnCompensator, Turned};
 use crate::world::{Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};

@@ -4,7 +4,7 @@ use image::GrayImage;
 
 use crate::geometry::{Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Decision, Halt, Senses};
-use crate::io::{self, Camera, Drive, Resolution};
+use crate::io::{self, Camera, Odometry, Resolution};
 use crate::parameter::{require_not_negative, require_positive};
 use crate::vision::motion::{Motion, MotionDetector, MotionParameters, TurnCompensator};
 use crate::vision::{GrayView, ImageError};
@@ -157,7 +157,7 @@ impl Behaviour for MotionWatch {
     }
 }
 
-impl<R: Camera + Drive + ?Sized> Senses<R> for MotionWatch {
+impl<R: Camera + Odometry + ?Sized> Senses<R> for MotionWatch {
     fn prepare(&mut self, robot: &mut R) -> io::Result<()> {
         robot.set_resolution(Resolution::Qqvga)
     }

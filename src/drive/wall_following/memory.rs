@@ -36,6 +36,7 @@ impl Memory {
     /// The mean of a few points in a row that is nearest to a place. Points farther from each other than `spread` metres are
     /// not of one surface, and are not averaged.
     pub(super) fn nearest(&self, to: Point, spread: f64) -> Option<Point> {
+        /// Points in a row whose middle is taken.
         const FEW: usize = 5;
         let points: Vec<Point> = self.iter().collect();
         points
@@ -66,6 +67,7 @@ pub(super) struct Median {
 }
 
 impl Median {
+    /// Readings whose median is taken.
     const WIDTH: usize = 5;
 
     pub(super) fn new() -> Self {

@@ -3,7 +3,7 @@ use std::f64::consts::FRAC_PI_2;
 use crate::ParameterError;
 use crate::geometry::{Pose, WallSide, normalize_angle};
 use crate::io::{Error, Result};
-use crate::parameter::{require, require_positive};
+use crate::parameter::{require, require_finite, require_positive};
 use crate::world::RobotSpec;
 
 /// Where the distance sensors sit on the robot and where they point.
@@ -32,25 +32,31 @@ impl WallSensors {
     /// The sensors 1 to 3 of a robot. Fails if it lacks one, or one points elsewhere than ahead, to the left and to the
     /// right.
     pub fn of(spec: &RobotSpec) -> Result<Self> {
-        let find = |id: u8, name: &str, yaw: f64| {
+        let find = |id: u8, name: &str| -> Result<Pose> {
             let psd = spec.psds.iter().find(|psd| psd.id == id);
             let psd = psd.ok_or_else(|| Error::unsupported(format!("{name} PSD")))?;
-            let mount = Pose::new(psd.mount.x, psd.mount.y, psd.mount.yaw);
-            if normalize_angle(mount.heading - yaw).abs() < 0.1 {
-                return Ok(mount);
-            }
-            let found = format!("{} rad", mount.heading);
-            Err(Error::invalid_input(
-                &format!("direction of the {name} PSD"),
-                found,
-                &format!("about {yaw:.2} rad"),
-            ))
+            Ok(Pose::new(psd.mount.x, psd.mount.y, psd.mount.yaw))
         };
-        Ok(Self {
-            front: find(1, "front", 0.0)?,
-            left: find(2, "left", FRAC_PI_2)?,
-            right: find(3, "right", -FRAC_PI_2)?,
-        })
+        let sensors = Self { front: find(1, "front")?, left: find(2, "left")?, right: find(3, "right")? };
+        sensors.validate()?;
+        Ok(sensors)
+    }
+
+    /// Fails unless the sensors sit somewhere, and point ahead, to the left and to the right, each within 0.1 rad.
+    pub fn validate(&self) -> std::result::Result<(), ParameterError> {
+        for (name, pose, yaw) in [
+            ("front PSD", self.front, 0.0),
+            ("left PSD", self.left, FRAC_PI_2),
+            ("right PSD", self.right, -FRAC_PI_2),
+        ] {
+            require_finite("x", pose.x)
+                .and_then(|()| require_finite("y", pose.y))
+                .map_err(|error| error.of(name))?;
+            let good = normalize_angle(pose.heading - yaw).abs() < 0.1;
+            require("direction", pose.heading, good, format!("about {yaw:.2} rad"))
+                .map_err(|error| error.of(name))?;
+        }
+        Ok(())
     }
 
     /// The sensors of the mirrored robot.
@@ -120,7 +126,8 @@ impl WallFollowerParameters {
         let expected = format!("{least} m, one and a half of the robot's radius, to 5 m");
         require("distance", self.distance, (least..=5.0).contains(&self.distance), expected)?;
         let good = (0.0..0.5 * self.distance).contains(&self.range_error);
-        require("range error", self.range_error, good, "0 to half the distance")
+        require("range error", self.range_error, good, "0 to half the distance")?;
+        self.sensors.validate()
     }
 }
 

@@ -70,6 +70,7 @@ impl PidWallFollower {
         require_positive("speed", parameters.speed)?;
         require_positive("turn rate", parameters.turn_rate)?;
         require_positive("control period", parameters.period)?;
+        parameters.sensors.validate()?;
         let least = parameters.sensors.left.y.abs();
         let good = parameters.distance > least && parameters.distance.is_finite();
         let expected = format!("more than {least} m, where the sensor sits");

@@ -92,9 +92,11 @@ enum State {
     },
 }
 
-/// The part of the speed with which a robot searches, the radians by which it sways, and the seconds of a sway.
+/// The share of the speed with which a robot searches.
 const SEARCH_SPEED: f64 = 0.6;
+/// Radians by which it sways meanwhile, so that one ray ahead covers its whole width.
 const SWAY: f64 = 0.42;
+/// Seconds of a sway.
 const SWAY_TIME: f64 = 1.0;
 /// How many observations of the approach to a wall are remembered.
 const APPROACH: usize = 50;
@@ -104,11 +106,13 @@ const ACROSS: f64 = 0.6;
 const RENEWAL_POINTS: usize = 12;
 /// Readings in a row that say that a wall has ended, or that another begins.
 const STRAYS: u32 = 4;
-/// Points that the line of a new wall is laid through, and how far they have to reach in metres.
+/// Points that the line of a new wall is laid through.
 const NEW_WALL_POINTS: usize = 20;
+/// Metres that these points have to reach.
 const NEW_WALL_LENGTH: f64 = 0.03;
-/// A new wall whose line passes the corner at less than this, in metres, begins there; for how many points that counts.
+/// A new wall whose line passes the corner at less than this, in metres, begins there.
 const AT_CORNER: f64 = 0.05;
+/// How many points the corner counts as for the line of a wall that begins there.
 const CORNER_WEIGHT: usize = 8;
 /// The angle to a new wall, in radians, at which it is followed.
 const NEW_WALL_ANGLE: f64 = 0.3;

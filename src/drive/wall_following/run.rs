@@ -1,9 +1,10 @@
 use std::ops::ControlFlow;
 
 use super::{WallFollower, WallObservation, WallPhase, WallSide};
-use crate::geometry::Twist;
+use crate::geometry::{Point, Pose, Twist};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
-use crate::io::{DistanceSensors, Drive, Lidar, LidarScan, Psd, Result};
+use crate::io::{DistanceSensors, Lidar, LidarScan, Odometry, Psd, Result, StallDetector};
+use crate::kinematics::{Displacement, advance};
 
 /// A controller that steers along walls.
 #[auto_impl::auto_impl(&mut)]
@@ -30,7 +31,7 @@ pub trait WallReading<R: ?Sized> {
     fn read(&mut self, robot: &mut R) -> Result<()>;
 }
 
-impl<R: Drive + DistanceSensors + ?Sized> WallReading<R> for WallObservation {
+impl<R: Odometry + DistanceSensors + ?Sized> WallReading<R> for WallObservation {
     fn read(&mut self, robot: &mut R) -> Result<()> {
         *self = Self {
             pose: robot.pose()?,
@@ -56,11 +57,11 @@ pub enum WallOutcome {
     Stopped,
     /// The time was over.
     TimedOut,
-    /// Something holds the robot.
+    /// Something holds the robot, or it has no room: it turns round and round on the spot.
     Blocked,
 }
 
-halts!(WallOutcome { Blocked: "something holds the robot" });
+halts!(WallOutcome { Blocked: "something holds the robot, or it has no room" });
 
 /// A drive along walls by a controller.
 #[derive(Debug, Clone)]
@@ -70,12 +71,40 @@ pub struct AlongWall<C> {
     /// When the last step was, and when the wheels were free last.
     last: Option<f64>,
     free: f64,
+    spot: Spot,
+}
+
+/// How far a robot that goes as it is told has come from a place, and how far it has turned since.
+#[derive(Debug, Clone, Copy, Default)]
+struct Spot {
+    /// In the frame of the place.
+    pose: Pose,
+    turned: f64,
+    told: Twist,
+}
+
+/// Metres from a place within which a robot is still there.
+const HERE: f64 = 0.2;
+/// Radians that a robot turns in one place before it counts as blocked: round what it follows the wall of, it gets about.
+const ROUND: f64 = 3.0 * std::f64::consts::TAU;
+
+impl Spot {
+    /// Goes as told for some seconds. Whether the robot only turns round.
+    fn advance(&mut self, seconds: f64) -> bool {
+        let angle = self.told.angular * seconds;
+        self.pose = advance(self.pose, Displacement { length: self.told.linear * seconds, angle });
+        self.turned += angle;
+        if self.pose.distance_to(Point::origin()) > HERE {
+            *self = Self { told: self.told, ..Self::default() };
+        }
+        self.turned.abs() > ROUND
+    }
 }
 
 impl<C: FollowsWalls> AlongWall<C> {
     /// A drive that begins.
     pub fn new(controller: C) -> Self {
-        Self { controller, last: None, free: 0.0 }
+        Self { controller, last: None, free: 0.0, spot: Spot::default() }
     }
 }
 
@@ -107,13 +136,17 @@ impl<C: FollowsWalls> Behaviour for AlongWall<C> {
             return Ok(ControlFlow::Break(WallOutcome::Blocked));
         }
         let seconds = last.map_or(0.0, |last| time - last);
-        self.controller.steer(&now.seen, seconds).map(ControlFlow::Continue)
+        if self.spot.advance(seconds) {
+            return Ok(ControlFlow::Break(WallOutcome::Blocked));
+        }
+        self.spot.told = self.controller.steer(&now.seen, seconds)?;
+        Ok(ControlFlow::Continue(self.spot.told))
     }
 }
 
 impl<R, C> Senses<R> for AlongWall<C>
 where
-    R: Drive + ?Sized,
+    R: StallDetector + ?Sized,
     C: FollowsWalls<Observation: WallReading<R>>,
 {
     fn sense(&mut self, robot: &mut R, _time: f64, now: &mut Self::Observation) -> Result<()> {

@@ -168,3 +168,17 @@ fn nonsense_is_refused() {
     assert!(WallSensors::of(&RobotSpec::car()).is_err());
     assert_eq!(WallSensors::of(&RobotSpec::s4()).unwrap(), WallSensors::default());
 }
+
+/// In a box in which a robot can but turn on the spot it says so, rather than turn until its time is over.
+#[test]
+fn without_room_a_robot_is_blocked() {
+    let world = World::walled(0.3, 0.3);
+    let scene = Scene::with_robot(world, RobotSpec::s4(), Pose::new(0.15, 0.15, 0.3));
+    let blocked = |outcome: WallOutcome| assert_eq!(outcome, WallOutcome::Blocked);
+    let simulation = || Simulation::new(&scene, SimOptions::with_noise(1.0, 1)).unwrap();
+    let mut robot = simulation().robot(0).unwrap();
+    blocked(run(&mut robot, &mut AlongWall::new(follower(None)), 60.0, |_, _, _| {}).unwrap());
+    let mut robot = simulation().robot(0).unwrap();
+    let pid = PidWallFollower::new(PidWallFollowerParameters::default()).unwrap();
+    blocked(run(&mut robot, &mut AlongWall::new(pid), 60.0, |_, _, _| {}).unwrap());
+}

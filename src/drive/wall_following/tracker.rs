@@ -25,12 +25,14 @@ pub(super) enum Reading {
 
 /// The variance that a metre of wall adds to its distance, slope and curvature.
 const WANDER: [f64; 3] = [2e-5, 8e-3, 120.0];
-/// The spread of the curvature of a wall of which nothing is known, and the tightest that is believed, in 1/m.
+/// The spread, in 1/m, of the curvature of a wall of which nothing is known.
 const CURVATURE: f64 = 2.0;
+/// The tightest curvature that is believed, in 1/m.
 const TIGHTEST: f64 = 3.0;
 
-/// A reading that is off by more than this, in metres, and by more than so many standard deviations is not of the wall.
+/// A reading that is off by more than this, in metres, may not be of the wall.
 const GATE: f64 = 0.045;
+/// Standard deviations by which such a reading has to be off as well.
 const SIGMAS: f64 = 4.0;
 /// Innovations that add up to more than this show a bend, ...
 const BEND: f64 = 1.1;

@@ -1,6 +1,6 @@
 use super::behaviour::{Behaviour, Command, Decision, Halt, Senses};
 use crate::geometry::{Pose, Twist};
-use crate::io::{Drive, Lidar, LidarScan, Result};
+use crate::io::{Drive, Lidar, LidarScan, Manoeuvres, Odometry, Result};
 
 /// A scan, and where the robot is and how it moves by odometry: what navigation and racing go by.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -15,7 +15,7 @@ pub struct LidarObservation {
 
 impl LidarObservation {
     /// Reads it from a robot.
-    pub fn read<R: Drive + Lidar + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
+    pub fn read<R: Odometry + Lidar + ?Sized>(&mut self, robot: &mut R) -> Result<()> {
         robot.scan_into(&mut self.scan)?;
         self.odometry = robot.pose()?;
         self.speed = robot.speed()?;
@@ -29,7 +29,7 @@ impl<R: Drive + ?Sized> Command<R> for Twist {
     }
 
     fn stop(robot: &mut R) -> Result<()> {
-        robot.set_speed(Self::STOP)
+        robot.stop()
     }
 }
 
@@ -46,7 +46,7 @@ pub enum Manoeuvre {
     Continue,
 }
 
-impl<R: Drive + ?Sized> Command<R> for Manoeuvre {
+impl<R: Drive + Manoeuvres + ?Sized> Command<R> for Manoeuvre {
     fn apply(&self, robot: &mut R) -> Result<()> {
         match *self {
             Self::Speed(twist) => robot.set_speed(twist),
@@ -57,7 +57,7 @@ impl<R: Drive + ?Sized> Command<R> for Manoeuvre {
     }
 
     fn stop(robot: &mut R) -> Result<()> {
-        robot.set_speed(Twist::STOP)
+        robot.stop()
     }
 }
 

@@ -11,8 +11,8 @@ use super::wire;
 use crate::geometry::{Pose, Twist};
 use crate::io::{
     Camera, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys,
-    Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos,
-    Viewport,
+    Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
+    Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -58,6 +58,9 @@ macro_rules! answered {
 macro_rules! answering {
     ($($robot:ident),*) => { $(
         signatures! { Drive => answered!($robot) }
+        signatures! { Odometry => answered!($robot) }
+        signatures! { Manoeuvres => answered!($robot) }
+        signatures! { StallDetector => answered!($robot) }
         signatures! { DistanceSensors => answered!($robot) }
         signatures! { Lidar => answered!($robot) }
         signatures! { Camera => answered!($robot) }

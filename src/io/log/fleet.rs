@@ -95,8 +95,9 @@ impl<'a, T: FleetIo<'a>, W: Write + 'a> FleetIo<'a> for RecordedFleet<T, W> {
     }
 }
 
-/// What a recorded fleet was told, beside the calls of its robots.
+/// How a recording names the call that gives a robot its behaviour.
 const CONTROL: &str = "control";
+/// How a recording names the call that steps all behaviours.
 const RUN: &str = "run_for";
 
 /// A fleet made of a recording, made by [`Player::fleet`]. Each behaviour is stepped as often as it was in the recorded

@@ -45,6 +45,7 @@ pub enum Compression {
 }
 
 impl Compression {
+    /// Each compression with its name in MCAP files.
     const ALL: [(Self, &'static str); 3] = [(Self::None, ""), (Self::Lz4, "lz4"), (Self::Zstd, "zstd")];
 
     /// Its name in files; empty for none.

@@ -6,11 +6,13 @@ use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use super::LogError;
 
+/// The bytes with which MCAP files begin and end.
 const MAGIC: &[u8] = mcap::MAGIC;
 /// An opcode and a length.
 const FRAME: usize = 9;
-/// What a footer holds: two places and a checksum.
+/// Bytes of a footer: two places and a checksum.
 const FOOTER: usize = 8 + 8 + CRC;
+/// Bytes of a checksum.
 const CRC: usize = 4;
 
 /// A record in a file: its kind, where it begins, and what it holds.

@@ -13,8 +13,8 @@ use super::writer::LogWriter;
 use crate::geometry::{Pose, Twist};
 use crate::io::{
     Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key,
-    Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage, Resolution, Result,
-    Servos, Viewport,
+    Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
+    Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -131,7 +131,7 @@ macro_rules! recorded {
         let (call, ask) = (("image_into", CAMERA), |inner: &mut R, image: &mut RgbImage| inner.image_into(image));
         $self.record_bulk(call, $image, ask, messages::raw_image, Size::of)
     }};
-    (@Drive $self:ident pose()) => {{
+    (@Odometry $self:ident pose()) => {{
         let result = recorded!(@ $self pose());
         if let Ok(pose) = &result {
             $self.port.show(ODOMETRY, |out, frames| messages::pose_in_frame(out, frames, pose));
@@ -160,6 +160,9 @@ macro_rules! recorded {
 }
 
 signatures! { Drive => recorded!() }
+signatures! { Odometry => recorded!() }
+signatures! { Manoeuvres => recorded!() }
+signatures! { StallDetector => recorded!() }
 signatures! { DistanceSensors => recorded!() }
 signatures! { Lidar => recorded!() }
 signatures! { Camera => recorded!() }

@@ -10,8 +10,11 @@ use crate::geometry::{Pose, math};
 use crate::world::{Colour, Marker, Object, Scene, Shape, Wall};
 
 // Numbers of fields in a `foxglove.SceneEntity`.
+/// The field of `foxglove.SceneEntity` with its boxes.
 const CUBES: u32 = 8;
+/// The field with its balls.
 const SPHERES: u32 = 9;
+/// The field with its cylinders.
 const CYLINDERS: u32 = 10;
 
 impl<W: Write> LogWriter<W> {
@@ -70,6 +73,7 @@ fn wall(entity: &mut Fields<'_>, wall: &Wall) {
 }
 
 fn mark(entity: &mut Fields<'_>, mark: &Marker) {
+    /// Metres of a marker's width.
     const WIDTH: f64 = 0.1;
     let pose = Pose::new(mark.position.x, mark.position.y, 0.0);
     let opacity = f64::from(mark.alpha) / 255.0;

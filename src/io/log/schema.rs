@@ -52,12 +52,14 @@ impl Schema {
     }
 }
 
+/// The package of Protobuf's own messages.
 const GOOGLE: &str = "google.protobuf";
 
 /// A message's name, and a line for each field: its name, its number and its type, with a star if it is repeated.
 /// Enumerations list their alternatives, from 0.
 struct Message(&'static str, &'static str);
 
+/// The messages that recordings hold, of Foxglove's published schemas.
 const MESSAGES: &[Message] = &[
     Message("google.protobuf.Timestamp", "seconds 1 int64\nnanos 2 int32"),
     Message("google.protobuf.Duration", "seconds 1 int64\nnanos 2 int32"),
@@ -215,7 +217,9 @@ fn write_message(out: &mut Fields<'_>, message: &Message) {
 
 /// A `FieldDescriptorProto`.
 fn write_field(field: &mut Fields<'_>, message: &str, name: &str, number: u64, kind: &str) {
+    /// Protobuf's number of the type of fields that are messages.
     const MESSAGE: u64 = 11;
+    /// Protobuf's number of the type of fields that are enumerations.
     const ENUMERATION: u64 = 14;
     let (label, kind) = kind.strip_prefix('*').map_or((1, kind), |kind| (3, kind));
     let (number_of_kind, type_name) = match kind {

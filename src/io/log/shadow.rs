@@ -14,6 +14,7 @@ pub(super) struct Shadow {
     dirty: Option<u64>,
 }
 
+/// Nanoseconds of a second.
 const SECOND: Nanoseconds = 1_000_000_000;
 
 impl Shadow {

@@ -14,8 +14,8 @@ use crate::geometry::{Pose, Twist};
 use crate::io::sim::{Fleet, SimOptions, Simulation};
 use crate::io::wrappers::{Fault, Faulty};
 use crate::io::{
-    Camera, Clock, Display, DistanceSensors, Drive, ErrorKind, LidarScan, MockRobot, Psd, Resolution, Result,
-    RobotIo,
+    Camera, Clock, Display, DistanceSensors, Drive, ErrorKind, LidarScan, MockRobot, Odometry, Psd,
+    Resolution, Result, RobotIo,
 };
 use crate::world::{LidarSpec, RobotSpec, Scene, World};
 

@@ -6,9 +6,13 @@ use crate::geometry::math;
 #[derive(Debug)]
 pub(super) struct Fields<'a>(pub(super) &'a mut Vec<u8>);
 
+/// Protobuf's wire type of whole numbers.
 const VARINT: u32 = 0;
+/// The wire type of numbers of eight bytes.
 const FIXED64: u32 = 1;
+/// The wire type of bytes with their number before them.
 const LENGTH: u32 = 2;
+/// The wire type of numbers of four bytes.
 const FIXED32: u32 = 5;
 
 /// A number that is none has many bit patterns, which differ between processors; recordings hold one of them.

@@ -98,6 +98,7 @@ struct Message {
 
 /// A chunk that holds more bytes than this ends.
 const CHUNK_BYTES: usize = 1 << 20;
+/// Nanoseconds of a second: a chunk that holds more of a run ends.
 const SECOND: u64 = 1_000_000_000;
 
 /// How recordings are written: to sinks that cannot seek, in one thread, and with chunks that end where the writer says

@@ -6,8 +6,8 @@ use super::robot::{MockRobot, take_due, unscripted};
 use crate::geometry::{Pose, Twist};
 use crate::io::{
     Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
-    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage,
-    Resolution, Result, Servos, Viewport,
+    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
+    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::kinematics::Displacement;
 use crate::parameter::require_finite;
@@ -79,7 +79,9 @@ impl Drive for MockRobot {
         self.command(Call::SetSpeed(twist));
         self.drive.as_mut().map_or(Ok(()), |drive| drive.set_speed(twist))
     }
+}
 
+impl Odometry for MockRobot {
     fn speed(&mut self) -> Result<Twist> {
         self.read(
             "speed",
@@ -103,7 +105,9 @@ impl Drive for MockRobot {
         }
         Ok(())
     }
+}
 
+impl Manoeuvres for MockRobot {
     fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
         let motion = Displacement { length: distance, angle: 0.0 };
         self.start(Call::Straight(distance, speed), motion, distance, speed)
@@ -135,7 +139,9 @@ impl Drive for MockRobot {
         self.pass(seconds);
         Ok(())
     }
+}
 
+impl StallDetector for MockRobot {
     fn is_stalled(&mut self) -> Result<bool> {
         self.read("stall detector", |robot| robot.stalled.as_mut(), |robot| robot.by_drive(|_| false, false))
     }

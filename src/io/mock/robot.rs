@@ -17,7 +17,7 @@ use crate::kinematics::Displacement;
 ///
 /// ```
 /// use roverlab::geometry::Twist;
-/// use roverlab::io::{Call, Clock, DistanceSensors, Drive, MockRobot, Psd, Result, Script};
+/// use roverlab::io::{Call, Clock, DistanceSensors, Drive, Odometry, MockRobot, Psd, Result, Script};
 ///
 /// /// Drives until something is nearer than 20 cm; gives the distance that is left.
 /// fn approach(robot: &mut (impl Clock + Drive + DistanceSensors)) -> Result<f64> {

@@ -6,7 +6,7 @@ use super::*;
 use crate::geometry::{Pose, Twist};
 use crate::io::{
     Camera, Clock, Display, DistanceSensors, Drive, Encoders, Error, ErrorKind, Key, Keys, Lidar, LidarScan,
-    Psd, Radio, RadioMessage, Resolution,
+    Manoeuvres, Odometry, Psd, Radio, RadioMessage, Resolution, StallDetector,
 };
 
 #[test]

@@ -7,7 +7,7 @@
 //!
 //! ```no_run
 //! use roverlab::io::robios::RobiosRobot;
-//! use roverlab::io::{DistanceSensors, Drive, Psd};
+//! use roverlab::io::{DistanceSensors, Manoeuvres, Psd};
 //!
 //! # fn main() -> roverlab::io::Result<()> {
 //! let mut robot = RobiosRobot::open("libeyebot.so")?;

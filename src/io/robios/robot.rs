@@ -11,8 +11,8 @@ use super::truth::{RobiosTruth, Told};
 use crate::geometry::{Pose, Twist, normalize_angle};
 use crate::io::{
     Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
-    Fill, Font, FontFamily, FontStyle, Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio,
-    RadioMessage, Resolution, Result, Servos, Viewport,
+    Fill, Font, FontFamily, FontStyle, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
+    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -136,7 +136,9 @@ impl Drive for RobiosRobot {
         let angular = degrees("angular speed", twist.angular)?;
         order!(self, VWSetSpeed(linear, angular))
     }
+}
 
+impl Odometry for RobiosRobot {
     fn speed(&mut self) -> Result<Twist> {
         let (mut linear, mut angular) = (0, 0);
         order!(self, VWGetSpeed(&raw mut linear, &raw mut angular))?;
@@ -156,7 +158,9 @@ impl Drive for RobiosRobot {
         let phi = degrees("heading", normalize_angle(pose.heading))?;
         order!(self, VWSetPosition(x, y, if phi == -180 { 180 } else { phi }))
     }
+}
 
+impl Manoeuvres for RobiosRobot {
     fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
         let (distance, speed) = (millimetres("distance", distance)?, millimetres("speed", speed.abs())?);
         self.turns = false;
@@ -198,7 +202,9 @@ impl Drive for RobiosRobot {
     fn wait_done(&mut self) -> Result<()> {
         order!(self, VWWait())
     }
+}
 
+impl StallDetector for RobiosRobot {
     fn is_stalled(&mut self) -> Result<bool> {
         Ok(call!(self, VWStalled()) != 0)
     }

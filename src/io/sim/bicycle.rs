@@ -1,5 +1,5 @@
 use super::{NoiseModel, TICK};
-use crate::geometry::{Twist, math};
+use crate::geometry::{Twist, math, units};
 use crate::kinematics::{PlanarMotion, PlanarTwist};
 use crate::random::Stream;
 use crate::world::{CarDynamics, MotorSpec};
@@ -39,13 +39,11 @@ struct Senses {
 
 /// Steps of the tyres in a tick.
 const SUBSTEPS: u32 = 5;
-/// Below the first speed the wheels roll, above the second one they slip; between, it is a mixture.
+/// Metres per second below which wheels roll.
 const ROLLS: f64 = 2.0;
-const SLIPS: f64 = 4.0;
-const GRAVITY: f64 = 9.81;
-/// The error of a rate gyroscope for noise 1: rad/s that it reads standing, and rad/s from reading to
-/// reading.
+/// The rate in rad/s that a gyroscope reads standing, for noise 1.
 const GYRO_BIAS: f64 = 0.001;
+/// The deviation in rad/s from reading to reading, for noise 1.
 const GYRO_NOISE: f64 = 0.003;
 /// The speed, in m/s, below which a car that shall stand does.
 const STANDING: f64 = 1e-6;
@@ -147,7 +145,7 @@ impl Bicycle {
         let limit = if slows { self.spec.brake } else { self.motor.max_acceleration };
         let push = wish.clamp(-limit, limit).clamp(-self.spec.grip, self.spec.grip);
         let fastest = math::hypot(before.along, self.slip());
-        let share = ((fastest - ROLLS) / (SLIPS - ROLLS)).clamp(0.0, 1.0);
+        let share = ((fastest - ROLLS) / (CarDynamics::SLIPS - ROLLS)).clamp(0.0, 1.0);
         if share > 0.0 {
             self.slide(push, steering, dt);
         }
@@ -210,7 +208,7 @@ impl Bicycle {
             let (along, circle) = (push * loads[axle], spec.grip * loads[axle]);
             let share = if axle == 0 { spec.balance } else { 1.0 };
             let across = share * (circle * circle - along * along).max(1e-6).sqrt();
-            let linear = -share * spec.stiffness * GRAVITY * loads[axle] * slips[axle];
+            let linear = -share * spec.stiffness * units::GRAVITY * loads[axle] * slips[axle];
             let ratio = linear / across;
             (along, linear / (1.0 + ratio * ratio).sqrt())
         });
@@ -305,7 +303,7 @@ mod tests {
 
     /// Whether tyres hold an acceleration across, on bends that are wide for the car.
     fn balances(spec: &CarDynamics, across: f64) -> bool {
-        let (stiffness, strained) = (spec.stiffness * GRAVITY, across / spec.grip);
+        let (stiffness, strained) = (spec.stiffness * units::GRAVITY, across / spec.grip);
         if strained >= 1.0 {
             return false;
         }
@@ -334,7 +332,7 @@ mod tests {
                     let car = settled(speed, 0.02 * f64::from(steering), 6.0);
                     let Speeds { along, across, yaw_rate } = car.speeds;
                     let velocity = math::hypot(along, across);
-                    if (yaw_rate / velocity / curvature - 1.0).abs() < 0.03 && along > SLIPS {
+                    if (yaw_rate / velocity / curvature - 1.0).abs() < 0.03 && along > CarDynamics::SLIPS {
                         best = best.max(yaw_rate * velocity);
                     }
                 }

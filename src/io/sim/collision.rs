@@ -184,20 +184,23 @@ impl Engine {
         }
     }
 
-    /// Puts a robot somewhere else.
-    pub(super) fn place(&mut self, index: usize, pose: Pose) {
+    /// Puts a robot somewhere else; on hills it drops from `z` metres above the floor, unless the ground is higher.
+    pub(super) fn place(&mut self, index: usize, pose: Pose, z: f64) {
         let body = &mut self.bodies[index];
         body.course = Course::new(pose);
         body.wall_budget = 0.0;
         body.touch.leave();
         self.space.set_pose(body.solid, pose);
+        if let Some(hills) = &mut self.hills {
+            hills.place(index, pose, z - hills.level(pose.position()));
+        }
         self.look_around_again();
     }
 
     /// Puts an object that there is somewhere else.
     pub(super) fn place_object(&mut self, object: usize, pose: Pose) {
         let movable = self.movables[object];
-        self.space.set_pose(movable.solid, pose);
+        self.put(movable.solid, pose);
         // A hand puts it upright.
         self.space.set_top(movable.solid, movable.top);
         self.look_around_again();

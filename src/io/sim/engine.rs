@@ -5,9 +5,10 @@ use super::camera::{CameraDevice, Moment, Studio};
 use super::lockstep::{Ticking, no_robot};
 use super::movable::{Movable, movables};
 use super::options::ticks_in;
+use super::terrain::Hills;
 use super::watch::{Onlooking, Watcher};
 use super::{LONGEST, SimOptions, TICKS_PER_SECOND, TrailPoint};
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Pose3, Twist};
 use crate::io::{Error, ErrorKind, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result};
 use crate::kinematics::{Displacement, PlanarMotion};
 use crate::parameter::{require_finite, require_positive};
@@ -29,6 +30,8 @@ pub(super) struct Engine {
     outbox: Vec<Letter>,
     moves: Vec<Move>,
     studio: Box<Studio>,
+    /// What robots stand on instead of a level floor.
+    pub(super) hills: Option<Box<Hills>>,
     trail_ticks: Option<u64>,
     watcher: Option<Box<dyn Watcher>>,
 }
@@ -39,6 +42,8 @@ struct Move {
     by: usize,
     thing: Thing,
     pose: Pose,
+    /// Metres above the floor from which a robot drops on hills.
+    z: f64,
 }
 
 /// A robot or an object, by its index in the scene.
@@ -91,7 +96,7 @@ impl Engine {
         let studio = Box::new(Studio::new(scene, &objects, &robots));
         let motions = vec![PlanarMotion::default(); bodies.len()];
         let trail_ticks = options.trail_interval.map(ticks_in);
-        Ok(Self {
+        let mut engine = Self {
             space,
             bodies,
             options,
@@ -102,8 +107,38 @@ impl Engine {
             outbox: Vec::new(),
             moves: Vec::new(),
             studio,
+            hills: Hills::of(&scene.world, &scene.robots),
             trail_ticks,
             watcher: None,
+        };
+        engine.stand_on_hills();
+        Ok(engine)
+    }
+
+    /// Puts everything in a world with hills upon them.
+    fn stand_on_hills(&mut self) {
+        let Some(hills) = &mut self.hills else { return };
+        for movable in &self.movables {
+            let place = self.space.solid(movable.solid).pose.position();
+            self.space.set_level(movable.solid, hills.level(place));
+        }
+        hills.yield_to(&mut self.bodies, &mut self.space);
+    }
+
+    /// Puts a solid somewhere else, at its height above the ground there.
+    pub(super) fn put(&mut self, solid: SolidId, pose: Pose) {
+        self.space.set_pose(solid, pose);
+        if let Some(hills) = &self.hills {
+            self.space.set_level(solid, hills.level(pose.position()));
+        }
+    }
+
+    /// Where a robot is in space.
+    pub(super) fn pose_in_space(&self, robot: usize) -> Result<Pose3> {
+        let body = self.body(robot)?;
+        Ok(match &self.hills {
+            Some(hills) => hills.pose(robot),
+            None => Pose3::level(body.pose(), body.span.bottom),
         })
     }
 
@@ -130,17 +165,17 @@ impl Engine {
     }
 
     /// Puts something somewhere else at the next tick.
-    pub(super) fn place_later(&mut self, by: usize, thing: Thing, pose: Pose) {
-        self.moves.push(Move { by, thing, pose });
+    pub(super) fn place_later(&mut self, by: usize, thing: Thing, pose: Pose, z: f64) {
+        self.moves.push(Move { by, thing, pose, z });
     }
 
     /// Makes the moves of this tick, in an order that no scheduling changes.
     fn make_moves(&mut self) {
         let mut moves = std::mem::take(&mut self.moves);
         moves.sort_by_key(|wish| wish.by);
-        for Move { thing, pose, .. } in moves {
+        for Move { thing, pose, z, .. } in moves {
             match thing {
-                Thing::Robot(robot) => self.place(robot, pose),
+                Thing::Robot(robot) => self.place(robot, pose, z),
                 Thing::Object(object) => self.place_object(object, pose),
             }
         }
@@ -179,12 +214,18 @@ impl Engine {
             *motion = body.drive.step();
             moving |= *motion != PlanarMotion::default();
         }
+        if let Some(hills) = &mut self.hills {
+            moving = hills.ride(&self.bodies, &mut motions);
+        }
         if moving {
             self.move_bodies(&motions);
         } else {
             self.bodies.iter_mut().for_each(|body| body.touch.held_ticks = 0);
         }
         self.motions = motions;
+        if let Some(hills) = &mut self.hills {
+            hills.yield_to(&mut self.bodies, &mut self.space);
+        }
         self.deliver();
         self.tick += 1;
         self.extend_trails();
@@ -304,6 +345,12 @@ impl Engine {
         let sigma = self.options.noise.range;
         let body = &mut self.bodies[index];
         let device = *body.psd(psd)?;
+        if let Some(hills) = &self.hills
+            && let Some(spec) = body.spec.psds.iter().find(|spec| spec.id == psd.0)
+        {
+            let range = hills.measure(&self.space, (index, body.solid), &spec.mount, device.max_range);
+            return Ok(noisy(range, sigma, device.max_range, &mut body.psd_noise));
+        }
         let origin = body.pose().position() + body.course.turned(device.offset);
         let direction = body.course.turned(device.direction);
         let range = self.space.cast_ray(origin, direction, device.height, device.max_range, Some(body.solid));
@@ -325,7 +372,13 @@ impl Engine {
         scan.range_max = device.max_range;
         scan.mount = device.mount;
         scan.ranges.resize(device.settings.points, f64::INFINITY);
-        self.space.scan(&mut device.scanner, &pose, Some(body.solid), &mut scan.ranges);
+        match (&self.hills, &body.spec.lidar) {
+            (Some(hills), Some(spec)) => {
+                let scanner = (&spec.mount, &device.settings, device.max_range);
+                hills.scan(&self.space, (index, body.solid), scanner, &mut scan.ranges);
+            }
+            _ => self.space.scan(&mut device.scanner, &pose, Some(body.solid), &mut scan.ranges),
+        }
         for range in &mut scan.ranges {
             *range = noisy(*range, sigma, device.max_range, &mut device.noise);
         }

@@ -1,12 +1,12 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
-use super::{SimOptions, Watcher};
 use super::body::Body;
 use super::engine::Engine;
 use super::lockstep::{check_duration, no_robot, time_is_over};
 use super::options::ticks_in;
 use super::truth::robot_truth;
+use super::{SimOptions, Watcher};
 use crate::geometry::Pose;
 use crate::io::fleet;
 use crate::io::{Error, ErrorKind, FleetIo, Key, Result, RobotTruth};

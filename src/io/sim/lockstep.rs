@@ -175,6 +175,7 @@ pub(super) struct Program<W: Ticking> {
     limit: u64,
 }
 
+/// Nanoseconds of a second.
 const NANOSECONDS: f64 = 1e9;
 
 fn nanoseconds(seconds: f64) -> u64 {

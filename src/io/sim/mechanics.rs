@@ -7,7 +7,7 @@ use super::omni::OmniDrive;
 use super::wheels::WheelSpec;
 
 use crate::io::{Error, ErrorKind, Result};
-use crate::kinematics::{Ackermann, Differential, Omni, PlanarMotion};
+use crate::kinematics::{Ackermann, Differential, Omni, PlanarMotion, Tracked};
 use crate::random::Stream;
 use crate::world::{DriveSpec, RobotSpec};
 
@@ -40,6 +40,10 @@ impl Powertrain {
         Ok(match spec.drive {
             DriveSpec::Differential { track, .. } => {
                 let drive = Differential { track };
+                Self::Differential(Drivetrain::new(drive, &wheels, motor, noise, ideal_encoders, stream))
+            }
+            DriveSpec::Tracked { track, length, width, .. } => {
+                let drive = Tracked::new(track, length, width).map_err(invalid)?.equivalent();
                 Self::Differential(Drivetrain::new(drive, &wheels, motor, noise, ideal_encoders, stream))
             }
             DriveSpec::Ackermann { track, wheelbase, max_steering, dynamics, .. } => {
@@ -93,6 +97,7 @@ fn wheel_spec(drive: &DriveSpec) -> WheelSpec {
     match *drive {
         DriveSpec::Differential { wheel_diameter, max_wheel_speed, ticks_per_turn, .. }
         | DriveSpec::Ackermann { wheel_diameter, max_wheel_speed, ticks_per_turn, .. }
+        | DriveSpec::Tracked { wheel_diameter, max_wheel_speed, ticks_per_turn, .. }
         | DriveSpec::Omni { wheel_diameter, max_wheel_speed, ticks_per_turn, .. } => {
             WheelSpec { diameter: wheel_diameter, max_speed: max_wheel_speed, ticks_per_turn }
         }

@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use roverlab::geometry::Pose;
-//! use roverlab::io::{DistanceSensors, Drive, Psd};
+//! use roverlab::io::{DistanceSensors, Manoeuvres, Psd};
 //! use roverlab::io::sim::{SimOptions, Simulation};
 //! use roverlab::world::{RobotSpec, Scene, World};
 //!
@@ -47,6 +47,7 @@ mod robot_traits;
 mod simulation;
 #[cfg(feature = "physics")]
 pub mod starman;
+mod terrain;
 mod truth;
 mod watch;
 mod wheels;
@@ -56,6 +57,7 @@ pub use noise::NoiseModel;
 pub use options::SimOptions;
 pub use robot::SimRobot;
 pub use simulation::Simulation;
+pub use terrain::Mishap;
 pub use truth::Truth;
 pub use watch::{Onlooking, Watcher};
 
@@ -63,6 +65,7 @@ pub use super::{Lcd, RobotTruth, TrailPoint};
 
 /// Seconds in which the world advances at a time.
 pub const TICK: f64 = 0.010;
+/// How many of them make a second; the inverse, which is exact.
 const TICKS_PER_SECOND: f64 = 100.0;
 
 /// The longest time, in seconds, that one call may let pass: twelve days. Beyond it a program waits by mistake.

@@ -5,8 +5,8 @@ use super::{FleetRobot, SimRobot};
 use crate::geometry::{Pose, Twist};
 use crate::io::{
     Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
-    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage,
-    Resolution, Result, Servos, Viewport,
+    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
+    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::kinematics::Displacement;
 use crate::world::Colour;
@@ -50,7 +50,9 @@ macro_rules! robot_through_engine {
             fn set_speed(&mut self, twist: Twist) -> Result<()> {
                 self.call(|engine, i| engine.set_twist(i, twist))
             }
+        }
 
+        impl Odometry for $robot {
             fn speed(&mut self) -> Result<Twist> {
                 self.call(|engine, i| Ok(engine.bodies[i].drive.get().twist()))
             }
@@ -62,7 +64,9 @@ macro_rules! robot_through_engine {
             fn set_pose(&mut self, pose: Pose) -> Result<()> {
                 self.call(|engine, i| engine.set_odometry(i, pose))
             }
+        }
 
+        impl Manoeuvres for $robot {
             fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
                 self.curve(distance, 0.0, speed)
             }
@@ -86,7 +90,9 @@ macro_rules! robot_through_engine {
             fn wait_done(&mut self) -> Result<()> {
                 self.poll(arrival)
             }
+        }
 
+        impl StallDetector for $robot {
             fn is_stalled(&mut self) -> Result<bool> {
                 self.call(|engine, i| Ok(engine.bodies[i].touch.is_stalled()))
             }

@@ -2,8 +2,10 @@ use std::sync::Arc;
 
 use super::engine::{Engine, Thing};
 use super::lockstep::Lockstep;
-use crate::geometry::Pose;
+use super::terrain::Mishap;
+use crate::geometry::{Pose, Pose3};
 use crate::io::{Error, GroundTruth, Result, RobotTruth};
+use crate::parameter::require_finite;
 
 /// What is true in a simulated world. No robot reaches it; verdicts, pictures and tests do.
 #[derive(Debug, Clone)]
@@ -26,6 +28,18 @@ impl Truth {
         Ok(self.shared.lock().world.body(robot)?.pose())
     }
 
+    /// A robot's pose in space: on hills with its elevation, roll and pitch, elsewhere level.
+    pub fn pose_in_space(&self, robot: usize) -> Result<Pose3> {
+        self.shared.lock().world.pose_in_space(robot)
+    }
+
+    /// What has become of a robot on hills that drives no more, or in vain.
+    pub fn mishap(&self, robot: usize) -> Result<Option<Mishap>> {
+        let state = self.shared.lock();
+        state.world.body(robot)?;
+        Ok(state.world.hills.as_ref().and_then(|hills| hills.mishap(robot)))
+    }
+
     /// All that is true about a robot.
     pub fn robot(&self, robot: usize) -> Result<RobotTruth> {
         robot_truth(&self.shared.lock().world, robot)
@@ -41,6 +55,14 @@ impl Truth {
             let expected = format!("an index below {objects}, the number of objects");
             Error::invalid_input("object", object, &expected)
         })
+    }
+
+    /// Metres from the floor to an object's foot, by its index in the scene: on hills, that is on the ground.
+    pub fn object_elevation(&self, object: usize) -> Result<f64> {
+        self.object(object)?;
+        let state = self.shared.lock();
+        let solid = state.world.movables[object].solid;
+        Ok(state.world.space.solid(solid).bottom + state.world.space.level(solid))
     }
 
     /// Whether an object has been knocked over, by its index in the scene.
@@ -59,7 +81,18 @@ impl Truth {
         let mut state = self.shared.lock();
         state.world.body(robot)?;
         require_finite_pose(pose)?;
-        state.world.place_later(by, Thing::Robot(robot), pose);
+        state.world.place_later(by, Thing::Robot(robot), pose, 0.0);
+        Ok(())
+    }
+
+    /// As [`move_robot`](Truth::move_robot), to `z` metres above the floor, from where the robot drops on hills. Where the
+    /// ground is higher, and on a level floor, `z` means nothing.
+    pub fn drop_robot(&self, by: usize, robot: usize, pose: Pose, z: f64) -> Result<()> {
+        let mut state = self.shared.lock();
+        state.world.body(robot)?;
+        require_finite_pose(pose)?;
+        require_finite("elevation", z)?;
+        state.world.place_later(by, Thing::Robot(robot), pose, z);
         Ok(())
     }
 
@@ -67,7 +100,7 @@ impl Truth {
     pub fn move_object(&self, by: usize, object: usize, pose: Pose) -> Result<()> {
         self.object(object)?;
         require_finite_pose(pose)?;
-        self.shared.lock().world.place_later(by, Thing::Object(object), pose);
+        self.shared.lock().world.place_later(by, Thing::Object(object), pose, 0.0);
         Ok(())
     }
 
@@ -76,7 +109,7 @@ impl Truth {
         let mut state = self.shared.lock();
         state.world.body(robot)?;
         require_finite_pose(pose)?;
-        state.world.place(robot, pose);
+        state.world.place(robot, pose, 0.0);
         Ok(())
     }
 

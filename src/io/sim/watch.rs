@@ -118,7 +118,7 @@ impl<'e> Onlooking<'e> {
     pub fn place_robot(&mut self, robot: usize, pose: Pose) -> Result<()> {
         self.engine.body(robot)?;
         super::truth::require_finite_pose(pose)?;
-        self.engine.place(robot, pose);
+        self.engine.place(robot, pose, 0.0);
         Ok(())
     }
 

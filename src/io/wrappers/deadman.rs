@@ -3,8 +3,8 @@ use image::RgbImage;
 use crate::geometry::{Pose, Twist};
 use crate::io::{
     Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key,
-    Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage, Resolution, Result,
-    Servos, Viewport,
+    Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
+    Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -17,7 +17,7 @@ use crate::world::Colour;
 /// ```
 /// use roverlab::geometry::Twist;
 /// use roverlab::io::wrappers::Deadman;
-/// use roverlab::io::{Clock, Drive, MockRobot};
+/// use roverlab::io::{Clock, Drive, MockRobot, Odometry};
 ///
 /// # fn main() -> roverlab::io::Result<()> {
 /// let mut robot = Deadman::new(MockRobot::new().with_ideal_drive(), 0.3)?;
@@ -64,7 +64,7 @@ impl<R> Deadman<R> {
     }
 }
 
-impl<R: Clock + Drive> Deadman<R> {
+impl<R: Drive + Odometry> Deadman<R> {
     fn halt(&mut self) -> Result<()> {
         let Twist { linear, angular } = self.inner.speed()?;
         let bends = linear.abs() > 0.05;
@@ -73,7 +73,7 @@ impl<R: Clock + Drive> Deadman<R> {
     }
 }
 
-impl<R: Clock + Drive> Clock for Deadman<R> {
+impl<R: Clock + Drive + Odometry> Clock for Deadman<R> {
     fn now(&mut self) -> Result<f64> {
         self.inner.now()
     }
@@ -100,6 +100,9 @@ hooked!(
     heard,
     [],
     Drive,
+    Odometry,
+    Manoeuvres,
+    StallDetector,
     DistanceSensors,
     Lidar,
     Camera,

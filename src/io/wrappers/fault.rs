@@ -103,12 +103,17 @@ impl Fault {
     }
 }
 
+/// How the kinds of faults are written.
 const KINDS: &str = "stuck, lost, nan, jump, late, link, hang or clock";
+/// How what they are about is written.
 const DEVICES: &str = "front, left, right, back, psdN, lidar, camera, odometry or all";
+/// Seconds that late readings are old where no number says more.
 const LATE: f64 = 0.5;
+/// Seconds that a call hangs where no number says more.
 const HANG: f64 = 1.0;
 /// The longest hang, in seconds: a simulated world goes on meanwhile.
 const LONGEST: f64 = 3600.0;
+/// How far odometry jumps where no numbers say more: millimetres, millimetres and degrees.
 const JUMP: [f64; 3] = [100.0, 100.0, 15.0];
 
 impl FromStr for Fault {

@@ -7,8 +7,8 @@ use super::memory::{Disturbance, Memory};
 use crate::geometry::{Pose, Twist};
 use crate::io::{
     Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
-    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage,
-    Resolution, Result, Servos, Viewport,
+    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
+    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -274,7 +274,7 @@ impl<R: Camera + Clock> Camera for Faulty<R> {
     }
 }
 
-impl<R: Drive + Clock> Drive for Faulty<R> {
+impl<R: Odometry + Clock> Odometry for Faulty<R> {
     fn speed(&mut self) -> Result<Twist> {
         let Some(time) = self.begin()? else { return self.inner.speed() };
         self.require(time, Sensor::Odometry, "odometry")?;
@@ -304,51 +304,8 @@ impl<R: Drive + Clock> Drive for Faulty<R> {
         }
         Ok(())
     }
-
-    fn set_speed(&mut self, twist: Twist) -> Result<()> {
-        self.ready()?;
-        self.inner.set_speed(twist)
-    }
-
-    fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
-        self.ready()?;
-        self.inner.straight(distance, speed)
-    }
-
-    fn turn(&mut self, angle: f64, speed: f64) -> Result<()> {
-        self.ready()?;
-        self.inner.turn(angle, speed)
-    }
-
-    fn curve(&mut self, length: f64, angle: f64, speed: f64) -> Result<()> {
-        self.ready()?;
-        self.inner.curve(length, angle, speed)
-    }
-
-    fn drive_to(&mut self, forward: f64, left: f64, speed: f64) -> Result<()> {
-        self.ready()?;
-        self.inner.drive_to(forward, left, speed)
-    }
-
-    fn remaining(&mut self) -> Result<f64> {
-        self.ready()?;
-        self.inner.remaining()
-    }
-
-    fn is_done(&mut self) -> Result<bool> {
-        self.ready()?;
-        self.inner.is_done()
-    }
-
-    fn wait_done(&mut self) -> Result<()> {
-        self.ready()?;
-        self.inner.wait_done()
-    }
-
-    fn is_stalled(&mut self) -> Result<bool> {
-        self.ready()?;
-        self.inner.is_stalled()
-    }
 }
 
-hooked! { Faulty, ready, [Clock], Display, Keys, Radio, Motors, Servos, Encoders }
+hooked! {
+    Faulty, ready, [Clock], Drive, Manoeuvres, StallDetector, Display, Keys, Radio, Motors, Servos, Encoders
+}

@@ -3,8 +3,8 @@ use image::RgbImage;
 use crate::geometry::{Pose, Twist};
 use crate::io::{
     Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font,
-    Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage, Resolution, Result,
-    Servos, Viewport,
+    Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
+    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -155,7 +155,7 @@ impl<R> Limited<R> {
     }
 }
 
-impl<R: Clock + Drive> Limited<R> {
+impl<R: Clock + Drive + Odometry> Limited<R> {
     fn set_speed_gradually(&mut self, twist: Twist) -> Result<()> {
         let now = self.inner.now()?;
         let (before, from) = match self.told {
@@ -195,7 +195,7 @@ impl<R: Clock + Drive> Limited<R> {
     }
 }
 
-impl<R: Clock + Drive> Clock for Limited<R> {
+impl<R: Clock + Drive + Odometry> Clock for Limited<R> {
     fn now(&mut self) -> Result<f64> {
         self.keep_up()?;
         self.inner.now()
@@ -217,7 +217,7 @@ impl<R: Clock + Drive> Clock for Limited<R> {
     }
 }
 
-impl<R: Clock + Drive> Drive for Limited<R> {
+impl<R: Clock + Drive + Odometry> Drive for Limited<R> {
     fn set_speed(&mut self, twist: Twist) -> Result<()> {
         let twist = self.reduce_twist(twist)?;
         if self.limits.limits_acceleration() && twist.is_finite() {
@@ -225,22 +225,9 @@ impl<R: Clock + Drive> Drive for Limited<R> {
         }
         self.inner.set_speed(twist)
     }
+}
 
-    fn speed(&mut self) -> Result<Twist> {
-        self.keep_up()?;
-        self.inner.speed()
-    }
-
-    fn pose(&mut self) -> Result<Pose> {
-        self.keep_up()?;
-        self.inner.pose()
-    }
-
-    fn set_pose(&mut self, pose: Pose) -> Result<()> {
-        self.keep_up()?;
-        self.inner.set_pose(pose)
-    }
-
+impl<R: Clock + Drive + Odometry + Manoeuvres> Manoeuvres for Limited<R> {
     fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
         let speed = self.reduce_curve(speed, 0.0)?;
         self.inner.straight(distance, speed)?;
@@ -276,14 +263,9 @@ impl<R: Clock + Drive> Drive for Limited<R> {
         self.keep_up()?;
         self.inner.wait_done()
     }
-
-    fn is_stalled(&mut self) -> Result<bool> {
-        self.keep_up()?;
-        self.inner.is_stalled()
-    }
 }
 
-impl<R: Motors + Clock + Drive> Motors for Limited<R> {
+impl<R: Clock + Drive + Odometry + Motors> Motors for Limited<R> {
     fn set_motor(&mut self, motor: u8, fraction: f64) -> Result<()> {
         let fraction = self.reduce("motor fraction", fraction, self.limits.motor)?;
         self.inner.set_motor(motor, fraction)?;
@@ -292,4 +274,18 @@ impl<R: Motors + Clock + Drive> Motors for Limited<R> {
     }
 }
 
-hooked! { Limited, keep_up, [Clock Drive], DistanceSensors, Lidar, Camera, Display, Keys, Radio, Servos, Encoders }
+hooked!(
+    Limited,
+    keep_up,
+    [Clock Drive Odometry],
+    Odometry,
+    StallDetector,
+    DistanceSensors,
+    Lidar,
+    Camera,
+    Display,
+    Keys,
+    Radio,
+    Servos,
+    Encoders
+);

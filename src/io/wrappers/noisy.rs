@@ -5,13 +5,14 @@ use image::RgbImage;
 
 use crate::geometry::{Pose, Twist, normalize_angle};
 use crate::io::delegate::{
-    ambassador_impl_Clock, ambassador_impl_Display, ambassador_impl_Encoders, ambassador_impl_Keys,
-    ambassador_impl_Motors, ambassador_impl_Radio, ambassador_impl_Servos,
+    ambassador_impl_Clock, ambassador_impl_Display, ambassador_impl_Drive, ambassador_impl_Encoders,
+    ambassador_impl_Keys, ambassador_impl_Manoeuvres, ambassador_impl_Motors, ambassador_impl_Radio,
+    ambassador_impl_Servos, ambassador_impl_StallDetector,
 };
 use crate::io::{
     Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font,
-    Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage, Resolution, Result,
-    Servos, Viewport,
+    Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
+    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::random::Stream;
 use crate::world::Colour;
@@ -90,6 +91,9 @@ impl Default for Noise {
 #[derive(Debug, Clone, Delegate)]
 #[expect(clippy::duplicated_attributes, reason = "every capability has the same target")]
 #[delegate(Clock, target = "inner")]
+#[delegate(Drive, target = "inner")]
+#[delegate(Manoeuvres, target = "inner")]
+#[delegate(StallDetector, target = "inner")]
 #[delegate(Display, target = "inner")]
 #[delegate(Keys, target = "inner")]
 #[delegate(Radio, target = "inner")]
@@ -196,11 +200,7 @@ impl<R: Camera> Camera for Noisy<R> {
     }
 }
 
-impl<R: Drive> Drive for Noisy<R> {
-    fn set_speed(&mut self, twist: Twist) -> Result<()> {
-        self.inner.set_speed(twist)
-    }
-
+impl<R: Odometry> Odometry for Noisy<R> {
     fn speed(&mut self) -> Result<Twist> {
         let Twist { linear, angular } = self.inner.speed()?;
         Ok(Twist::new(
@@ -220,37 +220,5 @@ impl<R: Drive> Drive for Noisy<R> {
 
     fn set_pose(&mut self, pose: Pose) -> Result<()> {
         self.inner.set_pose(pose)
-    }
-
-    fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
-        self.inner.straight(distance, speed)
-    }
-
-    fn turn(&mut self, angle: f64, speed: f64) -> Result<()> {
-        self.inner.turn(angle, speed)
-    }
-
-    fn curve(&mut self, length: f64, angle: f64, speed: f64) -> Result<()> {
-        self.inner.curve(length, angle, speed)
-    }
-
-    fn drive_to(&mut self, forward: f64, left: f64, speed: f64) -> Result<()> {
-        self.inner.drive_to(forward, left, speed)
-    }
-
-    fn remaining(&mut self) -> Result<f64> {
-        self.inner.remaining()
-    }
-
-    fn is_done(&mut self) -> Result<bool> {
-        self.inner.is_done()
-    }
-
-    fn wait_done(&mut self) -> Result<()> {
-        self.inner.wait_done()
-    }
-
-    fn is_stalled(&mut self) -> Result<bool> {
-        self.inner.is_stalled()
     }
 }

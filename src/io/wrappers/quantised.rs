@@ -1,10 +1,12 @@
+use ambassador::Delegate;
 use image::RgbImage;
 
 use crate::geometry::{Pose, Twist, math, normalize_angle, units};
+use crate::io::delegate::ambassador_impl_StallDetector;
 use crate::io::{
     Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font,
-    Key, Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage, Resolution, Result,
-    Servos, Viewport,
+    Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
+    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -24,7 +26,8 @@ use crate::world::Colour;
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Delegate)]
+#[delegate(StallDetector, target = "inner")]
 pub struct Quantised<R> {
     inner: R,
     motor_scale: f64,
@@ -127,7 +130,9 @@ impl<R: Drive> Drive for Quantised<R> {
     fn set_speed(&mut self, twist: Twist) -> Result<()> {
         self.inner.set_speed(Twist::new(length(twist.linear), angle(twist.angular)))
     }
+}
 
+impl<R: Odometry> Odometry for Quantised<R> {
     fn speed(&mut self) -> Result<Twist> {
         let twist = self.inner.speed()?;
         Ok(Twist::new(length(twist.linear), angle(twist.angular)))
@@ -140,7 +145,9 @@ impl<R: Drive> Drive for Quantised<R> {
     fn set_pose(&mut self, wanted: Pose) -> Result<()> {
         self.inner.set_pose(pose(wanted))
     }
+}
 
+impl<R: Manoeuvres> Manoeuvres for Quantised<R> {
     fn straight(&mut self, distance: f64, speed: f64) -> Result<()> {
         self.turns = false;
         self.inner.straight(length(distance), length(speed).abs())
@@ -181,10 +188,6 @@ impl<R: Drive> Drive for Quantised<R> {
 
     fn wait_done(&mut self) -> Result<()> {
         self.inner.wait_done()
-    }
-
-    fn is_stalled(&mut self) -> Result<bool> {
-        self.inner.is_stalled()
     }
 }
 

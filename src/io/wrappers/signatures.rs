@@ -1,5 +1,8 @@
 /// Hands the methods of one capability to another macro, behind whatever context that macro wants to see again.
 ///
+/// A method that means the same by others of its capability, such as `stop`, is not listed: whoever gets such a call
+/// makes those.
+///
 /// Arguments that implement `Copy` or are references go on to the robot inside as they are.
 macro_rules! signatures {
     (Clock => $then:ident!($($context:tt)*)) => {
@@ -11,9 +14,17 @@ macro_rules! signatures {
     (Drive => $then:ident!($($context:tt)*)) => {
         $then! { $($context)* Drive {
             fn set_speed(twist: Twist) -> ();
+        } }
+    };
+    (Odometry => $then:ident!($($context:tt)*)) => {
+        $then! { $($context)* Odometry {
             fn speed() -> Twist;
             fn pose() -> Pose;
             fn set_pose(pose: Pose) -> ();
+        } }
+    };
+    (Manoeuvres => $then:ident!($($context:tt)*)) => {
+        $then! { $($context)* Manoeuvres {
             fn straight(distance: f64, speed: f64) -> ();
             fn turn(angle: f64, speed: f64) -> ();
             fn curve(length: f64, angle: f64, speed: f64) -> ();
@@ -21,6 +32,10 @@ macro_rules! signatures {
             fn remaining() -> f64;
             fn is_done() -> bool;
             fn wait_done() -> ();
+        } }
+    };
+    (StallDetector => $then:ident!($($context:tt)*)) => {
+        $then! { $($context)* StallDetector {
             fn is_stalled() -> bool;
         } }
     };

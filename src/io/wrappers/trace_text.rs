@@ -14,6 +14,7 @@ use crate::world::Colour;
 pub(super) struct Digest(pub(super) u64);
 
 impl Digest {
+    /// Of nothing: the offset basis of FNV-1a with 64 bits.
     pub(super) const EMPTY: Digest = Digest(0xcbf2_9ce4_8422_2325);
 
     pub(super) fn update(&mut self, bytes: impl IntoIterator<Item = u8>) {

@@ -7,8 +7,8 @@ use super::trace_text::{Digest, Token, put_scan};
 use crate::geometry::{Pose, Twist};
 use crate::io::{
     Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key,
-    Keys, Lidar, LidarScan, LidarSettings, Motors, Pixel, Psd, Radio, RadioMessage, Resolution, Result,
-    Servos, Viewport,
+    Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
+    Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -43,7 +43,7 @@ pub enum Stamp {
 /// ```
 /// use roverlab::geometry::Twist;
 /// use roverlab::io::wrappers::Traced;
-/// use roverlab::io::{Clock, Drive, MockRobot};
+/// use roverlab::io::{Clock, Drive, Odometry, Manoeuvres, StallDetector, MockRobot};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let mut robot = Traced::new(MockRobot::new(), Vec::new());
@@ -250,6 +250,9 @@ macro_rules! traced_impl {
 }
 
 signatures! { Drive => traced_impl!() }
+signatures! { Odometry => traced_impl!() }
+signatures! { Manoeuvres => traced_impl!() }
+signatures! { StallDetector => traced_impl!() }
 signatures! { DistanceSensors => traced_impl!() }
 signatures! { Display => traced_impl!() }
 signatures! { Keys => traced_impl!() }

@@ -63,6 +63,7 @@ struct Parent {
     count: u16,
 }
 
+/// The parent of the start.
 const NO_PARENT: u32 = u32::MAX;
 /// How finely runs are ordered by their least time: so many buckets for the time of the shortest turn.
 const BUCKETS_PER_TURN: u32 = 8;

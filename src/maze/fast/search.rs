@@ -31,12 +31,15 @@ const ROW_KINDS: [Option<TurnKind>; 7] = [
 /// Kinds of turns that end in a diagonal.
 const DIAGONAL_KINDS: [TurnKind; 4] =
     [TurnKind::In45, TurnKind::In135, TurnKind::Diagonal90, TurnKind::TightIn45];
+/// Pieces that begin along a row of cells.
 const ROWS: u8 = ROW_KINDS.len() as u8;
+/// Pieces that begin on a diagonal.
 const DIAGONALS: u8 = DIAGONAL_KINDS.len() as u8;
 /// Kinds of turns, one on the spot included.
 pub(super) const ENDS: usize = ROW_KINDS.len() + DIAGONAL_KINDS.len();
-/// Of a cell's nodes, the first on a diagonal: there are 4 headings before, and 8 pairs of headings from there.
+/// Of a cell's nodes, the first on a diagonal: there are 4 headings before.
 const FIRST_DIAGONAL: u8 = 4 * ROWS;
+/// Nodes of a cell: on diagonals there are 8 pairs of headings.
 const PER_CELL: u32 = FIRST_DIAGONAL as u32 + 8 * DIAGONALS as u32;
 
 /// The place of a kind among those that end alike.

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use super::cell_drive::{CellDrive, CellDriveParameters, read};
 use crate::geometry::{Pose, Twist};
 use crate::io::control::{Behaviour, Decision, Manoeuvre, Senses, halts};
-use crate::io::{DistanceSensors, Drive, Result};
+use crate::io::{DistanceSensors, Manoeuvres, Odometry, Result, StallDetector};
 use crate::maze::Direction;
 use crate::parameter::require_positive;
 
@@ -89,8 +89,9 @@ enum Phase {
     Resting(usize),
 }
 
-/// Seconds, and metres per second, of coming to rest.
+/// Seconds of coming to rest.
 const REST: f64 = 0.3;
+/// Metres per second below which it is at rest.
 const AT_REST: f64 = 2e-3;
 
 /// How a drive along the left wall ended.
@@ -244,7 +245,7 @@ impl Behaviour for LeftHand {
     }
 }
 
-impl<R: DistanceSensors + Drive + ?Sized> Senses<R> for LeftHand {
+impl<R: DistanceSensors + Odometry + Manoeuvres + StallDetector + ?Sized> Senses<R> for LeftHand {
     fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LeftHandObservation) -> Result<()> {
         *seen = LeftHandObservation {
             pose: robot.pose()?,

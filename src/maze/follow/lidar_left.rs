@@ -3,7 +3,7 @@ use std::ops::ControlFlow;
 
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::control::{Behaviour, Decision, Halt, Senses};
-use crate::io::{Drive, Lidar, LidarScan, Result};
+use crate::io::{Lidar, LidarScan, Odometry, Result};
 use crate::parameter::{require_finite, require_positive};
 
 /// What [`LidarLeft`] goes by.
@@ -127,7 +127,7 @@ impl Behaviour for LidarLeft {
     }
 }
 
-impl<R: Drive + Lidar + ?Sized> Senses<R> for LidarLeft {
+impl<R: Odometry + Lidar + ?Sized> Senses<R> for LidarLeft {
     fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LidarLeftObservation) -> Result<()> {
         seen.pose = robot.pose()?;
         robot.scan_into(&mut seen.scan)

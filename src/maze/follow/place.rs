@@ -35,8 +35,11 @@ pub(super) struct PlaceInCell {
 impl PlaceInCell {
     /// A robot more or less in the middle of a cell.
     pub(super) fn at(odometry: Pose, cell: f64) -> Self {
+        /// Cells by which the robot stands off the middle at the start: a standard deviation.
         const OFF: f64 = 0.05;
+        /// Radians by which it is turned at the start: a standard deviation.
         const TURN: f64 = 0.06;
+        /// The standard deviation of the scale of odometry, as a share.
         const STRETCH: f64 = 0.015;
         let spread = [OFF * OFF * cell * cell, OFF * OFF * cell * cell, TURN * TURN];
         let stretch = Stretch { share: 0.0, variance: STRETCH * STRETCH, along: 0.0 };
@@ -45,8 +48,9 @@ impl PlaceInCell {
 
     /// Follows odometry. The cell turns with a robot that has turned by more than half a quarter.
     pub(super) fn predict(&mut self, odometry: Pose) {
-        /// How much odometry may miss of a way, and of a turn.
+        /// How much odometry may miss of a way, as a share.
         const MISSED: f64 = 0.01;
+        /// How much odometry may miss of a turn, as a share.
         const MISSED_OF_TURN: f64 = 0.006;
         let moved = self.odometry.to_local(odometry.position());
         let way = moved.coords.norm();

@@ -44,15 +44,19 @@ pub struct Calibration {
     pub bend: f64,
 }
 
-/// Indices into the state.
+/// Index of the heading in radians.
 const HEADING: usize = 2;
+/// Index of the share by which distances are underrated.
 const DISTANCE: usize = 3;
+/// Index of the share by which turns are underrated.
 const ANGLE: usize = 4;
+/// Index of the radians by which a metre straight on turns.
 const BEND: usize = 5;
 
-/// The least standard deviations, which keep the filter open for what it does not know about: metres for a reading, metres
-/// and radians at the start.
+/// The least standard deviation of a reading in metres, which keeps the filter open for what it does not know
+/// about.
 const LEAST_RANGE: f64 = 1e-3;
+/// The standard deviations at the start: metres and radians.
 const START: [f64; 2] = [1e-3, 4e-3];
 /// How many times as much as it is said to the robot may slip: the filter's own errors are no other.
 const SLIP: f64 = 2.0;
@@ -65,8 +69,9 @@ const NEAREST: f64 = 0.45;
 const CORNER: f64 = 0.012;
 /// Beams square to a wall, up to 14 degrees: others may see what stands behind an opening beside it.
 const SQUARE: f64 = 0.97;
-/// Cells within which a slanted beam tells posts from what is behind them, and by how much one may seem to be off.
+/// Cells within which a slanted beam tells posts from what is behind them.
 const POST_RANGE: f64 = 0.8;
+/// Cells by which a post may seem to be off.
 const POST_GATE: f64 = 0.25;
 /// Of half of its width, how far before its middle a post is met on average.
 const MET: f64 = 0.8;

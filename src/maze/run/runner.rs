@@ -4,7 +4,7 @@ use super::rig::Rig;
 use super::tracker::{TrajectoryTracker, TrajectoryTrackerParameters};
 use crate::geometry::{Pose, Twist, angle_difference};
 use crate::io::control::{Stopwatch, stopping};
-use crate::io::{Clock, DistanceSensors, Drive, Error, ErrorKind, Result};
+use crate::io::{Clock, DistanceSensors, Drive, Error, ErrorKind, Odometry, Result, StallDetector};
 use crate::maze::{
     Cell, Direction, ExplorationOutcome, ExplorationStep, Explorer, FastPlan, FastPlanner, Maze, RunLimits,
     Scale, Trajectory, Unknown, WallState,
@@ -90,7 +90,7 @@ pub struct MazeRunner<'r, R: ?Sized> {
     clock: Option<Stopwatch>,
 }
 
-impl<'r, R: Clock + Drive + DistanceSensors + ?Sized> MazeRunner<'r, R> {
+impl<'r, R: Clock + Drive + Odometry + StallDetector + DistanceSensors + ?Sized> MazeRunner<'r, R> {
     /// A robot that stands in the middle of the maze's start cell and faces its start heading. `maze` is what
     /// it knows. It has `time_limit` seconds for all that it does, infinity for any time; what is not done
     /// then fails with [`TimedOut`](ErrorKind::TimedOut).

@@ -4,7 +4,7 @@ use super::parameters::BugParameters;
 use super::report::{BugEvent, BugOutcome, BugPhase};
 use crate::geometry::{Point, Pose, Twist};
 use crate::io::control::{Behaviour, LidarObservation, Senses};
-use crate::io::{Drive, Lidar, Result};
+use crate::io::{Lidar, Odometry, Result};
 
 /// A bug algorithm: to a goal through unknown obstacles by what a robot senses around it.
 ///
@@ -89,7 +89,7 @@ impl PathBound {
     }
 }
 
-impl<R: Drive + Lidar + ?Sized, B: Bug + ?Sized> Senses<R> for B {
+impl<R: Odometry + Lidar + ?Sized, B: Bug + ?Sized> Senses<R> for B {
     fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LidarObservation) -> Result<()> {
         seen.read(robot)
     }

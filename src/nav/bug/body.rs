@@ -1,8 +1,7 @@
 use super::parameters::BugParameters;
 use super::report::{BugEvent, BugOutcome, BugPhase};
 use super::wall_ends::{WallEnds, overhangs};
-use crate::geometry::WallSide;
-use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math};
+use crate::geometry::{Point, Pose, Twist, Vector, WallSide, angle_difference, direction, math};
 use crate::io::control::LidarObservation;
 use crate::io::{Error, Result};
 use crate::nav::boundary::nearer_side;
@@ -47,29 +46,38 @@ pub(super) struct GoalView {
     /// How far the disc can move towards the goal, and what it touches there.
     pub(super) free: f64,
     pub(super) obstacle: Option<Point>,
+    /// Whether the goal is near, and the disc can move straight to where it counts as reached.
+    pub(super) is_at_hand: bool,
 }
 
-/// The standard deviation of a lidar's ranges that the filter starts from, in metres.
-const EXPECTED_NOISE: f64 = 0.010;
 /// How far round the robot points count for its next step, in steps.
 const REACH: f64 = 2.4;
 /// How much farther round the robot the ends of walls are kept in mind.
 const ENDS_REACH: f64 = 1.7;
-/// How far apart, in metres, one thing may be seen from two places without noise.
+/// How far apart, in metres, one thing may be seen from two places without noise, and for each metre of noise.
 const EXACT: f64 = 0.003;
-/// The position may be wrong by so many times the noise of a range.
-const NOISE_SLACK: f64 = 5.0;
-/// The part of the robot's radius that must be free round a goal that counts in spite of not being met exactly.
-const GOAL_ROOM: f64 = 0.7;
+const ENDS_SLACK: f64 = 5.0;
+/// The part of the goal's tolerance that the robot makes use of where it cannot come nearer.
+const USED_TOLERANCE: f64 = 0.9;
+/// A goal within so many distances that the robot keeps to obstacles is near.
+const NEAR: f64 = 1.5;
+/// A point may be wrong by so many times the noise of a range, and by so many metres without noise.
+const NOISE_SLACK: f64 = 2.0;
+const POINT_ERROR: f64 = 0.002;
+/// Places about the goal that are tried: so many rings of so many.
+const RINGS: u32 = 4;
+const DIRECTIONS: u32 = 24;
 /// Radians per second at which the robot turns to look round.
 const LOOKING_TURN: f64 = 2.0;
-/// The least speed along a free heading, in metres per second, and how far from it, in radians, the robot may point.
+/// The least speed along a free heading, in metres per second.
 const CREEP: f64 = 0.02;
+/// Radians by which the robot may point away from that heading.
 const POINTING: f64 = 0.3;
 /// How fast the robot closes in on the place where it must stand, in metres per second for each metre.
 const APPROACH_RATE: f64 = 4.0;
-/// A turn of more radians than this turns the robot round, and a speed of more metres per second is too much for that.
+/// A turn of more radians than this turns the robot round.
 const TURNING_ROUND: f64 = 2.0;
+/// Metres per second that are too fast for turning round.
 const ROLLING: f64 = 0.05;
 /// Steps, at the start, that only look.
 const SETTLING_STEPS: u32 = 12;
@@ -92,7 +100,7 @@ impl Body {
             slow_to_pass,
             ends: WallEnds::default(),
             look: LookRound::default(),
-            filter: ScanFilter::new(EXPECTED_NOISE),
+            filter: ScanFilter::new(),
             matcher: ScanMatcher::new(),
         })
     }
@@ -117,7 +125,7 @@ impl Body {
         self.pose = self.locate(observation);
         self.filter.update(self.pose, &observation.scan)?;
         let reach = REACH * self.parameters.follow_distances().step;
-        let error = EXACT + NOISE_SLACK * self.filter.noise();
+        let error = EXACT + ENDS_SLACK * self.filter.noise();
         self.ends.update(&self.pose, &self.measured, ENDS_REACH * reach, error);
         self.points.clear();
         self.points.extend(self.filter.points());
@@ -163,7 +171,9 @@ impl Body {
         let distance = self.goal_distance();
         let radius = self.parameters.follow_distances().least;
         let (free, obstacle) = self.surroundings.free_distance(direction(bearing), radius);
-        GoalView { bearing, distance, free, obstacle }
+        let is_at_hand = free >= distance - USED_TOLERANCE * self.parameters.goal_tolerance
+            && distance < NEAR * self.parameters.follow_distances().wished;
+        GoalView { bearing, distance, free, obstacle, is_at_hand }
     }
 
     /// Whether the way to the goal ends right here.
@@ -189,17 +199,28 @@ impl Body {
         towards_it && view.free < margin && view.free < view.distance
     }
 
-    /// Whether nothing is seen where the robot would stand at the goal, errors of the position aside.
-    pub(super) fn goal_has_room(&self) -> bool {
+    /// Whether the robot, near the goal, sees that it has no room within the goal's tolerance, errors aside.
+    pub(super) fn is_goal_seen_without_room(&self) -> bool {
+        let distances = self.parameters.follow_distances();
+        if self.goal_distance() > 2.0 * NEAR * distances.wished {
+            return false;
+        }
+        let error = POINT_ERROR + NOISE_SLACK * self.filter.noise();
+        let (least, tolerance) = (distances.least - error, self.parameters.goal_tolerance);
         let goal = self.pose.to_local(self.goal);
-        let room = GOAL_ROOM * self.parameters.robot_radius;
-        self.points.iter().all(|point| (point - goal).norm() > room)
-    }
-
-    /// How wrong the robot's position may well be, in metres, judged by the noise of its ranges; never as much as
-    /// would let a goal behind a wall count.
-    pub(super) fn position_slack(&self) -> f64 {
-        (NOISE_SLACK * self.filter.noise()).min(self.parameters.robot_radius)
+        let near: Vec<Vector> = self
+            .points
+            .iter()
+            .map(|point| point - goal)
+            .filter(|away| away.norm() < least + tolerance)
+            .collect();
+        let has_room = |place: Vector| near.iter().all(|point| (point - place).norm() >= least);
+        let places = (1..=RINGS).flat_map(|ring| (0..DIRECTIONS).map(move |turn| (ring, turn)));
+        let place = |(ring, turn): (u32, u32)| {
+            let angle = std::f64::consts::TAU * f64::from(turn) / f64::from(DIRECTIONS);
+            direction(angle) * (tolerance * f64::from(ring) / f64::from(RINGS))
+        };
+        !has_room(Vector::zeros()) && !places.map(place).any(has_room)
     }
 
     /// The twist that turns the robot to a heading and drives it on.
@@ -223,6 +244,7 @@ impl Body {
 
     /// The speed, from the present one, from which the robot can still stop before what is ahead, or at the goal.
     fn safe_speed(&self, present: f64) -> f64 {
+        /// Metres that are left before what is ahead, for rounding.
         const HAIR: f64 = 0.001;
         let passing = if self.slow_to_pass && self.phase == BugPhase::ToGoal { 1.0 } else { 0.5 };
         let outline = self.parameters.robot_radius + passing * self.parameters.least_clearance;

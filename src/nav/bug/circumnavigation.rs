@@ -1,4 +1,5 @@
 use super::body::Body;
+use super::doubt::Doubt;
 use super::strategy::{Decision, Sight, Strategy};
 
 /// Goes once round, then to the best place to leave. With `BY_RANGE` free ranges count too.
@@ -13,8 +14,7 @@ pub(super) struct Circumnavigation<const BY_RANGE: bool> {
     /// The merits of the latest places, if they could be left.
     latest: [Option<f64>; LASTING],
     returning: Option<Returning>,
-    /// The part of a free range that is not relied upon.
-    doubt: f64,
+    doubt: Doubt,
 }
 
 /// A place to leave.
@@ -36,15 +36,10 @@ struct Returning {
     before: Option<f64>,
 }
 
-/// The part of a free range that is not relied upon at first, and at the most: gaps between beams grow with the distance.
-const DOUBT: f64 = 0.02;
-const MAX_DOUBT: f64 = 0.3;
-/// How much worse, in STEPs, the place may seem when it is met again, and for each metre that it has been missed by.
+/// How much worse, in STEPs, the place may seem when it is met again.
 const SLACK: f64 = 0.5;
+/// How much worse, in metres, for each metre that the place has been missed by.
 const SLACK_PER_METRE: f64 = 0.1;
-/// The same, in STEPs, where the merit grows again: round a corner the robot drives a little farther out or in than the other
-/// way.
-const SLACK_PASSING: f64 = 1.0;
 /// After so many robot radii the place has been missed for good, and the next one that can be left at all will do.
 const MISSED: f64 = 3.0;
 /// For so many steps a merit lasts.
@@ -59,7 +54,7 @@ impl<const BY_RANGE: bool> Default for Circumnavigation<BY_RANGE> {
             lasting: None,
             latest,
             returning: None,
-            doubt: DOUBT,
+            doubt: Doubt::default(),
         }
     }
 }
@@ -67,7 +62,7 @@ impl<const BY_RANGE: bool> Default for Circumnavigation<BY_RANGE> {
 impl<const BY_RANGE: bool> Circumnavigation<BY_RANGE> {
     /// How near to the goal leaving here leads; `None` where the way is blocked.
     fn merit(&self, sight: &Sight) -> Option<f64> {
-        let free = if BY_RANGE { sight.free.min(sight.distance) * (1.0 - self.doubt) } else { 0.0 };
+        let free = if BY_RANGE { sight.free.min(sight.distance) * self.doubt.trust() } else { 0.0 };
         sight.is_open().then_some(sight.distance - free)
     }
 
@@ -100,7 +95,8 @@ impl<const BY_RANGE: bool> Circumnavigation<BY_RANGE> {
         let near = MISSED * sight.radius;
         self.place().zip(merit).is_some_and(|(best, merit)| {
             let receding = before.is_some_and(|before| merit > before);
-            let passing = beyond.abs() < near && receding && merit <= best.merit + SLACK_PASSING * sight.step;
+            // Round a corner the robot drives a little farther out or in than the other way.
+            let passing = beyond.abs() < near && receding && merit <= best.merit + sight.step;
             let missed = beyond > near && merit <= self.least_distance;
             merit <= best.merit + slack || passing || missed
         })
@@ -113,7 +109,10 @@ impl<const BY_RANGE: bool> Strategy for Circumnavigation<BY_RANGE> {
     fn meet(&mut self, meeting: &Sight) {
         let least_distance = meeting.distance - meeting.free;
         let kept = least_distance <= self.least_distance - 0.5 * meeting.step;
-        let doubt = if kept { self.doubt } else { (2.0 * self.doubt).min(MAX_DOUBT) };
+        let mut doubt = self.doubt;
+        if !kept {
+            doubt.grow();
+        }
         *self = Self { least_distance, doubt, ..Self::default() };
     }
 
@@ -121,7 +120,7 @@ impl<const BY_RANGE: bool> Strategy for Circumnavigation<BY_RANGE> {
         if self.returning.is_none() {
             self.survey(sight);
         }
-        if self.is_there(sight) || sight.is_goal_at_hand() { Decision::Leave } else { Decision::Follow }
+        if self.is_there(sight) { Decision::Leave } else { Decision::Follow }
     }
 
     fn all_round(&mut self, sight: &Sight, lap: f64) -> Decision {

@@ -1,5 +1,6 @@
 use super::algorithm::{Bug, bug_algorithm};
 use super::body::Body;
+use super::doubt::Doubt;
 use super::progress::LapRule;
 use super::report::{BugEvent, BugPhase};
 use super::strategy::{Decision, Sight, Strategy};
@@ -38,18 +39,12 @@ bug_algorithm! {
 pub(super) struct DistRule {
     /// `d_min`: the smallest distance to the goal that a boundary has had.
     least_distance: f64,
-    /// The part of a free range that is not relied upon.
-    doubt: f64,
+    doubt: Doubt,
 }
-
-/// The part of a free range that is not relied upon at first, and at the most: gaps between beams and errors of
-/// the pose grow with the distance.
-const DOUBT: f64 = 0.02;
-const MAX_DOUBT: f64 = 0.3;
 
 impl Default for DistRule {
     fn default() -> Self {
-        Self { least_distance: f64::INFINITY, doubt: DOUBT }
+        Self { least_distance: f64::INFINITY, doubt: Doubt::default() }
     }
 }
 
@@ -70,7 +65,7 @@ impl Strategy for DistRule {
     fn meet(&mut self, meeting: &Sight) {
         let distance = meeting.distance - meeting.free;
         if distance > self.least_distance - 0.5 * meeting.step && self.least_distance.is_finite() {
-            self.doubt = (2.0 * self.doubt).min(MAX_DOUBT);
+            self.doubt.grow();
         }
         self.least_distance = self.least_distance.min(distance);
     }
@@ -80,9 +75,9 @@ impl Strategy for DistRule {
         if !sight.is_open() {
             return Decision::Follow;
         }
-        let free = sight.free.min(sight.distance) * (1.0 - self.doubt);
+        let free = sight.free.min(sight.distance) * self.doubt.trust();
         let promising = sight.distance - free <= self.least_distance - sight.step;
-        if promising || sight.is_goal_at_hand() { Decision::Leave } else { Decision::Follow }
+        if promising { Decision::Leave } else { Decision::Follow }
     }
 }
 

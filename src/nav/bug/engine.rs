@@ -25,8 +25,6 @@ pub(super) struct Engine<S> {
 struct Following {
     side: WallSide,
     boundary: BoundaryFollower,
-    /// The nearest that the robot has come to the goal.
-    nearest: f64,
     progress: LoopProgress,
     /// Metres since the obstacle was met, and where they were counted last.
     travelled: f64,
@@ -35,8 +33,6 @@ struct Following {
     in_line: bool,
 }
 
-/// A goal that recedes by this much, in metres, has been passed.
-const PASSING_MARGIN: f64 = 0.02;
 /// Headings up to this many radians count as along the boundary.
 const IN_LINE: f64 = 0.5;
 
@@ -76,6 +72,8 @@ impl Decider<'_> {
         self.body.learn();
         if self.body.goal_distance() <= self.body.parameters.goal_tolerance {
             self.body.end(BugOutcome::Reached);
+        } else if self.body.is_goal_seen_without_room() {
+            self.body.end(BugOutcome::NoRoom);
         }
         let heading = match self.body.phase {
             BugPhase::ToGoal => self.head_for_goal(),
@@ -88,6 +86,9 @@ impl Decider<'_> {
     /// Drives at the goal; the heading to take.
     fn head_for_goal(&mut self) -> Option<f64> {
         let view = self.body.look_at_goal();
+        if view.is_at_hand {
+            return Some(view.bearing);
+        }
         if let Some(heading) = self.strategy.detour(self.body, &view) {
             return Some(heading);
         }
@@ -107,7 +108,6 @@ impl Decider<'_> {
         *self.following = Some(Following {
             side,
             boundary: BoundaryFollower::new(side, body.parameters.follow_distances(), anchor),
-            nearest: view.distance,
             progress: LoopProgress::new(pose, side, self.strategy.laps()),
             travelled: 0.0,
             last: point,
@@ -152,12 +152,9 @@ impl Decider<'_> {
         following.last = position;
         let sight = self.sight(&view)?;
         let decision = self.strategy.consider(self.body, &sight);
+        let decision = if view.is_at_hand { Decision::Leave } else { decision };
         if let Some(heading) = self.obey(decision, &view)? {
             return Some(heading);
-        }
-        if self.has_passed_goal(&view) {
-            self.body.end(BugOutcome::Reached);
-            return None;
         }
         let (heading, lap) = self.along_boundary()?;
         let decision = match lap {
@@ -207,18 +204,6 @@ impl Decider<'_> {
         let lap = following.progress.update(body.pose, heading, body.parameters.robot_radius);
         following.in_line = heading.is_some_and(|heading| heading.abs() < IN_LINE);
         Some((heading, lap))
-    }
-
-    /// Whether the robot has been as near to the goal as obstacles and its knowledge of the position allow, and is
-    /// going away again.
-    fn has_passed_goal(&mut self, view: &GoalView) -> bool {
-        let slack = self.body.position_slack();
-        let Some(following) = self.following.as_mut() else { return false };
-        following.nearest = following.nearest.min(view.distance);
-        let passed = view.distance > following.nearest + PASSING_MARGIN;
-        passed
-            && following.nearest <= self.body.parameters.goal_tolerance + slack
-            && self.body.goal_has_room()
     }
 
     fn reverse(&mut self) -> Option<()> {

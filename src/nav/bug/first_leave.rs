@@ -14,7 +14,7 @@ impl<R: LeaveRule> Strategy for FirstLeave<R> {
     }
 
     fn consider(&mut self, body: &Body, sight: &Sight) -> Decision {
-        let leave = self.rule.allows(body.goal, sight) || sight.is_goal_at_hand();
+        let leave = self.rule.allows(body.goal, sight);
         if leave { Decision::Leave } else { Decision::Follow }
     }
 }

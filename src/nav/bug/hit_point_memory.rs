@@ -35,13 +35,13 @@ enum Course {
     Other,
 }
 
-/// How near, in robot radii, a remembered place is met, and how far away it is left behind.
-const MEETING: f64 = 1.0;
+/// Robot radii beyond which it is left behind.
 const AWAY: f64 = 2.5;
 /// The same for the hit point on the way back: it lies before the boundary rather than on its way.
 const HIT_POINT: f64 = 1.5;
-/// The parts of the way back after which the hit point can be met, and after which it has been missed.
+/// The share of the way back after which the hit point can be met.
 const EARLIEST: f64 = 0.6;
+/// The share of the way back after which the hit point has been missed.
 const LATEST: f64 = 1.4;
 
 impl<R, const ALTERNATING: bool> HitPointMemory<R, ALTERNATING> {
@@ -51,7 +51,7 @@ impl<R, const ALTERNATING: bool> HitPointMemory<R, ALTERNATING> {
         for remembered in &mut self.remembered {
             let distance = (remembered.place.point - sight.place.point).norm();
             remembered.left_behind |= distance > AWAY * sight.radius;
-            let here = sight.in_line && remembered.place.is(&sight.place, MEETING * sight.radius);
+            let here = sight.in_line && remembered.place.is(&sight.place, sight.radius);
             met |= remembered.left_behind && here;
         }
         met
@@ -88,9 +88,6 @@ impl<R: LeaveRule, const ALTERNATING: bool> Strategy for HitPointMemory<R, ALTER
         self.side = Some(sight.side);
         let allowed = self.rule.allows(body.goal, sight);
         let met = self.meets_remembered(sight);
-        if sight.is_goal_at_hand() {
-            return Decision::Leave;
-        }
         if let Course::Back { length, from } = self.course {
             if self.is_back(sight, length, from) {
                 self.course = Course::Other;

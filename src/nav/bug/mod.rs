@@ -9,6 +9,7 @@ mod bug2;
 mod circumnavigation;
 mod class1;
 mod distbug;
+mod doubt;
 mod engine;
 mod first_leave;
 mod hit_point_memory;

@@ -22,8 +22,9 @@ pub(super) struct Edge {
     pub(super) obstacle: f64,
 }
 
-/// Directions that are looked at.
+/// Directions that are looked at, one a degree as of an EyeBot's lidar.
 const DIRECTIONS: usize = 360;
+/// Radians between them.
 const SPACING: f64 = TAU / DIRECTIONS as f64;
 /// What may hide between two beams, in metres for each metre away.
 const HIDDEN: f64 = TAU / 360.0;

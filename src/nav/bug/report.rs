@@ -9,13 +9,19 @@ pub enum BugOutcome {
     Reached,
     /// The robot went all the way round an obstacle without getting nearer to the goal: there is no way.
     Unreachable,
+    /// The robot sees that there is no room for it at the goal, nor anywhere near enough to it.
+    NoRoom,
     /// The time was over.
     TimedOut,
     /// Who watched had seen enough.
     Stopped,
 }
 
-halts!(BugOutcome { Reached: "the goal is reached", Unreachable: "no way leads to the goal" });
+halts!(BugOutcome {
+    Reached: "the goal is reached",
+    Unreachable: "no way leads to the goal",
+    NoRoom: "the robot has no room at the goal",
+});
 
 /// What the robot is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -104,11 +104,6 @@ impl Sight {
             !self.at_boundary
         }
     }
-
-    /// Whether the goal is at hand.
-    pub(super) fn is_goal_at_hand(&self) -> bool {
-        self.free >= self.distance && self.distance < self.radius
-    }
 }
 
 /// What is deeper than this, in margins, is more than a corner of the wall.

@@ -1,5 +1,6 @@
 use super::algorithm::bug_algorithm;
 use super::body::{Body, GoalView};
+use super::doubt::Doubt;
 use super::panorama::{Edge, Panorama};
 use super::strategy::{Decision, Sight, Strategy};
 use crate::geometry::WallSide;
@@ -41,8 +42,7 @@ pub(super) struct Tangent {
     reach: f64,
     /// Whether what was only seen of the boundary no longer counts. It may have been of something else.
     distrustful: bool,
-    /// The part of a free range that is relied upon.
-    trust: f64,
+    doubt: Doubt,
     /// The place that the obstacle was left for, until it is reached.
     leaving_for: Option<Point>,
     /// On which side of the goal's direction the robot passes the obstacle, as [`Edge::obstacle`].
@@ -60,9 +60,6 @@ const LEAST_PROGRESS: f64 = 0.1;
 const LOYALTY: f64 = 1.1;
 /// How far, in radians, a robot turns away from an edge that it is as near to as it can be.
 const YIELD: f64 = 0.5;
-/// The part of a free range that is relied upon at first, and at the least.
-const TRUST: f64 = 0.98;
-const LEAST_TRUST: f64 = 0.7;
 /// Ends of free ranges in neighbouring directions that are no farther apart than this, in robot radii, are of one
 /// obstacle: the robot does not fit between.
 const LINK: f64 = 2.0;
@@ -77,7 +74,7 @@ impl Default for Tangent {
             seen: f64::INFINITY,
             reach: f64::INFINITY,
             distrustful: false,
-            trust: TRUST,
+            doubt: Doubt::default(),
             leaving_for: None,
             passing: None,
         }
@@ -174,25 +171,22 @@ impl Strategy for Tangent {
         let distance = meeting.distance - meeting.free;
         if distance > self.passed - 0.5 * meeting.step && self.passed.is_finite() {
             // The last leave has not led as near as it promised.
-            self.trust = (1.0 - 2.0 * (1.0 - self.trust)).max(LEAST_TRUST);
+            self.doubt.grow();
         }
         let passed = self.passed.min(distance);
-        let (panorama, trust) = (std::mem::take(&mut self.panorama), self.trust);
-        *self = Self { panorama, passed, trust, ..Self::default() };
+        let (panorama, doubt) = (std::mem::take(&mut self.panorama), self.doubt);
+        *self = Self { panorama, passed, doubt, ..Self::default() };
     }
 
     fn consider(&mut self, body: &Body, sight: &Sight) -> Decision {
         self.passed = self.passed.min(sight.corner_distance());
-        if sight.is_goal_at_hand() {
-            return Decision::Leave;
-        }
         self.panorama.look(body.surroundings.points(), body.parameters.follow_distances().least);
         let (pose, radius) = (body.pose, body.parameters.robot_radius);
         let goal = pose.to_local(body.goal);
         let wall = normalize_angle(sight.place.wall - pose.heading);
         let seen = self.panorama.obstacle(wall, LINK * radius).map(|end| (end - goal).norm());
         self.seen = seen.fold(self.seen, f64::min);
-        let place = self.panorama.nearest_to(goal, REACH * radius, self.trust);
+        let place = self.panorama.nearest_to(goal, REACH * radius, self.doubt.trust());
         let reach = (place - goal).norm();
         self.reach = self.reach.min(reach);
         let followed = if self.distrustful { self.passed } else { self.passed.min(self.seen) };

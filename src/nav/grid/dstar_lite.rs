@@ -56,6 +56,7 @@ struct Entry {
     cell: u32,
 }
 
+/// The cost of what cannot be reached: two of them still add up.
 const FAR: u64 = u64::MAX / 4;
 
 impl DStarLite {

@@ -26,6 +26,7 @@ struct Entry {
 }
 
 impl BucketQueue {
+    /// Bits of an estimate that a bucket does not tell apart: less than half of a straight step.
     const SHIFT: u32 = 14;
 
     /// Empties the queue. From now on nothing will come that costs less than `base`.

@@ -54,6 +54,7 @@ pub struct GridStep {
 struct Label(u64);
 
 impl Label {
+    /// The bits of a node's cost.
     const COST: u64 = (1 << 45) - 1;
 
     fn new(query: u64, direction: usize, cost: u64) -> Self {
@@ -73,8 +74,9 @@ impl Label {
     }
 }
 
-/// The steps: east, south, west, north, and the diagonals after each of them, clockwise.
+/// Columns of the steps: east, south, west, north, and the diagonals after each of them, clockwise.
 const COLUMNS: [isize; 8] = [1, 0, -1, 0, 1, -1, -1, 1];
+/// Rows of the same steps.
 const ROWS: [isize; 8] = [0, 1, 0, -1, 1, 1, -1, -1];
 
 impl GridSearch {

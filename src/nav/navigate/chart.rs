@@ -35,7 +35,7 @@ const ENOUGH: u8 = 3;
 
 impl Chart {
     pub(super) fn new(world: &World, parameters: &NavigatorParameters) -> Result<Self> {
-        let size = world.bounds().size();
+        let size = world.site().size();
         let resolution = parameters.resolution.max((size.x * size.y / MAX_CELLS).sqrt());
         let inexact = resolution * std::f64::consts::FRAC_1_SQRT_2;
         let (wished, least) = (parameters.clearance, parameters.least_clearance);
@@ -45,7 +45,7 @@ impl Chart {
         });
         let limit = levels[0].room.max(MAX_STRAY) + resolution;
         let clearance = Clearance::new(world, resolution, limit).map_err(|error| {
-            Error::new(ErrorKind::InvalidInput, "the world cannot be planned in").with_source(error)
+            Error::new(ErrorKind::InvalidInput, format!("the world cannot be planned in: {error}"))
         })?;
         let evidence = vec![0; clearance.raster().cells()];
         Ok(Self { clearance, levels, evidence, marks: Vec::new() })

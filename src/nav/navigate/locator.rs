@@ -1,6 +1,6 @@
 use crate::geometry::{Point, Pose};
 use crate::io::LidarScan;
-use crate::scan::ScanMatcher;
+use crate::scan::{HEIGHT, ScanMatcher};
 use crate::world::World;
 use crate::world::space::{Scanner, Solid, Space};
 
@@ -19,8 +19,6 @@ pub(super) struct Locator {
 
 /// After so many metres there is a new expected scan.
 const SPACING: f64 = 0.06;
-/// The height above the floor of a scanner that does not tell.
-const HEIGHT: f64 = 0.04;
 
 impl Locator {
     pub(super) fn new(world: &World, start: Pose) -> Self {

@@ -8,7 +8,7 @@ use super::route::Route;
 use super::steering::Steering;
 use crate::geometry::{Point, Pose, Twist, angle_difference};
 use crate::io::control::{Behaviour, Decision, Halt, LidarObservation, Senses};
-use crate::io::{Drive, Error, Lidar, Result};
+use crate::io::{Error, Lidar, Odometry, Result};
 use crate::nav::surroundings::Surroundings;
 use crate::scan::{ScanFilter, check_measured};
 use crate::world::{GridCell, World};
@@ -70,27 +70,31 @@ struct Progress {
     blocked: u32,
 }
 
-/// The standard deviation of a lidar's ranges that the filter starts from, in metres.
-const EXPECTED_NOISE: f64 = 0.010;
-/// Metres within which what is seen counts for the plan, for the next step, and for a robot that does not get on.
+/// Metres within which what is seen counts for the plan.
 const SEEING: f64 = 2.5;
+/// Metres within which what is seen counts for the next step.
 const NEAR: f64 = 0.6;
+/// Metres within which it counts for a robot that does not get on.
 const TOUCHING: f64 = 0.05;
-/// What is seen so near to something known is that: in metres, and in standard deviations of a range.
+/// What is seen so near to something known is that: in metres.
 const STRAY: f64 = 0.045;
+/// The same in standard deviations of a range.
 const STRAY_DEVIATIONS: f64 = 4.0;
 /// The farthest target of a step, in metres.
 const LOOKAHEAD: f64 = 0.5;
 /// Seconds that the robot looks before it plans.
 const LOOKING_TIME: f64 = 0.6;
-/// Seconds without moving, and without getting nearer, after which it does not get on.
+/// Seconds without moving after which it does not get on.
 const IDLE_TIME: f64 = 2.0;
+/// Seconds without getting nearer after which it does not get on.
 const WAITING_TIME: f64 = 25.0;
-/// How it backs off: m/s and s.
+/// Metres per second with which it backs off.
 const BACKING_SPEED: f64 = 0.06;
+/// Seconds for which it backs off.
 const BACKING_TIME: f64 = 1.0;
-/// So often it may fail to get on in one place, and doubt what it has seen.
+/// So often it may fail to get on in one place.
 const MAX_BLOCKED: u32 = 8;
+/// So often it may doubt what it has seen.
 const MAX_DOUBTS: u32 = 2;
 /// After so many metres it looks for a way with more clearance.
 const WIDENING: f64 = 0.3;
@@ -116,7 +120,7 @@ impl Navigator {
             locator: Locator::new(world, start),
             start,
             pose: start,
-            filter: ScanFilter::new(EXPECTED_NOISE),
+            filter: ScanFilter::new(),
             surroundings: Surroundings::default(),
             points: Vec::new(),
             near: Vec::new(),
@@ -399,7 +403,7 @@ impl Behaviour for Navigator {
     }
 }
 
-impl<R: Drive + Lidar + ?Sized> Senses<R> for Navigator {
+impl<R: Odometry + Lidar + ?Sized> Senses<R> for Navigator {
     fn sense(&mut self, robot: &mut R, _time: f64, seen: &mut LidarObservation) -> Result<()> {
         seen.read(robot)
     }

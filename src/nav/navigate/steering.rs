@@ -18,8 +18,9 @@ pub(super) struct Steering<'a> {
 const STOPPING_TIME: f64 = 0.5;
 /// How far, in metres, a step looks ahead for something in its way.
 const STEP: f64 = 0.15;
-/// How far, in radians, a step may point past its target, and by how much at a time.
+/// Radians that a step may point past its target.
 const ASIDE: f64 = 1.2;
+/// Radians by which it is turned at a time.
 const TURN: f64 = 0.08;
 
 impl Steering<'_> {

@@ -118,7 +118,7 @@ impl EventCourse {
                 let touches = outline.half_width + ConeColour::Unknown.radius();
                 let radius = line::radius(self.layout.shape, touches);
                 let speed =
-                    (limits.hold.across(1.0 / radius, limits.drive) * radius).sqrt().min(limits.top_speed);
+                    (limits.grip.across(1.0 / radius, limits.drive) * radius).sqrt().min(limits.top_speed);
                 vec![std::f64::consts::TAU * radius / speed; self.timed.len()]
             }
         }

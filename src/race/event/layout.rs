@@ -106,13 +106,15 @@ pub struct EventLayout {
     pub shape: EventShape,
 }
 
-/// Metres from an edge within which a cone stands at it; the same while a layout is looked for.
+/// Metres from an edge within which a cone stands at it.
 const AT_EDGE: f64 = 0.4;
+/// The same in metres while a layout is looked for.
 const GATE: f64 = 0.8;
 /// Metres by which cones of an edge stand beside it, and beyond which they count less.
 const PLACED: (f64, f64) = (0.1, 0.3);
-/// The share of all cones that stands at edges where a layout is found, and as long as it is followed; how many they are at least.
+/// The shares of all cones that stand at edges where a layout is found, and as long as it is followed.
 const SHARES: [f64; 2] = [0.6, 0.4];
+/// How many cones these are at least.
 const FEWEST: usize = 3;
 /// Metres, metres and radians by which a layout may move from look to look in the frame of a map that drifts.
 const MOVES: [f64; 3] = [0.05, 0.05, 0.01];

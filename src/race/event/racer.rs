@@ -7,9 +7,10 @@ use crate::parameter::{require, require_positive, require_up_to};
 use crate::race::cone::{Cone, ConeColour};
 use crate::race::error::LineError;
 use crate::race::grip::GripLimit;
+use crate::race::lane_model::FARTHEST;
 use crate::race::map::{ConeMap, ConeMapParameters};
 use crate::race::profile::{CarLimits, SpeedProfile};
-use crate::race::racer::RacerParameters;
+use crate::race::racer::{RacerParameters, STILL};
 use crate::race::racing_line::CarOutline;
 use crate::race::reckoning::Reckoning;
 use crate::race::sight::{ConeSighting, sightings};
@@ -45,7 +46,7 @@ impl Default for EventParameters {
         Self {
             // A circle that stays the same asks less of steering and tyres than bends that come and go.
             limits: CarLimits {
-                hold: GripLimit::Balance(Tyres { grip: 11.7, ..Tyres::default() }),
+                grip: GripLimit::Balance(Tyres { grip: 11.7, ..Tyres::default() }),
                 brake: 10.0,
                 ..limits
             },
@@ -69,9 +70,9 @@ impl EventParameters {
         self.outline.validate().map_err(|error| error.of("outline"))?;
         self.map.validate().map_err(|error| error.of("map"))?;
         self.tracker.validate().map_err(|error| error.of("tracker"))?;
-        require_up_to("strip", self.strip, LONGEST)?;
+        require_up_to("strip", self.strip, FARTHEST)?;
         for metres in self.stop {
-            require("stop", metres, (0.0..=LONGEST).contains(&metres), "0 to 1000 m")?;
+            require("stop", metres, (0.0..=FARTHEST).contains(&metres), "0 to 1000 m")?;
         }
         require_positive("entry", self.entry)?;
         self.patience.into_iter().try_for_each(|seconds| require_positive("patience", seconds))?;
@@ -114,12 +115,11 @@ pub struct EventRacer {
     blind: f64,
 }
 
-/// Metres of a strip and behind it at most.
-const LONGEST: f64 = 1000.0;
 /// Seconds that it looks before it moves.
 const LOOKS: f64 = 0.3;
-/// Metres per second at which it looks for the layout from nearer, and metres that it goes so.
+/// Metres per second at which it looks for the layout from nearer.
 const CREEP: f64 = 1.0;
+/// Metres that it goes so.
 const CREEPS: f64 = 6.0;
 /// Metres behind the place where the car stands at first at which lines begin.
 const BEHIND: f64 = 4.0;
@@ -129,13 +129,12 @@ const BEFORE: f64 = 30.0;
 const ENTERED: f64 = 2.0;
 /// Metres by which a number of the layout changes before the line is planned again.
 const CHANGED: f64 = 0.02;
-/// Metres between a cone and the side of a car that passes it, and between a cone and the nose of one that stands before it.
+/// Metres between a cone and the side of a car that passes it.
 const BESIDE: f64 = 0.07;
+/// Metres between a cone and the nose of a car that stands before it.
 const STANDS: f64 = 0.5;
 /// Metres ahead that cones in the way matter.
 const AHEAD: f64 = 45.0;
-/// Metres per second below which a car stands.
-const STILL: f64 = 0.05;
 /// Metres from the end of its line within which a car has driven it.
 const END: f64 = 2.0;
 

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::*;
 use crate::geometry::{Point, Pose, direction};
 use crate::io::sim::{SimOptions, Simulation, TICK};
-use crate::io::{Camera, Clock, Drive, Lidar, LidarScan, Resolution, control};
+use crate::io::{Camera, Clock, Drive, Lidar, LidarScan, Odometry, Resolution, control};
 use crate::race::{
     CameraMount, CameraSight, CarLimits, CarOutline, Cone, ConeColour, ConeTrack, Event, RaceOutcome,
     RaceScore,

@@ -7,6 +7,7 @@ use crate::geometry::{Point, Pose};
 use crate::race::{Cone, ConeColour, ConeTrack};
 use crate::world::formats::{FormatError, Location, YamlEvents, shown};
 
+/// The lists of the tracks of FSSIM, and their cones' colours.
 const KEYS: [(&str, ConeColour); 4] = [
     ("cones_left", ConeColour::Blue),
     ("cones_right", ConeColour::Yellow),

@@ -9,8 +9,9 @@ use crate::world::Colour;
 const BASE: i32 = 250;
 /// Pixels for a scan all round.
 const WIDTH: i32 = 360;
-/// Beams that are averaged before peaks and dips are looked for, and how far they have to stand out, in metres.
+/// Beams that are averaged before peaks and dips are looked for.
 const WINDOW: usize = 5;
+/// Metres that a peak or a dip has to stand out.
 const PROMINENCE: f64 = 0.08;
 
 /// Draws a scan on the display as the book does (programs 4.1 and 4.2): a blue line for every beam, from the back over the
@@ -54,8 +55,9 @@ pub fn plot_scan(display: &mut (impl Display + ?Sized), scan: &LidarScan, range:
 
 /// Directions under the columns where they are, and what the full height stands for.
 fn print_scale(display: &mut (impl Display + ?Sized), full: f64) -> Result<()> {
-    /// The row below the plot, and how many letters of the default font are as wide as the display.
+    /// The display's row below the plot.
     const LINE: i32 = 19;
+    /// How many letters of the default font are as wide as the display.
     const LETTERS: i32 = 80;
     display.set_font(Font::default())?;
     let width = (display.display_size()?.0 / LETTERS).max(1);

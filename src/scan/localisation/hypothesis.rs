@@ -42,7 +42,7 @@ const GRAZING: f64 = 0.2;
 /// Beams are not independent of each other: so many count as one.
 const BEAMS_AS_ONE: f64 = 4.0;
 /// The least error of an expected range in metres.
-const LEAST_ERROR: f64 = 0.01;
+pub(super) const LEAST_ERROR: f64 = 0.01;
 /// The share of beams that may measure anything.
 const OUTLIERS: f64 = 0.1;
 /// What likelihoods are raised to, since an error of the pose is in all beams.
@@ -68,11 +68,9 @@ impl Hypothesis {
             && angle_difference(self.pose.heading, other.pose.heading).abs() <= SAME.1
     }
 
-    /// The pose turned by an angle, about the point that leaves it as probable as can be.
-    pub(super) fn turned(&self, angle: f64) -> Pose {
-        let [x, y] = [0, 1].map(|axis| self.covariance[(axis, 2)] / self.covariance[(2, 2)]);
-        let Pose { heading, .. } = self.pose;
-        Pose::new(self.pose.x + angle * x, self.pose.y + angle * y, normalize_angle(heading + angle))
+    /// The standard deviation of the position along the axis where it is larger, in metres.
+    pub fn deviation(&self) -> f64 {
+        self.covariance[(0, 0)].max(self.covariance[(1, 1)]).max(0.0).sqrt()
     }
 
     /// Moves on with the robot, by its motion in its own frame.
@@ -86,8 +84,12 @@ impl Hypothesis {
         let distance = math::hypot(motion.x, motion.y);
         let along = parameters.odometry_error.0 * distance + 1e-5;
         let turn = parameters.odometry_error.1 * motion.heading.abs() + 0.02 * distance + 1e-5;
-        let added = Vector3::new(along * along, along * along, turn * turn);
-        self.covariance = carried * self.covariance * carried.transpose() + Matrix3::from_diagonal(&added);
+        self.covariance = carried * self.covariance * carried.transpose();
+        // Wheels of other than nominal size err in the same way at each step: what is not seen otherwise errs by all steps' sum.
+        for (axis, error) in [along, along, turn].into_iter().enumerate() {
+            let before = self.covariance[(axis, axis)].max(0.0).sqrt();
+            self.covariance[(axis, axis)] += error * (2.0 * before + error);
+        }
     }
 
     /// Moves to where a scan fits best, near where odometry says, in so many steps.
@@ -142,7 +144,6 @@ fn evidence(
     let lidar = pose.compose(&scan.mount);
     map.expect(&mut bench.scanner, &lidar, &mut bench.expected);
     let expected = &bench.expected;
-    let beams = scan.ranges.len();
     let sigma = parameters.range_error.max(LEAST_ERROR);
     let blurred = 2.0 * sigma;
     let mut found = Evidence {
@@ -153,24 +154,17 @@ fn evidence(
     };
     let density = 1.0 / scan.range_max.max(1.0);
     let peak = (1.0 - OUTLIERS) / (blurred * std::f64::consts::TAU.sqrt());
-    for beam in 0..beams {
-        let (range, other) = (scan.ranges[beam], expected[beam]);
-        let off = if range.is_finite() && other.is_finite() {
-            range - other
-        } else if range.is_finite() == other.is_finite() {
-            0.0
-        } else {
-            f64::INFINITY
-        };
+    let mut compared = 0_usize;
+    for (beam, &range) in scan.ranges.iter().enumerate().filter(|(_, range)| !range.is_nan()) {
+        compared += 1;
+        let normal = normal(scan, expected, beam, &lidar);
+        let off = off(scan, expected, beam, normal.is_some());
         let scaled = off / blurred;
         let likely = if scaled.abs() < 8.0 { peak * math::exp(-0.5 * scaled * scaled) } else { 0.0 };
         found.log_likelihood += math::ln(likely + OUTLIERS * density);
         found.explained += f64::from(u8::from(off.abs() < 4.0 * sigma + 0.01));
-        if !range.is_finite() || !other.is_finite() || off.abs() > gate {
-            continue;
-        }
+        let Some(normal) = normal.filter(|_| range.is_finite() && off.abs() <= gate) else { continue };
         let ray = direction(lidar.heading + scan.angle(beam));
-        let Some(normal) = normal(scan, expected, beam, &lidar) else { continue };
         let facing = normal.dot(&ray);
         if facing.abs() < GRAZING {
             continue;
@@ -186,8 +180,24 @@ fn evidence(
         found.residual -= by_pose * (behind * weight);
     }
     found.log_likelihood *= TEMPER;
-    found.explained /= beams.max(1) as f64;
+    found.explained /= compared.max(1) as f64;
     found
+}
+
+/// By how much a range differs from the expected one in metres. Nothing within range is the farthest that is reported, so
+/// that noise at the limit of the range makes no difference. Beside an edge a beam meets one side or the other: any range
+/// from the one to the other is as expected.
+fn off(scan: &LidarScan, expected: &[f64], beam: usize, is_smooth: bool) -> f64 {
+    let within = |range: f64| range.min(scan.range_max);
+    let range = within(scan.ranges[beam]);
+    if is_smooth {
+        return range - within(expected[beam]);
+    }
+    let beside = [beam.checked_sub(1), Some(beam), Some(beam + 1)].into_iter().flatten();
+    let sides = beside.filter_map(|beam| expected.get(beam)).map(|&range| within(range));
+    let (low, high) =
+        sides.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), side| (low.min(side), high.max(side)));
+    range - range.clamp(low, high)
 }
 
 /// The normal of the expected surface that a beam meets, by the beams beside it; `None` at edges and corners.

@@ -11,7 +11,8 @@ use crate::io::{Error, LidarScan, Result};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Localisation {
-    /// Nothing yet, or nothing that explains what is seen.
+    /// Nothing yet, or nothing that explains what is seen, or what is seen says too little: the places that explain it are
+    /// too many to count, or none of them is known to within 30 mm.
     Lost,
     /// So many places explain what was seen; the most probable one comes along.
     Several(usize, Hypothesis),
@@ -40,15 +41,16 @@ impl Localisation {
 
 /// Finds out where a robot is in a known world without being told where it started (the task of section 4.3).
 ///
-/// The first scan is compared with what would be seen from all free places of a grid in all directions. What fits becomes a
-/// hypothesis: a pose with a covariance, which moves on with odometry, is matched to each scan and weighed by how well it
-/// explains it (P. Jensfelt and S. Kristensen, "Active global localization for a mobile robot using multiple hypothesis
-/// tracking", 2001). Poses that the world cannot tell apart stay equally probable, and are told as such. When none explains
-/// what is seen, as after the robot was carried away, the search begins anew.
+/// All poses in the world are searched for those that explain the first scan, by branch and bound: none that does is left
+/// out. Each becomes a hypothesis: a pose with a covariance, which moves on with odometry, is matched to each scan and
+/// weighed by how well it explains it (P. Jensfelt and S. Kristensen, "Active global localization for a mobile robot using
+/// multiple hypothesis tracking", 2001). Poses that the world cannot tell apart stay equally probable, and are told as
+/// such. Where too many poses explain a scan, as along a bare wall, the robot is lost until it sees more. When none
+/// explains what is seen, as after the robot was carried away, the search begins anew.
 ///
 /// ```
 /// use roverlab::geometry::{Point, Pose};
-/// use roverlab::io::{Drive, Lidar, Clock};
+/// use roverlab::io::{Odometry, Manoeuvres, Lidar, Clock};
 /// use roverlab::io::sim::{SimOptions, Simulation};
 /// use roverlab::scan::{Localiser, LocaliserParameters, LocalisationMap};
 /// use roverlab::world::{RobotSpec, Scene, Wall, World};
@@ -82,27 +84,36 @@ pub struct Localiser {
     odometry: Option<Pose>,
     /// Where odometry was when weights were changed last.
     viewed: Option<Pose>,
+    /// Where odometry was when the last search found too little or too much.
+    searched: Option<Pose>,
     /// Scans in a row that nothing explains.
     unexplained: u32,
     /// How often the search has begun.
     searches: u32,
 }
 
-/// Steps by which candidates of a search and hypotheses on the way are matched.
+/// Steps by which candidates of a search are matched.
 const SEARCH_STEPS: usize = 10;
+/// Steps by which hypotheses on the way are matched.
 const TRACK_STEPS: usize = 3;
 /// How far a candidate of a search may be off, in metres and radians.
 const CANDIDATE_SPREAD: f64 = 0.15;
-/// How many candidates are tried again, turned by so many radians.
-const TURNED: usize = 16;
-const TURNS: [f64; 6] = [-0.2, -0.13, -0.06, 0.06, 0.13, 0.2];
+/// The shares of a scan's beams that a search asks for, until some pose explains so many.
+const SHARES: [f64; 4] = [0.92, 0.8, 0.7, EXPLAINED];
+/// A pose explains a scan as well as the best one does if it explains so little less of it, as a share of all beams: with more, the
+/// next scans leave nothing of its probability.
+const AS_WELL: f64 = 0.06;
+/// Metres and radians that a robot moves before what said too little is looked at again.
+const LOOK_AGAIN: (f64, f64) = (0.5, 0.5);
 /// A hypothesis counts if it is this probable in terms of the best one.
 const COUNTS: f64 = 0.02;
 /// The share of beams that have to be as expected.
 const EXPLAINED: f64 = 0.6;
-/// Scans in a row without that after which the search begins anew.
+/// A place is known with a standard deviation of so many metres.
+const KNOWN: f64 = 0.03;
+/// Scans in a row without an explanation after which the search begins anew.
 const PATIENCE: u32 = 8;
-/// The most hypotheses that are kept.
+/// The most hypotheses that are kept: what more poses explain says too little.
 const MOST: usize = 64;
 
 impl Localiser {
@@ -116,6 +127,7 @@ impl Localiser {
             bench: None,
             odometry: None,
             viewed: None,
+            searched: None,
             unexplained: 0,
             searches: 0,
         })
@@ -126,7 +138,7 @@ impl Localiser {
         /// Metres and radians.
         const SPREAD: f64 = 0.03;
         self.hypotheses = vec![Hypothesis::new(pose, SPREAD)];
-        (self.odometry, self.viewed, self.unexplained) = (None, None, 0);
+        (self.odometry, self.viewed, self.searched, self.unexplained) = (None, None, None, 0);
     }
 
     /// Where the robot most probably is by now, by odometry since the last scan.
@@ -147,8 +159,12 @@ impl Localiser {
             return Localisation::Lost;
         };
         let least = COUNTS * best.probability;
-        match self.hypotheses.iter().filter(|other| other.probability >= least).count() {
-            0 | 1 => Localisation::One(*best),
+        let likely = self.hypotheses.iter().filter(|other| other.probability >= least);
+        let (count, widest) =
+            likely.fold((0, 0.0_f64), |(count, widest), other| (count + 1, widest.max(other.deviation())));
+        match count {
+            _ if widest > KNOWN => Localisation::Lost,
+            1 => Localisation::One(*best),
             count => Localisation::Several(count, *best),
         }
     }
@@ -183,8 +199,10 @@ impl Localiser {
             _ => Bench { scanner: scanner_of(scan), expected: vec![0.0; beams] },
         };
         if self.hypotheses.is_empty() {
-            self.search(scan, &mut bench);
-            self.viewed = Some(odometry);
+            if self.is_worth_a_search(&odometry) {
+                self.search(scan, &mut bench);
+                (self.viewed, self.searched) = (Some(odometry), Some(odometry));
+            }
         } else {
             let motion = self.odometry.map_or(Pose::default(), |last| last.inverse().compose(&odometry));
             let other_view = self.is_other_view(&odometry);
@@ -201,36 +219,49 @@ impl Localiser {
     }
 
     fn is_other_view(&self, odometry: &Pose) -> bool {
-        self.viewed.is_none_or(|last| {
-            last.distance_to(odometry.position()) > self.parameters.view.0
-                || angle_difference(last.heading, odometry.heading).abs() > self.parameters.view.1
-        })
+        self.viewed.is_none_or(|last| is_beyond(&last, odometry, self.parameters.view))
     }
 
+    fn is_worth_a_search(&self, odometry: &Pose) -> bool {
+        self.searched.is_none_or(|last| is_beyond(&last, odometry, LOOK_AGAIN))
+    }
+
+    /// Makes hypotheses of all poses that explain a scan as well as the best one does.
     fn search(&mut self, scan: &LidarScan, bench: &mut Bench) {
         self.searches += 1;
-        let candidates = search(&self.map, scan, &self.parameters);
-        self.try_poses(candidates.into_iter().map(|candidate| candidate.pose), scan, bench);
-        self.turn_best(scan, bench);
+        for share in SHARES {
+            let Some(poses) = search(&self.map, scan, &self.parameters, share) else { break };
+            self.try_poses(poses, share, scan, bench);
+            let best = self.hypotheses.iter().map(|other| other.explained).fold(0.0, f64::max);
+            if best - AS_WELL >= share || share == EXPLAINED {
+                self.hypotheses.retain(|other| other.explained >= best - AS_WELL);
+                break;
+            }
+            self.hypotheses.clear();
+        }
+        self.unite();
+        if self.hypotheses.len() > MOST {
+            self.hypotheses.clear();
+        }
+        // One scan tells what is possible; the next ones tell how probable that is.
+        self.hypotheses.iter_mut().for_each(|hypothesis| hypothesis.log_weight = 0.0);
     }
 
-    /// Makes hypotheses of poses that may be right.
-    fn try_poses(&mut self, poses: impl IntoIterator<Item = Pose>, scan: &LidarScan, bench: &mut Bench) {
+    /// Makes hypotheses of those poses that explain a share of a scan once they are matched to it.
+    fn try_poses(&mut self, poses: Vec<Pose>, share: f64, scan: &LidarScan, bench: &mut Bench) {
         for pose in poses {
             let mut hypothesis = Hypothesis::new(pose, CANDIDATE_SPREAD);
             hypothesis.log_weight =
                 hypothesis.match_scan(&self.map, scan, bench, &self.parameters, SEARCH_STEPS);
-            self.hypotheses.push(hypothesis);
+            if hypothesis.explained >= share && self.is_possible(&hypothesis) {
+                self.hypotheses.push(hypothesis);
+            }
         }
     }
 
-    /// Adds the best hypotheses turned a little. A round wall is made of straight pieces, and a scan that is off by one
-    /// piece fits nearly as well as the right one: matching does not leave it, and candidates so near are not looked at.
-    fn turn_best(&mut self, scan: &LidarScan, bench: &mut Bench) {
-        self.unite();
-        let best = self.hypotheses.iter().take(TURNED);
-        let turned: Vec<Pose> = best.flat_map(|best| TURNS.map(|turn| best.turned(turn))).collect();
-        self.try_poses(turned, scan, bench);
+    /// Whether nothing is where the robot would be.
+    fn is_possible(&self, hypothesis: &Hypothesis) -> bool {
+        self.map.is_free(hypothesis.pose.position(), 0.5 * self.parameters.radius)
     }
 
     fn track(&mut self, motion: &Pose, scan: &LidarScan, bench: &mut Bench, other_view: bool) {
@@ -240,9 +271,12 @@ impl Localiser {
             if other_view {
                 hypothesis.log_weight += likelihood;
             }
-            if !self.map.is_free(hypothesis.pose.position(), 0.5 * self.parameters.radius) {
-                hypothesis.log_weight = f64::NEG_INFINITY;
-            }
+        }
+        let map = &self.map;
+        let radius = 0.5 * self.parameters.radius;
+        self.hypotheses.retain(|hypothesis| map.is_free(hypothesis.pose.position(), radius));
+        if self.hypotheses.is_empty() {
+            self.searched = None;
         }
     }
 
@@ -252,7 +286,6 @@ impl Localiser {
         let best = self.hypotheses.first().map_or(0.0, |best| best.log_weight);
         let least = best + math::ln(self.parameters.least_probability);
         self.hypotheses.retain(|hypothesis| hypothesis.log_weight >= least);
-        self.hypotheses.truncate(MOST);
         let total: f64 = self.hypotheses.iter().map(|other| math::exp(other.log_weight - best)).sum();
         for hypothesis in &mut self.hypotheses {
             hypothesis.log_weight -= best;
@@ -275,10 +308,10 @@ impl Localiser {
 
     /// Begins anew if nothing explains what is seen.
     fn give_up(&mut self) {
-        let explained = self.hypotheses.first().is_some_and(|best| best.explained >= EXPLAINED);
-        self.unexplained = if explained { 0 } else { self.unexplained + 1 };
+        let Some(best) = self.hypotheses.first() else { return };
+        self.unexplained = if best.explained >= EXPLAINED { 0 } else { self.unexplained + 1 };
         if self.unexplained >= PATIENCE {
-            self.unexplained = 0;
+            (self.unexplained, self.searched) = (0, None);
             self.hypotheses.clear();
         }
     }
@@ -287,4 +320,9 @@ impl Localiser {
     pub fn covariance(&self) -> Option<Matrix3<f64>> {
         self.hypotheses.first().map(|best| best.covariance)
     }
+}
+
+/// Whether a pose is farther from another one than so many metres or radians.
+fn is_beyond(last: &Pose, pose: &Pose, (far, turned): (f64, f64)) -> bool {
+    last.distance_to(pose.position()) > far || angle_difference(last.heading, pose.heading).abs() > turned
 }

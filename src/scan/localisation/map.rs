@@ -1,4 +1,5 @@
-use crate::geometry::{Point, Pose};
+use super::surfaces::Surfaces;
+use crate::geometry::{Aabb, Point, Pose};
 use crate::io::{Error, ErrorKind, LidarScan, Result};
 use crate::world::space::{Scanner, Solid, Space};
 use crate::world::{Clearance, World};
@@ -7,11 +8,17 @@ use crate::world::{Clearance, World};
 #[derive(Debug, Clone)]
 pub struct LocalisationMap {
     space: Space,
+    bounds: Aabb,
     clearance: Clearance,
+    surfaces: Surfaces,
+    /// Nothing but the map that tells on which side of walls it is solid.
+    blocks: World,
 }
 
-/// Metres along an edge of the cells in which free places are looked up.
-const RESOLUTION: f64 = 0.02;
+/// Metres along an edge of the cells in which places are looked up, at the least and at the most, and about how many there are
+/// in between.
+const RESOLUTION: (f64, f64) = (0.02, 0.05);
+const CELLS: f64 = 2e6;
 /// Metres from walls up to which places may have to be free.
 const CLEARANCE: f64 = 0.3;
 
@@ -22,32 +29,35 @@ impl LocalisationMap {
         for object in &world.objects {
             space.add(Solid::from(object));
         }
-        let clearance = Clearance::new(world, RESOLUTION, CLEARANCE).map_err(|error| {
-            Error::new(ErrorKind::InvalidInput, "the world cannot be mapped").with_source(error)
+        // The inside of what is solid has no surface.
+        let hollow = World { map: None, ..world.clone() };
+        let (finest, coarsest) = RESOLUTION;
+        let size = world.site().size();
+        let resolution = (size.x * size.y / CELLS).sqrt().clamp(finest, coarsest);
+        let clearance = Clearance::new(&hollow, resolution, CLEARANCE).map_err(|error| {
+            Error::new(ErrorKind::InvalidInput, format!("the world cannot be mapped: {error}"))
         })?;
-        Ok(Self { space, clearance })
+        let surfaces = Surfaces::new(&clearance);
+        let blocks = World { map: world.map.clone(), ..World::empty(0.0, 0.0) };
+        Ok(Self { space, bounds: world.site(), clearance, surfaces, blocks })
     }
 
-    /// Whether a disc about a place touches nothing, to within 20 mm. Radii beyond 0.3 m count as that.
+    /// Whether a disc about a place touches nothing, to within 40 mm. Radii beyond 0.3 m count as that.
     pub fn is_free(&self, place: Point, radius: f64) -> bool {
-        self.clearance
-            .at_point(place)
-            .is_some_and(|distance| distance > radius.min(CLEARANCE - 1e-6) - RESOLUTION)
+        let far = self.clearance.at_point(place);
+        let least = radius.min(CLEARANCE - 1e-6)
+            - std::f64::consts::FRAC_1_SQRT_2 * self.clearance.raster().resolution();
+        far.is_some_and(|distance| distance > least) && !self.blocks.is_inside_walls(place)
     }
 
-    /// The places of a square grid over the world where a disc touches nothing.
-    pub(super) fn free_places(&self, spacing: f64, radius: f64) -> Vec<Point> {
-        let raster = self.clearance.raster();
-        let (first, last) = (raster.centre(0), raster.centre(raster.cells() - 1));
-        let along = |low: f64, high: f64| ((high - low) / spacing).floor().max(0.0) as usize;
-        let (columns, rows) = (along(first.x, last.x), along(first.y, last.y));
-        (0..=rows)
-            .flat_map(|row| (0..=columns).map(move |column| (column, row)))
-            .map(|(column, row)| {
-                Point::new(first.x + column as f64 * spacing, first.y + row as f64 * spacing)
-            })
-            .filter(|&place| self.is_free(place, radius))
-            .collect()
+    /// The box around the world.
+    pub(super) fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Distances to surfaces.
+    pub(super) fn surfaces(&self) -> &Surfaces {
+        &self.surfaces
     }
 
     /// The scan that is to be expected from a scanner's pose.
@@ -57,7 +67,7 @@ impl LocalisationMap {
 }
 
 /// The height above the floor of a scanner that does not tell. What objects are lower is not in the map then, either.
-const HEIGHT: f64 = 0.04;
+pub(crate) const HEIGHT: f64 = 0.04;
 
 /// A scanner with the beams of a scan.
 pub(super) fn scanner_of(scan: &LidarScan) -> Scanner {

@@ -8,10 +8,6 @@ pub struct LocaliserParameters {
     pub range_error: f64,
     /// The radius of the robot in metres: it cannot be where something else is.
     pub radius: f64,
-    /// Metres and radians between the poses that are tried at first.
-    pub grid: (f64, f64),
-    /// How many of these are looked at closely.
-    pub candidates: usize,
     /// The share of probability below which a hypothesis is given up while others are better.
     pub least_probability: f64,
     /// Metres and radians that the robot has to move before a scan counts as another view.
@@ -26,8 +22,6 @@ impl Default for LocaliserParameters {
         Self {
             range_error: 0.01,
             radius: 0.06,
-            grid: (0.1, 0.09),
-            candidates: 240,
             least_probability: 1e-4,
             view: (0.05, 0.09),
             odometry_error: (0.02, 0.02),
@@ -39,15 +33,12 @@ impl LocaliserParameters {
     /// Fails with the name of the parameter that is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         require_positive("radius", self.radius)?;
-        require_positive("grid", self.grid.0)?;
-        require_positive("grid of headings", self.grid.1)?;
         require_positive("view (distance)", self.view.0)?;
         require_positive("view (turn)", self.view.1)?;
         require_positive("odometry error of distances", self.odometry_error.0)?;
         require_positive("odometry error of turns", self.odometry_error.1)?;
         let share = self.least_probability;
         require("least probability", share, share > 0.0 && share < 0.1, "above 0 and below 0.1")?;
-        require("candidates", self.candidates as f64, self.candidates > 0, "at least 1")?;
         require_not_negative("range error", self.range_error)
     }
 }

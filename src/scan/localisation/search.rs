@@ -1,100 +1,187 @@
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, SQRT_2};
 
 use super::LocaliserParameters;
-use super::map::{LocalisationMap, scanner_of};
-use crate::geometry::{Pose, angle_difference, normalize_angle};
+use super::hypothesis::LEAST_ERROR;
+use super::map::LocalisationMap;
+use super::surfaces::{STEP, Surfaces};
+use crate::geometry::{Aabb, Point, Pose, Vector, math, normalize_angle};
 use crate::io::LidarScan;
 
-/// A pose of the robot that a scan may have been taken from, and how well it explains it: the share of its beams.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Candidate {
-    pub(super) pose: Pose,
-    pub(super) score: f64,
+/// A search of all poses for those from which a scan's points lie on surfaces.
+///
+/// A block of poses is a square of positions and an interval of headings. No pose of it moves a point farther from where
+/// the block's middle puts it than the block is large; where the nearest surface is farther, the whole block misses that
+/// point. A block that misses too many is left out, others are divided into eight: branch and bound (E. Olson,
+/// *Real-Time Correlative Scan Matching*, 2009; W. Hess et al., *Real-Time Loop Closure in 2D LIDAR SLAM*, 2016), with
+/// distances to surfaces in place of a pyramid of maps.
+struct Search<'a> {
+    surfaces: &'a Surfaces,
+    /// In the robot's frame.
+    points: Vec<Point>,
+    levels: Vec<Level>,
+    /// How many points may be on no surface.
+    misses: usize,
+    found: Vec<Pose>,
 }
 
-/// How many beams of a scan are compared.
-const COMPARED: usize = 72;
+/// Blocks of one size.
+struct Level {
+    /// Half the edge in metres, half the interval in radians.
+    half: (f64, f64),
+    /// How far each point may be from a surface, in steps.
+    reach: Vec<u8>,
+}
 
-/// Poses all over the world that explain a scan best, no two of them near each other.
-///
-/// From each place of the grid one scan is drawn; turned step by step it stands for all headings.
+/// A block's middle.
+#[derive(Clone, Copy)]
+struct Middle {
+    place: Point,
+    heading: f64,
+}
+
+/// The edge of the smallest blocks in metres.
+const LEAF: f64 = 0.05;
+/// Metres from which on turning counts as much as it does: in a small round room made of straight pieces, a scan turned by one
+/// piece fits nearly as well, and is another pose.
+const NEAREST: f64 = 3.0;
+/// How often the largest blocks are divided.
+const LEVELS: usize = 6;
+/// Of each block that is divided so many times more, one pose is kept.
+const KEPT: usize = 2;
+/// The number of points of a scan that are compared.
+const COMPARED: usize = 72;
+/// Points lie within so many standard deviations of their ranges on surfaces.
+const DEVIATIONS: f64 = 4.0;
+/// The most blocks that are told apart.
+const MOST_BLOCKS: usize = 2000;
+
+/// A pose for each small block of poses in which a share of the scan's points may lie on surfaces; `None` if there are more
+/// such blocks than can be looked at: then the scan says too little.
 pub(super) fn search(
     map: &LocalisationMap,
     scan: &LidarScan,
     parameters: &LocaliserParameters,
-) -> Vec<Candidate> {
-    let beams = scan.ranges.len();
-    let increment = scan.angle_increment;
-    if beams == 0 || increment.abs() < 1e-9 {
-        return Vec::new();
+    share: f64,
+) -> Option<Vec<Pose>> {
+    let points = compared(scan);
+    if points.is_empty() {
+        return None;
     }
-    // A scan all round from the place, whatever part of it the robot's lidar sees.
-    let round = (TAU / increment.abs()).round().max(1.0) as usize;
-    let full = LidarScan {
-        angle_min: 0.0,
-        angle_increment: TAU / round as f64,
-        ranges: vec![0.0; round],
-        ..scan.clone()
-    };
-    let mut scanner = scanner_of(&full);
-    let mut expected = vec![0.0; round];
-    let headings = (TAU / parameters.grid.1).ceil().max(8.0) as usize;
-    let every = beams.div_ceil(COMPARED);
-    let seen: Vec<(f64, f64)> =
-        (0..beams).step_by(every).map(|beam| (scan.angle(beam), scan.ranges[beam])).collect();
-    let mut candidates = Vec::new();
-    for place in map.free_places(parameters.grid.0, parameters.radius) {
-        map.expect(&mut scanner, &Pose::new(place.x, place.y, 0.0), &mut expected);
-        for step in 0..headings {
-            let heading = TAU * step as f64 / headings as f64;
-            let score = score(&seen, &expected, heading, parameters);
-            // The scanner is there; the robot is where its mount says.
-            let pose = Pose::new(place.x, place.y, normalize_angle(heading)).compose(&scan.mount.inverse());
-            candidates.push(Candidate { pose, score });
+    let misses = ((1.0 - share) * points.len() as f64) as usize;
+    let noise = DEVIATIONS * parameters.range_error.max(LEAST_ERROR);
+    let levels = levels(&points, noise);
+    let mut search = Search { surfaces: map.surfaces(), points, levels, misses, found: Vec::new() };
+    search.blocks(&map.bounds()).then_some(search.found)
+}
+
+/// Points all round, in an order in which neighbours are far from each other, so that a miss shows early.
+fn compared(scan: &LidarScan) -> Vec<Point> {
+    let all: Vec<Point> = scan.points().collect();
+    let every = all.len().div_ceil(COMPARED).max(1);
+    let chosen: Vec<Point> = all.into_iter().step_by(every).collect();
+    let count = chosen.len();
+    // The golden ratio's multiples fill a circle evenly.
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|&a, &b| {
+        let turn = |i: usize| (i as f64 * 0.618_033_988_749_895).fract();
+        turn(a).total_cmp(&turn(b))
+    });
+    order.into_iter().map(|i| chosen[i]).collect()
+}
+
+/// Blocks in which turning moves the farthest point as much as shifting does, the smallest first.
+fn levels(points: &[Point], noise: f64) -> Vec<Level> {
+    let arms: Vec<f64> = points.iter().map(|point| point.coords.norm()).collect();
+    let far = arms.iter().copied().fold(NEAREST, f64::max);
+    let largest = 0.5 * LEAF * f64::from(1_u32 << LEVELS);
+    // The largest intervals fill the circle.
+    let largest_turn = PI / (PI * far / (SQRT_2 * largest)).ceil().max(1.0);
+    (0..=LEVELS)
+        .map(|level| {
+            let part = 1.0 / f64::from(1_u32 << (LEVELS - level));
+            let half = (largest * part, largest_turn * part);
+            let reach = arms.iter().map(|arm| (noise + SQRT_2 * half.0 + arm * half.1) / STEP);
+            Level { half, reach: reach.map(|steps| steps.min(f64::from(u8::MAX)) as u8).collect() }
+        })
+        .collect()
+}
+
+impl Search<'_> {
+    /// Looks at all blocks over a box; false if there is too much to be found.
+    fn blocks(&mut self, bounds: &Aabb) -> bool {
+        let (half, half_turn) = self.levels[LEVELS].half;
+        let size = bounds.size();
+        let count = |length: f64, half: f64| (0.5 * length / half).ceil().max(1.0) as usize;
+        let (columns, rows, turns) = (count(size.x, half), count(size.y, half), count(2.0 * PI, half_turn));
+        let middle = |index: usize, half: f64| (2 * index + 1) as f64 * half;
+        (0..turns).all(|turn| {
+            let heading = middle(turn, half_turn) - PI;
+            let (sin, cos) = math::sin_cos(heading);
+            (0..rows * columns).all(|index| {
+                let offset = Vector::new(middle(index % columns, half), middle(index / columns, half));
+                let block = Middle { place: bounds.min + offset, heading };
+                !self.may_fit(LEVELS, &block, sin, cos) || self.divide(LEVELS, &block)
+            })
+        })
+    }
+
+    /// Looks into a block that may hold poses; false if there is too much to be found.
+    fn divide(&mut self, level: usize, block: &Middle) -> bool {
+        if level == KEPT {
+            let best = self.best(level, block);
+            self.found.extend(best.map(|(_, pose)| pose));
+            return self.found.len() <= MOST_BLOCKS;
         }
+        self.parts(level, block).into_iter().flatten().all(|part| self.divide(level - 1, &part))
     }
-    best(candidates, parameters)
-}
 
-/// The share of beams whose ranges are as expected, as far as that can be told from a grid.
-fn score(seen: &[(f64, f64)], expected: &[f64], heading: f64, parameters: &LocaliserParameters) -> f64 {
-    let beams = expected.len();
-    let per_radian = beams as f64 / TAU;
-    let near = parameters.grid.0 + 3.0 * parameters.range_error;
-    let mut sum = 0.0;
-    for &(angle, range) in seen {
-        let beam = (((angle + heading) * per_radian).round() as i64).rem_euclid(beams as i64) as usize;
-        let other = expected[beam];
-        // Far away a small turn makes a large difference.
-        let tolerance = near + 0.3 * parameters.grid.1 * range.min(10.0);
-        let off = if range.is_finite() && other.is_finite() {
-            (range - other).abs() / tolerance
-        } else if range.is_finite() == other.is_finite() {
-            0.0
-        } else {
-            2.0
-        };
-        sum += (1.0 - off * off).max(0.0);
+    /// The pose in a block that fits best, and how far its points are from surfaces.
+    fn best(&self, level: usize, block: &Middle) -> Option<(u32, Pose)> {
+        if level == 0 {
+            let Middle { place, heading } = *block;
+            let pose = Pose::new(place.x, place.y, normalize_angle(heading));
+            return Some((self.distance(block), pose));
+        }
+        let parts = self.parts(level, block).into_iter().flatten();
+        parts.filter_map(|part| self.best(level - 1, &part)).min_by_key(|(distance, _)| *distance)
     }
-    sum / seen.len().max(1) as f64
-}
 
-/// The best candidates, of those close together the best alone.
-fn best(mut candidates: Vec<Candidate>, parameters: &LocaliserParameters) -> Vec<Candidate> {
-    candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
-    let (near, alike) = (1.5 * parameters.grid.0, 2.5 * parameters.grid.1);
-    let mut chosen: Vec<Candidate> = Vec::new();
-    for candidate in candidates {
-        let is_new = chosen.iter().all(|other| {
-            other.pose.distance_to(candidate.pose.position()) > near
-                || angle_difference(other.pose.heading, candidate.pose.heading).abs() > alike
+    /// Those of the eight parts of a block that may hold poses.
+    fn parts(&self, level: usize, block: &Middle) -> [Option<Middle>; 8] {
+        let (half, half_turn) = self.levels[level - 1].half;
+        let headings = [block.heading - half_turn, block.heading + half_turn];
+        let turned = headings.map(math::sin_cos);
+        std::array::from_fn(|part| {
+            let side = |bit: usize| if part >> bit & 1 == 0 { -half } else { half };
+            let place = block.place + Vector::new(side(0), side(1));
+            let (sin, cos) = turned[part >> 2];
+            let part = Middle { place, heading: headings[part >> 2] };
+            self.may_fit(level - 1, &part, sin, cos).then_some(part)
+        })
+    }
+
+    /// Whether no more points than may be are certain to miss all surfaces.
+    fn may_fit(&self, level: usize, block: &Middle, sin: f64, cos: f64) -> bool {
+        let mut left = self.misses;
+        self.points.iter().zip(&self.levels[level].reach).all(|(point, &reach)| {
+            let (x, y) = (cos * point.x - sin * point.y, sin * point.x + cos * point.y);
+            if self.surfaces.at(block.place.x + x, block.place.y + y) <= reach {
+                return true;
+            }
+            let spared = left > 0;
+            left = left.saturating_sub(1);
+            spared
+        })
+    }
+
+    /// The sum of the points' distances to surfaces, each no more than what counts as a miss, in steps.
+    fn distance(&self, block: &Middle) -> u32 {
+        let (sin, cos) = math::sin_cos(block.heading);
+        let points = self.points.iter().zip(&self.levels[0].reach);
+        let steps = points.map(|(point, &reach)| {
+            let (x, y) = (cos * point.x - sin * point.y, sin * point.x + cos * point.y);
+            u32::from(self.surfaces.at(block.place.x + x, block.place.y + y).min(reach))
         });
-        if is_new {
-            chosen.push(candidate);
-        }
-        if chosen.len() >= parameters.candidates {
-            break;
-        }
+        steps.sum()
     }
-    chosen
 }

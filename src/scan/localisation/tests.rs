@@ -1,9 +1,12 @@
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use proptest::prelude::*;
 
 use super::*;
 use crate::geometry::{Point, Pose, angle_difference, direction};
 use crate::io::sim::{SimOptions, Simulation};
-use crate::io::{Drive, Lidar, LidarScan};
+use crate::io::{Lidar, LidarScan, Manoeuvres, Odometry};
+use crate::random::Stream;
 use crate::world::{RobotSpec, Scene, Wall, World};
 
 /// A room that looks the same from nowhere else.
@@ -112,6 +115,94 @@ fn symmetric_worlds_leave_as_many_places_as_look_alike() {
     }
 }
 
+/// What a lidar that reaches 10 m measures at a place, with noise of 10 mm.
+fn scan_at(map: &LocalisationMap, pose: &Pose, seed: u64) -> LidarScan {
+    let mut scan = LidarScan {
+        angle_min: -PI,
+        angle_increment: TAU / 360.0,
+        range_max: 10.0,
+        mount: Pose::default(),
+        ranges: vec![0.0; 360],
+    };
+    map.expect(&mut map::scanner_of(&scan), pose, &mut scan.ranges);
+    let mut stream = Stream::new(seed);
+    for range in &mut scan.ranges {
+        let measured = *range + 0.01 * stream.normal();
+        *range = if measured > scan.range_max { f64::INFINITY } else { measured };
+    }
+    scan
+}
+
+/// In halls in which a corner is seen from where the robot is, all four are told, and each place is the true one turned.
+#[test]
+fn all_places_of_an_empty_hall_that_look_alike_are_told() {
+    for (seed, size, place) in
+        [(1, 10.0, Point::new(3.1, 4.2)), (2, 20.0, Point::new(6.0, 13.5)), (3, 28.0, Point::new(24.0, 5.0))]
+    {
+        let world = World::walled(size, size);
+        let mut localiser = localiser(&world);
+        let truth = Pose::new(place.x, place.y, 0.4);
+        let scan = scan_at(localiser.map(), &truth, seed);
+        localiser.update(Pose::default(), &scan).unwrap();
+        assert_eq!(localiser.localisation().count(), 4, "{size} m");
+        let middle = Point::new(0.5 * size, 0.5 * size);
+        for quarter in 0..4 {
+            let turn = FRAC_PI_2 * f64::from(quarter);
+            let arm = Pose::new(0.0, 0.0, turn).to_world(Point::from(place - middle));
+            let is_told = |found: &Hypothesis| {
+                found.pose.distance_to(middle + arm.coords) < 0.03
+                    && angle_difference(found.pose.heading, truth.heading + turn).abs() < 0.01
+            };
+            assert!(localiser.hypotheses().iter().any(is_told), "{quarter} quarters in {size} m");
+        }
+    }
+}
+
+/// Along a wall, as far as the robot sees it, there is nothing to tell one place from the next, and in the open even less.
+#[test]
+fn where_little_is_seen_the_robot_is_lost() {
+    let world = World::walled(60.0, 60.0);
+    for place in [Pose::new(30.0, 4.0, 1.0), Pose::new(25.0, 9.9, 0.0), Pose::new(30.0, 30.0, 0.0)] {
+        let mut localiser = localiser(&world);
+        let scan = scan_at(localiser.map(), &place, 1);
+        localiser.update(Pose::default(), &scan).unwrap();
+        assert_eq!(localiser.localisation(), Localisation::Lost, "{place:?}");
+        // Standing still, it does not look again; elsewhere it does.
+        localiser.update(Pose::new(0.0, 0.01, 0.0), &scan).unwrap();
+        assert_eq!(localiser.searches(), 1);
+        let corner = scan_at(localiser.map(), &Pose::new(4.0, 3.0, 0.0), 2);
+        localiser.update(Pose::new(30.0, 0.0, 0.0), &corner).unwrap();
+        assert_eq!((localiser.searches(), localiser.localisation().count()), (2, 4));
+    }
+}
+
+proptest! {
+    #![proptest_config(crate::testing::cases(24))]
+
+    /// Whatever the world, the pose from which a scan was taken is among those that are found, unless there are too many.
+    #[test]
+    fn the_search_leaves_no_pose_out(
+        ends in proptest::collection::vec(((0.0..9.0), (0.0..7.0), (-2.0..2.0), (-2.0..2.0)), 0..6),
+        place in (0.3..8.7, 0.3..6.7, -3.1..3.1),
+        seed in 0..1000u64,
+    ) {
+        let mut world = World::walled(9.0, 7.0);
+        world.walls.extend(ends.iter().map(|&(x, y, u, v): &(f64, f64, f64, f64)| {
+            Wall::new(Point::new(x, y), Point::new(x + u, y + v))
+        }));
+        let map = LocalisationMap::new(&world).unwrap();
+        let truth = Pose::new(place.0, place.1, place.2);
+        prop_assume!(map.is_free(truth.position(), 0.1));
+        let scan = scan_at(&map, &truth, seed);
+        if let Some(found) = search::search(&map, &scan, &LocaliserParameters::default(), 0.85) {
+            let is_near = |pose: &Pose| {
+                pose.distance_to(truth.position()) < 0.2 && angle_difference(pose.heading, truth.heading).abs() < 0.05
+            };
+            prop_assert!(found.iter().any(is_near), "{truth:?} is not among {} poses", found.len());
+        }
+    }
+}
+
 #[test]
 fn a_robot_that_was_carried_away_is_found_again() {
     let world = room();
@@ -147,7 +238,6 @@ fn wrong_input_is_refused() {
     assert!(localiser.update(Pose::new(f64::NAN, 0.0, 0.0), &scan).is_err());
     for bad in [
         LocaliserParameters { radius: 0.0, ..LocaliserParameters::default() },
-        LocaliserParameters { candidates: 0, ..LocaliserParameters::default() },
         LocaliserParameters { least_probability: 0.5, ..LocaliserParameters::default() },
     ] {
         assert!(Localiser::new(LocalisationMap::new(&room()).unwrap(), bad).is_err());

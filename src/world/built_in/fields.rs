@@ -5,15 +5,23 @@ use crate::geometry::{Point, Segment, math};
 use crate::world::formats::maz;
 use crate::world::{Colour, Texture, Wall, World};
 
+/// Lines of a playing field.
 const WHITE: Colour = Colour::from_hex(0xf0_f0_f0);
+/// A playing field.
 const GRASS: Colour = Colour::from_hex(0x2a_7d_3c);
+/// One team's goal.
 const BLUE: Colour = Colour::from_hex(0x28_50_b4);
+/// The other team's goal.
 const YELLOW: Colour = Colour::from_hex(0xe6_c8_28);
 
-/// Mazes of the size and with the letters that the book's scripts use; the walls are our own.
+/// A maze without inner walls. The mazes have the sizes and the letters that the book's scripts use; the
+/// walls are our own.
 const RECTANGLE: &str = " _ _ _ _ _\n|. . . . .|\n|. . . . .|\n|_ _ _ _ _|\n600\n";
+/// A maze with a way from the start.
 const SMALL: &str = " _ _ _ _\n|_  |   |\n|  _| | |\n| |   |_|\n|S|_|_ _|\n360\n";
+/// A field with a letter in each of sixteen cells: one letter.
 const BOTS16: &str = " _ _ _ _\n|a a a a|\n|a a a a|\n|a a a a|\n|A A A A|\n500\n";
+/// The same with four letters.
 const BOTS4X4: &str = " _ _ _ _\n|a b c d|\n|b c d a|\n|c d a b|\n|D A B C|\n500\n";
 
 impl World {
@@ -58,6 +66,7 @@ fn maze(text: &str) -> World {
 /// A picture on a floor of so many metres, each pixel 5 mm wide: the colour at metres from the near left
 /// corner.
 fn painted(name: &str, (width, height): (f64, f64), colour: impl Fn(f64, f64) -> Colour) -> Texture {
+    /// Metres of a pixel of a field's texture.
     const PIXEL: f64 = 0.005;
     let pixels = |metres: f64| (metres / PIXEL).round() as u32;
     let (columns, rows) = (pixels(width), pixels(height));
@@ -112,6 +121,7 @@ fn field() -> World {
 
 /// A board of eight by eight squares.
 fn chess() -> World {
+    /// Metres of a square of the chequered floor.
     const SQUARE: f64 = 0.3;
     let side = 8.0 * SQUARE;
     let mut world = World::walled(side, side);
@@ -125,6 +135,7 @@ fn chess() -> World {
 
 /// The model town's loop (section 13.2), for driving on the left and clockwise round it.
 fn carolo() -> World {
+    /// Metres of its side.
     const SIDE: f64 = 3.1;
     let corners =
         [(0.33, 0.45), (0.33, 2.60), (2.72, 2.60), (2.72, 1.95), (2.40, 1.55), (2.72, 1.15), (2.72, 0.45)];

@@ -3,10 +3,15 @@ use std::sync::Arc;
 use super::signs::Sign;
 use crate::world::{Colour, Mesh, ObjectKind, Shape};
 
+/// Orange cones.
 const ORANGE: Colour = Colour::from_hex(0xff_6a_00);
+/// Blue cones.
 const BLUE: Colour = Colour::from_hex(0x12_4f_c8);
+/// Yellow cones.
 const YELLOW: Colour = Colour::from_hex(0xff_d4_00);
+/// Green cones.
 const GREEN: Colour = Colour::from_hex(0x1c_9a_3c);
+/// Crates.
 const WOOD: Colour = Colour::from_hex(0x9c_6b_30);
 
 impl ObjectKind {
@@ -66,6 +71,7 @@ impl ObjectKind {
 
 /// What EyeSim calls the files of some objects, and the objects' names.
 fn file_name(name: &str) -> Option<&'static str> {
+    /// The names by which scripts ask for objects, and what they are called here.
     const FILES: [(&str, &str); 8] = [
         ("coneorange", "Cone-O"),
         ("coneblue", "Cone-B"),

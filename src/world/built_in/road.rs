@@ -19,12 +19,15 @@ struct Place {
     along: f64,
 }
 
-/// Metres of a lane's width, of a line's, and of a dash and of the gap behind it.
+/// Metres of a lane's width.
 const LANE: f64 = 0.200;
+/// Metres of a line's width.
 const LINE: f64 = 0.012;
+/// Metres of a dash, and of the gap behind it.
 const DASH: f64 = 0.120;
-/// The floor of the model town, and the paint on it.
+/// The floor of the model town.
 const ASPHALT: Colour = Colour::from_hex(0x2c_2c_2e);
+/// The paint on it.
 const PAINT: Colour = Colour::from_hex(0xf4_f4_f4);
 
 impl Road {
@@ -43,6 +46,7 @@ impl Road {
 
     /// Lays a straight part of the middle line.
     fn lay(&mut self, part: Segment, along: f64) {
+        /// Metres from the middle of a road to its outer line's far edge.
         const REACH: f64 = LANE + LINE;
         let pixel = self.pixel;
         let pixels = |low: f64, high: f64| {

@@ -6,7 +6,7 @@ use crate::world::{
 
 impl RobotSpec {
     /// The robots that every scene knows by name.
-    pub const PREDEFINED: [&'static str; 12] = [
+    pub const PREDEFINED: [&'static str; 13] = [
         "S4",
         "SoccerBot",
         "LabBot",
@@ -16,6 +16,7 @@ impl RobotSpec {
         "Cubot-b",
         "Cubot-y",
         "Omni",
+        "Blizzard",
         "Car",
         "Ackermann",
         "SAE",
@@ -38,6 +39,7 @@ impl RobotSpec {
             height: 0.090,
             mast: None,
             mass: 0.5,
+            friction: Self::DEFAULT_FRICTION,
             psds: four_psds(0.060, 0.045, 0.030),
             lidar: Some(LidarSpec::default()),
             camera: Some(CameraSpec {
@@ -49,6 +51,7 @@ impl RobotSpec {
                 fisheye: false,
             }),
             model: None,
+            mesh: None,
             body: Body::default(),
         }
     }
@@ -96,6 +99,35 @@ impl RobotSpec {
             height: 0.120,
             mass: 2.5,
             psds: four_psds(half_length, half_width, 0.040),
+            ..Self::s4()
+        }
+    }
+
+    /// A snow truck on two belts, a model in 1:12 (book, section 7.3), with an S4's sensors and a lidar on its roof.
+    pub fn blizzard() -> Self {
+        let (half_length, half_width) = (0.200, 0.130);
+        Self {
+            name: "Blizzard".into(),
+            drive: DriveSpec::Tracked {
+                wheel_diameter: 0.060,
+                track: 0.185,
+                length: 0.260,
+                width: 0.070,
+                max_wheel_speed: units::from_deg(900.0),
+                ticks_per_turn: 1200.0,
+            },
+            footprint: Footprint::Rectangle(Aabb::new(
+                Point::new(-half_length, -half_width),
+                Point::new(half_length, half_width),
+            )),
+            height: 0.190,
+            mass: 2.4,
+            psds: four_psds(half_length, half_width, 0.070),
+            lidar: Some(LidarSpec { mount: Mount { z: 0.200, ..Mount::default() }, ..LidarSpec::default() }),
+            camera: Self::s4().camera.map(|camera| CameraSpec {
+                mount: Mount { x: 0.120, z: 0.170, ..Mount::default() },
+                ..camera
+            }),
             ..Self::s4()
         }
     }
@@ -216,6 +248,7 @@ impl RobotSpec {
             "LabBot" => Self::labbot(),
             "LidarBot" => Self::lidarbot(),
             "Omni" => Self::omni(),
+            "Blizzard" => Self::blizzard(),
             "Car" | "Ackermann" => Self::car(),
             "SAE" => Self::sae(),
             _ => Self::s4(),

@@ -18,8 +18,11 @@ pub(super) enum Sign {
 
 /// Pixels on each side of a sign's picture.
 const SIZE: u32 = 160;
+/// The red of prohibitions and warnings.
 const RED: Colour = Colour::from_hex(0xc4_12_1c);
+/// The blue of orders and advice.
 const BLUE: Colour = Colour::from_hex(0x0b_4d_a2);
+/// The gray of what has ended.
 const GRAY: Colour = Colour::from_hex(0x60_60_60);
 
 impl Sign {
@@ -100,6 +103,7 @@ fn drawn(colour: impl Fn(f64, f64) -> Option<Colour>) -> RgbaImage {
 
 /// How far out a place is of a triangle that stands on its tip: 1 on its edge.
 fn triangle(x: f64, y: f64) -> f64 {
+    /// Half the width of a triangle as high as it is wide, as a share.
     const SLANT: f64 = 0.5;
     let side = (x.abs() - SLANT * (1.0 - y)) / SLANT;
     (side + 1.0).max(-y)
@@ -107,6 +111,7 @@ fn triangle(x: f64, y: f64) -> f64 {
 
 /// A person who walks, in a few strokes.
 fn is_walker(x: f64, y: f64) -> bool {
+    /// The pedestrian: lines from point to point, in shares of the sign.
     const LIMBS: [([f64; 2], [f64; 2]); 5] = [
         ([0.02, -0.12], [0.0, 0.15]),
         ([0.0, 0.12], [-0.16, 0.44]),

@@ -54,13 +54,24 @@ fn scene_of(bytes: Vec<u8>, file: &str, files: &mut Files<'_>) -> Result<Parsed<
     })
 }
 
-/// Reads a robot's description, `.robi`, from disk.
+/// Reads a robot's description, `.robi`, with its 3D model from disk.
 pub fn load_robot(path: impl AsRef<Path>) -> Result<Parsed<RobotSpec>, FormatError> {
-    let path = path.as_ref();
-    parse_robot(read_file(path)?, &path.display().to_string())
+    robot_from(path.as_ref(), false)
 }
 
-/// Reads a robot's description from the bytes of its file.
+/// As [`load_robot`], but that a robot whose model is missing or broken has none.
+pub fn load_robot_tolerantly(path: impl AsRef<Path>) -> Result<Parsed<RobotSpec>, FormatError> {
+    robot_from(path.as_ref(), true)
+}
+
+fn robot_from(path: &Path, tolerant: bool) -> Result<Parsed<RobotSpec>, FormatError> {
+    let read = |text: &str, file: &str| {
+        robi::parse_with_model(text, file, &mut Files::new(&mut DiskFiles::new(), tolerant))
+    };
+    decoded(read_file(path)?, &path.display().to_string(), read)
+}
+
+/// Reads a robot's description from the bytes of its file, without its 3D model.
 pub fn parse_robot(bytes: Vec<u8>, file: &str) -> Result<Parsed<RobotSpec>, FormatError> {
     decoded(bytes, file, robi::parse)
 }

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | `.` `G` | ground |
 //! | `S` | swamp, which one may walk into from the ground |
-//! | `W` | water, which one may not |
+//! | `W` | water, which one may move about in but neither enter from the ground nor leave |
 //! | `T` | trees |
 //! | `@` `O` | out of bounds |
 //!
@@ -64,7 +64,24 @@ impl Map {
 
     /// The cells that one may walk on from the ground: ground and swamp. Row 0 is the upper one.
     pub fn grid(&self) -> BitGrid {
-        let free = |column, row| matches!(self.terrain[row * self.width + column], b'.' | b'G' | b'S');
+        self.cells_of(b".GS")
+    }
+
+    /// The cells of water, which are a map of their own.
+    ///
+    /// ```
+    /// use roverlab::world::GridCell;
+    /// use roverlab::world::formats::movingai;
+    /// let map = movingai::parse_map("type octile\nheight 1\nwidth 3\nmap\n.WW\n", "pond.map")?.value;
+    /// assert_eq!((map.grid().count_free(), map.water().count_free()), (1, 2));
+    /// # Ok::<(), roverlab::world::formats::FormatError>(())
+    /// ```
+    pub fn water(&self) -> BitGrid {
+        self.cells_of(b"W")
+    }
+
+    fn cells_of(&self, terrain: &[u8]) -> BitGrid {
+        let free = |column, row| terrain.contains(&self.terrain[row * self.width + column]);
         // A map has no more cells than a grid may have.
         BitGrid::from_fn(self.width, self.height, free)
             .unwrap_or_else(|_| unreachable!("checked by the reader"))
@@ -188,6 +205,7 @@ pub fn parse_map(text: &str, file: &str) -> Result<Parsed<Map>, FormatError> {
     Ok(Notes::new(file).finish(Map { width, height, terrain }))
 }
 
+/// What is accepted as a width or a height.
 const SIZE: &str = "a number of cells from 1 to 33554432";
 
 fn size(text: &str) -> Option<usize> {
@@ -369,6 +387,8 @@ mod tests {
         let free: Vec<_> = map.grid().free_cells().map(|cell| (cell.column, cell.row)).collect();
         assert_eq!(free, [(0, 0), (1, 0), (1, 1), (3, 1)]);
         assert_eq!((map.terrain(GridCell::new(2, 1)), map.terrain(GridCell::new(4, 1))), ('W', '@'));
+        let water: Vec<_> = map.water().free_cells().map(|cell| (cell.column, cell.row)).collect();
+        assert_eq!(water, [(2, 1)]);
         assert_eq!(print_map(&map), MAP.replace('\r', ""));
     }
 

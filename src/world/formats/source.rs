@@ -61,7 +61,8 @@ impl DiskFiles {
         if old { written[5..].trim_start_matches('/').into() } else { written }
     }
 
-    fn find(&self, reference: &str, referrer: &str) -> Option<PathBuf> {
+    /// Where the file is that `referrer` calls `reference`.
+    pub fn find(&self, reference: &str, referrer: &str) -> Option<PathBuf> {
         let plain = self.plain(reference);
         let folder = Path::new(referrer).parent().unwrap_or(Path::new(""));
         let exact = |places: &[PathBuf]| places.iter().find(|path| path.is_file()).cloned();
@@ -102,10 +103,11 @@ fn installed(folder: &Path, plain: &str) -> Option<PathBuf> {
 fn kind_folders(file: &Path) -> &'static [&'static str] {
     let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     match ending.to_ascii_lowercase().as_str() {
-        "png" | "jpg" | "jpeg" | "bmp" => {
+        "png" | "jpg" | "jpeg" | "bmp" | "asc" => {
             &["texture", "textures", "heightmap", "worlds/texture", "worlds/heightmap"]
         }
-        "esobj" | "obj" | "mtl" => &["objects", "object"],
+        "esobj" => &["objects", "object"],
+        "obj" | "mtl" => &["objects", "object", "robots", "robot"],
         "robi" => &["robots", "robot"],
         "wld" | "maz" => &["worlds", "worlds/small", "worlds/aquatic", "world"],
         _ => &[],

@@ -7,8 +7,12 @@
 //! | `X1 Y1 X2 Y2 [THICKNESS HEIGHT [R G B]]` | a wall; other counts of numbers use the first four |
 //! | `push X Y PHI` … `pop` | moves the walls between them: by (X, Y), then turned **clockwise** by PHI |
 //! | `position X Y PHI` | the start pose, PHI counter-clockwise |
-//! | `terrain W H ELEVATION FILE` | a height image, in pictures alone; sets the floor's size too |
-//! | `water_level Z` | water, in pictures alone |
+//! | `terrain W H TOP FILE` | hills, which carry robots and stop rays; sets the floor's size too |
+//! | `water_level Z` | water, in pictures, and in which robots on hills drown |
+//!
+//! The hills' elevations come from a gray PNG, JPEG or BMP image, black at 0 and white at TOP, or from an ESRI ASCII
+//! grid (`.asc`), its lowest place at 0 and its highest at TOP. The image lies as the floor's does, its first row at the
+//! greatest y; its outer pixels are the elevations on the border. Beyond the hills there is no ground.
 //!
 //! Keywords are read in any case. A line that begins with anything else is skipped with a warning, and so is a wall
 //! of fewer than four numbers, as EyeSim does. A world without a floor gets one that reaches from (0, 0) as far as
@@ -23,6 +27,7 @@ use super::lexer::{self, Line, quote};
 use super::limits::{MAX_METRES, MAX_PUSHES, MAX_WALLS};
 use super::number::{self, degrees, millimetres};
 use super::source::{Files, check_length};
+use super::terrain_file;
 use crate::geometry::{Aabb, Point, Pose, Segment, math, units};
 use crate::world::{Terrain, Wall, World};
 
@@ -48,14 +53,8 @@ pub(super) fn parse_with_images(
         }
     }
     if let Some(terrain) = &mut world.terrain {
-        image_file::load(
-            &mut terrain.image,
-            (file, places.terrain),
-            files,
-            &mut notes,
-            "there are no hills",
-        )?;
-        if terrain.image.image.is_none() {
+        terrain_file::load(terrain, (file, places.terrain), files, &mut notes, "the floor is level")?;
+        if terrain.surface.is_none() {
             world.terrain = None;
         }
     }
@@ -120,8 +119,10 @@ impl<'f> Reader<'f> {
             "terrain" => self.terrain(line, &mut args)?,
             "water_level" => {
                 self.world.water_level = Some(args.length("the water level")?);
-                self.notes
-                    .warn(line.location(0), "`water_level`: water is shown in pictures and not simulated");
+                self.notes.warn(
+                    line.location(0),
+                    "`water_level`: water carries nothing; on hills, robots drown in it",
+                );
             }
             _ => {
                 let message = format!("unknown keyword {}; the line is skipped", lexer::shown(keyword));
@@ -154,12 +155,11 @@ impl<'f> Reader<'f> {
         let width = args.size("the terrain's width")?;
         let height = args.size("the terrain's height")?;
         let max_elevation = args.length("the terrain's highest elevation")?;
-        let image = args.path("the terrain's image", &[".png", ".jpg", ".jpeg", ".bmp"], &mut self.notes)?;
-        self.world.terrain = Some(Terrain { width, height, max_elevation, image: image.into() });
+        let file = args.path("the terrain's image", terrain_file::ENDINGS, &mut self.notes)?;
+        self.world.terrain = Some(Terrain { width, height, max_elevation, file: file.into(), surface: None });
         self.places.terrain = line.location(4);
         self.floor(width, height);
-        self.notes
-            .warn(line.location(0), "`terrain`: hills are shown in pictures; robots drive on a level floor");
+        self.notes.warn(line.location(0), "`terrain`: cameras show a level floor");
         Ok(())
     }
 
@@ -269,7 +269,7 @@ fn write_world(text: &mut String, world: &World) -> std::fmt::Result {
     if let Some(t) = &world.terrain {
         let (width, height, top) =
             (millimetres(t.width), millimetres(t.height), millimetres(t.max_elevation));
-        writeln!(text, "terrain {width} {height} {top} {}", quote(&t.image.file.to_string_lossy()))?;
+        writeln!(text, "terrain {width} {height} {top} {}", quote(&t.file.to_string_lossy()))?;
     }
     let corner = world.floor.max;
     writeln!(text, "floor {} {}", millimetres(corner.x.max(0.0)), millimetres(corner.y.max(0.0)))?;
@@ -324,8 +324,8 @@ mod tests {
         assert_eq!(
             warnings,
             [
-                "test.wld:8:1: `water_level`: water is shown in pictures and not simulated",
-                "test.wld:9:1: `terrain`: hills are shown in pictures; robots drive on a level floor",
+                "test.wld:8:1: `water_level`: water carries nothing; on hills, robots drown in it",
+                "test.wld:9:1: `terrain`: cameras show a level floor",
             ]
         );
         assert_eq!(value.floor.max, Point::new(6.0, 7.0));
@@ -414,7 +414,9 @@ mod tests {
                 floor_texture,
                 walls,
                 start: start.map(|(x, y, deg)| Pose::new(x, y, units::from_deg(f64::from(deg)))),
-                terrain: terrain.map(|(width, height, max_elevation, image)| Terrain { width, height, max_elevation, image }),
+                terrain: terrain.map(|(width, height, max_elevation, path)| {
+                    Terrain { width, height, max_elevation, file: path.file, surface: None }
+                }),
                 water_level,
                 ..World::empty(floor.0, floor.1)
             }

@@ -19,6 +19,7 @@ impl Piece {
 
     /// An arc from a point about a middle, by an angle counter-clockwise. No facet is longer than 40 mm.
     pub(super) fn arc(from: Point, middle: Point, turn: f64) -> Self {
+        /// Metres of a facet of a round contour at most.
         const FACET: f64 = 0.04;
         let arm = from - middle;
         let angle = math::atan2(arm.y, arm.x);

@@ -102,6 +102,7 @@ pub struct Room {
 ///
 /// If the options do not pass [`RoomOptions::validate`].
 pub fn room(stream: &mut Stream, options: &RoomOptions) -> Result<Room, ParameterError> {
+    /// Rooms that are drawn before it is given up.
     const TRIES: usize = 5000;
     options.validate()?;
     for _ in 0..TRIES {
@@ -160,6 +161,7 @@ fn base(stream: &mut Stream, options: &RoomOptions) -> Vec<Point> {
 }
 
 fn finish(contour: &Contour, start: Pose, features: Vec<RoomFeature>) -> Room {
+    /// Metres of floor round a room.
     const MARGIN: f64 = 0.2;
     let bounds = contour.bounds().inflated(MARGIN);
     let shift = Point::origin() - bounds.min;

@@ -29,6 +29,7 @@ mod cluster;
 mod contact;
 mod fan;
 mod grid;
+mod hills;
 mod polar;
 mod ray;
 mod scanner;

@@ -64,7 +64,7 @@ impl Space {
 impl Ray {
     /// The distance to a solid.
     #[inline]
-    fn hit(&self, placed: &Placed) -> Option<f64> {
+    pub(super) fn hit(&self, placed: &Placed) -> Option<f64> {
         match &placed.shape {
             Shape::Disc { centre, radius } if placed.taper == 0.0 => {
                 self.hit_disc(*centre, *radius, &placed.span)
@@ -102,7 +102,7 @@ impl Ray {
     }
 
     #[inline]
-    fn hit_box(&self, shape: &OrientedBox, span: &Span) -> Option<f64> {
+    pub(super) fn hit_box(&self, shape: &OrientedBox, span: &Span) -> Option<f64> {
         let to_centre = shape.centre - self.origin;
         let (along, across) = (self.direction.dot(&shape.axis), cross(shape.axis, self.direction));
         // Whether the whole line meets the box is decided here, once, so that no rounding below lets it slip through.

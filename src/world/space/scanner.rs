@@ -165,11 +165,14 @@ impl Space {
                 if seen[number as usize] {
                     return false;
                 }
-                let (sector, near) = buffer.sector_of(&self.solids[number as usize].shape);
-                let hidden = buffer.hides(sector, near);
-                // What is hidden now stays so.
-                seen[number as usize] = hidden;
-                !hidden && self.draw_solid(buffer, number, z, seen)
+                let shape = &self.solids[number as usize].shape;
+                // To draw a disc takes no longer than to see whether it is hidden.
+                if matches!(shape, Shape::Box(_)) {
+                    let (sector, near) = buffer.sector_of(shape);
+                    // What is hidden now stays so.
+                    seen[number as usize] = buffer.hides(sector, near);
+                }
+                self.draw_solid(buffer, number, z, seen)
             })
         })
     }

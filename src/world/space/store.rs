@@ -32,6 +32,8 @@ pub(super) struct Placed {
     pub(super) span: Span,
     pub(super) taper: f64,
     pub(super) mast: Option<Block>,
+    /// Metres by which hills raise it; its heights are above that.
+    pub(super) level: f64,
     /// The cells that list it; `None`: every question tests it.
     pub(super) cells: Option<Cells>,
     /// It is not, or not wholly, on cells.
@@ -68,7 +70,7 @@ impl Space {
         let shape = solid.outline.at(&solid.pose);
         let span = solid.span();
         let (taper, mast) = (solid.taper, solid.placed_mast());
-        self.solids.push(Placed { solid, shape, span, taper, mast, cells: None, stray: false });
+        self.solids.push(Placed { solid, shape, span, taper, mast, level: 0.0, cells: None, stray: false });
         self.list(id.0, &shape.bounds());
         if self.solids.len() >= self.full_at || self.strays > self.strays_allowed {
             self.rebuild();

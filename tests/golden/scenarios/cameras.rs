@@ -10,7 +10,8 @@ use roverlab::io::control::run;
 use roverlab::io::sim::{Fleet, Lcd, SimOptions, Simulation};
 use roverlab::io::wrappers::Traced;
 use roverlab::io::{
-    Camera, Clock, Display, DisplayOption, Drive, Fill, Font, Key, Keys, Resolution, Result, Servos, Viewport,
+    Camera, Clock, Display, DisplayOption, Drive, Fill, Font, Key, Keys, Odometry, Resolution, Result,
+    Servos, Viewport,
 };
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod, teach_hue};
 use roverlab::vision::{HueScale, hue};

@@ -8,7 +8,7 @@ use roverlab::drive::{
 };
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::control::run;
-use roverlab::io::{Clock, Drive, Lidar, LidarScan, Result};
+use roverlab::io::{Clock, Drive, Lidar, LidarScan, Odometry, Result};
 use roverlab::kinematics::{
     Ackermann, CarState, Differential, Displacement, OdometryErrors, OdometryUncertainty, Omni, PlanarTwist,
     WheelSpeeds, advance, advance_planar,
@@ -199,7 +199,7 @@ fn ackermann() -> Result<String> {
         unreachable!("a car has Ackermann steering")
     };
     let kinematics = Ackermann::new(wheelbase, track, max_steering).map_err(other)?;
-    let driver = CarDriver { kinematics, full_speed: 0.5 * wheel_diameter * max_wheel_speed };
+    let driver = CarDriver::new(kinematics, 0.5 * wheel_diameter * max_wheel_speed)?;
     let goal = Goal::pose(Pose::new(1.2, 0.9, 1.4));
     let mut log = String::new();
     note(&mut log, "command", &driver.command(CarState { speed: 0.2, steering: -0.1 }));
@@ -224,7 +224,7 @@ fn mecanum() -> Result<String> {
         unreachable!("the robot has Mecanum wheels")
     };
     let kinematics = Omni::mecanum(track, wheelbase).map_err(other)?;
-    let driver = OmniDriver { kinematics, full_speed: 0.5 * wheel_diameter * max_wheel_speed };
+    let driver = OmniDriver::new(kinematics, 0.5 * wheel_diameter * max_wheel_speed)?;
     let square = [(0.4, 0.0), (0.4, 0.4), (0.0, 0.4), (0.0, 0.0)].map(|(x, y)| Point::new(x, y));
     let mut log = String::new();
     for (route, spin) in [(&square[..], 0.0), (&square[1..2], 1.5)] {

@@ -106,7 +106,7 @@ fn cma_es() -> Result<String> {
 fn starman() -> Result<String> {
     use roverlab::evolve::Gait;
     use roverlab::io::sim::starman::{LIMBS, Starman, StarmanSpec};
-    use roverlab::io::{Clock, Drive, Servos};
+    use roverlab::io::{Clock, Odometry, Servos};
 
     let mut log = String::new();
     for spec in [StarmanSpec::book(), StarmanSpec::planar()] {

@@ -15,7 +15,7 @@ use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::control::{run, until};
 use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
 use roverlab::io::wrappers::{Faulty, Traced};
-use roverlab::io::{Clock, DistanceSensors, Drive, Keys, Lidar, Psd, Radio, Result};
+use roverlab::io::{Clock, DistanceSensors, Drive, Keys, Lidar, Manoeuvres, Odometry, Psd, Radio, Result};
 use roverlab::kinematics::{Ackermann, Omni};
 use roverlab::maze::{Direction, LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters};
 use roverlab::nav::{BugKind, BugParameters, DistBug, Navigator, NavigatorParameters};
@@ -60,14 +60,14 @@ const LOOPS: [Loop; 20] = [
     }),
     ("car", RobotSpec::car, |robot| {
         let kinematics = Ackermann::new(0.12, 0.1, 0.5).map_err(other)?;
-        let driver = CarDriver { kinematics, full_speed: 0.5 };
+        let driver = CarDriver::new(kinematics, 0.5)?;
         let mut behaviour = CarToB::new(Method::Arc, Goal::point(GOAL), driver, CarToBParameters::default())?;
         said(run(robot, &mut behaviour, LIMIT, |_, _, _| {})?)
     }),
     ("Mecanum", RobotSpec::omni, |robot| {
         let kinematics = Omni::mecanum(0.2, 0.2).map_err(other)?;
         let tracker = OmniTracker::new(robot.pose()?, &[GOAL], OmniParameters::default())?;
-        let driver = OmniDriver { kinematics, full_speed: 0.5 };
+        let driver = OmniDriver::new(kinematics, 0.5)?;
         said(run(robot, &mut tracker.by(driver), LIMIT, |_, _, _| {})?)
     }),
     ("wall", RobotSpec::s4, |robot| {

@@ -8,8 +8,8 @@ use roverlab::geometry::{Point, Pose, Twist, direction};
 use roverlab::io::sim::{Fleet, SimOptions, Simulation, TICK, Truth};
 use roverlab::io::wrappers::Traced;
 use roverlab::io::{
-    Camera, Clock, Drive, Encoders, Lidar, LidarScan, LidarSettings, Motors, Resolution, Result, RobotTruth,
-    Servos,
+    Camera, Clock, Drive, Encoders, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry,
+    Resolution, Result, RobotTruth, Servos, StallDetector,
 };
 use roverlab::race::{
     CameraMount, CameraSight, Cone, ConeColour, ConeMap, ConeTrack, EventCourse, EventParameters, EventRacer,

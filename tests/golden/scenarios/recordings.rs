@@ -20,7 +20,7 @@ mod with_log {
     use roverlab::geometry::{Pose, Twist};
     use roverlab::io::log::{FleetIo, GroundTruth, Header, Log, LogWriter, OpenLoop, Player, recover};
     use roverlab::io::sim::{Fleet, Simulation};
-    use roverlab::io::{Clock, Drive, LidarScan, Psd, Result, RobotIo};
+    use roverlab::io::{Clock, Drive, LidarScan, Odometry, Psd, Result, RobotIo};
 
     use super::super::{fnv, in_room, noise, note, other};
 

@@ -3,7 +3,7 @@
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::sim::{SimOptions, Simulation};
 use roverlab::io::wrappers::{Fault, Faulty, Traced};
-use roverlab::io::{Clock, Drive, Lidar, MockRobot, Motors, Result, Servos};
+use roverlab::io::{Clock, Drive, Lidar, MockRobot, Motors, Odometry, Result, Servos};
 use roverlab::race::{Cone, ConeTrack, GapDriver};
 use roverlab::random::Stream;
 use roverlab::safety::{
@@ -46,8 +46,8 @@ fn machine() -> Result<String> {
 
 fn monitors() -> Result<String> {
     let mut log = String::new();
-    let mut signal = SignalMonitor::new(SignalLimits { age: 0.3, rate: 2.0, step: 0.1, repeats: 3 });
-    let (mut deadline, mut debounce) = (Deadline::new(0.25), Debounce::new(3));
+    let mut signal = SignalMonitor::new(SignalLimits { age: 0.3, rate: 2.0, step: 0.1, repeats: 3 })?;
+    let (mut deadline, mut debounce) = (Deadline::new(0.25)?, Debounce::new(3));
     let readings = [0.0, 0.1, 0.2, 0.9, 0.9, 0.9, 0.9, f64::NAN, 0.8, 0.7, 0.7];
     for (step, value) in readings.into_iter().enumerate() {
         let now = 0.1 * step as f64 + if step > 8 { 0.5 } else { 0.0 };
@@ -64,7 +64,7 @@ fn monitors() -> Result<String> {
 }
 
 /// Notes the state of a supervised vehicle, why it is in it, and its last stop.
-fn note_state<R: Clock + Drive, S: Station>(log: &mut String, car: &Supervised<R, S>) {
+fn note_state<R: Clock + Drive + Odometry, S: Station>(log: &mut String, car: &Supervised<R, S>) {
     let stop = car.last_stop().map(|stop| (stop.time, stop.causes.bits(), stop.state, stop.speed));
     let causes: Vec<&str> = car.causes().names().collect();
     note(log, "vehicle", &(car.state(), causes, stop, car.asked()));
@@ -177,7 +177,7 @@ fn race_car() -> Result<String> {
 fn base_station() -> Result<String> {
     let mut log = String::new();
     let robot = MockRobot::new().with_ideal_drive();
-    let mut car = Supervised::new(robot, BaseStation::new(0.5), SupervisedParameters::default())?;
+    let mut car = Supervised::new(robot, BaseStation::new(0.5)?, SupervisedParameters::default())?;
     for step in 0..120_u32 {
         let crew = car.station_mut();
         match step {

@@ -6,7 +6,7 @@ use roverlab::drive::{RandomDrive, RandomDriveObservation, RandomDriveParameters
 use roverlab::geometry::{Point, Pose, Twist};
 use roverlab::io::control::{Senses, run};
 use roverlab::io::sim::Lcd;
-use roverlab::io::{Clock, Drive, Lidar, LidarScan, Result};
+use roverlab::io::{Clock, Drive, Lidar, LidarScan, Odometry, Result};
 use roverlab::nav::{Navigator, NavigatorParameters};
 use roverlab::random::Stream;
 use roverlab::scan::{
@@ -84,7 +84,7 @@ fn map() -> Result<String> {
 fn matching() -> Result<String> {
     let mut found = String::new();
     let log = ride(&in_room(0.5, 0.5, 0.2), noise(2.0, 103), |robot| {
-        let (mut matcher, mut filter) = (ScanMatcher::new(), ScanFilter::new(0.01));
+        let (mut matcher, mut filter) = (ScanMatcher::new(), ScanFilter::new());
         let (mut scan, mut points) = (LidarScan::default(), Vec::<Point>::new());
         robot.set_speed(Twist::new(0.15, 0.35))?;
         for _ in 0..120 {

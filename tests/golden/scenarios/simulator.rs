@@ -7,8 +7,8 @@ use roverlab::geometry::{Pose, Twist, units};
 use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, SimRobot, Simulation};
 use roverlab::io::wrappers::{Stamp, Traced};
 use roverlab::io::{
-    Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Lidar, LidarSettings, Motors, Psd, Radio,
-    Result,
+    Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Lidar, LidarSettings, Manoeuvres, Motors,
+    Odometry, Psd, Radio, Result, StallDetector,
 };
 use roverlab::random::Stream;
 use roverlab::world::generate::{CourseOptions, obstacle_course};

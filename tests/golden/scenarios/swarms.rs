@@ -9,7 +9,7 @@ use roverlab::drive::{
 use roverlab::geometry::{Point, Pose};
 use roverlab::io::sim::Fleet;
 use roverlab::io::wrappers::Traced;
-use roverlab::io::{Clock, Drive, Lidar, LidarScan, Radio, Result};
+use roverlab::io::{Clock, Drive, Lidar, LidarScan, Odometry, Radio, Result};
 use roverlab::world::{Footprint, Object, ObjectKind, RobotPlacement, RobotSpec, Scene, World};
 
 use super::{Scenario, noise, note, note_truth, other};
@@ -125,9 +125,9 @@ fn fleet(follows: Follows, seed: u64) -> Result<String> {
 type Step = Box<dyn FnMut(&mut dyn Member) -> Result<()>>;
 
 /// The capabilities of a robot in a fleet.
-trait Member: Clock + Drive + Lidar + Radio {}
+trait Member: Clock + Drive + Odometry + Lidar + Radio {}
 
-impl<R: Clock + Drive + Lidar + Radio> Member for R {}
+impl<R: Clock + Drive + Odometry + Lidar + Radio> Member for R {}
 
 /// One step of the leader, which tells all others where it is.
 fn lead(robot: &mut dyn Member, cruise: &mut Cruise, start: Pose, scan: &mut LidarScan) -> Result<()> {

@@ -103,7 +103,7 @@ fn centre_line() -> Result<String> {
 fn racing_line() -> Result<String> {
     let outline = RacerParameters::default().outline;
     let limits = RacerParameters::default().limits;
-    let ellipse = CarLimits { hold: GripLimit::Ellipse { across: 5.0, turned: 1.0, along: 5.0 }, ..limits };
+    let ellipse = CarLimits { grip: GripLimit::Ellipse { across: 5.0, turned: 1.0, along: 5.0 }, ..limits };
     let mut log = String::new();
     for seed in [52, 53] {
         let corridor = generate(seed, &TrackOptions::drawn(seed)).map_err(other)?.corridor;

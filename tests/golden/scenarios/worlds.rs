@@ -94,7 +94,7 @@ fn note_robot(log: &mut String, spec: &RobotSpec) {
 
 /// The files that the scenes below name.
 fn files() -> MemoryFiles {
-    let files: [(&str, &[u8]); 12] = [
+    let files: [(&str, &[u8]); 13] = [
         (".\\room.wld", include_bytes!("../../data/formats/room.wld")),
         ("room.wld", include_bytes!("../../data/formats/room.wld")),
         ("cart.robi", include_bytes!("../../data/formats/cart.robi")),
@@ -107,6 +107,7 @@ fn files() -> MemoryFiles {
         ("sign.mtl", include_bytes!("../../data/formats/sign.mtl")),
         ("plate.png", include_bytes!("../../data/formats/plate.png")),
         ("ball.obj", include_bytes!("../../data/formats/ball.obj")),
+        ("cart.obj", include_bytes!("../../data/formats/cart.obj")),
     ];
     MemoryFiles(
         files.into_iter().map(|(name, bytes)| (name.to_owned(), bytes.to_vec())).collect::<BTreeMap<_, _>>(),

@@ -7,8 +7,8 @@ use roverlab::io::wrappers::{
     Deadman, Excess, Fault, Faulty, Limited, Limits, Noise, Noisy, Quantised, Traced,
 };
 use roverlab::io::{
-    Camera, Clock, DistanceSensors, Drive, Encoders, Lidar, LidarScan, MockRobot, Motors, Psd, Result,
-    RobotIo, Script,
+    Camera, Clock, DistanceSensors, Drive, Encoders, Lidar, LidarScan, Manoeuvres, MockRobot, Motors,
+    Odometry, Psd, Result, RobotIo, Script, StallDetector,
 };
 use roverlab::random::Stream;
 

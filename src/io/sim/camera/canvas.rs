@@ -19,6 +19,7 @@ pub(super) struct Span {
 }
 
 impl Span {
+    /// No columns at all.
     pub(super) const EMPTY: Self = Self { left: f64::INFINITY, right: f64::NEG_INFINITY };
 
     /// The pixels whose middles are in the span.

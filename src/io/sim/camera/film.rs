@@ -83,6 +83,7 @@ impl Film {
 
 /// The weights of a Gaussian, in 256ths, from the middle outwards; one alone if the blur is too small to see.
 fn blur_weights(sigma: f64) -> Vec<u16> {
+    /// Pixels that a filter on the stack holds at most.
     const WIDEST: usize = 48;
     let variance = sigma * sigma;
     if variance < 0.004 {

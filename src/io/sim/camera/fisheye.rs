@@ -26,8 +26,9 @@ pub(super) struct Fisheye {
 /// The sides of the cube: how far to the left of the camera's heading each is, and how far up.
 const SIDES: [(f64, f64); 6] =
     [(0.0, 0.0), (FRAC_PI_2, 0.0), (PI, 0.0), (-FRAC_PI_2, 0.0), (0.0, FRAC_PI_2), (0.0, -FRAC_PI_2)];
-/// Pixels of a side for each of the picture's that it spans in its middle, and the most along an edge.
+/// Pixels of a side for each of the picture's that it spans in its middle.
 const FINENESS: f64 = 1.25;
+/// Pixels along an edge of a side at most.
 const LONGEST_EDGE: f64 = 2048.0;
 
 /// Where a camera with such a lens is and looks.

@@ -5,15 +5,17 @@ use super::view::View;
 use crate::geometry::{Aabb, Point, Vector};
 use crate::world::Colour;
 
-/// The sky at the horizon and overhead: pale, so that it has no hue that a program would look for.
+/// The sky at the horizon: so pale that it has no hue that a program would look for.
 const HORIZON: Colour = Colour::from_hex(0xde_e6_ee);
+/// The sky overhead.
 const ZENITH: Colour = Colour::from_hex(0xb9_cb_de);
 /// What lies beyond the floor.
 const BEYOND: Colour = Colour::from_hex(0x8c_8a_84);
 /// The mean colour of a floor without an image.
 const FLOOR: u32 = 196;
-/// Texels on each side of the pattern of such a floor, and their size in metres.
+/// Texels on each side of the pattern of such a floor.
 const TILE: usize = 128;
+/// Metres across such a texel.
 const SPECKLE: f64 = 0.008;
 
 /// Floor and sky.

@@ -80,6 +80,8 @@ impl Scenery {
         let things =
             objects.iter().zip(&world.objects).map(|(&solid, object)| thing(solid, object, &mut meshes));
         let things = things.collect();
+        let robots = robots.map(|(index, (&solid, placed))| robot(index, solid, placed, &mut meshes));
+        let robots = robots.collect();
         Self {
             floor: world.floor,
             floor_texture: world.floor_texture.clone(),
@@ -90,7 +92,7 @@ impl Scenery {
             things,
             meshes,
             models: Vec::new(),
-            robots: robots.map(|(index, (&solid, placed))| robot(index, solid, placed)).collect(),
+            robots,
             carpenter: Carpenter::default(),
             cutter: Cutter::default(),
         }
@@ -124,7 +126,11 @@ impl Scenery {
             }
         }
         for (_, robot) in self.robots.iter().enumerate().filter(|&(index, _)| index != me) {
-            robot.draw_robot(&mut self.carpenter, canvas, view, space);
+            let solid = space.solid(robot.solid);
+            match robot.model.and_then(|model| self.models.get(model)) {
+                Some(model) => model.draw(&mut self.cutter, canvas, view, (&solid.pose, solid.bottom)),
+                None => robot.draw_robot(&mut self.carpenter, canvas, view, space),
+            }
         }
         for board in &self.billboards {
             draw_poster(&mut self.cutter, canvas, view, board);
@@ -147,11 +153,13 @@ impl Thing {
         let upper = Standing { bottom: waist, top: solid.bottom + self.height, colour: self.colour };
         self.draw_part(carpenter, canvas, view, &solid.pose, lower);
         self.draw_part(carpenter, canvas, view, &solid.pose, upper);
-        // A white front, so that one sees which way it looks, and that it turns.
-        let front = Self { form: Form::Cuboid(self.front()), ..*self };
+        // A white front and a dark back, so that one sees which way it looks, and that it turns.
         let (low, high) = (solid.bottom + FRONT.0 * self.height, solid.bottom + FRONT.1 * self.height);
-        let plate = Standing { bottom: low, top: high, colour: Colour::from_hex(0xf2_f2_f2) };
-        front.draw_part(carpenter, canvas, view, &solid.pose, plate);
+        for (plate, colour) in self.plates().into_iter().zip([Colour::from_hex(0xf2_f2_f2), CHASSIS.0]) {
+            let part = Self { form: Form::Cuboid(plate), ..*self };
+            let body = Standing { bottom: low, top: high, colour };
+            part.draw_part(carpenter, canvas, view, &solid.pose, body);
+        }
         if let Some(Mast { outline, top }) = self.mast {
             let mast = Self { form: Form::Cuboid(outline), ..*self };
             let body = Standing { bottom: solid.top, top: solid.bottom + top, colour: CHASSIS.0 };
@@ -159,13 +167,16 @@ impl Thing {
         }
     }
 
-    /// A box in the middle of a robot's front that stands out a little.
-    fn front(&self) -> Aabb {
-        let (reach, half) = match self.form {
-            Form::Ball(radius) | Form::Cylinder(radius) | Form::Cone(radius, _) => (radius, 0.45 * radius),
-            Form::Cuboid(Aabb { min, max }) => (max.x, 0.22 * (max.y - min.y)),
+    /// Boxes in the middle of a robot's front and back that stand out a little.
+    fn plates(&self) -> [Aabb; 2] {
+        let (ahead, behind, half) = match self.form {
+            Form::Ball(radius) | Form::Cylinder(radius) | Form::Cone(radius, _) => {
+                (radius, -radius, 0.45 * radius)
+            }
+            Form::Cuboid(Aabb { min, max }) => (max.x, min.x, 0.22 * (max.y - min.y)),
         };
-        Aabb::new(Point::new(0.5 * reach, -half), Point::new(1.03 * reach, half))
+        [(0.5 * ahead, 1.03 * ahead), (1.03 * behind, 0.5 * behind)]
+            .map(|(from, to)| Aabb::new(Point::new(from, -half), Point::new(to, half)))
     }
 
     fn draw_part(
@@ -215,22 +226,26 @@ fn thing(solid: SolidId, object: &Object, meshes: &mut Vec<Arc<Mesh>>) -> Thing 
             Form::Cuboid(Aabb::new(-corner, corner))
         }
     };
-    let model = kind.mesh.as_ref().map(|mesh| {
-        meshes.iter().position(|known| Arc::ptr_eq(known, mesh)).unwrap_or_else(|| {
-            meshes.push(Arc::clone(mesh));
-            meshes.len() - 1
-        })
-    });
+    let model = kind.mesh.as_ref().map(|mesh| number(mesh, meshes));
     Thing { solid, form, height: kind.shape.height(), colour: kind.colour, mast: None, model }
 }
 
-fn robot(index: usize, solid: SolidId, placed: &RobotPlacement) -> Thing {
+/// The number of a surface, which has one as soon as somebody asks for it.
+fn number(mesh: &Arc<Mesh>, meshes: &mut Vec<Arc<Mesh>>) -> usize {
+    meshes.iter().position(|known| Arc::ptr_eq(known, mesh)).unwrap_or_else(|| {
+        meshes.push(Arc::clone(mesh));
+        meshes.len() - 1
+    })
+}
+
+fn robot(index: usize, solid: SolidId, placed: &RobotPlacement, meshes: &mut Vec<Arc<Mesh>>) -> Thing {
     let form = match placed.spec.footprint {
         Footprint::Disc { radius } => Form::Cylinder(radius),
         Footprint::Rectangle(rectangle) => Form::Cuboid(rectangle),
     };
     let colour = ROBOTS[index % ROBOTS.len()];
-    Thing { solid, form, height: placed.spec.height, colour, mast: placed.spec.mast, model: None }
+    let model = placed.spec.mesh.as_ref().map(|mesh| number(mesh, meshes));
+    Thing { solid, form, height: placed.spec.height, colour, mast: placed.spec.mast, model }
 }
 
 /// The pixels of the floor's image, which have been read with the world's file.

@@ -127,6 +127,7 @@ impl Carpenter {
         colour: Colour,
         alpha: u8,
     ) {
+        /// Corners of the polygon that stands for a disc.
         const CORNERS: usize = 24;
         self.outline.clear();
         let step = std::f64::consts::TAU / CORNERS as f64;

@@ -108,6 +108,7 @@ fn mean(texels: [Texel; 4]) -> Texel {
 #[inline]
 pub(super) fn between(a: Texel, b: Texel, share: u32) -> Texel {
     // Two channels at a time, each with room for the product above it.
+    /// Every other byte of a pixel, so that two channels are mixed at a time.
     const HALF: u32 = 0x00ff_00ff;
     let mixed = |a: u32, b: u32| ((a & HALF) * (256 - share) + (b & HALF) * share) >> 8 & HALF;
     mixed(a >> 8, b >> 8) << 8 | mixed(a, b)

@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use roverlab::io::sim::starman::{Starman, StarmanSpec};
-//! use roverlab::io::{Clock, Drive, Servos};
+//! use roverlab::io::{Clock, Odometry, Servos};
 //!
 //! # fn main() -> roverlab::io::Result<()> {
 //! // The book's shuffle: one of the two limbs that it stands on goes forth and back.

@@ -13,7 +13,7 @@ use rapier2d_f64::prelude::{
 use super::LIMBS;
 use super::servo::Servo;
 use super::spec::StarmanSpec;
-use crate::geometry::math;
+use crate::geometry::{math, units};
 use crate::io::sim::lockstep::Ticking;
 
 /// Where a Starman's parts are, in the upright plane: x along the floor, y up.
@@ -60,11 +60,9 @@ struct Limb {
     servo: Servo,
 }
 
-const GRAVITY: f64 = 9.81;
-/// The swing of a servo that is pushed off its angle, per second, and its damping ratio. Much stiffer, and two limbs
-/// that stand on the floor press against each other so hard that which of them slips depends on the time step.
+/// The swing of a servo that is pushed off its angle, in 1/s. Much stiffer, and two limbs that stand on the
+/// floor press against each other so hard that which of them slips depends on the time step.
 const SERVO_FREQUENCY: f64 = 25.0;
-const SERVO_DAMPING: f64 = 1.0;
 /// How far, in radians, a limb may be thrown within a step by what it meets there.
 const LIMIT_MARGIN: f64 = 0.05;
 
@@ -72,7 +70,7 @@ impl Figure {
     /// A figure that stands on two limbs, the first one up.
     pub(super) fn new(spec: &StarmanSpec) -> Self {
         let mut world = PhysicsWorld::new();
-        world.gravity = Vector::new(0.0, -GRAVITY);
+        world.gravity = Vector::new(0.0, -units::GRAVITY);
         let settings = &mut world.integration_parameters;
         settings.dt = spec.time_step;
         // Tolerances of the solver are fractions of this length.
@@ -107,7 +105,8 @@ impl Figure {
     fn step(&mut self) {
         let spec = &self.spec;
         let stiffness = (TAU * SERVO_FREQUENCY) * (TAU * SERVO_FREQUENCY);
-        let damping = 2.0 * SERVO_DAMPING * TAU * SERVO_FREQUENCY;
+        // Critical: it comes back without a swing.
+        let damping = 2.0 * TAU * SERVO_FREQUENCY;
         for limb in &mut self.limbs {
             let (angle, rate) = limb.servo.advance(spec.servo_speed, spec.time_step);
             let Some(joint) = self.world.impulse_joints.get_mut(limb.joint, false) else { continue };
@@ -124,6 +123,11 @@ impl Figure {
     /// How far the middle of the body is along the floor.
     pub(super) fn travelled(&self) -> f64 {
         self.world.bodies[self.body].translation().x
+    }
+
+    /// How fast that moves along the floor, in metres per second.
+    pub(super) fn speed(&self) -> f64 {
+        self.world.bodies[self.body].linvel().x
     }
 
     pub(super) fn truth(&self) -> StarmanTruth {
@@ -167,7 +171,7 @@ impl Figure {
         handles
             .map(|handle| {
                 let part = &self.world.bodies[handle];
-                part.kinetic_energy() + part.mass() * GRAVITY * part.translation().y
+                part.kinetic_energy() + part.mass() * units::GRAVITY * part.translation().y
             })
             .sum()
     }
@@ -202,7 +206,9 @@ impl fmt::Debug for Figure {
     }
 }
 
+/// The collision group of the floor.
 const FLOOR: Group = Group::GROUP_1;
+/// The collision group of the parts of a robot, which do not meet each other.
 const PART: Group = Group::GROUP_2;
 
 /// Parts touch the floor only: the servos' range keeps the limbs apart.

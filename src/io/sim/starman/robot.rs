@@ -12,12 +12,13 @@ use crate::io::delegate::{
 use crate::io::sim::Lcd;
 use crate::io::sim::lockstep::{Lockstep, Program};
 use crate::io::{
-    Camera, Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Keys, Lidar, Motors, Radio, Servos,
+    Camera, Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Keys, Lidar, Manoeuvres, Motors,
+    Odometry, Radio, Servos, StallDetector,
 };
 
 /// A simulated Starman, in virtual time.
 ///
-/// Its servos 1 to 5 swing the limbs, the first one up, the others clockwise. [`Drive::pose`] tells how far
+/// Its servos 1 to 5 swing the limbs, the first one up, the others clockwise. [`Odometry::pose`] tells how far
 /// it has come along the floor; it has no wheels, no distance sensors and no camera. The display works, and key
 /// presses can be scheduled.
 #[derive(Debug, Delegate)]
@@ -98,18 +99,9 @@ impl Servos for Starman {
     }
 }
 
-/// What it answers to when asked for a drive: it has a position and no wheels.
-fn no_wheels<T>() -> Result<T> {
-    Err(Error::unsupported("wheels"))
-}
-
-impl Drive for Starman {
-    fn set_speed(&mut self, _: Twist) -> Result<()> {
-        no_wheels()
-    }
-
+impl Odometry for Starman {
     fn speed(&mut self) -> Result<Twist> {
-        no_wheels()
+        Ok(Twist::new(self.call(|figure| Ok(figure.speed()))?, 0.0))
     }
 
     fn pose(&mut self) -> Result<Pose> {
@@ -125,34 +117,6 @@ impl Drive for Starman {
         }
         self.origin = Pose { x: pose.x - travelled, ..pose };
         Ok(())
-    }
-
-    fn straight(&mut self, _: f64, _: f64) -> Result<()> {
-        no_wheels()
-    }
-
-    fn turn(&mut self, _: f64, _: f64) -> Result<()> {
-        no_wheels()
-    }
-
-    fn curve(&mut self, _: f64, _: f64, _: f64) -> Result<()> {
-        no_wheels()
-    }
-
-    fn remaining(&mut self) -> Result<f64> {
-        no_wheels()
-    }
-
-    fn is_done(&mut self) -> Result<bool> {
-        no_wheels()
-    }
-
-    fn wait_done(&mut self) -> Result<()> {
-        no_wheels()
-    }
-
-    fn is_stalled(&mut self) -> Result<bool> {
-        no_wheels()
     }
 }
 
@@ -179,69 +143,26 @@ impl Keys for Starman {
     }
 }
 
-impl DistanceSensors for Starman {
-    fn distance(&mut self, sensor: Psd) -> Result<f64> {
-        Err(Error::unsupported(sensor))
-    }
+/// Capabilities that it is asked for as a full robot, and lacks.
+macro_rules! lacks {
+    ($what:literal $capability:ident { $( fn $name:ident($($arg:ident: $type:ty),*) -> $result:ty; )* }) => {
+        impl $capability for Starman {
+            $( fn $name(&mut self $(, _: $type)*) -> Result<$result> {
+                Err(Error::unsupported($what))
+            } )*
+        }
+    };
 }
 
-impl Lidar for Starman {
-    fn scan_into(&mut self, _: &mut LidarScan) -> Result<()> {
-        Err(Error::unsupported("lidar"))
-    }
-
-    fn configure_lidar(&mut self, _: LidarSettings) -> Result<()> {
-        Err(Error::unsupported("lidar"))
-    }
-}
-
-impl Camera for Starman {
-    fn set_resolution(&mut self, _: Resolution) -> Result<()> {
-        Err(Error::unsupported("camera"))
-    }
-
-    fn resolution(&mut self) -> Result<Resolution> {
-        Err(Error::unsupported("camera"))
-    }
-
-    fn image_into(&mut self, _: &mut RgbImage) -> Result<()> {
-        Err(Error::unsupported("camera"))
-    }
-}
-
-impl Radio for Starman {
-    fn radio_id(&mut self) -> Result<u32> {
-        Err(Error::unsupported("radio"))
-    }
-
-    fn radio_peers(&mut self) -> Result<Vec<u32>> {
-        Err(Error::unsupported("radio"))
-    }
-
-    fn send(&mut self, _: u32, _: &[u8]) -> Result<()> {
-        Err(Error::unsupported("radio"))
-    }
-
-    fn receive(&mut self) -> Result<Option<RadioMessage>> {
-        Err(Error::unsupported("radio"))
-    }
-}
-
-impl Motors for Starman {
-    fn set_motor(&mut self, motor: u8, _: f64) -> Result<()> {
-        Err(Error::unsupported(format!("motor {motor}")))
-    }
-}
-
-impl Encoders for Starman {
-    fn encoder(&mut self, motor: u8) -> Result<i64> {
-        Err(Error::unsupported(format!("encoder {motor}")))
-    }
-
-    fn reset_encoder(&mut self, motor: u8) -> Result<()> {
-        Err(Error::unsupported(format!("encoder {motor}")))
-    }
-}
+signatures! { Drive => lacks!("wheels") }
+signatures! { Manoeuvres => lacks!("wheels") }
+signatures! { StallDetector => lacks!("wheels") }
+signatures! { DistanceSensors => lacks!("distance sensors") }
+signatures! { Lidar => lacks!("lidar") }
+signatures! { Camera => lacks!("camera") }
+signatures! { Radio => lacks!("radio") }
+signatures! { Motors => lacks!("motors") }
+signatures! { Encoders => lacks!("encoders") }
 
 #[cfg(test)]
 mod tests {

@@ -4,8 +4,8 @@ use super::{CALLS, busy_robot, call};
 use crate::geometry::{Pose, Twist, angle_difference};
 use crate::io::wrappers::{Fault, FaultKind, Faulty, Sensor};
 use crate::io::{
-    Camera, Clock, Display, DistanceSensors, Drive, Error, ErrorKind, Lidar, LidarScan, MockRobot, Psd,
-    Resolution, Script,
+    Camera, Clock, Display, DistanceSensors, Drive, Error, ErrorKind, Lidar, LidarScan, MockRobot, Odometry,
+    Psd, Resolution, Script,
 };
 
 /// A robot whose readings are functions of time and whose calls take none.

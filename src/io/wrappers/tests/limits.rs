@@ -3,7 +3,9 @@ use proptest::prelude::*;
 use super::busy_robot;
 use crate::geometry::Twist;
 use crate::io::wrappers::{Excess, Limited, Limits};
-use crate::io::{Call, Clock, DistanceSensors, Drive, ErrorKind, MockRobot, Motors, Psd, Script};
+use crate::io::{
+    Call, Clock, DistanceSensors, Drive, ErrorKind, Manoeuvres, MockRobot, Motors, Odometry, Psd, Script,
+};
 
 fn limited(limits: Limits) -> Limited<MockRobot> {
     let robot = MockRobot::new().with_ideal_drive().with_distance(Psd::FRONT, 1.0);

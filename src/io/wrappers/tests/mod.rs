@@ -1,6 +1,7 @@
 mod faults;
 mod identity;
 mod limits;
+mod manoeuvres;
 mod noise;
 mod traces;
 

@@ -1,7 +1,7 @@
 use super::busy_robot;
 use crate::geometry::{Pose, Twist};
 use crate::io::wrappers::{Fault, Faulty, Noise, Noisy};
-use crate::io::{Camera, DistanceSensors, Drive, ErrorKind, Lidar, LidarScan, MockRobot, Psd};
+use crate::io::{Camera, DistanceSensors, ErrorKind, Lidar, LidarScan, MockRobot, Odometry, Psd};
 use crate::random::Stream;
 
 fn noisy(robot: MockRobot, noise: Noise) -> Noisy<MockRobot> {

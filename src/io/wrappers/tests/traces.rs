@@ -6,7 +6,8 @@ use super::{CALLS, busy_robot, calls};
 use crate::geometry::{Pose, Twist};
 use crate::io::wrappers::{Faulty, Limited, Limits, Noise, Noisy, Stamp, Traced};
 use crate::io::{
-    Clock, Display, DisplayImage, DistanceSensors, Drive, Lidar, LidarScan, MockRobot, Psd, Radio, Viewport,
+    Clock, Display, DisplayImage, DistanceSensors, Drive, Lidar, LidarScan, MockRobot, Odometry, Psd, Radio,
+    Viewport,
 };
 use crate::random::Stream;
 

@@ -56,6 +56,7 @@ struct View {
     end: u32,
 }
 
+/// Where a view begins that has not been looked for.
 const UNKNOWN: u32 = u32::MAX;
 
 #[derive(Debug, Clone, Copy)]

@@ -46,6 +46,21 @@ impl JumpPointSearch {
         Self { grid: grid.clone(), components: GridComponents::new(grid), cells, search: Search::default() }
     }
 
+    /// Where jumps of the last query ended, in the order of the lengths of the ways there.
+    ///
+    /// ```
+    /// use roverlab::nav::grid::{GridPlanner, JumpPointSearch};
+    /// use roverlab::world::{BitGrid, GridCell};
+    /// let grid: BitGrid = "....\n.#..\n....".parse()?;
+    /// let mut planner = JumpPointSearch::new(&grid);
+    /// planner.plan(GridCell::new(0, 1), GridCell::new(3, 1)).unwrap();
+    /// assert!(planner.landings().iter().all(|&cell| grid.is_free(cell)));
+    /// # Ok::<(), roverlab::world::BitGridError>(())
+    /// ```
+    pub fn landings(&self) -> Vec<GridCell> {
+        self.search.landings()
+    }
+
     /// Makes a cell free or blocked; takes time in proportion to the width and height of the grid, and to the runs of free
     /// cells. Outside the grid nothing happens.
     pub fn set_free(&mut self, cell: GridCell, free: bool) {

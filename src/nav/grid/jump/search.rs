@@ -115,6 +115,15 @@ impl Search {
         (self.turns(start, last, goal.x, goal.y), statistics)
     }
 
+    /// The cells that the last query has reached by jumps, nearest first.
+    pub(super) fn landings(&self) -> Vec<GridCell> {
+        let labels = self.labels.iter().map(|label| Label::unpack(*label));
+        let mut reached: Vec<_> =
+            labels.filter(|label| label.query & !7 == self.query && self.query > 0).collect();
+        reached.sort_by_key(|label| (label.cost, label.y, label.x));
+        reached.iter().map(|label| GridCell::new(label.x as usize - 1, label.y as usize - 1)).collect()
+    }
+
     fn begin(&mut self, count: usize) {
         if self.labels.len() != count || self.query >= u32::MAX - 16 {
             self.labels = vec![[0; 3]; count];

@@ -54,6 +54,7 @@ impl Label {
     const DONE: u32 = 2;
 }
 
+/// The parent of the nodes in the start's leaf.
 const START: u32 = u32::MAX;
 /// How much more than it is at least the rest of a way counts. Where there are many ways this finds one much sooner, which
 /// is longer by that part at the most.

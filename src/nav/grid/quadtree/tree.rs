@@ -297,8 +297,9 @@ impl Quadtree {
 /// The size, as a power of two, of squares whose cells fill a word.
 const BLOCK: usize = 3;
 
-/// In the order of quarters, the first cells of the squares of four cells, and of sixteen.
+/// In the order of quarters, the first cells of the squares of four cells.
 const FOURS: u64 = 0x1111_1111_1111_1111;
+/// In the order of quarters, the first cells of the squares of sixteen cells.
 const SIXTEENS: u64 = 0x0001_0001_0001_0001;
 
 /// The bits that are set together with the three that are so far apart behind them.

@@ -2,11 +2,11 @@
 //!
 //! | line | meaning |
 //! |---|---|
-//! | `drive DIFFERENTIAL_DRIVE`, `ACKERMANN_DRIVE`, `OMNI_DRIVE` | how it moves; other names are read as differential |
+//! | `drive DIFFERENTIAL_DRIVE`, `ACKERMANN_DRIVE`, `OMNI_DRIVE`, `TRACKED_DRIVE` | how it moves; `TRACK_DRIVE` and `CHAIN_DRIVE` are tracked too, other names are read as differential |
 //! | `name NAME` | by which scenes place it; the file's name without it |
-//! | `model FILE [X Y Z RX RY RZ]` | the 3D model, and how it is shifted and turned; kept, and not shown |
+//! | `model FILE [X Y Z RX RY RZ]` | the 3D model that cameras see, and how it is shifted and turned |
 //! | `collider box SX SY SZ X Y Z`, `sphere R X Y Z`, `capsule R H X Y Z` | solid parts: sizes, then middle |
-//! | `mass KG X Y Z` | its mass and the middle of it |
+//! | `mass KG X Y Z` | its mass and the middle of it, which counts on hills unless it is 0 0 0 |
 //! | `axis UP FORWARD` | the driven axle |
 //! | `axel drive UP FORWARD`, `axel turn UP FORWARD` | the driven and the steered axle |
 //! | `wheel [drive\|turn] DIAMETER DEG_PER_S TICKS HALF_TRACK` | the wheels |
@@ -44,6 +44,8 @@
 //! | `motor LAG ACCELERATION` | seconds, and millimetres per second squared |
 //! | `steering DEG` | the largest steering angle; 30 without it |
 //! | `dynamics MASS GYRATION GRIP STIFFNESS BALANCE BRAKE STEERING` | a fast car's mass and tyres: [`CarDynamics`](crate::world::CarDynamics), in millimetres, their products with 1/s², and degrees per second |
+//! | `tracks LENGTH WIDTH` | a tracked robot's belts: their length on the ground, and their width |
+//! | `friction MU` | the coefficient of friction on hills; 0.8 without it |
 //! | `outline disc R HEIGHT`, `outline rectangle BACK RIGHT FRONT LEFT HEIGHT` | footprint about the driven axle |
 //! | `mast BACK RIGHT FRONT LEFT HEIGHT` | a narrow part that stands up above the rest, which rays meet |
 //! | `psd_range MM` | how far the `psd` of the line before sees |
@@ -58,4 +60,5 @@ mod tests;
 mod write;
 
 pub use read::parse;
+pub(super) use read::parse_with_model;
 pub use write::print;

@@ -1,17 +1,20 @@
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::super::args::Args;
 use super::super::error::{FormatError, Location, Notes, Parsed};
+use super::super::esobj::DEFAULT_COLOUR;
 use super::super::lexer::{self, Line, shown};
 use super::super::limits::{MAX_METRES, MAX_PARTS};
+use super::super::model;
 use super::super::number::MILLI;
-use super::super::source::check_length;
+use super::super::source::{Files, check_length};
 use super::mounts::{self, Columns, Raw};
 use super::parts::{self, Wheel};
-use crate::geometry::units;
+use crate::geometry::{math, units};
 use crate::world::formats::{number, stem};
 use crate::world::{
-    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, LidarSpec, Mast, Mount, PsdSpec, RobotSpec,
+    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, LidarSpec, Mast, Mesh, Mount, PsdSpec, RobotSpec,
 };
 
 /// The largest steering angle of cars that state none, in radians: 30 degrees.
@@ -19,8 +22,51 @@ pub(super) const DEFAULT_STEERING: f64 = std::f64::consts::FRAC_PI_6;
 /// The height of robots without colliders, in metres.
 const DEFAULT_HEIGHT: f64 = 0.1;
 
-/// Reads a robot. A `drive` line is required.
+/// Reads a robot, without its 3D model: [`load_robot`](crate::world::formats::load_robot) and scripts read that too. A
+/// `drive` line is required.
 pub fn parse(text: &str, file: &str) -> Result<Parsed<RobotSpec>, FormatError> {
+    let (mut parsed, model_at) = read(text, file)?;
+    let mut notes = Notes::new(file);
+    if let Some(at) = model_at {
+        notes.warn(at, "`model`: cameras see the robot's outline instead");
+    }
+    parsed.warnings.extend(notes.finish(()).warnings);
+    Ok(parsed)
+}
+
+/// Reads a robot and its 3D model.
+pub(in crate::world::formats) fn parse_with_model(
+    text: &str,
+    file: &str,
+    files: &mut Files<'_>,
+) -> Result<Parsed<RobotSpec>, FormatError> {
+    let (Parsed { value: mut spec, warnings }, model_at) = read(text, file)?;
+    let mut notes = Notes::new(file);
+    notes.extend(warnings);
+    if let (Some(model), Some(at)) = (&spec.model, model_at) {
+        let mesh = model::load(model, (file, at), (1.0, DEFAULT_COLOUR), files, &mut notes)?;
+        spec.mesh = mesh.map(|mesh| Arc::new(placed(Arc::unwrap_or_clone(mesh), &spec.body)));
+    }
+    Ok(notes.finish(spec))
+}
+
+/// A model where its robot has it, about the middle of the driven axle. As in EyeSim, it is turned about its axes that
+/// point forward, right and up, one after the other; positive turns are to the left, downwards and to the right.
+fn placed(mut mesh: Mesh, body: &Body) -> Mesh {
+    let [right, up, ahead] = body.model_offset;
+    let [(sin_x, cos_x), (sin_y, cos_y), (sin_z, cos_z)] = body.model_rotation.map(math::sin_cos);
+    for corner in mesh.faces.iter_mut().flat_map(|face| &mut face.corners) {
+        let [z, left, y] = *corner;
+        let (x, y) = (-left * cos_z - y * sin_z, -left * sin_z + y * cos_z);
+        let (y, z) = (y * cos_x - z * sin_x, y * sin_x + z * cos_x);
+        let (x, z) = (x * cos_y + z * sin_y, z * cos_y - x * sin_y);
+        *corner = [z + ahead - body.axle[0], -(x + right), y + up];
+    }
+    mesh
+}
+
+/// Reads a robot, and tells where it names its model.
+fn read(text: &str, file: &str) -> Result<(Parsed<RobotSpec>, Option<Location>), FormatError> {
     check_length(text, file)?;
     let mut reader = Reader::new(file);
     for (number, text) in lexer::numbered(text) {
@@ -28,13 +74,15 @@ pub fn parse(text: &str, file: &str) -> Result<Parsed<RobotSpec>, FormatError> {
             reader.line(&line)?;
         }
     }
-    reader.finish()
+    let model_at = reader.model_at;
+    Ok((reader.finish()?, model_at))
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Drive {
     Differential,
     Ackermann,
+    Tracked,
     Omni,
 }
 
@@ -53,6 +101,8 @@ struct Reader<'f> {
     drive: Option<Drive>,
     wheel: Option<Wheel>,
     turn_axle: Option<f64>,
+    /// Length and width of belts.
+    tracks: Option<[f64; 2]>,
     steering: f64,
     dynamics: Option<CarDynamics>,
     psds: Vec<Psd>,
@@ -62,6 +112,7 @@ struct Reader<'f> {
     camera_view: Option<(f64, bool)>,
     outline: Option<(Footprint, f64)>,
     mast: Option<(Mast, Location)>,
+    model_at: Option<Location>,
     notes: Notes<'f>,
 }
 
@@ -81,6 +132,7 @@ impl<'f> Reader<'f> {
             drive: None,
             wheel: None,
             turn_axle: None,
+            tracks: None,
             steering: DEFAULT_STEERING,
             dynamics: None,
             psds: Vec::new(),
@@ -90,6 +142,7 @@ impl<'f> Reader<'f> {
             camera_view: None,
             outline: None,
             mast: None,
+            model_at: None,
             notes: Notes::new(file),
         }
     }
@@ -105,7 +158,7 @@ impl<'f> Reader<'f> {
             "name" => self.spec.name = args.name("a name")?,
             "model" => {
                 self.model(&mut args)?;
-                self.notes.warn(line.location(0), "`model`: cameras see the robot's outline instead");
+                self.model_at = Some(line.location(1));
             }
             "collider" => {
                 check_parts(line, self.spec.body.colliders.len())?;
@@ -154,6 +207,13 @@ impl<'f> Reader<'f> {
                 let degrees = args.degrees("the largest steering angle", f64::MIN_POSITIVE..=90.0)?;
                 self.steering = units::from_deg(degrees);
             }
+            "tracks" => {
+                let length = args.positive_size("the belts' length on the ground")?;
+                self.tracks = Some([length, args.positive_size("the belts' width")?]);
+            }
+            "friction" => {
+                self.spec.friction = args.plain("the coefficient of friction", 0.0..=1e9)?;
+            }
             "dynamics" => self.dynamics = Some(parts::dynamics(args)?),
             "outline" => self.outline = Some(parts::outline(line, args)?),
             "mast" => self.mast = Some((parts::mast(line, args)?, line.location(0))),
@@ -179,6 +239,7 @@ impl<'f> Reader<'f> {
             "DIFFERENTIAL_DRIVE" => Drive::Differential,
             "ACKERMANN_DRIVE" => Drive::Ackermann,
             "OMNI_DRIVE" => Drive::Omni,
+            "TRACKED_DRIVE" | "TRACK_DRIVE" | "CHAIN_DRIVE" => Drive::Tracked,
             _ => {
                 let message = format!("unknown drive {}; read as DIFFERENTIAL_DRIVE", shown(name));
                 self.notes.warn(line.location(1), message);
@@ -325,6 +386,18 @@ impl<'f> Reader<'f> {
             self.spec.body.turn_axle_height = 0.0;
             return Ok(DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn });
         }
+        if drive == Drive::Tracked {
+            self.spec.body.turn_axle_height = 0.0;
+            let [length, width] = self.belts(track)?;
+            return Ok(DriveSpec::Tracked {
+                wheel_diameter,
+                track,
+                length,
+                width,
+                max_wheel_speed,
+                ticks_per_turn,
+            });
+        }
         let ahead = self.spec.body.axle[0];
         let wheelbase = self.turn_axle.unwrap_or(ahead + track) - ahead;
         if self.turn_axle.is_none() && drive == Drive::Ackermann {
@@ -353,6 +426,21 @@ impl<'f> Reader<'f> {
                 dynamics: self.dynamics,
             },
         })
+    }
+
+    /// Length and width of belts.
+    fn belts(&mut self, track: f64) -> Result<[f64; 2], FormatError> {
+        let [length, width] = self.tracks.unwrap_or_else(|| {
+            let message = "no `tracks` line; the belts are half as long again as they are apart";
+            self.notes.warn(Location::START, message);
+            [1.5 * track, 0.3 * track]
+        });
+        if width <= track {
+            return Ok([length, width]);
+        }
+        let found = format!("belts {} mm wide", number::print(width, MILLI));
+        let expected = "belts no wider than they are apart";
+        Err(FormatError::new(self.notes.file, Location::START, found, expected))
     }
 
     fn place_sensors(&mut self) {
@@ -388,10 +476,11 @@ impl<'f> Reader<'f> {
 
     fn place_footprint(&mut self, drive: Drive) {
         let body = &mut self.spec.body;
-        let derived = body.footprint(drive == Drive::Differential);
+        let derived = body.footprint(matches!(drive, Drive::Differential | Drive::Tracked));
         let wheels = match self.spec.drive {
             DriveSpec::Differential { wheel_diameter, track, .. }
             | DriveSpec::Ackermann { wheel_diameter, track, .. }
+            | DriveSpec::Tracked { wheel_diameter, track, .. }
             | DriveSpec::Omni { wheel_diameter, track, .. } => 0.5 * (track + wheel_diameter),
         };
         let fallback = (Footprint::Disc { radius: wheels }, DEFAULT_HEIGHT);

@@ -1,7 +1,9 @@
 use proptest::prelude::*;
 
-use super::{parse, print};
+use super::{parse, parse_with_model, print};
 use crate::geometry::{Aabb, Point, units};
+use crate::world::formats::MemoryFiles;
+use crate::world::formats::source::Files;
 use crate::world::{
     Axis, Body, CameraSpec, Collider, DriveSpec, Footprint, LidarSpec, MotorSpec, Mount, PsdSpec, RobotSpec,
 };
@@ -30,7 +32,7 @@ fn a_whole_description() {
                 camera 62 0 60 0 0 482 162\r\nfisheye 120\r\nlidar 180 181 -5\r\n";
     let parsed = parse(text, "x.robi").unwrap();
     let warnings: Vec<String> = parsed.warnings.iter().map(ToString::to_string).collect();
-    assert_eq!(warnings, ["x.robi:4:1: `model`: cameras see the robot's outline instead"]);
+    assert_eq!(warnings, ["x.robi:4:7: `model`: cameras see the robot's outline instead"]);
     let spec = parsed.value;
     assert_eq!((spec.name.as_str(), spec.mass), ("My Bot", 2.5));
     assert_eq!(spec.model, Some(r"..\m\bot.obj".into()));
@@ -55,6 +57,46 @@ fn a_whole_description() {
         (lidar.points, lidar.field_of_view, lidar.tilt),
         (181, units::from_deg(180.0), units::from_deg(-5.0))
     );
+}
+
+/// A triangle whose corners are the model's origin, 100 mm to the right of it, and 200 mm up and 400 mm ahead.
+const TRIANGLE: &str = "v 0 0 0\nv -0.1 0 0\nv 0 0.2 0.4\nf 1 2 3\n";
+
+/// The corners of a robot's model: ahead of the driven axle, to its left and up, in millimetres.
+fn corners(model: &str) -> [[f64; 3]; 3] {
+    let mut files = MemoryFiles([("bot.obj".into(), TRIANGLE.into())].into());
+    let text = format!("{DRIVE}axis 20 10\n{model}\n");
+    let parsed = parse_with_model(&text, "x.robi", &mut Files::new(&mut files, false)).unwrap();
+    assert_eq!(parsed.warnings, []);
+    let mesh = parsed.value.mesh.unwrap();
+    assert_eq!(mesh.faces.len(), 1);
+    mesh.faces[0].corners.map(|corner| corner.map(|metres| (metres * 1000.0).round() + 0.0))
+}
+
+#[test]
+fn a_model_stands_where_its_line_says() {
+    assert_eq!(corners("model bot.obj"), [[-10.0, 0.0, 0.0], [-10.0, -100.0, 0.0], [390.0, 0.0, 200.0]]);
+    let shifted = corners("model bot.obj 1 2 3 0 0 0");
+    assert_eq!(shifted, [[-7.0, -1.0, 2.0], [-7.0, -101.0, 2.0], [393.0, -1.0, 202.0]]);
+    // To the right, and downwards.
+    let turned = corners("model bot.obj 0 0 0 0 90 0");
+    assert_eq!(turned, [[-10.0, 0.0, 0.0], [-110.0, 0.0, 0.0], [-10.0, -400.0, 200.0]]);
+    let dived = corners("model bot.obj 0 0 0 90 0 0");
+    assert_eq!(dived[2], [190.0, 0.0, -400.0]);
+    let rolled = corners("model bot.obj 0 0 0 0 0 90");
+    assert_eq!(rolled[1..], [[-10.0, 0.0, 100.0], [390.0, 200.0, 0.0]]);
+}
+
+#[test]
+fn a_model_that_is_missing_is_named_at_its_place() {
+    let text = format!("{DRIVE}model bot.obj\n");
+    let read =
+        |tolerant| parse_with_model(&text, "x.robi", &mut Files::new(&mut MemoryFiles::default(), tolerant));
+    let message = "x.robi:3:7: found `bot.obj`, which does not exist; expected a file that exists";
+    assert_eq!(read(false).unwrap_err().to_string(), message);
+    let parsed = read(true).unwrap();
+    assert_eq!((parsed.value.mesh, parsed.warnings.len()), (None, 1));
+    assert!(parsed.warnings[0].to_string().starts_with(message), "{}", parsed.warnings[0]);
 }
 
 /// The four files in use that contradict one another about the columns all describe the same kind of robot.
@@ -122,13 +164,12 @@ fn a_car_has_two_axles() {
 
 #[test]
 fn other_drives_and_old_keywords_are_read_with_warnings() {
-    let parsed =
-        parse("drive TRACKED_DRIVE\nwheel 54 3600 1100 45\ndiameter 54\nspeed 3", "Snow.robi").unwrap();
+    let parsed = parse("drive SAIL_DRIVE\nwheel 54 3600 1100 45\ndiameter 54\nspeed 3", "Snow.robi").unwrap();
     let messages: Vec<String> = parsed.warnings.iter().map(ToString::to_string).collect();
     assert_eq!(
         messages,
         [
-            "Snow.robi:1:7: unknown drive `TRACKED_DRIVE`; read as DIFFERENTIAL_DRIVE",
+            "Snow.robi:1:7: unknown drive `SAIL_DRIVE`; read as DIFFERENTIAL_DRIVE",
             "Snow.robi:3:1: unknown keyword `diameter`; the line is skipped",
             "Snow.robi:4:1: unknown keyword `speed`; the line is skipped",
         ]
@@ -175,9 +216,23 @@ fn collider() -> impl Strategy<Value = Collider> {
     ]
 }
 
+#[test]
+fn belts_have_names_and_sizes() {
+    for name in ["TRACKED_DRIVE", "track_drive", "CHAIN_DRIVE"] {
+        let spec = robot(&format!("drive {name}\nwheel 60 900 1200 90\ntracks 250 60\nfriction 0.6"));
+        let DriveSpec::Tracked { track, length, width, .. } = spec.drive else { panic!("{:?}", spec.drive) };
+        assert_eq!((track, length, width, spec.friction), (0.18, 0.25, 0.06, 0.6));
+    }
+    let parsed = parse("drive TRACKED_DRIVE\nwheel 60 900 1200 90", "Snow.robi").unwrap();
+    assert!(parsed.warnings[0].to_string().contains("no `tracks` line"), "{:?}", parsed.warnings);
+    let wide = parse("drive TRACKED_DRIVE\nwheel 60 900 1200 90\ntracks 250 181", "Snow.robi").unwrap_err();
+    assert!(wide.to_string().contains("belts 181 mm wide"), "{wide}");
+}
+
 prop_compose! {
     fn drive()(
-        kind in 0..3,
+        kind in 0..4,
+        (length, slim) in (metres(), 0.01..1.0f64),
         (wheel_diameter, track, wheelbase) in (metres(), metres(), metres()),
         max_wheel_speed in 1..9999i32,
         ticks_per_turn in 1.0..9999.0f64,
@@ -187,6 +242,7 @@ prop_compose! {
         let max_steering = units::from_deg(f64::from(steering));
         match kind {
             0 => DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn },
+            3 => DriveSpec::Tracked { wheel_diameter, track, length, width: slim * track, max_wheel_speed, ticks_per_turn },
             1 => DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn },
             _ => DriveSpec::Ackermann { wheel_diameter, track, wheelbase, max_steering, max_wheel_speed, ticks_per_turn, dynamics: None },
         }
@@ -249,7 +305,7 @@ prop_compose! {
         drive in drive(),
         body in body(),
         outline in (0.01..1.0f64, 0.01..1.0f64, -1.0..0.0f64, -1.0..0.0f64),
-        (disc, height, mass) in (any::<bool>(), metres(), 0.0..99.0f64),
+        (disc, height, mass, friction) in (any::<bool>(), metres(), 0.0..99.0f64, 0.0..2.0f64),
         motor in (0.0..1.0f64, metres()),
         psds in proptest::collection::vec(psd(), 0..4),
         lidar in proptest::option::of(lidar()),
@@ -259,7 +315,7 @@ prop_compose! {
         let footprint = if disc { Footprint::Disc { radius: outline.0 } } else { Footprint::Rectangle(rectangle) };
         let motor = MotorSpec { time_constant: motor.0, max_acceleration: motor.1 };
         let model = Some(r"m\a b.obj".into());
-        RobotSpec { name, drive, motor, footprint, height, mast: None, mass, psds, lidar, camera, model, body }
+        RobotSpec { name, drive, motor, footprint, height, mast: None, mass, friction, psds, lidar, camera, model, mesh: None, body }
     }
 }
 

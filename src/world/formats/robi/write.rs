@@ -19,11 +19,15 @@ fn write_spec(text: &mut String, spec: &RobotSpec) -> Result {
     let drive = match spec.drive {
         DriveSpec::Differential { .. } => "DIFFERENTIAL_DRIVE",
         DriveSpec::Ackermann { .. } => "ACKERMANN_DRIVE",
+        DriveSpec::Tracked { .. } => "TRACKED_DRIVE",
         DriveSpec::Omni { .. } => "OMNI_DRIVE",
     };
     writeln!(text, "drive {drive}\nname {}", quote(&spec.name))?;
     write_model(text, spec)?;
     writeln!(text, "mass {} {}", number::print(spec.mass, 0), model_place(spec.body.mass_centre))?;
+    if spec.friction != RobotSpec::DEFAULT_FRICTION {
+        writeln!(text, "friction {}", number::print(spec.friction, 0))?;
+    }
     write_drive(text, spec)?;
     write_solid(text, spec)?;
     write_mast(text, spec)?;
@@ -53,6 +57,10 @@ fn write_drive(text: &mut String, spec: &RobotSpec) -> Result {
     match spec.drive {
         DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn } => {
             writeln!(text, "axis {up} {ahead}")?;
+            write_wheel(text, "", [wheel_diameter, max_wheel_speed, ticks_per_turn, track])
+        }
+        DriveSpec::Tracked { wheel_diameter, track, length, width, max_wheel_speed, ticks_per_turn } => {
+            writeln!(text, "axis {up} {ahead}\ntracks {} {}", millimetres(length), millimetres(width))?;
             write_wheel(text, "", [wheel_diameter, max_wheel_speed, ticks_per_turn, track])
         }
         DriveSpec::Omni { wheel_diameter, track, wheelbase, max_wheel_speed, ticks_per_turn } => {
@@ -98,7 +106,7 @@ fn write_solid(text: &mut String, spec: &RobotSpec) -> Result {
         body.colliders = vec![body.collider_of_footprint(&spec.footprint, spec.height)];
     }
     body.colliders.iter().try_for_each(|collider| write_collider(text, collider))?;
-    let turns = matches!(spec.drive, DriveSpec::Differential { .. });
+    let turns = matches!(spec.drive, DriveSpec::Differential { .. } | DriveSpec::Tracked { .. });
     if body
         .footprint(turns)
         .is_some_and(|(footprint, height)| footprint == spec.footprint && height == spec.height)

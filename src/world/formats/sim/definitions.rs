@@ -54,7 +54,8 @@ impl Definitions {
         let Some((name, text)) = self.text((file, at), (true, built_in), files, notes)? else {
             return Ok(());
         };
-        let parsed = files.get_over(robi::parse(&text, &name), ELSE_INSTEAD, notes)?;
+        let parsed = robi::parse_with_model(&text, &name, files);
+        let parsed = files.get_over(parsed, ELSE_INSTEAD, notes)?;
         let Some(parsed) = parsed else {
             self.missing.push(Missing { reference: file.into(), is_robot: true, built_in });
             return Ok(());

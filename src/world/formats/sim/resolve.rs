@@ -91,12 +91,14 @@ impl SimFile {
     }
 }
 
-/// Metres from the farthest thing to the wall of a box that stands for a world, and the longest wall of one.
+/// Metres from the farthest thing to the wall of a box that stands for a world.
 const MARGIN: f64 = 1.0;
+/// Metres of the longest wall of such a box.
 const LARGEST_BOX: f64 = 100.0;
 
-/// Metres between robots at letters that the world lacks, and how many of them stand in a row.
+/// Metres between robots at letters that the world lacks.
 const STRAY_DISTANCE: f64 = 0.5;
+/// How many of them stand in a row.
 const STRAYS_IN_A_ROW: u32 = 3;
 
 /// Where a robot stands whose letter the world lacks.

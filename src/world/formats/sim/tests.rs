@@ -230,13 +230,13 @@ fn images_and_models_are_looked_up_from_the_files_that_name_them() {
     memory.0.insert("carpet.jpg".into(), b"P6 1 1 255 abc".to_vec());
     assert!(missing(&mut memory).starts_with("carpet.wld:3:22: found `hills.png`"));
     memory.0.insert("hills.png".into(), b"broken".to_vec());
-    assert!(missing(&mut memory).starts_with("hills.png:1:1: found a broken image"));
+    assert!(missing(&mut memory).starts_with("carpet.wld:3:22: found `hills.png`, a broken image"));
     memory.0.insert("hills.png".into(), b"P5 1 1 255 a".to_vec());
     assert!(missing(&mut memory).starts_with("flag.esObj:1:5: found `flag.obj`"));
     memory.0.insert("flag.obj".into(), b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec());
     let scene = parse(text, "test.sim", &mut memory).unwrap().value;
     assert!(scene.world.floor_texture.unwrap().image.is_some());
-    assert!(scene.world.terrain.unwrap().image.image.is_some());
+    assert!(scene.world.terrain.unwrap().surface.is_some());
     assert_eq!(scene.world.objects[0].kind.mesh.as_ref().unwrap().faces.len(), 1);
 }
 

@@ -93,7 +93,13 @@ fn a_model_is_drawn_where_its_corners_are() {
     let mesh = Mesh { materials: vec![Material { colour: Colour::RED, image: None }], faces };
     let shape = Shape::Sphere { radius: 0.01 };
     let kind = ObjectKind { mesh: Some(Arc::new(mesh)), ..ObjectKind::new("flag", shape, Colour::GREEN) };
-    scene.world.objects.push(Object::new(Arc::new(kind), Pose::new(6.0, 4.0, 0.0)));
+    let pose = Pose::new(6.0, 4.0, 0.0);
+    let robot = RobotSpec { mesh: kind.mesh.clone(), ..RobotSpec::s4() };
+    scene.robots.push(RobotPlacement::new(Arc::new(robot), pose));
+    let of_a_robot = picture(&scene);
+    scene.robots.pop();
+    scene.world.objects.push(Object::new(Arc::new(kind), pose));
+    assert!(of_a_robot == picture(&scene), "a robot's model is drawn as an object's");
     let depth = 2.0 - AHEAD;
     let expected = [
         160.0 - focal() * 0.2 / depth,

@@ -1,0 +1,48 @@
+//! Which library a program gets.
+
+use std::fs::{self, File};
+use std::process::Command;
+use std::time::SystemTime;
+
+use serde_json::Value;
+
+use super::{Folder, compiled, compiler, library};
+
+const PRINT: &str = "#include \"eyebot.h\"\nint main() { return LCDPrintf(\"here\"); }\n";
+
+/// `cargo test` puts its library into `deps`, and leaves alone what an earlier `cargo build` has put beside the runner.
+#[test]
+fn a_library_that_an_earlier_build_has_left_is_not_taken() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("library-old");
+    let file = folder.write("print.c", PRINT);
+    let old = File::create(folder.0.join("libeyesim.so")).unwrap();
+    old.set_modified(SystemTime::UNIX_EPOCH).unwrap();
+    fs::create_dir(folder.0.join("deps")).unwrap();
+    fs::hard_link(library(), folder.0.join("deps/libeyesim.so")).unwrap();
+    fs::hard_link(env!("CARGO_BIN_EXE_robios"), folder.0.join("robios")).unwrap();
+    let output = Command::new(folder.0.join("robios")).arg("--json").arg(&file).output().unwrap();
+    let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&told["outcome"], &told["lcd_text"]), (&"finished".into(), &"here".into()), "{told}");
+}
+
+#[test]
+fn a_library_of_another_build_refuses_and_says_so() {
+    if !compiler() {
+        return;
+    }
+    let folder = Folder::new("library-other");
+    let program = compiled(&folder.write("print.c", PRINT));
+    let run = |build: Option<&str>| {
+        let mut command = Command::new(&program);
+        command.envs(build.map(|build| ("ROBIOS_BUILD", build)));
+        let output = command.output().unwrap();
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    assert_eq!(run(None), (Some(0), String::new()), "without a runner there is nothing to compare");
+    let (code, said) = run(Some("another"));
+    assert_eq!(code, Some(1));
+    assert!(said.contains("of another build") && said.contains("cargo build -p robios"), "{said}");
+}

@@ -1,0 +1,30 @@
+use super::{Point, Vector, cross};
+
+/// How a disc about the origin that moves in a direction, a unit vector, meets a point: the metres until its middle is beside
+/// the point, and by how many its rim is there before. `None` for what it passes, and for what lies behind its middle.
+pub fn meeting(point: &Point, towards: Vector, radius: f64) -> Option<(f64, f64)> {
+    let (along, across) = (point.coords.dot(&towards), cross(towards, point.coords));
+    let depth = radius * radius - across * across;
+    (along > 0.0 && depth > 0.0).then(|| (along, depth.sqrt()))
+}
+
+/// How far such a disc can move until it touches one of some points, and which: in metres, infinite where none is in the way.
+/// Less than 0 for a point ahead that lies within the disc already.
+///
+/// ```
+/// use roverlab::geometry::{Point, Vector, free_distance};
+/// let points = [Point::new(1.0, 0.03), Point::new(2.0, 0.0), Point::new(-0.01, 0.0)];
+/// let (free, touched) = free_distance(&points, Vector::x(), 0.05);
+/// assert!((free - 0.96).abs() < 1e-12 && touched == Some(points[0]));
+/// ```
+pub fn free_distance(points: &[Point], towards: Vector, radius: f64) -> (f64, Option<Point>) {
+    let mut free = (f64::INFINITY, None);
+    for point in points {
+        if let Some((along, before)) = meeting(point, towards, radius)
+            && along - before < free.0
+        {
+            free = (along - before, Some(*point));
+        }
+    }
+    free
+}

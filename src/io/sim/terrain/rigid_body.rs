@@ -1,0 +1,393 @@
+use nalgebra::{Quaternion, UnitQuaternion};
+
+use super::undercarriage::{GRAVITY, Grip, Undercarriage};
+use crate::geometry::{Point3, Pose, Pose3, Vector3, math};
+use crate::kinematics::PlanarTwist;
+use crate::world::HeightField;
+
+/// A robot's body of mass 1 on its feet.
+#[derive(Debug, Clone)]
+pub(super) struct RigidBody {
+    /// The middle of the mass, and how the body is turned.
+    place: Point3,
+    attitude: UnitQuaternion<f64>,
+    velocity: Vector3,
+    /// Radians per second about each axis of the world.
+    spin: Vector3,
+    /// Each foot's impulse in the last tick: along the ground's normal, and along two tangents.
+    impulses: Vec<Vector3>,
+    contacts: Vec<Contact>,
+    /// Whether the last tick did not move it.
+    asleep: bool,
+}
+
+/// A foot on the ground, or about to be.
+#[derive(Debug, Clone)]
+struct Contact {
+    foot: usize,
+    /// From the middle of the mass.
+    arm: Vector3,
+    /// Metres above the ground at the tick's begin.
+    gap: f64,
+    normal: Vector3,
+    /// The directions in which it is held, and the rim's speeds along them.
+    tangents: [Vector3; 2],
+    held: usize,
+    rim: [f64; 2],
+    /// Impulses along the normal and the tangents, and how much of a speed each takes for one.
+    impulse: Vector3,
+    effort: Vector3,
+}
+
+/// Looks at the ground in a tick: where the first says that feet will be, the second looks.
+const LOOKS: usize = 2;
+/// Rounds over all contacts, at most, and the change of an impulse below which they end, in m/s.
+const MOST_ROUNDS: usize = 60;
+const SETTLED: f64 = 1e-10;
+/// Feet of a body at rest that are higher than this are not looked at further.
+const MARGIN: f64 = 5e-3;
+/// A foot that would end this deep looks where it comes into the ground.
+const DEEP: f64 = 1.5e-3;
+/// The energy of motion, in J for a kilogram, of a body that stands: 10 µm/s.
+const ASLEEP: f64 = 5e-11;
+/// The speed at which a body that was put into the ground comes out of it, in m/s.
+const EMERGING: f64 = 0.25;
+
+impl RigidBody {
+    /// A body at rest, its robot's frame at a pose.
+    pub(super) fn new(carriage: &Undercarriage, pose: &Pose3) -> Self {
+        Self {
+            place: pose.to_world(Point3::from(carriage.centre)),
+            attitude: pose.attitude,
+            velocity: Vector3::zeros(),
+            spin: Vector3::zeros(),
+            impulses: vec![Vector3::zeros(); carriage.feet.len()],
+            contacts: Vec::with_capacity(carriage.feet.len()),
+            asleep: false,
+        }
+    }
+
+    /// The pose of the robot's frame.
+    pub(super) fn pose(&self, carriage: &Undercarriage) -> Pose3 {
+        Pose3::new(self.place - self.attitude * carriage.centre, self.attitude)
+    }
+
+    /// The middle of the mass.
+    pub(super) fn middle(&self) -> Point3 {
+        self.place
+    }
+
+    /// Metres per second of the middle of the mass.
+    pub(super) fn velocity(&self) -> Vector3 {
+        self.velocity
+    }
+
+    /// Radians per second about each axis of the world.
+    pub(super) fn spin(&self) -> Vector3 {
+        self.spin
+    }
+
+    /// Whether it stands and nothing but a drive would move it.
+    pub(super) fn is_asleep(&self) -> bool {
+        self.asleep
+    }
+
+    /// Whether a foot carried it in the last tick.
+    pub(super) fn is_carried(&self) -> bool {
+        self.impulses.iter().any(|impulse| impulse.x > 0.0)
+    }
+
+    /// Energy for a kilogram, in J, above that of rest at height 0.
+    pub(super) fn energy(&self, carriage: &Undercarriage) -> f64 {
+        GRAVITY * self.place.z + self.kinetic(carriage)
+    }
+
+    fn kinetic(&self, carriage: &Undercarriage) -> f64 {
+        0.5 * (self.velocity.norm_squared() + carriage.gyration * self.spin.norm_squared())
+    }
+
+    /// Moves the body for `tick` seconds, while its drive turns wheels so that they would move it at a speed on
+    /// level ground.
+    pub(super) fn step(
+        &mut self,
+        ground: &HeightField,
+        carriage: &Undercarriage,
+        drive: &PlanarTwist,
+        tick: f64,
+    ) {
+        let (before, place, attitude) = (self.energy(carriage), self.place, self.attitude);
+        self.advance(ground, carriage, drive, tick);
+        let driven = *drive != PlanarTwist::STOP;
+        if !driven && !self.keeps_energy(before, carriage) {
+            (self.place, self.attitude) = (place, attitude);
+        }
+        self.asleep = !driven && self.is_carried() && self.kinetic(carriage) < ASLEEP;
+    }
+
+    fn advance(&mut self, ground: &HeightField, carriage: &Undercarriage, drive: &PlanarTwist, tick: f64) {
+        let free = self.velocity - Vector3::z() * (GRAVITY * tick);
+        let (mut velocity, mut spin) = (self.velocity, self.spin);
+        for _ in 0..LOOKS {
+            self.look(ground, carriage, drive, (velocity, spin), tick);
+            (velocity, spin) = self.solve(carriage, (free, self.spin), tick);
+        }
+        (self.velocity, self.spin) = (velocity, spin);
+        self.place += velocity * tick;
+        self.attitude = UnitQuaternion::new_normalize((turn(spin * tick) * self.attitude).into_inner());
+    }
+
+    /// Slows the body down if it has come to more energy without a motor, because the ground has an edge of which the
+    /// tick does not know. Returns whether it may be where it is.
+    fn keeps_energy(&mut self, before: f64, carriage: &Undercarriage) -> bool {
+        let (more, kinetic) = (self.energy(carriage) - before, self.kinetic(carriage));
+        if more <= 0.0 {
+            return true;
+        }
+        let left = if kinetic > more { (1.0 - more / kinetic).sqrt() } else { 0.0 };
+        self.velocity *= left;
+        self.spin *= left;
+        kinetic >= more
+    }
+
+    /// Finds the feet that meet the ground in this tick if the body moves at about these speeds.
+    fn look(
+        &mut self,
+        ground: &HeightField,
+        carriage: &Undercarriage,
+        drive: &PlanarTwist,
+        (velocity, spin): (Vector3, Vector3),
+        tick: f64,
+    ) {
+        // Arms and rims point as they do in the middle of the tick, so that an arc is one.
+        let middle = turn(spin * (0.5 * tick)) * self.attitude;
+        let forward = middle * Vector3::x();
+        // A body that hits the ground on one side turns its other side towards it within the tick.
+        let margin = MARGIN + tick * self.velocity.norm();
+        self.contacts.clear();
+        for (number, foot) in carriage.feet.iter().enumerate() {
+            let start = self.place + self.attitude * foot.place;
+            let arm = middle * foot.place;
+            let way = (velocity + spin.cross(&arm)) * tick;
+            let Some((normal, gap)) = plane(ground, start, way) else { continue };
+            if gap + normal.dot(&way) > margin {
+                self.impulses[number] = Vector3::zeros();
+                continue;
+            }
+            let impulse = self.impulses[number];
+            let mut contact = Contact {
+                foot: number,
+                arm,
+                gap: gap.max(-EMERGING * tick),
+                normal,
+                tangents: [Vector3::zeros(); 2],
+                held: 0,
+                rim: [0.0; 2],
+                impulse,
+                effort: Vector3::zeros(),
+            };
+            contact.hold(foot.grip, forward, drive);
+            contact.weigh(carriage.gyration);
+            self.contacts.push(contact);
+        }
+    }
+
+    /// The speeds at the tick's end, from those without the ground.
+    fn solve(
+        &mut self,
+        carriage: &Undercarriage,
+        (mut velocity, mut spin): (Vector3, Vector3),
+        tick: f64,
+    ) -> (Vector3, Vector3) {
+        let (inertia, softness) = (1.0 / carriage.gyration, carriage.softness / (tick * tick));
+        let push = |contact: &Contact, impulse: Vector3, speeds: &mut (Vector3, Vector3)| {
+            speeds.0 += impulse;
+            speeds.1 += contact.arm.cross(&impulse) * inertia;
+        };
+        let mut speeds = (velocity, spin);
+        for contact in &self.contacts {
+            push(contact, contact.whole(), &mut speeds);
+        }
+        for _ in 0..MOST_ROUNDS {
+            let mut change = 0.0_f64;
+            for contact in &mut self.contacts {
+                let moving = speeds.0 + speeds.1.cross(&contact.arm);
+                let pressed = contact.press(&moving, softness, tick);
+                push(contact, contact.normal * pressed, &mut speeds);
+                let moving = speeds.0 + speeds.1.cross(&contact.arm);
+                let rubbed = contact.rub(&moving, carriage.friction);
+                push(contact, rubbed, &mut speeds);
+                change = change.max(pressed.abs()).max(rubbed.norm());
+            }
+            if change < SETTLED {
+                break;
+            }
+        }
+        (velocity, spin) = speeds;
+        for contact in &self.contacts {
+            self.impulses[contact.foot] = contact.impulse;
+        }
+        (velocity, spin)
+    }
+
+    /// Moves the body aside, as something in the way of its outline does, and takes the speed that led it there.
+    pub(super) fn shove(&mut self, aside: crate::geometry::Vector, turned: f64, tick: f64) {
+        let way = Vector3::new(aside.x, aside.y, 0.0);
+        self.place += way;
+        self.attitude = turn(Vector3::z() * turned) * self.attitude;
+        self.asleep = false;
+        self.velocity += way / tick;
+        self.spin.z += turned / tick;
+    }
+
+    /// A body that rests on the ground, its robot's frame at a pose in the plane.
+    pub(super) fn resting(ground: &HeightField, carriage: &Undercarriage, pose: Pose, tick: f64) -> Self {
+        let (level, slope) = ground.height_and_gradient(pose.position()).unwrap_or_default();
+        let forward = Vector3::new(pose.forward().x, pose.forward().y, slope.dot(&pose.forward()));
+        let left = Vector3::new(-slope.x, -slope.y, 1.0).cross(&forward).normalize();
+        let pitch = -math::atan(forward.z);
+        let roll = math::asin((left.z / math::cos(pitch)).clamp(-1.0, 1.0));
+        let start = Point3::new(pose.x, pose.y, level);
+        let mut body = Self::new(carriage, &Pose3::from_angles(start, roll, pitch, pose.heading));
+        body.settle(ground, carriage, tick);
+        body
+    }
+
+    /// Comes to rest without sliding.
+    fn settle(&mut self, ground: &HeightField, carriage: &Undercarriage, tick: f64) {
+        let held = Undercarriage { friction: f64::MAX, ..carriage.clone() };
+        let goal = self.pose(carriage).position.xy();
+        for _ in 0..MOST_SETTLING {
+            let before = self.place;
+            self.advance(ground, &held, &PlanarTwist::STOP, tick);
+            let aside = goal - self.pose(carriage).position.xy();
+            self.place += Vector3::new(aside.x, aside.y, 0.0);
+            if (self.place - before).norm() < 1e-9 && self.is_carried() {
+                break;
+            }
+            self.velocity *= CALMING;
+            self.spin *= CALMING;
+        }
+        (self.velocity, self.spin) = (Vector3::zeros(), Vector3::zeros());
+    }
+}
+
+/// Ticks in which a body comes to rest where it is put, at most, and the share of its speed that each leaves it.
+const MOST_SETTLING: u32 = 400;
+const CALMING: f64 = 0.8;
+
+/// The normal of the ground where a foot comes to on its way, and the foot's distance from that plane at its start;
+/// `None` beyond the ground.
+fn plane(ground: &HeightField, start: Point3, way: Vector3) -> Option<(Vector3, f64)> {
+    let at = |end: Point3| {
+        let (level, slope) = ground.height_and_gradient(end.xy())?;
+        let normal = Vector3::new(-slope.x, -slope.y, 1.0).normalize();
+        let below = start.z - level - slope.dot(&(start.xy() - end.xy()));
+        Some((normal, below * normal.z))
+    };
+    let (normal, gap) = at(start + way)?;
+    if gap + normal.dot(&way) > -DEEP {
+        return Some((normal, gap));
+    }
+    // Under the end there may be the ground behind a face that the foot runs into.
+    let clear = ground.height(start.xy()).map_or(0.0, |level| start.z - level);
+    let length = way.norm();
+    if clear < -DEEP || length == 0.0 {
+        return Some((normal, gap));
+    }
+    let lifted = start + Vector3::z() * (DEEP - clear.min(0.0));
+    let direction = way / length;
+    let hit = ground.cast_ray(lifted, direction, length + DEEP);
+    if hit.is_finite() { at(lifted + direction * (hit + 1e-9)) } else { Some((normal, gap)) }
+}
+
+/// The rotation by a vector's length about it.
+fn turn(by: Vector3) -> UnitQuaternion<f64> {
+    let angle = by.norm();
+    if angle == 0.0 {
+        return UnitQuaternion::identity();
+    }
+    let (sin, cos) = math::sin_cos(0.5 * angle);
+    let axis = by * (sin / angle);
+    UnitQuaternion::new_unchecked(Quaternion::new(cos, axis.x, axis.y, axis.z))
+}
+
+impl Contact {
+    /// Finds the directions in which a foot holds on, and how fast its rim moves along them.
+    fn hold(&mut self, grip: Grip, forward: Vector3, drive: &PlanarTwist) {
+        let along = forward - self.normal * forward.dot(&self.normal);
+        // With the robot's nose along the normal, any direction is as good.
+        let along = along.try_normalize(1e-9).unwrap_or_else(|| {
+            Vector3::z().cross(&self.normal).try_normalize(1e-9).unwrap_or_else(Vector3::x)
+        });
+        let left = self.normal.cross(&along);
+        let rim = grip.rim_speed(drive);
+        let single = |axis: crate::geometry::Vector| (along * axis.x + left * axis.y, axis.dot(&rim));
+        match grip {
+            Grip::Free => {}
+            Grip::Driven(_) | Grip::Body => {
+                (self.tangents, self.held, self.rim) = ([along, left], 2, [rim.x, rim.y]);
+            }
+            Grip::Rolling(_) => {
+                let rolls = rim.try_normalize(1e-6).unwrap_or_else(crate::geometry::Vector::x);
+                let across = crate::geometry::Vector::new(-rolls.y, rolls.x);
+                (self.tangents[0], self.rim[0]) = single(across);
+                self.held = 1;
+            }
+            Grip::Roller(_, axis) => {
+                (self.tangents[0], self.rim[0]) = single(axis);
+                self.held = 1;
+            }
+        }
+    }
+
+    /// How much of a speed at the foot an impulse of 1 gives, along the normal and the tangents.
+    fn weigh(&mut self, gyration: f64) {
+        let effort = |axis: &Vector3| 1.0 + self.arm.cross(axis).norm_squared() / gyration;
+        self.effort =
+            Vector3::new(effort(&self.normal), effort(&self.tangents[0]), effort(&self.tangents[1]));
+        if self.held < 2 {
+            self.impulse.z = 0.0;
+        }
+        if self.held == 0 {
+            self.impulse.y = 0.0;
+        }
+    }
+
+    /// Its impulse in the world.
+    fn whole(&self) -> Vector3 {
+        self.normal * self.impulse.x + self.tangents[0] * self.impulse.y + self.tangents[1] * self.impulse.z
+    }
+
+    /// Presses the foot against the ground as hard as its speed asks for; returns the change of the impulse.
+    #[inline]
+    fn press(&mut self, moving: &Vector3, softness: f64, tick: f64) -> f64 {
+        let missing = -(self.normal.dot(moving) + self.gap / tick + softness * self.impulse.x);
+        let pressed = (self.impulse.x + missing / (self.effort.x + softness)).max(0.0);
+        let change = pressed - self.impulse.x;
+        self.impulse.x = pressed;
+        change
+    }
+
+    /// Rubs the foot along the ground as its sliding asks for, within friction's limit; returns the change of the
+    /// impulse.
+    #[inline]
+    fn rub(&mut self, moving: &Vector3, friction: f64) -> Vector3 {
+        let limit = friction * self.impulse.x;
+        let slides = |axis: usize| self.tangents[axis].dot(moving) - self.rim[axis];
+        let (before_y, before_z) = (self.impulse.y, self.impulse.z);
+        let (mut y, mut z) = (0.0, 0.0);
+        if self.held > 0 {
+            y = before_y - slides(0) / self.effort.y;
+        }
+        if self.held > 1 {
+            z = before_z - slides(1) / self.effort.z;
+        }
+        let size = math::hypot(y, z);
+        if size > limit {
+            let share = limit / size;
+            (y, z) = (y * share, z * share);
+        }
+        (self.impulse.y, self.impulse.z) = (y, z);
+        self.tangents[0] * (y - before_y) + self.tangents[1] * (z - before_z)
+    }
+}

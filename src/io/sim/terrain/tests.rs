@@ -1,0 +1,335 @@
+use std::f64::consts::TAU;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::geometry::{Aabb, Point, Point3, Pose, Pose3, Vector, math, units};
+use crate::io::sim::TICK;
+use crate::kinematics::{PlanarTwist, advance_planar};
+use crate::random::Stream;
+use crate::world::{HeightField, RobotSpec};
+
+/// A field of 8 m by 8 m with heights of a function from its middle.
+fn field(samples: usize, height: impl FnMut(Point) -> f64) -> HeightField {
+    let area = Aabb::new(Point::new(-4.0, -4.0), Point::new(4.0, 4.0));
+    HeightField::from_fn(samples, samples, area, height).unwrap()
+}
+
+/// A plane that rises along x.
+fn incline(degrees: f64) -> HeightField {
+    let rise = math::tan(units::from_deg(degrees));
+    field(33, move |at| rise * at.x)
+}
+
+/// Smooth hills.
+fn hills(seed: u64, height: f64) -> HeightField {
+    let mut stream = Stream::new(seed);
+    let waves: Vec<_> = (0..8)
+        .map(|_| {
+            (Vector::new(stream.between(-3.0, 3.0), stream.between(-3.0, 3.0)), stream.between(0.0, 6.0))
+        })
+        .collect();
+    field(257, |at| {
+        waves.iter().map(|(wave, phase)| height / 8.0 * math::sin(wave.dot(&at.coords) + phase)).sum()
+    })
+}
+
+struct Robot {
+    carriage: Undercarriage,
+    body: RigidBody,
+}
+
+impl Robot {
+    /// A robot that rests on the ground.
+    fn resting(spec: &RobotSpec, ground: &HeightField, pose: Pose) -> Self {
+        Self::with(Undercarriage::of(spec), ground, pose)
+    }
+
+    fn with(carriage: Undercarriage, ground: &HeightField, pose: Pose) -> Self {
+        let body = RigidBody::resting(ground, &carriage, pose, TICK);
+        Self { carriage, body }
+    }
+
+    fn step(&mut self, ground: &HeightField, drive: PlanarTwist) {
+        self.body.step(ground, &self.carriage, &drive, TICK);
+    }
+
+    fn run(&mut self, ground: &HeightField, drive: PlanarTwist, seconds: f64) {
+        for _ in 0..(seconds / TICK).round() as u32 {
+            self.step(ground, drive);
+        }
+    }
+
+    fn pose(&self) -> Pose3 {
+        self.body.pose(&self.carriage)
+    }
+
+    /// The depth of the deepest foot in the ground, along its normal.
+    fn depth(&self, ground: &HeightField) -> f64 {
+        let pose = self.pose();
+        let depth = |foot: &super::undercarriage::Foot| {
+            let at = pose.to_world(Point3::from(foot.place + self.carriage.centre));
+            let upright = ground.normal(at.xy()).map_or(1.0, |normal| normal.z);
+            ground.height(at.xy()).map_or(f64::NEG_INFINITY, |level| (level - at.z) * upright)
+        };
+        self.carriage.feet.iter().map(depth).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+fn robots() -> Vec<RobotSpec> {
+    vec![RobotSpec::s4(), RobotSpec::labbot(), RobotSpec::omni(), RobotSpec::car(), RobotSpec::blizzard()]
+}
+
+#[test]
+fn robots_stand_level_on_level_ground_and_stay() {
+    let ground = incline(0.0);
+    for spec in robots() {
+        let mut robot = Robot::resting(&spec, &ground, Pose::new(0.3, -0.2, 0.7));
+        let start = robot.pose();
+        assert!(start.position.z.abs() < 5e-4 && start.tilt() < 2e-3, "{}: {start:?}", spec.name);
+        robot.run(&ground, PlanarTwist::STOP, 10.0);
+        let moved = robot.pose().position - start.position;
+        assert!(moved.norm() < 1e-6, "{}: {moved:?}", spec.name);
+    }
+}
+
+/// Without slip a drive moves as on the floor.
+#[test]
+fn on_level_ground_robots_move_as_their_wheels_turn() {
+    let ground = incline(0.0);
+    for spec in robots() {
+        for drive in [
+            PlanarTwist::new(0.3, 0.0, 0.0),
+            PlanarTwist::new(0.3, 0.0, 0.5),
+            PlanarTwist::new(-0.2, 0.0, 0.3),
+        ] {
+            let start = Pose::new(-1.0, 0.0, 0.4);
+            let mut robot = Robot::resting(&spec, &ground, start);
+            let mut expected = robot.pose().pose();
+            for tick in 0..500 {
+                let part = (f64::from(tick) / 50.0).min(1.0);
+                robot.step(&ground, drive.scaled(part));
+                expected = advance_planar(expected, drive.scaled(part).during(TICK));
+            }
+            let found = robot.pose().pose();
+            let apart = (found.position() - expected.position()).norm();
+            let turned = crate::geometry::angle_difference(found.heading, expected.heading);
+            // Belts skid when they turn, and are calibrated for turns on the spot alone.
+            let skids = spec.name == "Blizzard" && drive.angular != 0.0;
+            let slack = if skids { 0.3 * drive.angular.abs() * 5.0 } else { 1e-3 };
+            assert!(apart < slack && turned.abs() < slack, "{} {drive:?}: {apart} {turned}", spec.name);
+        }
+    }
+}
+
+/// Turning on the spot, a tracked robot does as its odometry believes.
+#[test]
+fn belts_are_calibrated_for_turns_on_the_spot() {
+    let ground = incline(0.0);
+    let mut robot = Robot::resting(&RobotSpec::blizzard(), &ground, Pose::new(0.0, 0.0, 0.0));
+    let drive = PlanarTwist::new(0.0, 0.0, 0.5);
+    let (mut turned, mut before) = (0.0, 0.0);
+    for _ in 0..1000 {
+        robot.step(&ground, drive);
+        let heading = robot.pose().pose().heading;
+        turned += crate::geometry::angle_difference(heading, before);
+        before = heading;
+    }
+    assert!((turned - 5.0).abs() < 0.1, "{turned}");
+    assert!(robot.pose().position.xy().coords.norm() < 0.01, "{:?}", robot.pose());
+}
+
+#[test]
+fn a_robot_on_a_plane_has_its_attitude() {
+    for (spec, degrees, heading) in
+        [(RobotSpec::s4(), 10.0, 0.0), (RobotSpec::labbot(), 15.0, 1.0), (RobotSpec::car(), 20.0, 2.5)]
+    {
+        let ground = incline(degrees);
+        let robot = Robot::resting(&spec, &ground, Pose::new(0.0, 0.0, heading));
+        let normal = ground.normal(Point::origin()).unwrap();
+        let apart = math::acos(robot.pose().up().dot(&normal).min(1.0));
+        assert!(units::to_deg(apart) < 0.3, "{}: {}", spec.name, units::to_deg(apart));
+        let height = ground.height(robot.pose().position.xy()).unwrap();
+        assert!((robot.pose().position.z - height).abs() < 1e-3);
+    }
+}
+
+/// The steepest slope, in degrees, on which a robot with its wheels held does not move.
+fn slips_at(carriage: &Undercarriage, heading: f64) -> f64 {
+    let holds = |degrees: f64| {
+        let ground = incline(degrees);
+        let mut robot = Robot::with(carriage.clone(), &ground, Pose::new(0.0, 0.0, heading));
+        let start = robot.pose().position;
+        robot.run(&ground, PlanarTwist::STOP, 1.0);
+        (robot.pose().position - start).norm() < 1e-4
+    };
+    let (mut low, mut high) = (0.0, 60.0);
+    while high - low > 0.02 {
+        let middle = 0.5 * (low + high);
+        if holds(middle) { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+#[test]
+fn a_car_with_four_braked_wheels_slips_at_the_angle_of_friction() {
+    let mut carriage = Undercarriage::of(&RobotSpec::car());
+    for foot in &mut carriage.feet {
+        if let super::undercarriage::Grip::Rolling(axle) = foot.grip {
+            foot.grip = super::undercarriage::Grip::Driven(axle);
+        }
+    }
+    for friction in [0.3, 0.6] {
+        carriage.friction = friction;
+        for eighth in 0..8 {
+            let found = slips_at(&carriage, TAU / 8.0 * f64::from(eighth) + 0.1);
+            let expected = units::to_deg(math::atan(friction));
+            assert!((found - expected).abs() < 0.2, "{friction}, {eighth}: {found} {expected}");
+        }
+    }
+}
+
+/// Tips over sideways when the middle of the mass is above the lower wheels.
+#[test]
+fn a_car_tips_where_its_middle_leaves_its_wheels() {
+    let spec = RobotSpec::car();
+    let crate::world::DriveSpec::Ackermann { track, .. } = spec.drive else { unreachable!() };
+    let mut carriage = Undercarriage::of(&spec);
+    carriage.friction = 5.0;
+    let high = 0.5 * track / math::tan(units::from_deg(30.0));
+    let up = high - carriage.centre.z;
+    carriage.centre.z = high;
+    for foot in &mut carriage.feet {
+        foot.place.z -= up;
+        if let super::undercarriage::Grip::Rolling(axle) = foot.grip {
+            foot.grip = super::undercarriage::Grip::Driven(axle);
+        }
+    }
+    for (degrees, tips) in [(29.5, false), (30.5, true)] {
+        for heading in [TAU / 4.0, -TAU / 4.0] {
+            let ground = incline(degrees);
+            let mut robot = Robot::with(carriage.clone(), &ground, Pose::new(0.0, 0.0, heading));
+            robot.run(&ground, PlanarTwist::STOP, 3.0);
+            let normal = ground.normal(Point::origin()).unwrap();
+            let leaning = units::to_deg(math::acos(robot.pose().up().dot(&normal).min(1.0)));
+            assert_eq!(leaning > 20.0, tips, "{degrees} {heading}: {leaning}");
+        }
+    }
+}
+
+#[test]
+fn a_drop_ends_on_the_ground() {
+    let ground = incline(0.0);
+    let carriage = Undercarriage::of(&RobotSpec::s4());
+    let pose = Pose3::from_angles(Point3::new(0.0, 0.0, 0.5), 0.2, -0.1, 0.3);
+    let body = RigidBody::new(&carriage, &pose);
+    let mut robot = Robot { carriage, body };
+    robot.run(&ground, PlanarTwist::STOP, 0.2);
+    assert!(!robot.body.is_carried() && (robot.body.velocity().z + 1.962).abs() < 1e-6);
+    robot.run(&ground, PlanarTwist::STOP, 2.0);
+    assert!(robot.pose().tilt() < 0.01 && robot.pose().position.z.abs() < 1e-3, "{:?}", robot.pose());
+}
+
+/// A wall of one cell's width stops a robot, which does not climb it.
+#[test]
+fn a_steep_face_stops_a_robot() {
+    let ground = field(801, |at| if at.x > 0.505 { 0.2 } else { 0.0 });
+    for spec in robots() {
+        let mut robot = Robot::resting(&spec, &ground, Pose::new(0.0, 0.0, 0.0));
+        for _ in 0..500 {
+            robot.step(&ground, PlanarTwist::new(0.3, 0.0, 0.0));
+            assert!(robot.depth(&ground) < 0.004, "{}: {}", spec.name, robot.depth(&ground));
+        }
+        let end = robot.pose();
+        assert!(end.position.x < 0.6 && end.position.z < 0.1, "{}: {end:?}", spec.name);
+    }
+}
+
+#[test]
+fn a_robot_drives_up_a_ramp_and_falls_off_a_ledge() {
+    let ground = field(401, |at| {
+        if at.x < 0.0 {
+            0.0
+        } else if at.x < 1.0 {
+            0.2 * at.x
+        } else if at.x < 2.0 {
+            0.2
+        } else {
+            0.0
+        }
+    });
+    let mut robot = Robot::resting(&RobotSpec::labbot(), &ground, Pose::new(-1.0, 0.0, 0.0));
+    robot.run(&ground, PlanarTwist::new(0.25, 0.0, 0.0), 10.0);
+    let on_top = robot.pose();
+    assert!((on_top.position.z - 0.2).abs() < 2e-3 && on_top.position.y.abs() < 1e-3, "{on_top:?}");
+    let mut flew = false;
+    for _ in 0..1000 {
+        robot.step(&ground, PlanarTwist::new(0.25, 0.0, 0.0));
+        flew |= !robot.body.is_carried();
+    }
+    let down = robot.body.middle();
+    assert!(flew && down.x > 1.9 && down.z < 0.15, "{down:?}");
+}
+
+/// Halving the tick changes little.
+#[test]
+fn the_tick_matters_little() {
+    let ground = hills(5, 0.4);
+    let drive = PlanarTwist::new(0.25, 0.0, 0.02);
+    for spec in robots() {
+        let ends = [1, 2, 4].map(|parts| {
+            let mut robot = Robot::resting(&spec, &ground, Pose::new(-2.0, -1.0, 0.3));
+            for _ in 0..1000 * parts {
+                robot.body.step(&ground, &robot.carriage, &drive, TICK / f64::from(parts));
+            }
+            robot.pose()
+        });
+        for pair in ends.windows(2) {
+            let apart = (pair[1].position - pair[0].position).norm();
+            let turned = crate::geometry::angle_difference(pair[1].pose().heading, pair[0].pose().heading);
+            // Of four rigid Mecanum wheels one is lifted at any time, and the others slip; belts always do.
+            let slack = if ["Omni", "Blizzard"].contains(&spec.name.as_str()) { 10.0 } else { 1.0 };
+            let near = apart < slack * 1e-3 && units::to_deg(turned).abs() < slack * 0.1;
+            assert!(near, "{}: {apart} {turned}", spec.name);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(crate::testing::cases(64))]
+    #[test]
+    fn without_motors_energy_never_rises_and_nothing_sinks_in(
+        seed in 0..1000_u64, robot in 0..5_usize, (x, y) in (-2.0..2.0f64, -2.0..2.0f64),
+        (roll, pitch, yaw) in (-0.5..0.5f64, -0.5..0.5f64, -3.0..3.0f64), drop in 0.05..0.4f64,
+        (vx, vy, w) in (-1.0..1.0f64, -1.0..1.0f64, -3.0..3.0f64),
+    ) {
+        let ground = hills(seed, 1.5);
+        let carriage = Undercarriage::of(&robots()[robot]);
+        let at = Point::new(x, y);
+        let reach = carriage.feet.iter().map(|foot| foot.place.norm()).fold(0.0, f64::max);
+        let pose = Pose3::from_angles(Point3::new(x, y, ground.height(at).unwrap() + drop + 1.5 * reach), roll, pitch, yaw);
+        let mut body = RigidBody::new(&carriage, &pose);
+        body.shove(Vector::new(vx, vy) * TICK, w * TICK, TICK);
+        let mut robot = Robot { carriage, body };
+        let mut energy = robot.body.energy(&robot.carriage);
+        for tick in 0..200 {
+            robot.step(&ground, PlanarTwist::STOP);
+            let now = robot.body.energy(&robot.carriage);
+            prop_assert!(now <= energy + 1e-9, "tick {}: {} J/kg more", tick, now - energy);
+            energy = now;
+            prop_assert!(robot.depth(&ground) < 0.01, "tick {}: {} m deep", tick, robot.depth(&ground));
+        }
+    }
+}
+
+#[test]
+fn speeds_are_finite_on_any_ground() {
+    let mut stream = Stream::new(9);
+    let ground = field(65, |_| stream.between(-1.0, 1.0));
+    let mut robot = Robot::resting(&RobotSpec::s4(), &ground, Pose::new(0.0, 0.0, 0.0));
+    for tick in 0..2000 {
+        let drive = PlanarTwist::new(0.4, 0.0, f64::from(tick % 7) - 3.0);
+        robot.step(&ground, drive);
+        assert!(robot.pose().is_finite() && robot.body.velocity().norm() < 20.0, "tick {tick}");
+    }
+}

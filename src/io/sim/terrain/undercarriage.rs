@@ -1,0 +1,207 @@
+use std::f64::consts::FRAC_PI_4;
+
+use crate::geometry::{Vector, Vector3, direction, math, units};
+use crate::kinematics::{PlanarTwist, Tracked};
+use crate::world::{DriveSpec, Footprint, RobotSpec};
+
+/// What of a robot meets the ground, and how.
+#[derive(Debug, Clone)]
+pub(super) struct Undercarriage {
+    /// The middle of the mass in the robot's frame, whose origin is on the ground under the driven axle.
+    pub(super) centre: Vector3,
+    /// The square of the mean radius of gyration, in m².
+    pub(super) gyration: f64,
+    pub(super) feet: Vec<Foot>,
+    /// Metres by which a foot sinks in for an acceleration of the body, in s².
+    pub(super) softness: f64,
+    /// The coefficient of friction.
+    pub(super) friction: f64,
+}
+
+/// A point that may meet the ground.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Foot {
+    /// Where it is, from the middle of the mass.
+    pub(super) place: Vector3,
+    pub(super) grip: Grip,
+}
+
+/// How a foot holds on to the ground.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Grip {
+    /// A part of a driven wheel or belt: forward as its axle does, and not sideways. The axle's place from the robot's
+    /// origin.
+    Driven(Vector),
+    /// A wheel that rolls freely the way its axle moves, and does not slide across it.
+    Rolling(Vector),
+    /// A Mecanum wheel, which holds along the axle of its roller alone: the wheel's place, and that axle.
+    Roller(Vector, Vector),
+    /// The body itself, which does not move against itself.
+    Body,
+    /// A castor, which rolls any way.
+    Free,
+}
+
+/// Metres by which a body sinks in that stands on all its wheels.
+const SAG: f64 = 1e-4;
+/// Metres per second squared.
+pub(super) const GRAVITY: f64 = 9.81;
+/// The angles from straight down, in degrees, of the points of a wheel that may meet the ground.
+const RIM: [f64; 5] = [-60.0, -30.0, 0.0, 30.0, 60.0];
+/// The share of the way from the axle to the castor at which the mass has its middle.
+const BETWEEN: f64 = 0.3;
+/// The height of the middle of the mass as a share of the robot's.
+const MIDDLE: f64 = 0.4;
+
+impl Undercarriage {
+    /// The undercarriage of a robot as its description has it.
+    ///
+    /// A drive of two wheels stands on a castor as well, at the farther end of the outline. What the description
+    /// leaves open is assumed: without a place the middle of the mass lies at two fifths of the height, near the driven axle, or
+    /// between the axles.
+    pub(super) fn of(spec: &RobotSpec) -> Self {
+        let (back, front) = ends(&spec.footprint);
+        let mut feet = Vec::new();
+        let (wheels, ahead) = match spec.drive {
+            DriveSpec::Differential { wheel_diameter, track, .. } => {
+                let castor = if front > -back { front } else { back };
+                for side in [0.5, -0.5] {
+                    let axle = Vector::new(0.0, side * track);
+                    wheel(&mut feet, axle, 0.5 * wheel_diameter, Grip::Driven(axle));
+                }
+                feet.push(Foot { place: Vector3::new(castor, 0.0, 0.0), grip: Grip::Free });
+                (3, BETWEEN * castor)
+            }
+            DriveSpec::Tracked { wheel_diameter, track, length, width, .. } => {
+                belts(&mut feet, Tracked { track, length, width }, 0.5 * wheel_diameter);
+                (4, 0.0)
+            }
+            DriveSpec::Ackermann { wheel_diameter, track, wheelbase, .. } => {
+                for side in [0.5, -0.5] {
+                    let (rear, steered) =
+                        (Vector::new(0.0, side * track), Vector::new(wheelbase, side * track));
+                    wheel(&mut feet, rear, 0.5 * wheel_diameter, Grip::Driven(rear));
+                    wheel(&mut feet, steered, 0.5 * wheel_diameter, Grip::Rolling(steered));
+                }
+                (4, 0.5 * wheelbase)
+            }
+            DriveSpec::Omni { wheel_diameter, track, wheelbase, .. } => {
+                for (ahead, side) in [(0.5, 0.5), (0.5, -0.5), (-0.5, 0.5), (-0.5, -0.5)] {
+                    let place = Vector::new(ahead * wheelbase, side * track);
+                    let roller = Vector::new(1.0, -(ahead * side).signum()).normalize();
+                    wheel(&mut feet, place, 0.5 * wheel_diameter, Grip::Roller(place, roller));
+                }
+                (4, 0.0)
+            }
+        };
+        feet.extend(chassis(spec, ahead));
+        let centre = stated_centre(spec).unwrap_or(Vector3::new(ahead, 0.0, MIDDLE * spec.height));
+        Self::new(feet, centre, gyration(spec), wheels, spec.friction)
+    }
+
+    /// An undercarriage of feet whose places are from the robot's origin.
+    pub(super) fn new(
+        mut feet: Vec<Foot>,
+        centre: Vector3,
+        gyration: f64,
+        wheels: u32,
+        friction: f64,
+    ) -> Self {
+        for foot in &mut feet {
+            foot.place -= centre;
+        }
+        Self { centre, gyration, feet, softness: f64::from(wheels) * SAG / GRAVITY, friction }
+    }
+}
+
+impl Grip {
+    /// Forward and sideways speed of the rim or belt that a drive turns so that its robot would move at a speed.
+    #[inline]
+    pub(super) fn rim_speed(&self, drive: &PlanarTwist) -> Vector {
+        match self {
+            Self::Driven(axle) | Self::Rolling(axle) | Self::Roller(axle, _) => {
+                Vector::new(drive.forward - drive.angular * axle.y, drive.left + drive.angular * axle.x)
+            }
+            Self::Body | Self::Free => Vector::zeros(),
+        }
+    }
+}
+
+/// The points of a wheel's rim that may meet the ground.
+fn wheel(feet: &mut Vec<Foot>, axle: Vector, radius: f64, grip: Grip) {
+    feet.extend(RIM.map(|degrees| {
+        let (sin, cos) = math::sin_cos(units::from_deg(degrees));
+        Foot { place: Vector3::new(axle.x + radius * sin, axle.y, radius * (1.0 - cos)), grip }
+    }));
+}
+
+/// The points of belts that may meet the ground: below, and on their way up to the wheels at their ends.
+fn belts(feet: &mut Vec<Foot>, drive: Tracked, radius: f64) {
+    let half = 0.5 * drive.equivalent().track;
+    for side in [1.0, -1.0] {
+        // A belt's speed is that of the wheel of the equivalent drive.
+        let grip = Grip::Driven(Vector::new(0.0, side * half));
+        let below = drive.places(side).map(|place| Vector3::new(place.x, place.y, 0.0));
+        feet.extend(below.map(|place| Foot { place, grip }));
+        for end in [0.5, -0.5] {
+            for degrees in [30.0, 60.0, 90.0] {
+                let (sin, cos) = math::sin_cos(units::from_deg(degrees));
+                let x = end * drive.length + end.signum() * radius * sin;
+                let place = Vector3::new(x, side * 0.5 * drive.track, radius * (1.0 - cos));
+                feet.push(Foot { place, grip });
+            }
+        }
+    }
+}
+
+/// The middle of the mass that a description states. Its place is from the origin of the robot's model.
+fn stated_centre(spec: &RobotSpec) -> Option<Vector3> {
+    let ([x, y, z], [ahead, up]) = (spec.body.mass_centre.map(|c| c * spec.body.scale), spec.body.axle);
+    let centre = Vector3::new(x - ahead, y, z - up + 0.5 * wheel_diameter(spec));
+    (spec.body.mass_centre != [0.0; 3] && centre.z > 0.0).then_some(centre)
+}
+
+/// The outline's ends along x.
+fn ends(footprint: &Footprint) -> (f64, f64) {
+    match footprint {
+        Footprint::Disc { radius } => (-radius, *radius),
+        Footprint::Rectangle(rectangle) => (rectangle.min.x, rectangle.max.x),
+    }
+}
+
+/// Corners of the outline, at its top and as high as the axle, and the belly, half as high.
+fn chassis(spec: &RobotSpec, belly: f64) -> Vec<Foot> {
+    let axle = (0.5 * wheel_diameter(spec)).min(0.5 * spec.height);
+    let outline: Vec<Vector> = match spec.footprint {
+        Footprint::Disc { radius } => {
+            (0..8).map(|eighth| direction(FRAC_PI_4 * f64::from(eighth)) * radius).collect()
+        }
+        Footprint::Rectangle(b) => [b.min.x, b.max.x]
+            .into_iter()
+            .flat_map(|x| [b.min.y, b.max.y].map(|y| Vector::new(x, y)))
+            .collect(),
+    };
+    let corners = [axle, spec.height]
+        .into_iter()
+        .flat_map(|height| outline.iter().map(move |corner| Vector3::new(corner.x, corner.y, height)));
+    let belly = [Vector3::new(belly, 0.0, 0.5 * axle)];
+    corners.chain(belly).map(|place| Foot { place, grip: Grip::Body }).collect()
+}
+
+fn wheel_diameter(spec: &RobotSpec) -> f64 {
+    match spec.drive {
+        DriveSpec::Differential { wheel_diameter, .. }
+        | DriveSpec::Ackermann { wheel_diameter, .. }
+        | DriveSpec::Tracked { wheel_diameter, .. }
+        | DriveSpec::Omni { wheel_diameter, .. } => wheel_diameter,
+    }
+}
+
+/// The square of the mean radius of gyration of a block as large as the robot.
+fn gyration(spec: &RobotSpec) -> f64 {
+    let size = match spec.footprint {
+        Footprint::Disc { radius } => Vector::new(1.7 * radius, 1.7 * radius),
+        Footprint::Rectangle(rectangle) => rectangle.size(),
+    };
+    (2.0 / 36.0) * (size.norm_squared() + spec.height * spec.height)
+}

@@ -1,0 +1,103 @@
+use super::Differential;
+use crate::ParameterError;
+use crate::geometry::{Vector, math};
+use crate::parameter::require_positive;
+
+/// The geometry of a drive with two belts side by side, which turns by skidding (book, section 7.3).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tracked {
+    /// Metres between the belts' middles.
+    pub track: f64,
+    /// Metres of a belt that lie on the ground.
+    pub length: f64,
+    /// Metres across a belt.
+    pub width: f64,
+}
+
+/// Where along and across a belt the ground carries it, as shares of its length and width from its middle.
+const ALONG: [f64; 4] = [-0.5, -1.0 / 6.0, 1.0 / 6.0, 0.5];
+const ACROSS: [f64; 2] = [-0.5, 0.5];
+
+impl Tracked {
+    /// Belts of a size. Fails unless all lengths are positive and finite, and with belts wider than they are apart.
+    pub fn new(track: f64, length: f64, width: f64) -> Result<Self, ParameterError> {
+        require_positive("track", track)?;
+        require_positive("belt length", length)?;
+        require_positive("belt width", width)?;
+        let apart = "at most the distance between the belts";
+        crate::parameter::require("belt width", width, width <= track, apart)?;
+        Ok(Self { track, length, width })
+    }
+
+    /// Places of a belt that carry a robot, on level ground alike: those of the left one for `side` 1, of the right one
+    /// for -1. From the middle between the belts.
+    pub fn places(&self, side: f64) -> impl Iterator<Item = Vector> {
+        let Self { track, length, width } = *self;
+        ALONG.into_iter().flat_map(move |along| {
+            let across = move |across: f64| Vector::new(along * length, side * 0.5 * track + across * width);
+            ACROSS.into_iter().map(across)
+        })
+    }
+
+    /// The two-wheeled drive that moves as this one does on level ground.
+    ///
+    /// Belts slide sideways when their robot turns, so it turns less than their speeds and distance say: its belts'
+    /// instantaneous centres of rotation lie outside of them (Martínez et al., *Approximating Kinematics for Tracked
+    /// Mobile Robots*, 2005). Coulomb friction under an even load puts them, for a turn on the spot, where it takes the
+    /// least power; the wheels of the equivalent drive are as far apart.
+    ///
+    /// ```
+    /// use roverlab::kinematics::Tracked;
+    /// let drive = Tracked::new(0.2, 0.3, 0.05)?;
+    /// assert!(drive.equivalent().track > 1.3 * drive.track);
+    /// # Ok::<(), roverlab::ParameterError>(())
+    /// ```
+    pub fn equivalent(&self) -> Differential {
+        // By symmetry the left belt says all. It moves back at 1 m/s while the robot turns counter-clockwise. The power
+        // is convex in the rate of turning, and falls up to where its slope is 0.
+        let slope = |rate: f64| -> f64 {
+            let pull = |place: Vector| {
+                let (ahead, aside) = (1.0 - rate * place.y, rate * place.x);
+                (rate * place.x * place.x - ahead * place.y) / math::hypot(ahead, aside).max(1e-12)
+            };
+            self.places(1.0).map(pull).sum()
+        };
+        let (mut slow, mut fast) = (0.0, 2.0 / (self.track - self.width).max(1e-3 * self.track));
+        for _ in 0..60 {
+            let middle = 0.5 * (slow + fast);
+            if slope(middle) < 0.0 { slow = middle } else { fast = middle }
+        }
+        Differential { track: 4.0 / (slow + fast) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(crate::testing::cases(256))]
+        #[test]
+        fn the_centres_lie_outside_the_belts_and_the_farther_the_longer_they_are(
+            track in 0.05..1.0f64, length in 0.05..1.0f64, width in 0.01..0.5f64,
+        ) {
+            prop_assume!(width < 0.5 * track && length > 2.0 * width);
+            let belts = |length| Tracked::new(track, length, width).unwrap().equivalent().track;
+            let (short, long) = (belts(length), belts(1.1 * length));
+            prop_assert!(short > track, "{} {}", short, track);
+            prop_assert!(long >= short - 1e-9, "{} {}", long, short);
+            let scaled = Tracked::new(2.0 * track, 2.0 * length, 2.0 * width).unwrap().equivalent().track;
+            prop_assert!((scaled - 2.0 * short).abs() < 1e-6 * scaled);
+        }
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        for (track, length, width) in
+            [(0.0, 1.0, 0.1), (1.0, f64::NAN, 0.1), (1.0, 1.0, -0.1), (0.1, 1.0, 0.2)]
+        {
+            assert!(Tracked::new(track, length, width).is_err());
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! Hills: one surface that carries robots, stops rays and is drawn.
+
+mod height_field;
+mod pyramid;
+mod ray;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+pub use height_field::HeightField;
+
+/// The hills of a world, as its file describes them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Terrain {
+    /// Metres along x that the hills cover, from x = 0.
+    pub width: f64,
+    /// Metres along y that they cover, from y = 0.
+    pub height: f64,
+    /// Metres above the floor of a white pixel, or of a grid's highest place; black is 0.
+    pub max_elevation: f64,
+    /// The file of the elevations as the world's file names it.
+    pub file: PathBuf,
+    /// The surface, once a [`FileSource`](super::formats::FileSource) has found the file: reading a whole scene does
+    /// so, reading the text of a world alone does not. Beyond it there is no ground.
+    pub surface: Option<Arc<HeightField>>,
+}
+
+impl Terrain {
+    /// Hills that a program has made.
+    pub fn new(file: impl Into<PathBuf>, surface: HeightField) -> Self {
+        let far = surface.area().max;
+        let max_elevation = surface.highest();
+        Self {
+            width: far.x,
+            height: far.y,
+            max_elevation,
+            file: file.into(),
+            surface: Some(Arc::new(surface)),
+        }
+    }
+}

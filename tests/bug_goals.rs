@@ -1,0 +1,123 @@
+//! The bug family's verdicts on goals beside walls, corners and curves, at every distance from touching to well clear.
+
+use roverlab::geometry::{Point, Pose, direction};
+use roverlab::io::control;
+use roverlab::io::sim::{SimOptions, Simulation};
+use roverlab::nav::{BugKind, BugOutcome, BugParameters};
+use roverlab::random::Stream;
+use roverlab::world::{RobotSpec, Scene, Wall, World};
+
+/// The farthest goal from a surface in metres.
+const FAR: f64 = 0.2;
+/// Goals for which a few millimetres decide are left out, in metres, by the level of noise: a tenth of the tolerance is kept.
+const UNDECIDED: [f64; 2] = [0.004, 0.02];
+/// How far from the goal the robot may truly be where it says that it is there, in metres, by the level of noise.
+const MISSED: [f64; 2] = [0.03, 0.1];
+
+/// A room with a block and a round pillar.
+fn room() -> World {
+    let mut world = World::walled(3.0, 2.2);
+    let block = [(1.0, 0.5), (1.6, 0.5), (1.6, 1.0), (1.0, 1.0)].map(|(x, y)| Point::new(x, y));
+    world.add_loop(&block);
+    let pillar: Vec<Point> = (0..32)
+        .map(|i| Point::new(2.3, 1.2) + direction(f64::from(i) * std::f64::consts::TAU / 32.0) * 0.3)
+        .collect();
+    world.add_loop(&pillar);
+    world
+}
+
+/// A goal beside a wall, in a corner, outside a corner, or beside the pillar.
+fn goal(stream: &mut Stream) -> Point {
+    let away = stream.between(0.0, FAR);
+    match stream.below(4) {
+        0 => Point::new(stream.between(0.5, 2.5), 2.195 - away),
+        1 => Point::new(2.995 - away, 0.005 + stream.between(0.0, FAR)),
+        2 => Point::new(1.605, 1.005) + direction(stream.between(0.0, std::f64::consts::FRAC_PI_2)) * away,
+        _ => Point::new(2.3, 1.2) + direction(stream.between(-3.1, 3.1)) * (0.305 + away),
+    }
+}
+
+/// How much larger than the disc of a robot the free space is at the best place that counts as the goal, in metres.
+fn room_at(world: &World, goal: Point, parameters: &BugParameters) -> f64 {
+    let clearance = |place: Point| {
+        let far = |wall: &Wall| wall.line.distance_to(place) - 0.5 * wall.thickness;
+        world.walls.iter().map(far).fold(f64::INFINITY, f64::min)
+    };
+    let rings =
+        (0..=10).flat_map(|ring| (0..72).map(move |turn| (f64::from(ring) / 10.0, f64::from(turn) / 72.0)));
+    let places = rings.map(|(ring, turn)| {
+        goal + direction(turn * std::f64::consts::TAU) * (ring * parameters.goal_tolerance)
+    });
+    let inside = |place: &Point| {
+        (place.x - 1.3).abs() < 0.3 && (place.y - 0.75).abs() < 0.25
+            || (place - Point::new(2.3, 1.2)).norm() < 0.29
+            || !(0.0..3.0).contains(&place.x)
+            || !(0.0..2.2).contains(&place.y)
+    };
+    let best = places.filter(|place| !inside(place)).map(clearance).fold(0.0, f64::max);
+    best - parameters.robot_radius - parameters.least_clearance
+}
+
+/// Drives all bugs to some goals. The wrong verdicts in words, and how many runs there were.
+fn wrong(goals: usize, noise: u32, seed: u64) -> (Vec<String>, usize) {
+    let (world, mut stream) = (room(), Stream::new(seed));
+    let level = noise as usize;
+    let (mut wrong, mut runs) = (Vec::new(), 0);
+    for _ in 0..goals {
+        let (goal, parameters) = (goal(&mut stream), BugParameters::default());
+        let room = room_at(&world, goal, &parameters);
+        let start = Pose::new(0.5, stream.between(0.3, 1.9), stream.between(-3.1, 3.1));
+        if room.abs() < UNDECIDED[level] {
+            continue;
+        }
+        let scene = Scene::with_robot(world.clone(), RobotSpec::s4(), start);
+        for kind in BugKind::ALL {
+            let options = SimOptions::with_noise(f64::from(noise), seed);
+            let simulation = Simulation::new(&scene, options).unwrap();
+            let (truth, mut robot) = (simulation.truth(), simulation.robot(0).unwrap());
+            let parameters = BugParameters { match_scans: noise > 0, ..parameters };
+            let mut bug = kind.with(start.to_local(goal), parameters).unwrap();
+            let outcome = control::run(&mut robot, bug.as_mut(), 600.0, |_, _, _| {}).unwrap();
+            let off = truth.robot(0).unwrap().pose.distance_to(goal);
+            let contacts = truth.robot(0).unwrap().contacts;
+            let right = match outcome {
+                BugOutcome::Reached => room > 0.0 && off <= MISSED[level],
+                BugOutcome::Unreachable | BugOutcome::NoRoom => room < 0.0,
+                _ => false,
+            };
+            runs += 1;
+            if !right || contacts > 0 {
+                wrong.push(format!(
+                    "{kind} from {start:?} to {goal}: {outcome:?} {off:.3} m off, {contacts} contacts, room {room:.4} m"
+                ));
+            }
+        }
+    }
+    (wrong, runs)
+}
+
+#[test]
+fn reached_is_reached_beside_walls() {
+    let (wrong, runs) = wrong(8, 0, 1);
+    assert!(wrong.is_empty() && runs > 60, "{} of {runs}: {wrong:#?}", wrong.len());
+}
+
+mod campaigns {
+    use super::*;
+
+    #[test]
+    #[ignore = "takes minutes: cargo test --release --all-features --test bug_goals -- --ignored"]
+    fn ten_thousand_goals_beside_walls() {
+        let (wrong, runs) = wrong(1000, 0, 2);
+        assert!(wrong.is_empty(), "{} of {runs}: {wrong:#?}", wrong.len());
+    }
+
+    /// With noise some verdicts may be wrong, but none that says that the goal is reached.
+    #[test]
+    #[ignore = "takes minutes: cargo test --release --all-features --test bug_goals -- --ignored"]
+    fn goals_beside_walls_with_noise() {
+        let (wrong, runs) = wrong(300, 1, 3);
+        let beyond = wrong.iter().filter(|words| words.contains("Reached")).count();
+        assert!(beyond == 0 && 100 * wrong.len() < runs, "{} of {runs}: {wrong:#?}", wrong.len());
+    }
+}
