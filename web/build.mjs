@@ -1,7 +1,7 @@
 #!/usr/bin/env node
 // Builds the page: one file with everything in it.
 // Usage: web/build.mjs [FILE [MODULE]]   [default: target/web/roverlab.html, and a module that is compiled]
-// Needs Rust's target wasm32-unknown-unknown, and Node.js 18; uses wasm-opt of Binaryen where it is there.
+// Needs Rust's target wasm32-unknown-unknown, and Node.js 18.
 import { execFileSync } from "node:child_process";
 import { mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
@@ -21,19 +21,6 @@ function compiled() {
     env: { ...process.env, RUSTFLAGS: `-Ctarget-feature=${FEATURES.map((name) => `+${name}`).join(",")}` },
   });
   return join(target, "wasm32-unknown-unknown", "web", "roverlab_web.wasm");
-}
-
-function optimised(module) {
-  const smaller = join(dirname(out), "roverlab.wasm");
-  const flags = ["--enable-bulk-memory", "--enable-mutable-globals", "--enable-nontrapping-float-to-int", "--enable-sign-ext", "--enable-simd"];
-  try {
-    execFileSync("wasm-opt", ["-O2", ...flags, module, "-o", smaller], { stdio: "inherit" });
-    return smaller;
-  } catch (error) {
-    if (error.code !== "ENOENT") throw error;
-    console.error("wasm-opt was not found: the page works as well, and is a little larger");
-    return module;
-  }
 }
 
 function page(name) {
@@ -75,7 +62,7 @@ function nameless(module) {
 }
 
 mkdirSync(dirname(out), { recursive: true });
-const module = nameless(readFileSync(process.argv[3] ?? optimised(compiled())));
+const module = nameless(readFileSync(process.argv[3] ?? compiled()));
 const packed = deflateRawSync(module, { level: 9 });
 const parts = [
   ['<link rel="stylesheet" href="style.css">', `<style>\n${page("style.css")}</style>`],

@@ -120,6 +120,11 @@ impl Picture {
         self
     }
 
+    /// Whether its lengths are metres of a world, as they are unless it is [without a scale](Self::without_scale).
+    pub fn is_to_scale(&self) -> bool {
+        self.to_scale
+    }
+
     /// What is added from now on is seen in these seconds of a moving picture, `2.0..3.5` or `2.0..`; a still one shows
     /// what is seen at its end. Without a call, everything is seen all the time.
     pub fn during(&mut self, seconds: impl RangeBounds<f64>) -> &mut Self {

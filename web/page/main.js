@@ -102,7 +102,7 @@ function notice(text, calm = false) {
 function tell(when, text) {
   const line = document.createElement("li"), stamp = document.createElement("time"), words = document.createElement("span");
   // Some lines begin with a time of their own.
-  const [, own, said] = /^(?:\s*([\d.]+) s\s+)?(.*)$/s.exec(text);
+  const [, own, said] = /^(?:\s*([\d.]+) s:?\s+)?(.*)$/s.exec(text);
   if (own) when = Number(own);
   stamp.textContent = `${when.toFixed(1)} s`;
   words.textContent = said;
@@ -154,7 +154,7 @@ function report() {
   const word = head?.includes(": ") ? head.split(": ").slice(1).join(": ").replaceAll("_", " ") : head;
   $("status").textContent = ended.output ? sentence(word) : "It cannot run like this";
   $("status").className = ended.status === 0 ? "good" : "bad";
-  const shown = rest.map((line) => /^ {2}(.{18}) (.*)$/.exec(line)).filter((found) => found && !/picture|seed|noise|time limit/.test(found[1]));
+  const shown = rest.map((line) => /^ {2}(.{18}) (.*)$/.exec(line)).filter((found) => found && !/picture|seed|noise|time limit/.test(found[1]) && found[2].length < 70);
   $("figures").replaceChildren(...shown.flatMap(([, name, value]) => {
     const [term, text] = [document.createElement("dt"), document.createElement("dd")];
     [term.textContent, text.textContent] = [name.trim(), value];
@@ -376,14 +376,11 @@ function showSystems() {
 function showOptions() {
   const command = commandOf(run.command);
   fill($("options"), command, run.values, files, (name, value, given = value !== undefined) => {
-    set({ [name]: given ? value : undefined });
-    again();
+    // The form stays as it is: it has the focus.
+    if (given) run.values[name] = value;
+    else delete run.values[name];
+    start();
   });
-}
-
-// Another seed or option is another run: hands and walls stay.
-function again() {
-  start();
 }
 
 function open(found) {

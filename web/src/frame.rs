@@ -120,7 +120,9 @@ impl Frames {
                 moved += 1;
                 put_u16(&mut out, index);
                 put_u16(&mut out, usize::from(fallen));
-                [pose.x, pose.y, pose.heading].into_iter().for_each(|number| put_f32(&mut out, number));
+                for number in [pose.x, pose.y, pose.heading] {
+                    put_f32(&mut out, number);
+                }
             }
         }
         let mut count = 0_u16;

@@ -34,8 +34,11 @@ pub fn run(job: Job, tell: impl FnMut(Message, &[u8]) + Send + 'static) {
 #[derive(Clone)]
 struct Mouth(Arc<Mutex<Telling>>);
 
+/// Takes a message and its bytes.
+type Tell = dyn FnMut(Message, &[u8]) + Send;
+
 struct Telling {
-    tell: Box<dyn FnMut(Message, &[u8]) + Send>,
+    tell: Box<Tell>,
     digest: Digest,
     /// Seconds in the world.
     time: f64,
@@ -101,7 +104,9 @@ impl Onlooker for Page {
     }
 
     fn picture(&mut self, picture: &Picture) {
-        self.mouth.say(Message::Overlay, overlay::json(picture).to_string().as_bytes());
+        if picture.is_to_scale() {
+            self.mouth.say(Message::Overlay, overlay::json(picture).to_string().as_bytes());
+        }
         self.mouth.say(Message::Picture, picture.to_svg().as_bytes());
     }
 }

@@ -210,6 +210,10 @@ impl CommonArgs {
 
     /// Adds a picture of the run to a report: still, and moving if the options ask for that.
     pub(crate) fn draw(&self, report: Report, name: &str, picture: impl FnOnce() -> Picture) -> Report {
+        if onlooker::is_there() {
+            onlooker::pictured(picture);
+            return report.field("picture", None::<&str>);
+        }
         let files = (self.picture_file(name), self.animation.clone());
         drawn(report, files, |file| self.tell(file), picture)
     }
@@ -222,7 +226,7 @@ impl CommonArgs {
     /// The file for an output that no option names: in a folder of its own, and only without `--json`. `None`
     /// if an option names that very file for something else.
     pub(crate) fn unnamed_file(&self, name: &str) -> Option<PathBuf> {
-        let file = unnamed_file(self.json, name)?;
+        let file = unnamed_file(self.json || onlooker::is_there(), name)?;
         let named = [&self.picture, &self.animation, &self.record, &self.replay, &self.world, &self.robot];
         let is_named = named.into_iter().flatten().any(|other| is_same_file(other, &file));
         (!is_named).then_some(file)

@@ -29,7 +29,7 @@ impl CommonArgs {
             return log.header().attachment(&name).map(|file| file.data.clone()).ok_or_else(lost);
         }
         let bytes = match onlooker::file(path) {
-            Some(file) => file.ok_or_else(|| {
+            Some(file) => file.map_err(|_| {
                 let name = path.display().to_string();
                 FormatError::new(&name, Location::START, "no such file", "one that was opened here")
             })?,
@@ -85,7 +85,7 @@ impl FileSource for Companions {
             return Ok(SourceFile { name: reference.into(), bytes: file.data.clone() });
         }
         let file = match onlooker::file(Path::new(reference)) {
-            Some(file) => SourceFile { name: reference.into(), bytes: file.ok_or(io::ErrorKind::NotFound)? },
+            Some(file) => SourceFile { name: reference.into(), bytes: file? },
             None => self.disk.read(reference, referrer, limit)?,
         };
         self.found.push(attachment(&name, &file.bytes));

@@ -85,7 +85,9 @@ mod values;
 mod wall_clock;
 mod workers;
 
-pub(crate) use args::{CommonArgs, PlainArgs, check_writable};
+#[cfg(feature = "native")]
+pub(crate) use args::check_writable;
+pub(crate) use args::{CommonArgs, PlainArgs};
 pub(crate) use failure::Failure;
 pub(crate) use free_floor::FreeFloor;
 pub(crate) use heed::{Heeds, OF_ONE_RUN, Unheeded};

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::cell::RefCell;
 use std::fmt;
+use std::io;
 use std::path::Path;
 
 use roverlab::io::sim::Watcher;
@@ -51,9 +52,9 @@ pub(crate) fn told(line: impl fmt::Display) -> bool {
     ask(|onlooker| onlooker.told(&line.to_string())).is_some()
 }
 
-/// The file that somebody who looks on has; `Some(None)` if they lack it.
-pub(crate) fn file(path: &Path) -> Option<Option<Vec<u8>>> {
-    ask(|onlooker| onlooker.file(&path.display().to_string()))
+/// The file that somebody who looks on has, or lacks; `None` if nobody looks on.
+pub(crate) fn file(path: &Path) -> Option<io::Result<Vec<u8>>> {
+    ask(|onlooker| onlooker.file(&path.display().to_string()).ok_or(io::ErrorKind::NotFound.into()))
 }
 
 /// Shows a scene to who looks on, who may change it and watches what happens there.
