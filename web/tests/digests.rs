@@ -28,12 +28,12 @@ fn what_the_page_shows_is_what_it_was() {
     let mut found = String::new();
     for line in text.lines() {
         let Some((words, _)) = line.rsplit_once(' ').filter(|_| !line.starts_with('#')) else {
-            found += &format!("{line}\n");
+            found.extend([line, "\n"]);
             continue;
         };
         let end = ended(words);
         assert!(end["status"].as_u64() < Some(2), "{words}: {end}");
-        found += &format!("{words} {}\n", end["digest"].as_str().unwrap());
+        found.extend([words, " ", end["digest"].as_str().unwrap(), "\n"]);
     }
     if std::env::var_os("REGENERATE").is_some() {
         fs::write(FILE, found).unwrap();

@@ -252,11 +252,11 @@ impl PlainArgs {
     }
 }
 
-/// A file in the folder for what no option names; none where a program reads the report, or somebody looks on.
+/// A file in the folder for what no option names; none where a program reads the report.
 fn unnamed_file(json: bool, name: &str) -> Option<PathBuf> {
     let folder = Path::new(UNNAMED);
     // If it cannot be made, then saving the file fails, and says why.
-    (!json && !onlooker::is_there()).then(|| fs::create_dir_all(folder)).map(|_| folder.join(name))
+    (!json).then(|| fs::create_dir_all(folder)).map(|_| folder.join(name))
 }
 
 fn check_pictures(still: Option<&Path>, moving: Option<&Path>) -> Result<(), Failure> {
@@ -271,11 +271,7 @@ fn drawn(
     tell: impl Fn(String),
     picture: impl FnOnce() -> Picture,
 ) -> Report {
-    let is_wanted = still.is_some() || moving.is_some() || onlooker::is_there();
-    let picture = is_wanted.then(picture);
-    if let Some(picture) = &picture {
-        onlooker::pictured(picture);
-    }
+    let picture = if still.is_some() || moving.is_some() { Some(picture()) } else { None };
     let mut trouble = Vec::new();
     let mut saved = |file: Option<PathBuf>, save: fn(&Picture, &Path) -> Result<(), SaveError>| {
         let (file, picture) = (file?, picture.as_ref()?);

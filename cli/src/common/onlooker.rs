@@ -70,7 +70,10 @@ pub(crate) fn watched(scene: &Scene) -> (Cow<'_, Scene>, Option<Box<dyn Watcher>
     }
 }
 
-/// Shows the picture of a run to who looks on.
-pub(crate) fn pictured(picture: &Picture) {
-    ask(|onlooker| onlooker.picture(picture));
+/// Shows the picture of a run to who looks on. Returns whether somebody does.
+pub(crate) fn pictured(picture: impl FnOnce() -> Picture) -> bool {
+    is_there() && {
+        let picture = picture();
+        ask(|onlooker| onlooker.picture(&picture)).is_some()
+    }
 }
