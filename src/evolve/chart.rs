@@ -13,6 +13,16 @@ const DIVERSITY: f64 = 0.3;
 const MARGIN: f64 = 0.12;
 
 /// Draws a run: the best, mean and worst fitness of each generation, and below it the diversity.
+///
+/// ```
+/// use roverlab::evolve::{Evolution, Genetic, Recipe, Serial, StopRules, Trial, chart};
+/// let ones = |genome: &Vec<u8>, _: Trial| Ok(f64::from(genome[0].count_ones()));
+/// let mut evolution = Genetic::new(vec![vec![0_u8]; 20], Recipe::book(6), 1)?;
+/// evolution.run(&mut Serial::new(ones), &StopRules::generations(10), |_| Ok(()))?;
+/// let picture = chart(evolution.history()).to_svg();
+/// assert!(["best", "mean", "worst", "diversity"].iter().all(|curve| picture.contains(curve)));
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 pub fn chart(history: &[GenerationStatistics]) -> Picture {
     let sheet = World::empty(WIDTH + 2.0 * MARGIN, FITNESS + DIVERSITY + 3.0 * MARGIN);
     let mut picture = Picture::new(&sheet);

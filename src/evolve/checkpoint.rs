@@ -1,11 +1,11 @@
 //! Runs on disk, so that they survive being killed (feature `checkpoint`).
 //!
-//! ```no_run
+//! ```
 //! use roverlab::evolve::{Evolution, Genetic, Population, Recipe, Serial, StopRules, Trial, checkpoint};
 //!
 //! # fn main() -> roverlab::io::Result<()> {
 //! # let (first, fitness) = (vec![vec![0_u8; 8]; 10], |genome: &Vec<u8>, _: Trial| Ok(f64::from(genome[0])));
-//! let file = std::path::Path::new("run.json");
+//! let file = &std::env::temp_dir().join(format!("run-{}.json", std::process::id()));
 //! // What affects the run, so that a checkpoint of another one is told apart.
 //! let settings = "ten individuals of eight genes, six mutations, seed 1";
 //! let population = match checkpoint::load(file, settings)? {
@@ -13,9 +13,12 @@
 //!     None => Population::new(first, 1)?,
 //! };
 //! let mut evolution = Genetic::resume(population, Recipe::book(6))?;
-//! evolution.run(&mut Serial::new(fitness), &StopRules::generations(100), |now| {
+//! evolution.run(&mut Serial::new(fitness), &StopRules::generations(10), |now| {
 //!     checkpoint::save(file, settings, now.population())
 //! })?;
+//! let saved: Population<Vec<u8>> = checkpoint::load(file, settings)?.expect("a checkpoint");
+//! assert_eq!((saved.generation, &saved.genomes), (9, &evolution.population().genomes));
+//! # std::fs::remove_file(file).expect("the checkpoint");
 //! # Ok(())
 //! # }
 //! ```

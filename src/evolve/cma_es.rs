@@ -29,6 +29,17 @@ pub struct Distribution {
 /// It learns which directions are worth going and how far, so it needs far fewer evaluations than a genetic algorithm
 /// where fitness varies smoothly. Only the order of fitness counts, not its size. A generation takes
 /// O(population · n²) and an eigendecomposition, O(n³), for n genes.
+///
+/// ```
+/// use roverlab::evolve::{CmaEs, Evolution, Serial, StopRules, Trial};
+/// // Rosenbrock's valley: its floor is bent, and the best place is (1, 1).
+/// let valley = |x: &Vec<f64>, _: Trial| Ok(-(1.0 - x[0]).powi(2) - 100.0 * (x[1] - x[0] * x[0]).powi(2));
+/// let mut search = CmaEs::new(vec![-1.0, 1.0], 0.5, 12, 1)?;
+/// search.run(&mut Serial::new(valley), &StopRules::generations(150), |_| Ok(()))?;
+/// let best = &search.best().expect("an individual").genome;
+/// assert!((best[0] - 1.0).abs() < 1e-3 && (best[1] - 1.0).abs() < 1e-3);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct CmaEs {
     population: Population<Vec<f64>>,

@@ -11,6 +11,15 @@ pub trait Crossover<G>: Debug + Send + Sync {
 
 /// Cuts both at one random gene and swaps what is behind it (book, section 12.3). The cut is never at an end, so
 /// each child has genes of both parents; single genes have nowhere to be cut and are left alone.
+///
+/// ```
+/// use roverlab::evolve::{Crossover, OnePoint};
+/// use roverlab::random::Stream;
+/// let (mut a, mut b) = (vec![0_u8; 6], vec![1_u8; 6]);
+/// OnePoint.cross(&mut a, &mut b, &mut Stream::new(1));
+/// assert_eq!((a[0], a[5], b[0], b[5]), (0, 1, 1, 0));
+/// assert_eq!(a.windows(2).filter(|pair| pair[0] != pair[1]).count(), 1, "one cut");
+/// ```
 #[derive(Debug, Clone, Copy, Default)]
 pub struct OnePoint;
 
@@ -25,6 +34,16 @@ impl<G: Genome> Crossover<G> for OnePoint {
 }
 
 /// Swaps each gene with a probability.
+///
+/// ```
+/// use roverlab::evolve::{Crossover, Uniform};
+/// use roverlab::random::Stream;
+/// let (mut a, mut b) = (vec![0_u8; 1000], vec![1_u8; 1000]);
+/// Uniform { probability: 0.3 }.cross(&mut a, &mut b, &mut Stream::new(1));
+/// let swapped = a.iter().filter(|&&gene| gene == 1).count();
+/// assert!((250..350).contains(&swapped), "about 300 of 1000 genes");
+/// assert!(a.iter().zip(&b).all(|(a, b)| a + b == 1), "no gene is lost");
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Uniform {
     /// From 0 to 1; one half mixes most.

@@ -87,6 +87,17 @@ impl Gait {
 }
 
 /// A [`Gait`] that is walked, made by [`Gait::walking`].
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use roverlab::evolve::{Gait, GaitWalk, ServoPositions};
+/// use roverlab::io::control::Behaviour;
+/// let gait = Gait::from_bytes(&[128, 128, 0, 192], 2, 0)?;
+/// let mut walk: GaitWalk<'_> = gait.walking();
+/// assert_eq!(walk.step(0.0, &())?, ControlFlow::Continue(ServoPositions(&[-1.0, 0.5])));
+/// assert_eq!(walk.step(0.25, &())?, ControlFlow::Continue(ServoPositions(&[0.0, 0.0])), "round and round");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct GaitWalk<'g> {
     gait: &'g Gait,

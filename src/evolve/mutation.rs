@@ -10,6 +10,14 @@ pub trait Mutation<G>: Debug + Send + Sync {
 }
 
 /// Flips single bits, each of a random gene of a random child (book, section 12.3).
+///
+/// ```
+/// use roverlab::evolve::{BitFlip, Mutation};
+/// use roverlab::random::Stream;
+/// let mut children = vec![vec![0_u8; 4]; 10];
+/// BitFlip { count: 1 }.mutate(&mut children, &mut Stream::new(1));
+/// assert_eq!(children.iter().flatten().map(|gene| gene.count_ones()).sum::<u32>(), 1);
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct BitFlip {
     /// Bits flipped in a generation, over all children together.

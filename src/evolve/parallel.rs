@@ -5,6 +5,15 @@ use super::evaluator::{Evaluator, Round, Trial};
 use crate::io::{Error, ErrorKind, Result};
 
 /// Evaluates individuals in several threads. The result does not depend on how many.
+///
+/// ```
+/// use roverlab::evolve::{Evaluator, Parallel, Round, Serial, Trial};
+/// let noisy = |genome: &Vec<f64>, trial: Trial| Ok(genome[0] + trial.random().uniform());
+/// let (genomes, round) = (vec![vec![1.0], vec![2.0], vec![3.0]], Round { seed: 1, generation: 0 });
+/// let fitness = Parallel::new(2, noisy)?.evaluate(&genomes, round)?;
+/// assert_eq!(fitness, Serial::new(noisy).evaluate(&genomes, round)?, "to the bit");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Parallel<F> {
     fitness: F,

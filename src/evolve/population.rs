@@ -14,6 +14,15 @@ pub struct Individual<G> {
 }
 
 /// All that a run has come to: enough to go on from.
+///
+/// ```
+/// use roverlab::evolve::Population;
+/// let mut population = Population::new(vec![vec![1_u8], vec![2], vec![3]], 1)?;
+/// population.fitness = vec![0.5, 2.0, 1.0];
+/// assert_eq!(population.ranking(), [1, 2, 0], "the fittest first");
+/// assert!(Population::<Vec<u8>>::new(Vec::new(), 1).is_err(), "nobody is no population");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct Population<G> {

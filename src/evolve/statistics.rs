@@ -33,6 +33,16 @@ impl GenerationStatistics {
 }
 
 /// Generations as lines of comma-separated values, the first line with their names.
+///
+/// ```
+/// use roverlab::evolve::{Evolution, Genetic, Recipe, Serial, StopRules, Trial, table};
+/// let fitness = |genome: &Vec<u8>, _: Trial| Ok(f64::from(genome[0]));
+/// let mut evolution = Genetic::new(vec![vec![3_u8], vec![5], vec![7]], Recipe::book(0), 1)?;
+/// evolution.run(&mut Serial::new(fitness), &StopRules::generations(1), |_| Ok(()))?;
+/// let text = table(evolution.history());
+/// assert!(text.starts_with("generation,evaluations,best,mean,worst,diversity\n0,3,7,5,3,1.63"));
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 pub fn table(history: &[GenerationStatistics]) -> String {
     let head = "generation,evaluations,best,mean,worst,diversity\n".to_owned();
     history.iter().fold(head, |text, row| {

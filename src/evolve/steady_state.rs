@@ -11,6 +11,16 @@ use crate::random::Stream;
 ///
 /// What other algorithms call a generation is one such replacement here; the first is the evaluation of everybody. The
 /// recipe's elite has no meaning, as the fittest always stay.
+///
+/// ```
+/// use roverlab::evolve::{Evolution, Recipe, Serial, SteadyState, StopRules, Trial};
+/// let ones = |genome: &Vec<u8>, _: Trial| Ok(genome.iter().map(|gene| f64::from(gene.count_ones())).sum());
+/// let mut evolution = SteadyState::new(vec![vec![0_u8; 2]; 20], Recipe::book(1), 2, 1)?;
+/// evolution.run(&mut Serial::new(ones), &StopRules::generations(400), |_| Ok(()))?;
+/// assert_eq!(evolution.best().expect("an individual").fitness, 16.0, "all 16 bits are set");
+/// assert!(evolution.history().windows(2).all(|pair| pair[0].worst <= pair[1].worst), "none gets worse");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct SteadyState<G> {
     population: Population<G>,

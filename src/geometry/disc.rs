@@ -2,6 +2,13 @@ use super::{Point, Vector, cross};
 
 /// How a disc about the origin that moves in a direction, a unit vector, meets a point: the metres until its middle is beside
 /// the point, and by how many its rim is there before. `None` for what it passes, and for what lies behind its middle.
+///
+/// ```
+/// use roverlab::geometry::{Point, Vector, meeting};
+/// let (until, before) = meeting(&Point::new(1.0, 0.03), Vector::x(), 0.05).expect("it is in the way");
+/// assert!(until == 1.0 && (before - 0.04).abs() < 1e-12, "3, 4, 5");
+/// assert_eq!(meeting(&Point::new(1.0, 0.06), Vector::x(), 0.05), None);
+/// ```
 pub fn meeting(point: &Point, towards: Vector, radius: f64) -> Option<(f64, f64)> {
     let (along, across) = (point.coords.dot(&towards), cross(towards, point.coords));
     let depth = radius * radius - across * across;

@@ -3,6 +3,17 @@
 //! The platform's own `sin`, `ln` and friends differ in the last bit between C libraries, which is enough to make
 //! two simulated runs part. These go through the `libm` crate. Square roots, fused products aside, are exact by
 //! IEEE 754 and need no detour.
+//!
+//! ```
+//! use roverlab::geometry::math::{acos, asin, atan, atan2, cos, exp, hypot, ln, pow, sin, sin_cos, tan};
+//! let is = |a: f64, b: f64| (a - b).abs() < 1e-12;
+//! let third = std::f64::consts::FRAC_PI_3;
+//! assert!(is(cos(third), 0.5) && is(acos(0.5), third) && is(sin(third), 0.75_f64.sqrt()));
+//! assert!(is(tan(third), 3.0_f64.sqrt()) && is(atan(3.0_f64.sqrt()), third) && is(asin(1.0), 1.5 * third));
+//! assert_eq!(sin_cos(third), (sin(third), cos(third)));
+//! assert!(is(atan2(-1.0, -1.0), -0.75 * std::f64::consts::PI), "the angle of the vector (-1, -1)");
+//! assert!(is(hypot(3.0, 4.0), 5.0) && is(ln(exp(2.0)), 2.0) && is(pow(9.0, 0.5), 3.0));
+//! ```
 
 /// Sine of an angle in radians.
 #[inline]

@@ -32,12 +32,23 @@ pub type Point3 = nalgebra::Point3<f64>;
 pub type Vector3 = nalgebra::Vector3<f64>;
 
 /// The cross product's z component, `a.x * b.y - a.y * b.x`: positive when `b` lies counter-clockwise of `a`.
+///
+/// ```
+/// use roverlab::geometry::{Vector, cross};
+/// assert_eq!(cross(Vector::new(1.0, 0.0), Vector::new(0.0, 2.0)), 2.0, "the second one points to the left");
+/// ```
 #[inline]
 pub fn cross(a: Vector, b: Vector) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
 /// The unit vector that points in the direction `angle`.
+///
+/// ```
+/// use roverlab::geometry::direction;
+/// let north = direction(std::f64::consts::FRAC_PI_2);
+/// assert!(north.x.abs() < 1e-12 && north.y == 1.0);
+/// ```
 #[inline]
 pub fn direction(angle: f64) -> Vector {
     let (sin, cos) = math::sin_cos(angle);

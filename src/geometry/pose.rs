@@ -89,6 +89,12 @@ impl Pose {
 }
 
 /// A velocity in the plane: the v-omega of RoBIOS and the planar part of a ROS `Twist`.
+///
+/// ```
+/// use roverlab::geometry::Twist;
+/// let circle = Twist::new(0.2, 0.5);
+/// assert_eq!(circle.linear / circle.angular, 0.4, "the radius in metres");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Twist {
     /// Metres per second forward.
@@ -128,6 +134,12 @@ pub fn normalize_angle(angle: f64) -> f64 {
 }
 
 /// The turn from direction `from` to direction `to`, in `-pi..=pi`.
+///
+/// ```
+/// use roverlab::geometry::angle_difference;
+/// let turn = angle_difference(170_f64.to_radians(), (-170_f64).to_radians());
+/// assert!((turn + 20_f64.to_radians()).abs() < 1e-12, "20 degrees to the right, past 180");
+/// ```
 #[inline]
 pub fn angle_difference(to: f64, from: f64) -> f64 {
     normalize_angle(to - from)

@@ -1,6 +1,13 @@
 use super::{Point, Vector};
 
 /// A straight line between two points.
+///
+/// ```
+/// use roverlab::geometry::{Point, Segment};
+/// let wall = Segment::new(Point::new(0.0, 0.0), Point::new(2.0, 0.0));
+/// assert_eq!(wall.closest_point(Point::new(0.5, 1.0)), Point::new(0.5, 0.0));
+/// assert_eq!(wall.distance_to(Point::new(5.0, 4.0)), 5.0, "to its end: 3, 4, 5");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
     /// One end.
@@ -40,6 +47,15 @@ impl Segment {
 }
 
 /// An axis-aligned box.
+///
+/// ```
+/// use roverlab::geometry::{Aabb, Point, Vector};
+/// let corners = [Point::new(2.0, 0.0), Point::new(0.0, 1.0)];
+/// let room = Aabb::around(corners).expect("there are points");
+/// assert_eq!(room.size(), Vector::new(2.0, 1.0));
+/// assert!(!room.contains(Point::new(2.1, 0.5)) && room.inflated(0.2).contains(Point::new(2.1, 0.5)));
+/// assert_eq!(room, Aabb::new(corners[1], corners[0]));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aabb {
     /// The corner with the smallest coordinates.

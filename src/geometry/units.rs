@@ -1,4 +1,10 @@
 //! Millimetres and degrees, as the book, EyeSim's files, RoBIOS and the command line use them.
+//!
+//! ```
+//! use roverlab::geometry::units::{from_deg, from_mm, to_deg, to_mm};
+//! assert_eq!((from_mm(1500.0), to_mm(1.5)), (1.5, 1500.0));
+//! assert_eq!((from_deg(180.0), to_deg(std::f64::consts::PI)), (std::f64::consts::PI, 180.0));
+//! ```
 
 use std::f64::consts::PI;
 

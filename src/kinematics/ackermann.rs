@@ -10,6 +10,16 @@ use crate::parameter::{require, require_positive};
 /// The robot's origin is the middle of the rear axle. The *steering angle* is that of the bicycle model, a wheel in the
 /// middle of the front axle, positive to the left; [`wheel_angles`](Ackermann::wheel_angles) has those of the two front
 /// wheels, which all point to the same centre of the turn.
+///
+/// ```
+/// use roverlab::geometry::Twist;
+/// use roverlab::kinematics::Ackermann;
+/// let car = Ackermann::new(0.3, 0.2, 0.5)?;
+/// let state = car.inverse(Twist::new(1.0, 1.0)).expect("a bend of a metre's radius");
+/// assert!((state.steering.tan() - 0.3).abs() < 1e-12, "wheelbase over radius");
+/// assert!(car.inverse(Twist::new(0.5, 1.0)).is_none(), "half a metre is tighter than it can");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ackermann {
     wheelbase: f64,

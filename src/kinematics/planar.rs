@@ -46,6 +46,16 @@ impl From<Twist> for PlanarTwist {
 
 /// What a robot does while its velocity, in its own frame, stays the same: an arc, driven under a constant angle to the
 /// heading.
+///
+/// ```
+/// use roverlab::geometry::Pose;
+/// use roverlab::kinematics::{PlanarMotion, advance_planar};
+/// let (start, end) = (Pose::new(1.0, 2.0, 0.5), Pose::new(1.2, 2.3, 0.1));
+/// let motion = PlanarMotion::between(start, end);
+/// assert!(advance_planar(start, motion).distance_to(end.position()) < 1e-12);
+/// let halfway = advance_planar(start, motion.scaled(0.5));
+/// assert!((halfway.heading - 0.3).abs() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PlanarMotion {
     /// Metres along the robot's own forward axis, which turns with it.

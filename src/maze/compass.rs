@@ -2,6 +2,13 @@ use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 
 /// One of the four directions of a maze, clockwise from north. North is up in files and along y in worlds.
+///
+/// ```
+/// use roverlab::maze::Direction;
+/// assert_eq!(Direction::North.left(), Direction::West);
+/// assert_eq!(Direction::East.opposite().step(), (-1, 0), "a cell to the west");
+/// assert_eq!(Direction::nearest(1.4), Direction::North, "radians counter-clockwise from east");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum Direction {
     /// Up, along y.
@@ -97,6 +104,15 @@ impl fmt::Display for Direction {
 }
 
 /// A cell of a maze by its column from the left and its row from below, both from 0.
+///
+/// ```
+/// use roverlab::maze::{Cell, Direction, Maze};
+/// let maze = Maze::open(3, 2)?;
+/// let corner = Cell::new(2, 1);
+/// assert_eq!(maze.neighbour(corner, Direction::South), Some(Cell::new(2, 0)));
+/// assert_eq!(maze.neighbour(corner, Direction::East), None);
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct Cell {
     /// The column.

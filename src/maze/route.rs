@@ -30,6 +30,13 @@ impl Preference {
 }
 
 /// A way from cell to cell.
+///
+/// ```
+/// use roverlab::maze::{Cell, Direction, Route};
+/// let moves = vec![Direction::North, Direction::North, Direction::East];
+/// let route = Route::new(Cell::new(0, 0), Direction::North, moves);
+/// assert_eq!((route.steps(), route.turns(), route.end()), (3, 1, Cell::new(1, 2)));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Route {
     start: Cell,
@@ -97,6 +104,16 @@ pub fn shortest_route(maze: &Maze, unknown: Unknown, preference: Preference) -> 
 }
 
 /// The best route from a cell and a heading to the nearest cell that is a goal; `None` if none leads to one.
+///
+/// ```
+/// use roverlab::maze::{Cell, Direction, Maze, Preference, Unknown, shortest_route_between};
+/// let (maze, from) = (Maze::open(4, 4)?, (Cell::new(3, 3), Direction::West));
+/// let home = |cell| cell == Cell::new(0, 0);
+/// let route = shortest_route_between(&maze, Unknown::Closed, Preference::Turns, from, home);
+/// let route = route.expect("an open way");
+/// assert_eq!((route.steps(), route.turns()), (6, 1));
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 pub fn shortest_route_between(
     maze: &Maze,
     unknown: Unknown,

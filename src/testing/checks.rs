@@ -133,6 +133,22 @@ pub fn triangle_inequality(
 }
 
 /// A planner made from a closure.
+///
+/// ```
+/// use roverlab::nav::grid::{GridPath, PlanError};
+/// use roverlab::testing::{PlanWith, collision_free};
+/// use roverlab::world::{BitGrid, GridCell};
+/// // A planner that drives straight on, whatever stands there.
+/// let mut straight = PlanWith(|start: GridCell, goal: GridCell| -> Result<GridPath, PlanError> {
+///     let points = vec![start.centre(), goal.centre()];
+///     Ok(GridPath { cost: (points[1] - points[0]).norm(), points, statistics: Default::default() })
+/// });
+/// let grid = BitGrid::from_text("...\n.@.\n...")?;
+/// let (west, east) = (GridCell::new(0, 1), GridCell::new(2, 1));
+/// let violation = collision_free(&mut straight, &grid, west, east).unwrap_err();
+/// assert_eq!((violation.start, violation.goal), (west, east));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct PlanWith<F>(pub F);
 

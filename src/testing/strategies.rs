@@ -10,6 +10,17 @@ use crate::world::{BitGrid, GridCell};
 /// cells blocked.
 ///
 /// A failing grid is not made smaller cell by cell, but through its size.
+///
+/// ```
+/// use proptest::prelude::*;
+/// use proptest::test_runner::TestRunner;
+/// use roverlab::testing::grids;
+/// TestRunner::deterministic().run(&grids(1..20, 1..9), |grid| {
+///     prop_assert!(grid.width() < 20 && grid.height() < 9);
+///     prop_assert_eq!(grid.transposed().transposed(), grid);
+///     Ok(())
+/// }).unwrap();
+/// ```
 pub fn grids(widths: Range<usize>, heights: Range<usize>) -> impl Strategy<Value = BitGrid> {
     (widths, heights, 0..3usize, 0.0..1.0f64, any::<u64>()).prop_map(|(width, height, kind, share, seed)| {
         let (width, height) = (width.max(1), height.max(1));
@@ -90,6 +101,18 @@ pub struct GridMaze {
 
 /// Mazes of some numbers of places in both directions, at least one, with the answer known from how they were made. The grid
 /// has twice as many columns and rows, less one. No diagonal step is possible in them.
+///
+/// ```
+/// use proptest::prelude::*;
+/// use proptest::test_runner::TestRunner;
+/// use roverlab::nav::grid::{GridPlanner, GridSearch};
+/// use roverlab::testing::mazes;
+/// TestRunner::deterministic().run(&mazes(1..8, 1..8), |maze| {
+///     let path = GridSearch::astar(&maze.grid).plan(maze.start, maze.goal).expect("there is a way");
+///     prop_assert_eq!(path.cost, (maze.way.len() - 1) as f64);
+///     Ok(())
+/// }).unwrap();
+/// ```
 pub fn mazes(widths: Range<usize>, heights: Range<usize>) -> impl Strategy<Value = GridMaze> {
     (widths, heights, any::<u64>()).prop_map(|(width, height, seed)| {
         let (width, height) = (width.max(1), height.max(1));
@@ -134,6 +157,17 @@ fn maze(width: usize, height: usize, stream: &mut Stream) -> GridMaze {
 
 /// Worlds of obstacles with a start and a goal, and the answer whether a way leads there, as
 /// [`obstacle_course`] makes them.
+///
+/// ```
+/// use proptest::prelude::*;
+/// use proptest::test_runner::{Config, TestRunner};
+/// use roverlab::testing::worlds;
+/// TestRunner::new(Config::with_cases(4)).run(&worlds(), |course| {
+///     let way = course.goal - course.start.position();
+///     prop_assert!(way.norm() > 0.1 && !course.obstacles.is_empty());
+///     Ok(())
+/// }).unwrap();
+/// ```
 pub fn worlds() -> impl Strategy<Value = Course> {
     any::<u64>().prop_filter_map("no course of this seed", |seed| {
         obstacle_course(&mut Stream::new(seed), &CourseOptions::default()).ok()

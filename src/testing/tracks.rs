@@ -4,6 +4,16 @@ use crate::race::{GeneratedTrack, TrackOptions, generate};
 
 /// Closed tracks of cones, legal by the rules of Formula Student: of all lengths, widths, distances of cones, and with up to
 /// three hairpins.
+///
+/// ```
+/// use proptest::prelude::*;
+/// use proptest::test_runner::{Config, TestRunner};
+/// use roverlab::testing::cone_tracks;
+/// TestRunner::new(Config::with_cases(4)).run(&cone_tracks(), |generated| {
+///     prop_assert!(generated.track.cones.len() > 40, "a lap has cones on both sides");
+///     Ok(())
+/// }).unwrap();
+/// ```
 pub fn cone_tracks() -> impl Strategy<Value = GeneratedTrack> {
     any::<u64>().prop_filter_map("options that no track meets", |seed| {
         generate(seed, &TrackOptions::drawn(seed)).ok()

@@ -30,6 +30,20 @@ impl Default for CannyThresholds {
 ///    `|dy| > tan(67.5°) |dx|`. On diagonals it must be larger than both. `tan(22.5°)` is `13573 / 32768` and
 ///    `tan(67.5°)` is 2 more. Outside the image magnitudes are 0.
 /// 3. What is left is an edge, 255, if a chain of neighbours, diagonal ones included, leads to a pixel above `high`.
+///
+/// ```
+/// use roverlab::vision::{Canny, CannyThresholds, GrayView, GrayViewMut};
+/// let image = [
+///     0, 0, 0, 200, 200, 200, //
+///     0, 0, 0, 200, 200, 200, //
+///     0, 0, 0, 200, 200, 200,
+/// ];
+/// let mut edges = [0; 18];
+/// let (input, output) = (GrayView::new(&image, 6, 3)?, GrayViewMut::new(&mut edges, 6, 3)?);
+/// Canny::new().find_into(input, output, CannyThresholds::default())?;
+/// assert_eq!(edges[6..12], [0, 0, 255, 0, 0, 0], "an edge is one pixel wide");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Canny {
     /// Gradients of three rows in turn.

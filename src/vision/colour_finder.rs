@@ -32,6 +32,20 @@ pub struct Sighting {
 }
 
 /// Finds a taught hue in images. It keeps its memory from one image to the next.
+///
+/// ```
+/// use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod, RgbView};
+/// let mut image = [90; 3 * 40 * 30];
+/// for (row, column) in (5..10).flat_map(|row| (30..36).map(move |column| (row, column))) {
+///     image[3 * (40 * row + column)..][..3].copy_from_slice(&[200, 20, 20]);
+/// }
+/// let camera = CameraGeometry { field_of_view: 1.0, height: 0.1, ahead: 0.0 };
+/// let mut finder = ColourFinder::new(42, 10, FindMethod::Blob, camera)?;
+/// let found = finder.find(RgbView::new(&image, 40, 30)?)?.expect("a red box");
+/// assert_eq!((found.columns, found.pixels), ((30, 35), 30));
+/// assert!(found.bearing < 0.0, "to the right of straight ahead");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ColourFinder {
     /// The hues that match.
@@ -141,6 +155,15 @@ impl ColourFinder {
 
 /// The hue that most pixels in the middle of an image have, if there are enough: what is held before the camera to
 /// teach it. Neighbouring hues help each other.
+///
+/// ```
+/// use roverlab::vision::{HueLimits, RgbView, teach_hue};
+/// let ball = [20, 20, 200].repeat(40 * 30);
+/// assert_eq!(teach_hue(RgbView::new(&ball, 40, 30)?, HueLimits::default())?, Some(210), "blue");
+/// let wall = [90, 90, 90].repeat(40 * 30);
+/// assert_eq!(teach_hue(RgbView::new(&wall, 40, 30)?, HueLimits::default())?, None);
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn teach_hue<'a>(
     image: impl TryInto<RgbView<'a>, Error: Into<ImageError>>,
     limits: HueLimits,

@@ -3,6 +3,14 @@ use super::view::{flatten, require_size};
 use super::{GrayView, GrayViewMut, ImageError, RgbView, RgbViewMut};
 
 /// 255 where a pixel is above the threshold, 0 elsewhere (book, Program 11.7).
+///
+/// ```
+/// use roverlab::vision::{GrayView, GrayViewMut, threshold_into};
+/// let mut mask = [0; 4];
+/// threshold_into(GrayView::new(&[99, 100, 101, 255], 4, 1)?, GrayViewMut::new(&mut mask, 4, 1)?, 100)?;
+/// assert_eq!(mask, [0, 0, 255, 255]);
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn threshold_into(input: GrayView<'_>, output: GrayViewMut<'_>, threshold: u8) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);
@@ -13,6 +21,15 @@ pub fn threshold_into(input: GrayView<'_>, output: GrayViewMut<'_>, threshold: u
 /// The first image in gray, and a colour (red, green, blue) wherever the second one is not 0 (book, section
 /// 11.2; RoBIOS's
 /// `IPOverlayGray`).
+///
+/// ```
+/// use roverlab::vision::{GrayView, RgbViewMut, overlay_gray_into};
+/// let (image, edges) = (GrayView::new(&[10, 20], 2, 1)?, GrayView::new(&[0, 255], 2, 1)?);
+/// let mut shown = [0; 6];
+/// overlay_gray_into(image, edges, [255, 0, 0], RgbViewMut::new(&mut shown, 2, 1)?)?;
+/// assert_eq!(shown, [10, 10, 10, 255, 0, 0]);
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn overlay_gray_into(
     base: GrayView<'_>,
     marks: GrayView<'_>,
@@ -26,6 +43,15 @@ pub fn overlay_gray_into(
 }
 
 /// The second image, and the first wherever the second is black (RoBIOS's `IPOverlay`).
+///
+/// ```
+/// use roverlab::vision::{RgbView, RgbViewMut, overlay_into};
+/// let (base, top) = (RgbView::new(&[1, 2, 3, 4, 5, 6], 2, 1)?, RgbView::new(&[0, 0, 0, 0, 0, 9], 2, 1)?);
+/// let mut shown = [0; 6];
+/// overlay_into(base, top, RgbViewMut::new(&mut shown, 2, 1)?)?;
+/// assert_eq!(shown, [1, 2, 3, 0, 0, 9]);
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn overlay_into(
     base: RgbView<'_>,
     top: RgbView<'_>,

@@ -17,6 +17,19 @@ pub struct Blob {
 /// image to the next.
 ///
 /// Runs of pixels are joined to those of the row above by union-find: linear in the number of pixels.
+///
+/// ```
+/// use roverlab::vision::{Components, GrayView};
+/// let mask = [
+///     1, 1, 0, 0, 0, //
+///     0, 0, 1, 0, 1, //
+///     0, 0, 0, 0, 1,
+/// ];
+/// let mut components = Components::new();
+/// let areas = components.find(GrayView::new(&mask, 5, 3)?, 1).iter().map(|blob| blob.area);
+/// assert_eq!(areas.collect::<Vec<_>>(), [3, 2], "diagonal neighbours are connected");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Components {
     runs: Vec<Run>,

@@ -3,6 +3,15 @@ use super::view::{flatten, require_size};
 use super::{GrayView, GrayViewMut, ImageError};
 
 /// `|first - second|`, pixel by pixel (book, Program 11.13).
+///
+/// ```
+/// use roverlab::vision::{GrayView, GrayViewMut, absolute_difference_into};
+/// let (before, after) = (GrayView::new(&[10, 200, 30], 3, 1)?, GrayView::new(&[10, 180, 70], 3, 1)?);
+/// let mut change = [0; 3];
+/// absolute_difference_into(before, after, GrayViewMut::new(&mut change, 3, 1)?)?;
+/// assert_eq!(change, [0, 20, 40]);
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn absolute_difference_into(
     first: GrayView<'_>,
     second: GrayView<'_>,
@@ -18,6 +27,13 @@ pub fn absolute_difference_into(
 }
 
 /// The mean of `|first - second|` over all pixels, in one pass (book, Program 11.13, without rounding).
+///
+/// ```
+/// use roverlab::vision::{GrayView, mean_difference};
+/// let (before, after) = (GrayView::new(&[10, 200, 30], 3, 1)?, GrayView::new(&[10, 180, 70], 3, 1)?);
+/// assert_eq!(mean_difference(before, after)?, (0.0 + 20.0 + 40.0) / 3.0);
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn mean_difference(first: GrayView<'_>, second: GrayView<'_>) -> Result<f64, ImageError> {
     require_size("second image", second.size(), first.size())?;
     let (width, height) = first.size();
@@ -30,6 +46,13 @@ pub fn mean_difference(first: GrayView<'_>, second: GrayView<'_>) -> Result<f64,
 
 /// The mean of `|first - second|` in each of `N` sectors from left to right (book, section 11.5), in one pass. Sector
 /// `i` has the columns from `i * width / N` on; where that leaves it none, its mean is 0.
+///
+/// ```
+/// use roverlab::vision::{GrayView, sector_differences};
+/// let (before, after) = (GrayView::new(&[0; 6], 6, 1)?, GrayView::new(&[0, 0, 0, 0, 90, 30], 6, 1)?);
+/// assert_eq!(sector_differences::<3>(before, after)?, [0.0, 0.0, 60.0], "motion at the right");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn sector_differences<const N: usize>(
     first: GrayView<'_>,
     second: GrayView<'_>,

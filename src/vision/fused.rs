@@ -6,6 +6,17 @@ use super::{HueLimits, HueRange, ImageError, RgbView};
 
 /// How many pixels of each column have a hue of the range (book, Program 11.9): from the colours to the histogram in
 /// one pass. Hues are on RoBIOS's scale. Fails unless there is one count for each column.
+///
+/// ```
+/// use roverlab::vision::{HueLimits, HueRange, HueScale, RgbView, hue_histogram_into};
+/// let (red, blue) = ([200, 10, 10], [10, 10, 200]);
+/// let image = [red, blue, blue, red, red, blue].concat();
+/// let range = HueRange::like(red, 10, HueScale::Robios)?;
+/// let mut columns = [0; 3];
+/// hue_histogram_into(RgbView::new(&image, 3, 2)?, &mut columns, range, HueLimits::default())?;
+/// assert_eq!(columns, [2, 1, 0], "red pixels in each column");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn hue_histogram_into(
     input: RgbView<'_>,
     columns: &mut [u32],

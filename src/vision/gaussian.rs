@@ -9,6 +9,15 @@ use crate::geometry::math;
 ///
 /// The weights are 256ths that add up to 1. Without a width of one's own, 3 and 5 pixels have the binomial weights
 /// `1 2 1` and `1 4 6 4 1`, and 7 pixels `2 7 14 18 14 7 2` of 64, as OpenCV has them.
+///
+/// ```
+/// use roverlab::vision::GaussianKernel;
+/// assert_eq!(GaussianKernel::THREE.weights(), [128, 64, 0, 0], "1/4 1/2 1/4");
+/// let flat = GaussianKernel::new(3, 10.0)?;
+/// assert_eq!((flat.size(), flat.weights()), (3, [86, 85, 0, 0]), "a wide bell is almost a mean");
+/// assert!(GaussianKernel::new(4, 1.0).is_err());
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct GaussianKernel {
     /// The middle weight, then those to either side.
@@ -62,6 +71,16 @@ impl GaussianKernel {
 
 /// Smooths an image: the weighted sum of the pixels around each, rounded to the nearest (halves up), with the image
 /// continued by its mirror image about the outermost pixels.
+///
+/// ```
+/// use roverlab::vision::{GaussianKernel, GrayView, GrayViewMut, gaussian_into};
+/// let dot = [0, 0, 0, 0, 160, 0, 0, 0, 0];
+/// let mut smooth = [0; 9];
+/// gaussian_into(GrayView::new(&dot, 3, 3)?, GrayViewMut::new(&mut smooth, 3, 3)?, GaussianKernel::THREE)?;
+/// assert_eq!(smooth[4], 40, "the dot keeps a half of a half");
+/// assert_eq!(smooth[3..6], [40, 40, 40], "and the mirrored border sees it twice");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn gaussian_into(
     input: GrayView<'_>,
     mut output: GrayViewMut<'_>,

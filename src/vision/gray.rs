@@ -14,6 +14,15 @@ pub enum GrayWeights {
 }
 
 /// Colour to shades of gray.
+///
+/// ```
+/// use roverlab::vision::{GrayViewMut, GrayWeights, RgbView, gray_into};
+/// let colours = [255, 0, 0, 0, 255, 0, 0, 0, 255];
+/// let mut gray = [0; 3];
+/// gray_into(RgbView::new(&colours, 3, 1)?, GrayViewMut::new(&mut gray, 3, 1)?, GrayWeights::Rec601)?;
+/// assert_eq!(gray, [76, 150, 29], "green is the brightest to the eye, blue the darkest");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn gray_into(
     input: RgbView<'_>,
     output: GrayViewMut<'_>,
@@ -26,6 +35,14 @@ pub fn gray_into(
 }
 
 /// Shades of gray to colour: each byte three times.
+///
+/// ```
+/// use roverlab::vision::{GrayView, RgbViewMut, gray_to_rgb_into};
+/// let mut colours = [0; 6];
+/// gray_to_rgb_into(GrayView::new(&[7, 90], 2, 1)?, RgbViewMut::new(&mut colours, 2, 1)?)?;
+/// assert_eq!(colours, [7, 7, 7, 90, 90, 90]);
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn gray_to_rgb_into(input: GrayView<'_>, output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);

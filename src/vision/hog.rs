@@ -34,6 +34,17 @@ impl Default for HogParameters {
 /// 3. The magnitudes of a cell's pixels are added up bin by bin. Pixels beyond the last whole cell do not count.
 /// 4. The histograms of a block's cells, row by row, are divided by `sqrt(|v|² + 1)`, no number is left above 0.2, and
 ///    they are divided by their length again, if they have one. Blocks follow each other cell by cell, row by row.
+///
+/// ```
+/// use roverlab::vision::{GrayView, Hog, HogParameters};
+/// let mut hog = Hog::new(HogParameters::default())?;
+/// let stripes: Vec<u8> = (0..32 * 16).map(|i| if i % 32 < 12 { 0 } else { 250 }).collect();
+/// assert_eq!(hog.blocks((32, 16)), (3, 1));
+/// let descriptor = hog.describe(GrayView::new(&stripes, 32, 16)?)?;
+/// assert_eq!(descriptor.len(), 3 * 4 * 9, "blocks, cells of a block, directions");
+/// assert!(descriptor[9] > 0.5 && descriptor[10] == 0.0, "the second cell has an upright edge");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Hog {
     parameters: HogParameters,

@@ -23,6 +23,15 @@ pub struct HoughLine {
 /// Each pixel that is not 0 votes, for each of the angles, for the line through it, its `rho` rounded to a multiple of
 /// the step. A line has more votes than the threshold, more than the next smaller `rho` and angle, and at least as
 /// many as the next larger ones.
+///
+/// ```
+/// use roverlab::vision::{GrayView, HoughLines};
+/// let mut edges = [0; 40 * 30];
+/// (0..30).for_each(|row| edges[40 * row + 12] = 255);
+/// let lines = HoughLines::new(1.0, 180)?.find(GrayView::new(&edges, 40, 30)?, 20);
+/// assert_eq!((lines[0].rho, lines[0].theta, lines[0].votes), (12.0, 0.0, 30), "upright, at column 12");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct HoughLines {
     rho_step: f64,

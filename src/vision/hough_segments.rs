@@ -42,6 +42,17 @@ impl Default for SegmentParameters {
 /// has enough, pixels are followed along it to both sides from the one that voted last, over gaps that are not too
 /// wide, and leave the vote; if they reach far enough, they are a line, and their votes are taken back. What differs in
 /// OpenCV is a [`SegmentDefinition`]; with it, lines are OpenCV's, one by one, at a distance step of one pixel.
+///
+/// ```
+/// use roverlab::vision::{GrayView, HoughSegments, SegmentParameters};
+/// let mut edges = [0; 60 * 40];
+/// (10..50).for_each(|column| edges[60 * 20 + column] = 255);
+/// let parameters = SegmentParameters { threshold: 20, min_length: 30, max_gap: 2, ..Default::default() };
+/// let segments = HoughSegments::new(180)?.find(GrayView::new(&edges, 60, 40)?, parameters);
+/// assert_eq!(segments.len(), 1);
+/// assert_eq!((segments[0].from, segments[0].to), ((10, 20), (49, 20)));
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct HoughSegments {
     directions: Vec<[f32; 2]>,

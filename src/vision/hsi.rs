@@ -17,6 +17,12 @@ pub struct Hsi {
 }
 
 /// Red, green and blue to hue, saturation and intensity.
+///
+/// ```
+/// use roverlab::vision::{Hsi, NO_HUE, rgb_to_hsi};
+/// assert_eq!(rgb_to_hsi([0, 255, 0]), Hsi { hue: 85, saturation: 255, intensity: 85 });
+/// assert_eq!(rgb_to_hsi([60, 60, 60]), Hsi { hue: NO_HUE, saturation: 0, intensity: 60 });
+/// ```
 pub fn rgb_to_hsi(pixel: [u8; 3]) -> Hsi {
     let [red, green, blue] = pixel.map(u32::from);
     let sum = red + green + blue;
@@ -48,6 +54,11 @@ fn exact_hue(pixel: [u8; 3]) -> u8 {
 ///
 /// In the sector that begins with the channel `a`, `h` radians after it, `a = I (1 + S cos h / cos(pi/3 - h))`, the
 /// channel before it is `I (1 - S)`, and the one behind it makes the mean `I`.
+///
+/// ```
+/// use roverlab::vision::{Hsi, hsi_to_rgb};
+/// assert_eq!(hsi_to_rgb(Hsi { hue: 85, saturation: 255, intensity: 85 }), [0, 255, 0]);
+/// ```
 pub fn hsi_to_rgb(Hsi { hue, saturation, intensity }: Hsi) -> [u8; 3] {
     if hue == NO_HUE || saturation == 0 {
         return [intensity; 3];
@@ -65,6 +76,17 @@ pub fn hsi_to_rgb(Hsi { hue, saturation, intensity }: Hsi) -> [u8; 3] {
 }
 
 /// Hue, saturation and intensity of an image; the output has them in the place of red, green and blue.
+///
+/// ```
+/// use roverlab::vision::{RgbView, RgbViewMut, hsi_into, hsi_to_rgb_into};
+/// let colours = [255, 0, 0, 0, 0, 255];
+/// let (mut hsi, mut back) = ([0; 6], [0; 6]);
+/// hsi_into(RgbView::new(&colours, 2, 1)?, RgbViewMut::new(&mut hsi, 2, 1)?)?;
+/// assert_eq!(hsi, [0, 255, 85, 170, 255, 85], "red has hue 0, blue 170 of 255");
+/// hsi_to_rgb_into(RgbView::new(&hsi, 2, 1)?, RgbViewMut::new(&mut back, 2, 1)?)?;
+/// assert_eq!(back, colours);
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn hsi_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     for y in 0..input.height() {

@@ -17,6 +17,11 @@ pub struct Hsv {
 }
 
 /// Red, green and blue to hue, saturation and value.
+///
+/// ```
+/// use roverlab::vision::{Hsv, rgb_to_hsv};
+/// assert_eq!(rgb_to_hsv([0, 200, 0]), Hsv { hue: 60, saturation: 255, value: 200 });
+/// ```
 #[inline(always)]
 pub fn rgb_to_hsv([red, green, blue]: [u8; 3]) -> Hsv {
     let value = red.max(green).max(blue);
@@ -26,6 +31,17 @@ pub fn rgb_to_hsv([red, green, blue]: [u8; 3]) -> Hsv {
 }
 
 /// The same for an image; the output has hue, saturation and value in the place of red, green and blue.
+///
+/// ```
+/// use roverlab::vision::{RgbView, RgbViewMut, hsv_into, hsv_to_rgb_into};
+/// let colours = [255, 0, 0, 0, 0, 255];
+/// let (mut hsv, mut back) = ([0; 6], [0; 6]);
+/// hsv_into(RgbView::new(&colours, 2, 1)?, RgbViewMut::new(&mut hsv, 2, 1)?)?;
+/// assert_eq!(hsv, [0, 255, 255, 120, 255, 255], "red has hue 0, blue 120 of 180");
+/// hsv_to_rgb_into(RgbView::new(&hsv, 2, 1)?, RgbViewMut::new(&mut back, 2, 1)?)?;
+/// assert_eq!(back, colours);
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn hsv_into(input: RgbView<'_>, output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);
@@ -38,6 +54,11 @@ pub fn hsv_into(input: RgbView<'_>, output: RgbViewMut<'_>) -> Result<(), ImageE
 /// In the sixth of the circle that begins after `k` of them, with `f` the part of it that is behind the hue, the channels are
 /// `V`, `V (1 - S)` and `V (1 - S f)` or `V (1 - S (1 - f))`, rounded down. A product that is taken from 1 is rounded together
 /// with the difference. (The few pixels at the end of a row that do not fill a register OpenCV rounds to the nearest.)
+///
+/// ```
+/// use roverlab::vision::{Hsv, hsv_to_rgb};
+/// assert_eq!(hsv_to_rgb(Hsv { hue: 60, saturation: 255, value: 255 }), [0, 255, 0]);
+/// ```
 pub fn hsv_to_rgb(Hsv { hue, saturation, value }: Hsv) -> [u8; 3] {
     let (saturation, value) = (f32::from(saturation) * (1.0 / 255.0), f32::from(value) * (1.0 / 255.0));
     let sixths = f32::from(hue) * (6.0 / 180.0);

@@ -45,6 +45,14 @@ impl Default for HueLimits {
 }
 
 /// The hue of red, green and blue; [`NO_HUE`] outside the limits and, on RoBIOS's scale, for grays.
+///
+/// ```
+/// use roverlab::vision::{HueLimits, HueScale, NO_HUE, hue};
+/// let red = [200, 10, 10];
+/// assert_eq!(hue(red, HueScale::Robios, HueLimits::default()), 42);
+/// assert_eq!(hue(red, HueScale::OpenCv, HueLimits::default()), 0);
+/// assert_eq!(hue([200, 180, 180], HueScale::Robios, HueLimits::default()), NO_HUE, "too pale");
+/// ```
 #[inline(always)]
 pub fn hue([red, green, blue]: [u8; 3], scale: HueScale, limits: HueLimits) -> u8 {
     let brightest = red.max(green).max(blue);
@@ -110,6 +118,16 @@ pub(super) fn fixed_point(n: i16, one: f32, d: u8) -> i16 {
 }
 
 /// The hues of an image; see [`hue`].
+///
+/// ```
+/// use roverlab::vision::{GrayViewMut, HueLimits, HueScale, NO_HUE, RgbView, hue_into};
+/// let colours = [200, 10, 10, 10, 200, 10, 10, 10, 200, 90, 90, 90];
+/// let mut hues = [0; 4];
+/// let output = GrayViewMut::new(&mut hues, 4, 1)?;
+/// hue_into(RgbView::new(&colours, 4, 1)?, output, HueScale::Robios, HueLimits::default())?;
+/// assert_eq!(hues, [42, 126, 210, NO_HUE], "red, green, blue, gray");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn hue_into(
     input: RgbView<'_>,
     output: GrayViewMut<'_>,

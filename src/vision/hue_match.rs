@@ -83,6 +83,17 @@ fn require_hue(parameter: &'static str, hue: u8, scale: HueScale) -> Result<(), 
 }
 
 /// 255 where a pixel's hue belongs to the range, 0 elsewhere (book, section 11.4), straight from the colours.
+///
+/// ```
+/// use roverlab::vision::{GrayViewMut, HueLimits, HueRange, HueScale, RgbView, hue_match_into};
+/// let colours = [200, 10, 10, 10, 200, 10, 90, 90, 90];
+/// let red = HueRange::like([255, 0, 0], 10, HueScale::OpenCv)?;
+/// let mut mask = [0; 3];
+/// let output = GrayViewMut::new(&mut mask, 3, 1)?;
+/// hue_match_into(RgbView::new(&colours, 3, 1)?, output, red, HueScale::OpenCv, HueLimits::default())?;
+/// assert_eq!(mask, [255, 0, 0]);
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn hue_match_into(
     input: RgbView<'_>,
     output: GrayViewMut<'_>,
@@ -100,6 +111,16 @@ pub fn hue_match_into(
 }
 
 /// 255 where an image of hues has one of the range, 0 elsewhere.
+///
+/// ```
+/// use roverlab::vision::{GrayView, GrayViewMut, HueRange, HueScale, NO_HUE, match_hue_image_into};
+/// let green = HueRange::around(126, 10, HueScale::Robios)?;
+/// let mut mask = [0; 4];
+/// let hues = GrayView::new(&[120, 135, 140, NO_HUE], 4, 1)?;
+/// match_hue_image_into(hues, GrayViewMut::new(&mut mask, 4, 1)?, green)?;
+/// assert_eq!(mask, [255, 255, 0, 0], "less than 10 away from 126");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn match_hue_image_into(
     input: GrayView<'_>,
     output: GrayViewMut<'_>,

@@ -16,6 +16,16 @@ pub fn laplace_into(
 
 /// The Laplace operator where it is positive: `n + s + e + w - 4 c`, held within `0..=255`. It finds the dark sides of
 /// edges.
+///
+/// ```
+/// use roverlab::vision::{Border, GrayView, GrayViewMut, laplace_saturated_into};
+/// let step = [10, 10, 10, 60, 60, 60];
+/// let mut edges = [0; 6];
+/// let (input, output) = (GrayView::new(&step, 6, 1)?, GrayViewMut::new(&mut edges, 6, 1)?);
+/// laplace_saturated_into(input, output, Border::Mirror)?;
+/// assert_eq!(edges, [0, 0, 50, 0, 0, 0], "the last dark pixel before the step");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn laplace_saturated_into(
     input: GrayView<'_>,
     mut output: GrayViewMut<'_>,

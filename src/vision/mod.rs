@@ -24,6 +24,12 @@
 //! The functions in `_into` write into memory of the caller's and allocate nothing. The loops are plain Rust that the
 //! compiler vectorises for several generations of processors; the best one that the processor has is chosen at run
 //! time, and all give the same bits.
+//!
+//! # Errors and complexity
+//!
+//! A kernel fails with [`ImageError`] if its images differ in size, before it writes anything; bad parameters are refused
+//! with their name and range. Time is linear in the number of pixels, except for [`HoughLines`] and [`HoughSegments`]: edge
+//! pixels times angles.
 
 #![forbid(unsafe_code)]
 #![allow(clippy::needless_bitwise_bool, reason = "conditions without branches are what vectorises")]

@@ -5,6 +5,16 @@ use super::{GrayView, ImageError};
 /// The sums of all columns and of all rows (book, section 11.4, where the image is one of matches).
 ///
 /// Fails unless there is one sum for each column and row.
+///
+/// ```
+/// use roverlab::vision::{GrayView, maximum, projections_into};
+/// let matches = [0, 255, 0, 0, 255, 255];
+/// let (mut columns, mut rows) = ([0; 3], [0; 2]);
+/// projections_into(GrayView::new(&matches, 3, 2)?, &mut columns, &mut rows)?;
+/// assert_eq!((columns, rows), ([0, 510, 255], [255, 510]));
+/// assert_eq!(maximum(&columns), Some((1, 510)), "the object is in column 1");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn projections_into(
     input: GrayView<'_>,
     columns: &mut [u32],

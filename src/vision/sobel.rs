@@ -15,6 +15,16 @@ pub enum SobelScale {
 /// The Sobel gradient's magnitude by sums: `|dx| + |dy|`, or a third of that rounded down, at most 255.
 ///
 /// `dx = (ne + 2 e + se) - (nw + 2 w + sw)` and `dy = (sw + 2 s + se) - (nw + 2 n + ne)`.
+///
+/// ```
+/// use roverlab::vision::{Border, GrayView, GrayViewMut, SobelScale, sobel_l1_into};
+/// let corner = [0, 0, 0, 0, 0, 20, 0, 20, 20];
+/// let mut edges = [0; 9];
+/// let (input, output) = (GrayView::new(&corner, 3, 3)?, GrayViewMut::new(&mut edges, 3, 3)?);
+/// sobel_l1_into(input, output, SobelScale::Full, Border::Zero)?;
+/// assert_eq!(edges, [0, 0, 0, 0, 120, 0, 0, 0, 0], "dx = dy = 60");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn sobel_l1_into(
     input: GrayView<'_>,
     mut output: GrayViewMut<'_>,
@@ -31,6 +41,16 @@ pub fn sobel_l1_into(
 
 /// The Sobel gradient's Euclidean magnitude: `sqrt(dx² + dy²)`, or a third of that, rounded to the nearest whole
 /// number, at most 255; see [`sobel_l1_into`].
+///
+/// ```
+/// use roverlab::vision::{Border, GrayView, GrayViewMut, SobelScale, sobel_l2_into};
+/// let corner = [0, 0, 0, 0, 0, 20, 0, 20, 20];
+/// let mut edges = [0; 9];
+/// let (input, output) = (GrayView::new(&corner, 3, 3)?, GrayViewMut::new(&mut edges, 3, 3)?);
+/// sobel_l2_into(input, output, SobelScale::Full, Border::Zero)?;
+/// assert_eq!(edges[4], 85, "dx = dy = 60, and the root of 60² + 60² is 84.9");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 pub fn sobel_l2_into(
     input: GrayView<'_>,
     mut output: GrayViewMut<'_>,

@@ -1,6 +1,16 @@
 use super::ImageError;
 
 /// A borrowed image of `C` bytes a pixel. It has at least one pixel.
+///
+/// ```
+/// use roverlab::vision::{GrayView, RgbView};
+/// let bytes = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12];
+/// let gray = GrayView::new(&bytes, 4, 3)?;
+/// assert_eq!(gray.region((1, 1), 2, 2)?.row(0), [6, 7]);
+/// assert_eq!(RgbView::new(&bytes, 2, 2)?.row(1), [7, 8, 9, 10, 11, 12]);
+/// assert!(GrayView::new(&bytes, 5, 3).is_err(), "three bytes are missing");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct View<'a, const C: usize> {
     data: &'a [u8],
@@ -8,6 +18,15 @@ pub struct View<'a, const C: usize> {
 }
 
 /// A borrowed image of `C` bytes a pixel to write into. It has at least one pixel.
+///
+/// ```
+/// use roverlab::vision::{GrayView, GrayViewMut, threshold_into};
+/// let mut mask = [0; 12];
+/// let corner = GrayViewMut::new(&mut mask, 4, 3)?.region((2, 1), 2, 2)?;
+/// threshold_into(GrayView::new(&[9, 1, 1, 9], 2, 2)?, corner, 5)?;
+/// assert_eq!(mask, [0, 0, 0, 0, 0, 0, 255, 0, 0, 0, 0, 255]);
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug)]
 pub struct ViewMut<'a, const C: usize> {
     data: &'a mut [u8],

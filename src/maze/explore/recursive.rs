@@ -6,6 +6,24 @@ use crate::maze::{Cell, Direction, Maze, Unknown};
 ///
 /// A cell is marked when the robot has been in it, and with early marking also as soon as all of its walls are known and it
 /// leads to marked cells only: the robot need not go there any more. The end of the exploration is the start.
+///
+/// ```
+/// use roverlab::maze::generate::competition;
+/// use roverlab::maze::{Direction, ExplorationOutcome, ExplorationStep, Explorer, Maze, RecursiveExplorer};
+/// let truth = competition(8, 1)?;
+/// let mut known = Maze::unexplored(8, 8)?;
+/// let mut explorer = RecursiveExplorer::new();
+/// let mut at = (known.start(), known.heading());
+/// let outcome = loop {
+///     Direction::ALL.map(|side| known.set_wall(at.0, side, truth.wall(at.0, side)));
+///     match explorer.next(&known, at) {
+///         ExplorationStep::Go(cell) => at.0 = cell,
+///         ExplorationStep::Finished(outcome) => break outcome,
+///     }
+/// };
+/// assert_eq!((outcome, known.unknown_walls()), (ExplorationOutcome::Explored, 0));
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct RecursiveExplorer {
     /// Whether to mark cells that are known on all sides.

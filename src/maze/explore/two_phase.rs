@@ -19,6 +19,27 @@ pub enum Goals {
 /// The best route is proved once it is as good with every unknown wall standing as with none. Until then the best route that
 /// may exist leads through unknown walls, and the robot looks at the nearest of these. Each look makes at least one of them
 /// known, so the search ends.
+///
+/// ```
+/// use roverlab::maze::generate::competition;
+/// use roverlab::maze::{
+///     Direction, ExplorationOutcome, ExplorationStep, Explorer, Goals, Maze, TwoPhaseExplorer,
+/// };
+/// let truth = competition(8, 1)?;
+/// let mut known = Maze::unexplored(8, 8)?;
+/// let mut explorer = TwoPhaseExplorer::new(Goals::Steps);
+/// let mut at = (known.start(), known.heading());
+/// let outcome = loop {
+///     Direction::ALL.map(|side| known.set_wall(at.0, side, truth.wall(at.0, side)));
+///     match explorer.next(&known, at) {
+///         ExplorationStep::Go(cell) => at.0 = cell,
+///         ExplorationStep::Finished(outcome) => break outcome,
+///     }
+/// };
+/// assert_eq!(outcome, ExplorationOutcome::Optimal);
+/// assert!(known.unknown_walls() > 0, "not every wall had to be seen");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct TwoPhaseExplorer {
     goals: Goals,

@@ -65,6 +65,17 @@ fn require_length(bytes: u64, file: &str) -> Result<(), FormatError> {
 }
 
 /// Reads a maze file from disk.
+///
+/// ```
+/// use roverlab::maze::files::{load, parse, print};
+/// let maze = parse(b"o---o---o\n| S   G |\no---o---o\n", "two cells")?;
+/// let path = std::env::temp_dir().join(format!("two-cells-{}.txt", std::process::id()));
+/// std::fs::write(&path, print(&maze.maze, maze.format)?)?;
+/// assert_eq!(load(&path)?, maze);
+/// assert!(load("no-such-file.txt").unwrap_err().to_string().contains("no-such-file.txt"));
+/// # std::fs::remove_file(&path)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn load(path: impl AsRef<Path>) -> Result<MazeFile, FormatError> {
     let path = path.as_ref();
     let name = path.display().to_string();

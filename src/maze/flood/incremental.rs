@@ -8,6 +8,17 @@ use crate::maze::{Cell, Direction};
 /// A wall that opens lets shorter ways run through it; one that closes takes away the ways of those cells that have no
 /// other as short, and these are filled anew from their rim (Ramalingam and Reps, 1996, with unit costs). The work is that
 /// of the cells whose distance changes. [`FloodFill`] is faster on mazes of up to 32 x 32 cells, whatever changes.
+///
+/// ```
+/// use roverlab::maze::{Cell, Direction, IncrementalFlood, Maze, Passages, Unknown};
+/// let passages = Passages::new(&Maze::open(3, 2)?, Unknown::Closed);
+/// let (source, far) = (Cell::new(0, 0), Cell::new(2, 0));
+/// let mut flood = IncrementalFlood::new(passages, [source]);
+/// assert_eq!(flood.distances().get(far), Some(2));
+/// let changed = flood.set(source, Direction::East, false);
+/// assert_eq!((changed, flood.distances().get(far)), (2, Some(4)), "round by the other row");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct IncrementalFlood {
     passages: Passages,

@@ -116,6 +116,15 @@ impl FloodFill {
 }
 
 /// The steps of every cell to the goal of a maze.
+///
+/// ```
+/// use roverlab::maze::{Cell, Maze, Unknown, distances_to_goal};
+/// let mut maze = Maze::open(4, 3)?;
+/// maze.set_goals([Cell::new(3, 2)]);
+/// let steps = distances_to_goal(&maze, Unknown::Closed);
+/// assert_eq!(steps.as_slice(), [5, 4, 3, 2, 4, 3, 2, 1, 3, 2, 1, 0], "row by row from below");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 pub fn distances_to_goal(maze: &Maze, unknown: Unknown) -> Distances {
     let mut flood = FloodFill::default();
     flood.run(&Passages::new(maze, unknown), maze.goals());
@@ -123,6 +132,15 @@ pub fn distances_to_goal(maze: &Maze, unknown: Unknown) -> Distances {
 }
 
 /// The steps of every cell from the start of a maze.
+///
+/// ```
+/// use roverlab::maze::{Cell, Direction, Maze, Unknown, WallState, distances_from_start};
+/// let mut maze = Maze::open(3, 1)?;
+/// maze.set_wall(Cell::new(1, 0), Direction::East, WallState::Present);
+/// let steps = distances_from_start(&maze, Unknown::Closed);
+/// assert_eq!([0, 1, 2].map(|x| steps.get(Cell::new(x, 0))), [Some(0), Some(1), None]);
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 pub fn distances_from_start(maze: &Maze, unknown: Unknown) -> Distances {
     let mut flood = FloodFill::default();
     flood.run(&Passages::new(maze, unknown), [maze.start()]);

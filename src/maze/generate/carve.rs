@@ -4,6 +4,15 @@ use crate::random::Stream;
 
 /// A maze in which exactly one way leads from every cell to every other: a depth-first walk that takes walls down where
 /// it comes to new cells.
+///
+/// ```
+/// use roverlab::maze::generate::perfect;
+/// use roverlab::maze::{Unknown, distances_from_start};
+/// let maze = perfect(8, 6, 1)?;
+/// assert_eq!(distances_from_start(&maze, Unknown::Closed).reached(), 48, "every cell");
+/// assert_eq!(maze, perfect(8, 6, 1)?, "a seed, a maze");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 pub fn perfect(width: usize, height: usize, seed: u64) -> Result<Maze, ParameterError> {
     let mut maze = Maze::filled(width, height, WallState::Present)?;
     let mut stream = Stream::new(seed).child("perfect maze", 0);
@@ -14,6 +23,14 @@ pub fn perfect(width: usize, height: usize, seed: u64) -> Result<Maze, Parameter
 
 /// A perfect maze of which a part of the inner walls, 0 to 1, has been taken down at random, so that many ways lead to
 /// most cells. A part outside of 0 to 1 counts as the nearer of the two.
+///
+/// ```
+/// use roverlab::maze::generate::{braided, perfect};
+/// let (all, fewer) = (perfect(8, 6, 1)?, braided(8, 6, 0.5, 1)?);
+/// assert!(fewer.wall_count() < all.wall_count());
+/// assert_eq!(braided(8, 6, 0.0, 1)?, all);
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 pub fn braided(width: usize, height: usize, part: f64, seed: u64) -> Result<Maze, ParameterError> {
     let mut maze = perfect(width, height, seed)?;
     let mut stream = Stream::new(seed).child("braided maze", 0);

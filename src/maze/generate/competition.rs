@@ -8,6 +8,16 @@ use crate::random::Stream;
 /// cells.
 ///
 /// Both sides have so many cells, rounded up to an even number of at least 6.
+///
+/// ```
+/// use roverlab::maze::generate::competition;
+/// use roverlab::maze::{Cell, Direction, Preference, Unknown, WallState, shortest_route};
+/// let maze = competition(16, 1)?;
+/// assert_eq!(maze.wall(Cell::new(0, 0), Direction::East), WallState::Present, "the start has one way out");
+/// assert_eq!(maze.goals().count(), 4);
+/// assert!(shortest_route(&maze, Unknown::Closed, Preference::Steps).is_some());
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 pub fn competition(side: usize, seed: u64) -> Result<Maze, ParameterError> {
     let side = side.max(6).next_multiple_of(2);
     let mut maze = Maze::filled(side, side, WallState::Present)?;

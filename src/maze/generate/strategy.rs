@@ -9,6 +9,19 @@ use crate::random::Stream;
 /// # Panics
 ///
 /// If `side` is 0 or more than 256.
+///
+/// ```
+/// use proptest::prelude::*;
+/// use proptest::test_runner::TestRunner;
+/// use roverlab::maze::generate::sparse_mazes;
+/// use roverlab::maze::{Preference, Unknown, distances_to_goal, shortest_route};
+/// TestRunner::deterministic().run(&sparse_mazes(8), |maze| {
+///     let route = shortest_route(&maze, Unknown::Closed, Preference::Steps);
+///     let steps = distances_to_goal(&maze, Unknown::Closed).get(maze.start());
+///     prop_assert_eq!(route.map(|route| route.steps() as u32), steps, "none where no way leads");
+///     Ok(())
+/// }).unwrap();
+/// ```
 pub fn sparse_mazes(side: usize) -> impl Strategy<Value = Maze> {
     let shape = (1..=side, 1..=side, 0.0..0.9f64, any::<u64>());
     shape.prop_map(|(width, height, density, seed)| {
@@ -31,6 +44,17 @@ pub fn sparse_mazes(side: usize) -> impl Strategy<Value = Maze> {
 /// # Panics
 ///
 /// If `side` is 0 or more than 256.
+///
+/// ```
+/// use proptest::prelude::*;
+/// use proptest::test_runner::TestRunner;
+/// use roverlab::maze::generate::braided_mazes;
+/// use roverlab::maze::{Unknown, distances_from_start};
+/// TestRunner::deterministic().run(&braided_mazes(8), |maze| {
+///     prop_assert_eq!(distances_from_start(&maze, Unknown::Closed).reached(), maze.cell_count());
+///     Ok(())
+/// }).unwrap();
+/// ```
 pub fn braided_mazes(side: usize) -> impl Strategy<Value = Maze> {
     let shape = (1..=side, 1..=side, prop_oneof![Just(0.0), 0.0..0.5f64], any::<u64>());
     shape.prop_map(|(width, height, part, seed)| {
@@ -47,11 +71,33 @@ pub fn braided_mazes(side: usize) -> impl Strategy<Value = Maze> {
 /// # Panics
 ///
 /// If `side` is 0 or more than 256.
+///
+/// ```
+/// use proptest::prelude::*;
+/// use proptest::test_runner::TestRunner;
+/// use roverlab::maze::generate::mazes;
+/// TestRunner::deterministic().run(&mazes(8), |maze| {
+///     prop_assert!(maze.width() <= 8 && maze.height() <= 8 && maze.unknown_walls() == 0);
+///     Ok(())
+/// }).unwrap();
+/// ```
 pub fn mazes(side: usize) -> impl Strategy<Value = Maze> {
     prop_oneof![sparse_mazes(side), braided_mazes(side)]
 }
 
 /// Mazes of all kinds in which some inner walls are unknown and some outer ones are missing.
+///
+/// ```
+/// use proptest::prelude::*;
+/// use proptest::test_runner::TestRunner;
+/// use roverlab::maze::generate::partly_known;
+/// use roverlab::maze::{Unknown, distances_to_goal};
+/// TestRunner::deterministic().run(&partly_known(8), |maze| {
+///     let steps = |unknown| distances_to_goal(&maze, unknown).get(maze.start()).unwrap_or(u32::MAX);
+///     prop_assert!(steps(Unknown::Open) <= steps(Unknown::Closed), "hope is no longer than what is sure");
+///     Ok(())
+/// }).unwrap();
+/// ```
 pub fn partly_known(side: usize) -> impl Strategy<Value = Maze> {
     (mazes(side), 0.0..1.0f64, any::<u64>()).prop_map(|(mut maze, unknown, seed)| {
         let mut stream = Stream::new(seed);

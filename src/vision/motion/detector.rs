@@ -63,6 +63,20 @@ impl Motion {
 ///
 /// Compared loosely, a pixel counts only as far as its surroundings in one image have no shade in common with those in
 /// the other: an edge that is a little off is no motion, whatever its contrast.
+///
+/// ```
+/// use roverlab::vision::GrayView;
+/// use roverlab::vision::motion::{MotionDetector, MotionParameters};
+/// let room: Vec<u8> = (0..80 * 60).map(|i| 80 + (i % 7) as u8).collect();
+/// let mut later = room.clone();
+/// for row in 20..40 {
+///     later[80 * row + 60..80 * row + 72].fill(160);
+/// }
+/// let mut detector = MotionDetector::new(MotionParameters::default())?;
+/// let motion = detector.compare(GrayView::new(&room, 80, 60)?, GrayView::new(&later, 80, 60)?)?;
+/// assert_eq!(motion.strongest, Some(2), "something came into the right third");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct MotionDetector {
     parameters: MotionParameters,

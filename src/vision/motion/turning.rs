@@ -10,6 +10,25 @@ use crate::vision::{GrayView, GrayViewMut, ImageError};
 /// a slip or a jump; the turn that explains the second image best corrects it. A camera that sits ahead of the axis moves
 /// a little as well, which shifts what is near:
 /// [`MotionDetector::compare_loosely`](super::MotionDetector::compare_loosely) is for that.
+///
+/// ```
+/// use roverlab::vision::motion::TurnCompensator;
+/// use roverlab::vision::{GrayView, mean_difference};
+/// // A camera with a field of view of 1 rad turns left by 0.1 rad: what it saw moves to the right.
+/// let focal = 40.0 / 0.5_f64.tan();
+/// let wall = |turn: f64| -> Vec<u8> {
+///     let angle = |column: usize| turn - ((column as f64 - 39.5) / focal).atan();
+///     (0..80 * 20).map(|i| (128.0 + 90.0 * (12.0 * angle(i % 80)).sin()) as u8).collect()
+/// };
+/// let (before, after) = (wall(0.0), wall(0.1));
+/// let (before, after) = (GrayView::new(&before, 80, 20)?, GrayView::new(&after, 80, 20)?);
+/// let mut compensator = TurnCompensator::new(1.0)?;
+/// let turned = compensator.turn(before, after, 0.1)?;
+/// let (corner, width) = ((turned.from, 0), turned.to - turned.from);
+/// let left = mean_difference(turned.image.region(corner, width, 20)?, after.region(corner, width, 20)?)?;
+/// assert!(left < 3.0 && mean_difference(before, after)? > 30.0, "no motion but the camera's own");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct TurnCompensator {
     field_of_view: f64,
