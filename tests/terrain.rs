@@ -1,5 +1,9 @@
 //! Worlds with hills: what robots do on them, and what their sensors see.
 
+#[allow(unreachable_pub, reason = "the library's own, which is public there with the feature `testing`")]
+#[path = "../src/testing/cases.rs"]
+mod cases;
+
 use proptest::prelude::*;
 use roverlab::geometry::{Aabb, Point, Pose, Vector, math, units};
 use roverlab::io::sim::{Mishap, SimOptions, Simulation, TICK};
@@ -153,7 +157,7 @@ fn water_drowns_and_a_drop_lands() {
 }
 
 proptest! {
-    #![proptest_config(roverlab::testing::cases(24))]
+    #![proptest_config(cases::cases(24))]
     /// Hills without a hill are a floor.
     #[test]
     fn level_hills_are_a_floor(

@@ -51,7 +51,7 @@ impl JumpPointSearch {
     /// ```
     /// use roverlab::nav::grid::{GridPlanner, JumpPointSearch};
     /// use roverlab::world::{BitGrid, GridCell};
-    /// let grid: BitGrid = "....\n.#..\n....".parse()?;
+    /// let grid = BitGrid::from_text("....\n.#..\n....")?;
     /// let mut planner = JumpPointSearch::new(&grid);
     /// planner.plan(GridCell::new(0, 1), GridCell::new(3, 1)).unwrap();
     /// assert!(planner.landings().iter().all(|&cell| grid.is_free(cell)));
