@@ -43,6 +43,7 @@ pub struct Stance {
     pub mishap: Option<Mishap>,
 }
 
+/// Every mishap, by its number between a program and the runner: one that is not listed arrives as none.
 const MISHAPS: [Option<Mishap>; 5] =
     [None, Some(Mishap::Tipped), Some(Mishap::Fell), Some(Mishap::Stuck), Some(Mishap::Drowned)];
 

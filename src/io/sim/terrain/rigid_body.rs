@@ -239,7 +239,8 @@ impl RigidBody {
         self.spin.z += turned / tick;
     }
 
-    /// A body that rests on the ground, its robot's frame at a pose in the plane.
+    /// A body that rests on the ground, its robot's frame at a pose in the plane. Beyond the ground it begins level, at height 0,
+    /// and falls.
     pub(super) fn resting(ground: &HeightField, carriage: &Undercarriage, pose: Pose, tick: f64) -> Self {
         let (level, slope) = ground.height_and_gradient(pose.position()).unwrap_or_default();
         let forward = Vector3::new(pose.forward().x, pose.forward().y, slope.dot(&pose.forward()));
