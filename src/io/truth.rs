@@ -1,5 +1,5 @@
 use super::Result;
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Point, Pose, Pose3};
 
 /// Who knows what is true in a world: a simulator, or the recording of what one said.
 pub trait GroundTruth {
@@ -8,6 +8,11 @@ pub trait GroundTruth {
 
     /// A robot's pose in the world.
     fn pose(&mut self, robot: usize) -> Result<Pose>;
+
+    /// A robot's pose in space, with elevation, roll and pitch. Who knows a level floor alone has it level there.
+    fn pose_in_space(&mut self, robot: usize) -> Result<Pose3> {
+        Ok(Pose3::level(self.pose(robot)?, 0.0))
+    }
 
     /// All that is true about a robot.
     fn robot(&mut self, robot: usize) -> Result<RobotTruth>;
@@ -23,6 +28,10 @@ impl<T: GroundTruth + ?Sized> GroundTruth for Box<T> {
 
     fn pose(&mut self, robot: usize) -> Result<Pose> {
         (**self).pose(robot)
+    }
+
+    fn pose_in_space(&mut self, robot: usize) -> Result<Pose3> {
+        (**self).pose_in_space(robot)
     }
 
     fn robot(&mut self, robot: usize) -> Result<RobotTruth> {

@@ -6,7 +6,7 @@ use std::ops::{Deref, DerefMut};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use roverlab::geometry::Pose;
+use roverlab::geometry::{Pose, Pose3};
 use roverlab::io::log::{Attachment, FleetIo, GroundTruth, Header, LogError, LogWriter, Player};
 use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, Simulation, Watcher};
 use roverlab::io::wrappers::{Deadman, Fault, Faulty, Quantised};
@@ -143,6 +143,10 @@ impl GroundTruth for SharedTruth {
 
     fn pose(&mut self, robot: usize) -> io::Result<Pose> {
         self.ask(|truth| truth.pose(robot))
+    }
+
+    fn pose_in_space(&mut self, robot: usize) -> io::Result<Pose3> {
+        self.ask(|truth| truth.pose_in_space(robot))
     }
 
     fn robot(&mut self, robot: usize) -> io::Result<RobotTruth> {

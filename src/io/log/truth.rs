@@ -2,15 +2,16 @@ use std::collections::BTreeMap;
 use std::io::Write;
 
 use super::call::Call;
+use super::messages::transform_in_space;
 use super::player::Player;
 use super::port::Port;
 use super::position::Position;
 use super::recording::Kind;
 use super::stamp::Nanoseconds;
-use super::topics::TRUTH;
+use super::topics::{TRANSFORMS, TRUTH, WORLD, truth_frame};
 use super::values::{Put, Take, Taking, Values};
 use super::{LogError, LogWriter};
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Point, Pose, Pose3};
 use crate::io::{Error, ErrorKind, GroundTruth, Result, RobotTruth, TrailPoint};
 
 /// Ground truth that is recorded, made by [`LogWriter::truth`](super::LogWriter::truth).
@@ -43,6 +44,16 @@ impl<T: GroundTruth, W: Write> GroundTruth for RecordedTruth<T, W> {
     fn pose(&mut self, robot: usize) -> Result<Pose> {
         let result = self.inner.pose(robot);
         self.notes.note("pose", &robot, &result);
+        result
+    }
+
+    /// Viewers see the answer as the frame `robotN/truth` in the world's.
+    fn pose_in_space(&mut self, robot: usize) -> Result<Pose3> {
+        let result = self.inner.pose_in_space(robot);
+        self.notes.note("pose_in_space", &robot, &result);
+        if let Ok(pose) = &result {
+            self.notes.show(robot, pose);
+        }
         result
     }
 
@@ -88,6 +99,14 @@ impl<W: Write> Notes<W> {
         self.port.begin(time);
         self.port.argument(argument);
         self.port.end(TRUTH, method, result);
+    }
+
+    /// Shows where a robot truly is.
+    fn show(&mut self, robot: usize, pose: &Pose3) {
+        let child = truth_frame(robot);
+        self.port.show(TRANSFORMS, |out, frames| {
+            transform_in_space(out, frames.time, WORLD, &child, pose);
+        });
     }
 
     /// Writes what is true about a robot and was not written before.
@@ -197,6 +216,7 @@ pub struct ReplayTruth {
     next: usize,
     time: Option<f64>,
     poses: BTreeMap<usize, Pose>,
+    in_space: BTreeMap<usize, Pose3>,
     objects: BTreeMap<usize, Pose>,
     robots: BTreeMap<usize, RobotTruth>,
 }
@@ -213,8 +233,8 @@ type Question<'a> = (&'a str, Option<usize>);
 
 impl ReplayTruth {
     pub(super) fn new(position: Position) -> Self {
-        let (poses, objects, robots) = Default::default();
-        Self { position, next: 0, time: None, poses, objects, robots }
+        let (poses, in_space, objects, robots) = Default::default();
+        Self { position, next: 0, time: None, poses, in_space, objects, robots }
     }
 
     /// Takes in the recorded answers up to the next one to a question; all those before the robot's next call if there
@@ -248,6 +268,11 @@ impl ReplayTruth {
             ("pose", Some(robot)) => {
                 if let Some(pose) = result.take() {
                     self.poses.insert(robot, pose);
+                }
+            }
+            ("pose_in_space", Some(robot)) => {
+                if let Some(pose) = result.take() {
+                    self.in_space.insert(robot, pose);
                 }
             }
             ("object", Some(object)) => {
@@ -284,6 +309,11 @@ impl GroundTruth for ReplayTruth {
     fn pose(&mut self, robot: usize) -> Result<Pose> {
         self.catch_up(("pose", Some(robot)));
         self.poses.get(&robot).copied().ok_or_else(|| untold("where the robot was"))
+    }
+
+    fn pose_in_space(&mut self, robot: usize) -> Result<Pose3> {
+        self.catch_up(("pose_in_space", Some(robot)));
+        self.in_space.get(&robot).copied().ok_or_else(|| untold("where the robot was in space"))
     }
 
     fn robot(&mut self, robot: usize) -> Result<RobotTruth> {

@@ -1,7 +1,8 @@
 use image::RgbImage;
+use nalgebra::{Quaternion, UnitQuaternion};
 
 use super::wire::{self, Field, Fields, Reading};
-use crate::geometry::{Pose, Twist, Vector3};
+use crate::geometry::{Point3, Pose, Pose3, Twist, Vector3};
 use crate::io::{
     Attitude, DisplayImage, DisplayOption, Fill, Font, FontFamily, FontStyle, Key, LidarSettings, Psd,
     RadioMessage, Resolution, Viewport,
@@ -283,6 +284,8 @@ compounds! {
     (i32, i32): v => [v.0, v.1], [a, b] => (a, b);
     Twist: v => [v.linear, v.angular], [linear, angular] => Twist::new(linear, angular);
     Pose: v => [v.x, v.y, v.heading], [x, y, heading] => Pose::new(x, y, heading);
+    Pose3: v => [v.position.x, v.position.y, v.position.z, v.attitude.i, v.attitude.j, v.attitude.k, v.attitude.w],
+        [x, y, z, i, j, k, w] => Pose3::new(Point3::new(x, y, z), unit([w, i, j, k])?);
     Vector3: v => [v.x, v.y, v.z], [x, y, z] => Vector3::new(x, y, z);
     Attitude: v => [v.roll, v.pitch, v.yaw], [roll, pitch, yaw] => Attitude { roll, pitch, yaw };
     Psd: v => [v.0], [number] => Psd(number);
@@ -296,6 +299,12 @@ compounds! {
         [from, data] => RadioMessage { from, data: Bytes::into_vec(data) };
     RgbImage: v => [v.width(), v.height(), v.as_raw().as_slice()],
         [width, height, data] => image(width, height, Bytes::into_vec(data))?;
+}
+
+/// A rotation from its quaternion; `None` if that is none.
+fn unit([w, i, j, k]: [f64; 4]) -> Option<UnitQuaternion<f64>> {
+    let quaternion = Quaternion::new(w, i, j, k);
+    ((quaternion.norm() - 1.0).abs() < 1e-6).then(|| UnitQuaternion::new_unchecked(quaternion))
 }
 
 impl Bytes {
@@ -385,6 +394,7 @@ mod tests {
             survives(&RadioMessage { from, data });
             survives(&Some(Pose::new(x, -x, 0.5 * x)));
             survives(&Vector3::new(x, -x, 0.5 * x));
+            survives(&Pose3::from_angles(Point3::new(x, -x, 0.5 * x), 0.1, 0.2, f64::from(from)));
             survives(&Attitude { roll: x, pitch: -x, yaw: 0.5 * x });
             survives(&LidarSettings { field_of_view: x, tilt: -x, points: from as usize });
         }

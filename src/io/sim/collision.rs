@@ -200,6 +200,7 @@ impl Engine {
 
     /// Puts an object that there is somewhere else.
     pub(super) fn place_object(&mut self, object: usize, pose: Pose) {
+        self.movables[object].velocity = Vector::zeros();
         let movable = self.movables[object];
         self.put(movable.solid, pose);
         // A hand puts it upright.

@@ -226,6 +226,7 @@ impl Engine {
         self.motions = motions;
         if let Some(hills) = &mut self.hills {
             hills.yield_to(&mut self.bodies, &mut self.space);
+            self.slide_things();
         }
         self.feel();
         self.deliver();
@@ -347,7 +348,8 @@ impl Engine {
         let pose = body.pose();
         let Some(camera) = &mut body.camera else { return Err(Error::unsupported("camera")) };
         let moment = Moment { tick: self.tick, light: self.options.light, noise: &self.options.noise };
-        camera.take(&mut self.studio, &self.space, (index, pose), moment, image)?;
+        let around = (&self.space, self.hills.as_deref());
+        camera.take(&mut self.studio, around, (index, pose), moment, image)?;
         if let Some(watcher) = &mut self.watcher {
             watcher.image(index, image);
         }

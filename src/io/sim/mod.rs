@@ -46,6 +46,7 @@ mod pushing;
 mod robot;
 mod robot_traits;
 mod simulation;
+mod sliding;
 #[cfg(feature = "physics")]
 pub mod starman;
 mod terrain;

@@ -1,5 +1,6 @@
-use crate::world::World;
+use crate::geometry::Vector;
 use crate::world::space::SolidId;
+use crate::world::{Shape, World};
 
 /// An object and what it takes to push it or to knock it over.
 #[derive(Debug, Clone, Copy)]
@@ -11,13 +12,17 @@ pub(super) struct Movable {
     pub(super) falls: bool,
     /// Metres from the floor to its top while it stands.
     pub(super) top: f64,
+    /// Whether it rolls down hills, where others slide, and how fast it does, over the plane.
+    pub(super) rolls: bool,
+    pub(super) velocity: Vector,
 }
 
 pub(super) fn movables(world: &World, solids: &[SolidId]) -> Vec<Movable> {
     let movable = |(&solid, object): (&SolidId, &crate::world::Object)| {
         let mass = if object.kind.fixed { f64::INFINITY } else { object.kind.mass };
         let top = object.elevation + object.kind.shape.height();
-        Movable { solid, mass, falls: object.kind.falls, top }
+        let rolls = matches!(object.kind.shape, Shape::Sphere { .. });
+        Movable { solid, mass, falls: object.kind.falls, top, rolls, velocity: Vector::zeros() }
     };
     solids.iter().zip(&world.objects).map(movable).collect()
 }

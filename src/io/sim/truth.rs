@@ -150,6 +150,10 @@ impl GroundTruth for Truth {
         Truth::pose(self, robot)
     }
 
+    fn pose_in_space(&mut self, robot: usize) -> Result<Pose3> {
+        Truth::pose_in_space(self, robot)
+    }
+
     fn robot(&mut self, robot: usize) -> Result<RobotTruth> {
         Truth::robot(self, robot)
     }

@@ -159,7 +159,6 @@ impl<'f> Reader<'f> {
         self.world.terrain = Some(Terrain { width, height, max_elevation, file: file.into(), surface: None });
         self.places.terrain = line.location(4);
         self.floor(width, height);
-        self.notes.warn(line.location(0), "`terrain`: cameras show a level floor");
         Ok(())
     }
 
@@ -323,10 +322,7 @@ mod tests {
         let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
         assert_eq!(
             warnings,
-            [
-                "test.wld:8:1: `water_level`: water carries nothing; on hills, robots drown in it",
-                "test.wld:9:1: `terrain`: cameras show a level floor",
-            ]
+            ["test.wld:8:1: `water_level`: water carries nothing; on hills, robots drown in it"]
         );
         assert_eq!(value.floor.max, Point::new(6.0, 7.0));
         assert_eq!(value.floor_texture, Some("my floor.png".into()));
@@ -428,8 +424,7 @@ mod tests {
         #[test]
         fn what_is_printed_reads_back(world in any_world()) {
             let parsed = parse(&print(&world), "w.wld").unwrap();
-            let unused = usize::from(world.terrain.is_some()) + usize::from(world.water_level.is_some());
-            prop_assert_eq!(parsed.warnings.len(), unused);
+            prop_assert_eq!(parsed.warnings.len(), usize::from(world.water_level.is_some()));
             prop_assert_eq!(parsed.value, world);
         }
 

@@ -276,11 +276,16 @@ impl RigidBody {
 const MOST_SETTLING: u32 = 400;
 const CALMING: f64 = 0.8;
 
-/// The normal of the ground where a foot comes to on its way, and the foot's distance from that plane at its start;
+/// The plane that a foot is to be on at the end of its way: its normal, and the foot's distance from it at the start;
 /// `None` beyond the ground.
+///
+/// It goes through the ground's place at the end, but lies as the ground does in the middle of the way: as arms and
+/// rims do, so that halving the tick quarters the error and does not halve it.
 fn plane(ground: &HeightField, start: Point3, way: Vector3) -> Option<(Vector3, f64)> {
     let at = |end: Point3| {
         let (level, slope) = ground.height_and_gradient(end.xy())?;
+        let middle = ground.gradient(nalgebra::center(&start, &end).xy());
+        let slope = middle.unwrap_or(slope);
         let normal = Vector3::new(-slope.x, -slope.y, 1.0).normalize();
         let below = start.z - level - slope.dot(&(start.xy() - end.xy()));
         Some((normal, below * normal.z))

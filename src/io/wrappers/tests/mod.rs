@@ -89,8 +89,8 @@ fn call(robot: &mut (impl RobotIo + ?Sized), number: u8) -> String {
         38 => format!("{:?} {:?}", robot.set_motor(1, 0.5), robot.set_servo(1, -0.5)),
         39 => format!("{:?} {:?}", robot.encoder(1), robot.reset_encoder(1)),
         40 => format!("{:?} {:?}", robot.set_resolution(Resolution::Vga), robot.resolution()),
-        41 => format!("{:?} {:?} {:?}", robot.attitude(), robot.turn_rates(), robot.acceleration()),
-        _ => format!("{:?}", robot.image()),
+        41 => format!("{:?}", robot.image()),
+        _ => format!("{:?} {:?} {:?}", robot.attitude(), robot.turn_rates(), robot.acceleration()),
     }
 }
 
