@@ -10,6 +10,15 @@ use crate::kinematics::{Ackermann, CarState};
 use crate::parameter::{require, require_positive, require_up_to};
 
 /// Speed and steering of a car as commands of its motor and its servo (book, program 7.1).
+///
+/// ```
+/// use roverlab::drive::CarDriver;
+/// use roverlab::kinematics::{Ackermann, CarState};
+/// let driver = CarDriver::new(Ackermann::new(0.3, 0.2, 0.5)?, 2.0)?;
+/// let command = driver.command(CarState { speed: 1.0, steering: 0.5 });
+/// assert_eq!((command.motor, command.servo), (0.5, -1.0), "half of full speed, all the way to the left");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarDriver {
     kinematics: Ackermann,
@@ -129,6 +138,18 @@ pub struct CarObservation {
 ///
 /// A path that ends in a tight bend is not met well, as the wheels turn too slowly for it: then the car drives straight back
 /// and comes again.
+///
+/// ```
+/// use roverlab::drive::{CarDriver, CarToB, CarToBParameters, Goal, Method};
+/// use roverlab::geometry::Pose;
+/// use roverlab::kinematics::Ackermann;
+/// let driver = CarDriver::new(Ackermann::new(0.3, 0.2, 0.5)?, 2.0)?;
+/// let beside = Goal::pose(Pose::new(0.0, 0.5, 0.0));
+/// let drive = CarToB::new(Method::Turn, beside, driver, CarToBParameters::default())?;
+/// let path = drive.plan(Pose::default())?.expect("it is not there yet");
+/// assert!(path.length() > 3.0, "half a metre to the left, but a car has to go round");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CarToB {
     method: Method,

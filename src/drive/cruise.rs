@@ -28,6 +28,18 @@ impl Default for CruiseParameters {
 }
 
 /// Drives past waypoints, round and round, and round what stands in the way: the leader of a swarm (book, chapter 5).
+///
+/// ```
+/// use roverlab::drive::{Cruise, CruiseParameters};
+/// use roverlab::geometry::{Point, Pose};
+/// let posts = vec![Point::new(2.0, 0.0), Point::new(2.0, 2.0)];
+/// let mut cruise = Cruise::new(posts, CruiseParameters::default())?;
+/// let free = cruise.step(Pose::default(), &[])?;
+/// assert!(free.linear > 0.0 && free.angular.abs() < 1e-6, "straight at the first waypoint");
+/// let blocked = cruise.step(Pose::default(), &[Point::new(0.25, 0.02)])?;
+/// assert!(blocked.angular.abs() > 0.1, "round what stands in the way");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cruise {
     parameters: CruiseParameters,

@@ -77,6 +77,18 @@ pub struct FollowerObservation<'a> {
 /// The robot ahead is tracked: of all things of its size it is the one nearest to where it was to be expected, so that the
 /// nearest thing around, which the book follows, cannot take its place. The follower closes up to a gap with the speed of the
 /// robot ahead, and goes round what stands between.
+///
+/// ```
+/// use roverlab::drive::{Follower, FollowerObservation, FollowerParameters};
+/// use roverlab::geometry::{Point, Pose};
+/// let mut follower = Follower::new(FollowerParameters::default())?;
+/// let leader = [Point::new(1.0, 0.2)];
+/// let seen = FollowerObservation { time: 0.0, pose: Pose::default(), candidates: &leader, obstacles: &[] };
+/// let twist = follower.step(&seen)?;
+/// assert!(twist.linear > 0.0 && twist.angular > 0.0, "after it, to the left");
+/// assert!(follower.target().is_some() && !follower.is_lost(0.1));
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Follower {
     parameters: FollowerParameters,
@@ -215,6 +227,27 @@ impl Follower {
 ///
 /// Neighbouring beams whose points are near each other make a thing; it counts if as many beams hit it as would hit the robot,
 /// and what is beside it is farther away. What is seen of a round robot is its front.
+///
+/// ```
+/// use roverlab::drive::robots_in;
+/// use roverlab::io::LidarScan;
+/// // A round robot of 90 mm radius, 0.8 m ahead, in a scan of a beam for each degree.
+/// let step = 1_f64.to_radians();
+/// let range = |beam: i32| {
+///     let (sin, cos) = (f64::from(beam - 180) * step).sin_cos();
+///     let half = 0.09 * 0.09 - 0.64 * sin * sin;
+///     if cos > 0.0 && half > 0.0 { 0.8 * cos - half.sqrt() } else { 3.0 }
+/// };
+/// let scan = LidarScan {
+///     angle_min: -180.0 * step,
+///     angle_increment: step,
+///     range_max: 4.0,
+///     ranges: (0..360).map(range).collect(),
+///     ..LidarScan::default()
+/// };
+/// let found = robots_in(&scan, 0.09);
+/// assert!(found.len() == 1 && (found[0].x - 0.8).abs() < 0.02 && found[0].y.abs() < 0.02);
+/// ```
 pub fn robots_in(scan: &LidarScan, radius: f64) -> Vec<Point> {
     /// Metres between neighbouring points of one thing, beyond what the angle between beams makes.
     const STEP: f64 = 0.07;

@@ -6,6 +6,19 @@ use crate::parameter::{require, require_positive, require_up_to};
 
 /// A place in a formation that is kept by radio: the leader sends where it is, and each follower keeps to its place beside or
 /// behind it (book, section 5.3, the first of its three ways).
+///
+/// ```
+/// use roverlab::drive::Formation;
+/// use roverlab::geometry::{Point, Pose};
+/// // A place half a metre behind the leader.
+/// let formation = Formation::at(Point::new(-0.5, 0.0));
+/// let message = Formation::message(Pose::new(2.0, 0.0, 0.0), 0.2);
+/// let (leader, speed) = Formation::read(&message)?;
+/// let twist = formation.step(Pose::default(), leader, speed, &[]);
+/// assert!(twist.linear > 0.2, "it is far behind and drives faster than the leader");
+/// assert!(Formation::read(b"hello").is_err());
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Formation {
     /// Where the follower's place is, in the leader's frame.

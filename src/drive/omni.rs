@@ -9,6 +9,16 @@ use crate::parameter::{require_finite, require_positive};
 
 /// Velocities of a robot on four wheels with rollers as commands of its motors (book, section 7.4: an interface from a
 /// driving angle to wheel speeds).
+///
+/// ```
+/// use roverlab::drive::OmniDriver;
+/// use roverlab::kinematics::{Omni, PlanarTwist};
+/// let driver = OmniDriver::new(Omni::mecanum(0.2, 0.15)?, 0.5)?;
+/// assert_eq!(driver.command(PlanarTwist::new(0.25, 0.0, 0.0)), [0.5; 4], "half of full speed");
+/// let sideways = driver.command(PlanarTwist::new(0.0, 0.25, 0.0));
+/// assert_eq!(sideways.iter().sum::<f64>(), 0.0, "two wheels each way");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OmniDriver {
     kinematics: Omni<4>,
@@ -204,6 +214,22 @@ impl OmniTracker {
 }
 
 /// An [`OmniTracker`] on the wheels of a robot, made by [`OmniTracker::by`].
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use roverlab::drive::{OmniDriver, OmniParameters, OmniPilot, OmniTracker};
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::io::control::Behaviour;
+/// use roverlab::kinematics::Omni;
+/// let driver = OmniDriver::new(Omni::mecanum(0.2, 0.15)?, 0.5)?;
+/// let tracker = OmniTracker::new(Pose::default(), &[Point::new(0.0, 1.0)], OmniParameters::default())?;
+/// let mut pilot: OmniPilot<'_> = tracker.by(driver);
+/// pilot.step(0.0, &Pose::default())?;
+/// let step = pilot.step(1.0, &Pose::new(0.0, 0.2, 0.0))?;
+/// let ControlFlow::Continue(wheels) = step else { panic!("at the end") };
+/// assert!(wheels.0.iter().any(|&w| w > 0.1) && wheels.0.iter().any(|&w| w < -0.1), "to the left");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct OmniPilot<'t> {
     tracker: &'t OmniTracker,

@@ -49,6 +49,12 @@ pub(super) fn series(n: usize) -> Colour {
 }
 
 /// A colour for a number between 0 and 1, from deep blue over green and yellow to red. Numbers outside are clamped.
+///
+/// ```
+/// use roverlab::picture::ramp;
+/// assert_ne!(ramp(0.0), ramp(1.0));
+/// assert_eq!(ramp(2.0), ramp(1.0), "what is beyond counts as the end");
+/// ```
 pub fn ramp(value: f64) -> Colour {
     /// The colours of the ramp, from the least value to the greatest.
     const STOPS: [Colour; 5] = [

@@ -1,6 +1,14 @@
 // This file compiles without the standard library.
 
 /// A set of reasons against driving by itself.
+///
+/// ```
+/// use roverlab::safety::Causes;
+/// let causes = Causes::NONE.with(Causes::SENSOR).with_if(true, Causes::HEARTBEAT_LOST);
+/// assert!(causes.has(Causes::SENSOR) && !causes.has(Causes::WATCHDOG));
+/// assert_eq!(causes.names().count(), 2);
+/// assert_eq!(Causes::from_bits(causes.bits()), causes);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Causes(u16);
 

@@ -1,6 +1,15 @@
 // This file compiles without the standard library.
 
 /// Something that has to happen again and again: a heartbeat, a program's commands.
+///
+/// ```
+/// use roverlab::safety::Deadline;
+/// let mut heartbeat = Deadline::new(0.5)?;
+/// assert!(heartbeat.is_over(0.0), "it has never come");
+/// heartbeat.feed(1.0);
+/// assert!(!heartbeat.is_over(1.4) && heartbeat.is_over(1.6) && heartbeat.is_over(f64::NAN));
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Deadline {
     limit: f64,
@@ -29,6 +38,13 @@ impl Deadline {
 }
 
 /// Something that has to be seen several times in a row before it counts.
+///
+/// ```
+/// use roverlab::safety::Debounce;
+/// let mut outside = Debounce::new(3);
+/// let counts = [true, true, false, true, true, true].map(|seen| outside.update(seen));
+/// assert_eq!(counts, [false, false, false, false, false, true], "three times in a row");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Debounce {
     needed: u16,
@@ -50,6 +66,13 @@ impl Debounce {
 
 /// Whether a point lies inside a polygon of these corners, by counting crossings. What is not a number is outside, as is
 /// everything for fewer than three corners.
+///
+/// ```
+/// use roverlab::safety::is_inside;
+/// let fence = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]];
+/// assert!(is_inside(&fence, [1.0, 1.0]) && !is_inside(&fence, [5.0, 1.0]));
+/// assert!(!is_inside(&fence, [f64::NAN, 1.0]), "what is not a number is outside");
+/// ```
 pub fn is_inside(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     if !(x.is_finite() && y.is_finite()) {
         return false;
@@ -95,6 +118,19 @@ pub enum SignalHealth {
 }
 
 /// Watches one number that a sensor gives.
+///
+/// ```
+/// use roverlab::safety::{SignalHealth, SignalLimits, SignalMonitor};
+/// let limits = SignalLimits { age: 0.5, rate: 2.0, step: 0.1, repeats: 3 };
+/// let mut range = SignalMonitor::new(limits)?;
+/// range.read(0.0, 1.0, true);
+/// range.read(0.1, 1.1, true);
+/// assert_eq!(range.health(0.2), SignalHealth::Good);
+/// assert_eq!(range.health(1.0), SignalHealth::Lost, "too long ago");
+/// range.read(1.1, 9.0, true);
+/// assert_eq!(range.health(1.1), SignalHealth::Jump, "faster than 2 m/s");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SignalMonitor {
     limits: SignalLimits,

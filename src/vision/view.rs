@@ -11,6 +11,15 @@ use super::ImageError;
 /// assert!(GrayView::new(&bytes, 5, 3).is_err(), "three bytes are missing");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// ```
+/// use roverlab::vision::View;
+/// let pixels: Vec<u8> = (0..12).collect();
+/// let gray = View::<1>::new(&pixels, 4, 3)?;
+/// assert_eq!(gray.region((1, 1), 2, 2)?.row(0), [5, 6]);
+/// assert!(View::<3>::new(&pixels, 4, 3).is_err(), "colours take three bytes a pixel");
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct View<'a, const C: usize> {
     data: &'a [u8],
@@ -25,6 +34,15 @@ pub struct View<'a, const C: usize> {
 /// let corner = GrayViewMut::new(&mut mask, 4, 3)?.region((2, 1), 2, 2)?;
 /// threshold_into(GrayView::new(&[9, 1, 1, 9], 2, 2)?, corner, 5)?;
 /// assert_eq!(mask, [0, 0, 0, 0, 0, 0, 255, 0, 0, 0, 0, 255]);
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
+///
+/// ```
+/// use roverlab::vision::ViewMut;
+/// let mut pixels = vec![0; 12];
+/// let mut gray = ViewMut::<1>::new(&mut pixels, 4, 3)?;
+/// gray.row_mut(2).fill(9);
+/// assert_eq!(&pixels[8..], [9; 4]);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
 #[derive(Debug)]

@@ -97,6 +97,26 @@ pub enum PushOutcome {
 ///
 /// What stands in the way is passed, also while the thing hides it: what the lidar has met is remembered. Where home is, is
 /// told by matching scans, since odometry is lost on a robot that turns and pushes so much.
+///
+/// ```
+/// use roverlab::drive::colour::{PushHome, PushHomeParameters, PushOutcome};
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
+/// use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, World};
+/// let (mut world, robot) = (World::walled(3.0, 3.0), RobotSpec::s4());
+/// let red = ObjectKind { colour: Colour::RED, mass: 0.4, ..ObjectKind::predefined("can").expect("a can") };
+/// world.objects.push(Object::new(red.into(), Pose::new(1.6, 1.5, 0.0)));
+/// let camera = CameraGeometry::from(robot.camera.as_ref().expect("a camera"));
+/// let finder = ColourFinder::new(42, 10, FindMethod::Blob, camera)?;
+/// let mut push = PushHome::new(finder, Point::origin(), PushHomeParameters::default())?;
+/// let scene = Scene::with_robot(world, robot, Pose::new(0.5, 0.5, 0.8));
+/// let simulation = Simulation::new(&scene, SimOptions { pushing: true, ..SimOptions::with_noise(1.0, 1) })?;
+/// let outcome = run(&mut simulation.robot(0)?, &mut push, 240.0, |_, _, _| {})?;
+/// assert_eq!(outcome, PushOutcome::Home, "the can is where the robot started");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct PushHome {
     parameters: PushHomeParameters,

@@ -89,6 +89,26 @@ pub enum ColourOutcome {
 /// The camera finds the object; the lidar tells how far it is and keeps the robot from touching anything else. Where the
 /// object is lost behind something, the robot goes on to where it was; where it is nowhere, the robot turns once and
 /// then looks from another place, the freest that it has not been to.
+///
+/// ```
+/// use roverlab::drive::colour::{ColourOutcome, ColourTracker, ColourTrackerParameters};
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
+/// use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, World};
+/// let (mut world, robot) = (World::walled(2.0, 2.0), RobotSpec::s4());
+/// let red = ObjectKind { colour: Colour::RED, ..ObjectKind::predefined("can").expect("a can") };
+/// world.objects.push(Object::new(red.into(), Pose::new(1.5, 1.2, 0.0)));
+/// let camera = CameraGeometry::from(robot.camera.as_ref().expect("a camera"));
+/// let finder = ColourFinder::new(42, 10, FindMethod::Blob, camera)?;
+/// let mut tracker = ColourTracker::new(finder, ColourTrackerParameters::default())?;
+/// let scene = Scene::with_robot(world, robot, Pose::new(0.4, 0.4, 2.0));
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let outcome = run(&mut simulation.robot(0)?, &mut tracker, 60.0, |_, _, _| {})?;
+/// assert_eq!((outcome, simulation.truth().robot(0)?.contacts), (ColourOutcome::Reached, 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ColourTracker {
     finder: ColourFinder,

@@ -40,6 +40,20 @@ impl CoverageMapParameters {
 /// Which part of the floor a robot can cover, and which it has covered.
 ///
 /// It can cover what is under it wherever it can get from its start while it keeps its margin.
+///
+/// ```
+/// use roverlab::drive::{CoverageMap, CoverageMapParameters, CoveragePlan};
+/// use roverlab::geometry::Point;
+/// use roverlab::world::World;
+/// let start = Point::new(0.4, 0.4);
+/// let mut map = CoverageMap::new(&World::walled(2.0, 1.5), start, CoverageMapParameters::default())?;
+/// let plan = CoveragePlan::new(&map, start)?;
+/// for leg in plan.points().windows(2) {
+///     map.cover_line(leg[0], leg[1], 0.0);
+/// }
+/// assert!(map.share() > 0.97, "a robot that drives the plan covers the floor");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct CoverageMap {
     raster: Raster,

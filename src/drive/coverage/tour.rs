@@ -30,6 +30,19 @@ impl Default for TourParameters {
 }
 
 /// Drives along straight legs with sharp corners: on the spot towards the next corner, then straight on, with feedback.
+///
+/// ```
+/// use roverlab::drive::{Tour, TourParameters};
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::kinematics::{Displacement, advance};
+/// let corners = [Point::new(0.0, 0.0), Point::new(1.0, 0.0), Point::new(1.0, 1.0)];
+/// let (mut tour, mut pose) = (Tour::new(&corners, TourParameters::default())?, Pose::default());
+/// while let Some(twist) = tour.step(pose) {
+///     pose = advance(pose, Displacement { length: 0.05 * twist.linear, angle: 0.05 * twist.angular });
+/// }
+/// assert!(pose.distance_to(corners[2]) < 0.05 && tour.progress() > 0.99);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tour {
     parameters: TourParameters,

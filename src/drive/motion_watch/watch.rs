@@ -46,6 +46,20 @@ impl MotionWatchParameters {
 }
 
 /// Turns to where something moves (book, section 11.5), and sees motion while it turns as well (section 11.6).
+///
+/// ```
+/// use image::{GrayImage, Luma};
+/// use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
+/// use roverlab::geometry::{Pose, Twist};
+/// let room = GrayImage::from_fn(160, 120, |x, y| Luma([80 + ((x * 7 + y * 13) % 50) as u8]));
+/// let mut watch = MotionWatch::new(MotionWatchParameters::new(1.0))?;
+/// for step in 0..10 {
+///     let twist = watch.step(0.1 * f64::from(step), &room, Pose::default())?;
+///     assert_eq!(twist, Twist::default(), "nothing moves, and the robot stands");
+/// }
+/// assert!(!watch.motion().expect("two images").is_moving());
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct MotionWatch {
     parameters: MotionWatchParameters,

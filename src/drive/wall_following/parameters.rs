@@ -7,6 +7,15 @@ use crate::parameter::{require, require_finite, require_positive};
 use crate::world::RobotSpec;
 
 /// Where the distance sensors sit on the robot and where they point.
+///
+/// ```
+/// use roverlab::drive::WallSensors;
+/// use roverlab::world::RobotSpec;
+/// let sensors = WallSensors::of(&RobotSpec::s4())?;
+/// assert!((sensors.left.heading - std::f64::consts::FRAC_PI_2).abs() < 0.1);
+/// assert!(WallSensors::of(&RobotSpec::race_car()).is_err(), "a car without distance sensors");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WallSensors {
     /// The one ahead.

@@ -48,6 +48,21 @@ impl Default for PidWallFollowerParameters {
 /// Follows a wall by a [`Pid`] controller on the range to one side alone: what chapter 6 leaves as an exercise, and section
 /// 9.3 hints at. At corners it does as the book does: it turns on the spot until the way ahead is free; where the wall ends
 /// it drives an arc.
+///
+/// ```
+/// use roverlab::drive::{AlongWall, PidWallFollower, PidWallFollowerParameters};
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// let scene = Scene::with_robot(World::walled(2.0, 2.0), RobotSpec::s4(), Pose::new(0.5, 1.7, 0.0));
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let mut drive = AlongWall::new(PidWallFollower::new(PidWallFollowerParameters::default())?);
+/// run(&mut simulation.robot(0)?, &mut drive, 30.0, |_, _, _| {})?;
+/// let truth = simulation.truth().robot(0)?;
+/// assert!(truth.contacts == 0 && truth.path_length > 3.0);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct PidWallFollower {
     parameters: PidWallFollowerParameters,

@@ -43,6 +43,21 @@ impl Default for LidarWallFollowerParameters {
 ///
 /// The shortest of noisy beams is too short, and in a random direction; so the line through the points around it takes its
 /// place. A wall ahead counts as nearer by the way that the robot needs to stop.
+///
+/// ```
+/// use roverlab::drive::{AlongWall, LidarWallFollower, LidarWallFollowerParameters};
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// let scene = Scene::with_robot(World::walled(2.0, 2.0), RobotSpec::s4(), Pose::new(0.5, 1.7, 0.0));
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let mut drive = AlongWall::new(LidarWallFollower::new(LidarWallFollowerParameters::default())?);
+/// run(&mut simulation.robot(0)?, &mut drive, 30.0, |_, _, _| {})?;
+/// let truth = simulation.truth().robot(0)?;
+/// assert!(truth.contacts == 0 && truth.path_length > 3.0);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct LidarWallFollower {
     parameters: LidarWallFollowerParameters,

@@ -8,6 +8,17 @@ use crate::parameter::require_positive;
 /// by whether the left range is below a limit, and turns right on the spot where the range ahead gets below it.
 ///
 /// It is here to be compared with.
+///
+/// ```
+/// use roverlab::drive::{TwoLevelWallFollower, WallObservation};
+/// use roverlab::geometry::Pose;
+/// let mut follower = TwoLevelWallFollower::new(0.2, 0.2)?;
+/// let seen = |front, left| WallObservation { pose: Pose::default(), front, left, right: f64::INFINITY };
+/// assert!(follower.step(&seen(1.0, 0.1)).angular < 0.0, "too near: to the right");
+/// assert!(follower.step(&seen(1.0, 0.3)).angular > 0.0, "too far: to the left");
+/// assert_eq!(follower.step(&seen(0.1, 0.2)).linear, 0.0, "a wall ahead: on the spot");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TwoLevelWallFollower {
     /// The limit in metres.

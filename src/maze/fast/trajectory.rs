@@ -16,6 +16,17 @@ pub struct TrajectoryPoint {
 }
 
 /// A fast run as a function of time. Position, heading and speed have no jumps, nor has the curvature.
+///
+/// ```
+/// use roverlab::maze::{FastPlanner, Maze, RunLimits, Scale, Trajectory, Unknown, files};
+/// let maze: Maze = files::parse(b"o---o---o\n| S   G |\no---o---o\n", "two cells")?.maze;
+/// let (scale, limits) = (Scale::MICROMOUSE, RunLimits::MICROMOUSE);
+/// let plan = FastPlanner::new(scale, limits)?.plan(&maze, Unknown::Closed).expect("a way");
+/// let trajectory = Trajectory::new(&plan, scale, limits)?;
+/// assert!((trajectory.duration() - plan.time).abs() < 1e-9);
+/// assert_eq!(trajectory.at(trajectory.duration() + 1.0).twist, Default::default(), "at rest at the end");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     segments: Vec<Segment>,

@@ -91,6 +91,22 @@ impl CellDriveParameters {
 /// they agree with what is known. How much farther the robot rolls than odometry says is learnt from where walls end. Where
 /// none has ended yet for so long that this may be half a cell, as after some 16 cells with wheels 3 % too large, it
 /// cannot tell one cell from the next.
+///
+/// ```
+/// use roverlab::geometry::Pose;
+/// use roverlab::kinematics::OdometryErrors;
+/// use roverlab::maze::{CellDrive, CellDriveParameters, Rig, Scale, mouse};
+/// let rig = Rig::new(&mouse(), OdometryErrors::default(), 0.0)?;
+/// let (scale, speed) = (Scale::MICROMOUSE, 0.1);
+/// let mut drive = CellDrive::new(CellDriveParameters::pid(&rig, scale, speed))?;
+/// drive.begin();
+/// // Nothing ahead, and nearer to the left wall than to the right one: it steers to the right.
+/// let twist = drive.step(Pose::default(), [f64::INFINITY, 0.04, 0.06], 0.02)?.expect("not there yet");
+/// assert!(twist.linear > 0.0 && twist.angular < 0.0);
+/// let next = Pose::new(scale.cell, 0.0, 0.0);
+/// assert_eq!(drive.step(next, [f64::INFINITY; 3], 1.8)?, None, "in the next cell");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct CellDrive {
     parameters: CellDriveParameters,

@@ -46,6 +46,21 @@ impl LidarLeftParameters {
 /// the robot stands to the wall, its length how far it is. A proportional controller of both steers. All
 /// points that were [seen](LidarLeftObservation::points), put down where odometry has the robot, make a map
 /// that is as good as odometry.
+///
+/// ```
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::maze::{LidarLeft, LidarLeftParameters};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// let mut follower = LidarLeft::new(LidarLeftParameters::for_corridor(0.4))?;
+/// let scene = Scene::with_robot(World::walled(2.0, 2.0), RobotSpec::s4(), Pose::new(0.5, 1.7, 0.0));
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// run(&mut simulation.robot(0)?, &mut follower, 60.0, |_, _, _| {})?;
+/// let driven = simulation.truth().robot(0)?;
+/// assert!(driven.path_length > 4.0 && driven.contacts == 0, "round the room along its wall");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct LidarLeft {
     parameters: LidarLeftParameters,

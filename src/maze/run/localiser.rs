@@ -12,6 +12,25 @@ use crate::maze::{Cell, Direction, Maze, Scale, WallState};
 /// that it should come from, which centres the robot between walls and tells how far it is from one ahead. Where a wall ends
 /// beside the robot, a reading from the wrong side of the end tells how far along the robot is (*wall-edge correction*). Posts
 /// that stand alone are all that there is to see on diagonals of open places.
+///
+/// ```
+/// use roverlab::geometry::Pose;
+/// use roverlab::kinematics::OdometryErrors;
+/// use roverlab::maze::{MazeLocaliser, Rig, Scale, files, mouse};
+/// let maze = files::parse(b"o---o---o\n| S     |\no---o---o\n", "a corridor")?.maze;
+/// let errors = OdometryErrors { wheel_scale: 0.02, ..OdometryErrors::default() };
+/// let (rig, scale) = (Rig::new(&mouse(), errors, 0.002)?, Scale::MICROMOUSE);
+/// let front = rig.sensors[0];
+/// let start = Pose::new(scale.centre(maze.start()).x, scale.centre(maze.start()).y, 0.0);
+/// let mut localiser = MazeLocaliser::new(rig, scale, start, Pose::default());
+/// // Odometry says 3 mm too much; the wall ahead tells how far the robot really is.
+/// localiser.predict(Pose::new(0.103, 0.0, 0.0));
+/// let wall = 2.0 * scale.cell - 0.5 * scale.wall;
+/// localiser.correct(&maze, &front, wall - (start.x + 0.1 + front.mount.x));
+/// assert!((localiser.pose().x - start.x - 0.1).abs() < 0.002);
+/// assert!(localiser.calibration().distance < 1.0, "and that odometry says too much");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct MazeLocaliser {
     rig: Rig,

@@ -5,6 +5,11 @@ use crate::kinematics::OdometryErrors;
 use crate::world::{DriveSpec, Footprint, MotorSpec, Mount, PsdSpec, RobotSpec};
 
 /// A robot of the size of a micromouse: two wheels, three distance sensors, quick motors.
+///
+/// ```
+/// use roverlab::maze::mouse;
+/// assert_eq!(mouse().psds.len(), 3, "front, left, right");
+/// ```
 pub fn mouse() -> RobotSpec {
     let psd = |id: u8, name: &str, x, y, yaw| PsdSpec {
         id,
@@ -36,6 +41,17 @@ pub fn mouse() -> RobotSpec {
 }
 
 /// What a program has to know about its robot to drive it through a maze.
+///
+/// ```
+/// use roverlab::kinematics::OdometryErrors;
+/// use roverlab::maze::{Rig, mouse};
+/// use roverlab::world::RobotSpec;
+/// let rig = Rig::new(&mouse(), OdometryErrors::default(), 0.002)?;
+/// assert!(rig.sensors.iter().all(|sensor| sensor.max_range > 0.1));
+/// let blind = RobotSpec { psds: Vec::new(), ..mouse() };
+/// assert!(Rig::new(&blind, OdometryErrors::default(), 0.002).is_err(), "it needs three sensors");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rig {
     /// Metres between the wheels.

@@ -73,6 +73,33 @@ pub struct Exploration {
 ///
 /// The frame is that of the maze: its lower left corner is the origin. What the robot has learnt about its own odometry
 /// while it explored makes the fast run precise.
+///
+/// ```
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::kinematics::OdometryErrors;
+/// use roverlab::maze::{
+///     ExplorationOutcome, Goals, Maze, MazeRunner, MazeRunnerParameters, Rig, Scale, TwoPhaseExplorer,
+///     files, mouse,
+/// };
+/// use roverlab::world::Scene;
+/// let maze = files::parse(b"o---o---o\n|     G |\no   o---o\n| S |   |\no---o---o\n", "a maze")?.maze;
+/// let (scale, spec) = (Scale::MICROMOUSE, mouse());
+/// let scene = Scene::with_robot(scale.world(&maze), spec.clone(), scale.pose(maze.start(), maze.heading()));
+/// let simulation = Simulation::new(&scene, SimOptions::ideal())?;
+/// let mut robot = simulation.robot(0)?;
+/// let rig = Rig::new(&spec, OdometryErrors::default(), 0.002)?;
+/// let mut known = Maze::unexplored(maze.width(), maze.height())?;
+/// known.set_start(maze.start(), maze.heading());
+/// known.set_goals(maze.goals());
+/// let mut runner = MazeRunner::new(&mut robot, rig, known, scale, MazeRunnerParameters::MICROMOUSE, 120.0)?;
+/// let mut explorer = TwoPhaseExplorer::new(Goals::StepsAndTime(Box::new(runner.planner())));
+/// let explored = runner.explore(&mut explorer, &mut |_| {})?;
+/// assert_eq!(explored.verdict, ExplorationOutcome::Optimal);
+/// let plan = runner.plan_fast_run().expect("a way to the goal");
+/// runner.race(&plan, &mut |_| {})?;
+/// assert!(simulation.truth().pose(0)?.distance_to(scale.centre(plan.route.end())) < 0.02);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct MazeRunner<'r, R: ?Sized> {
     robot: &'r mut R,

@@ -34,6 +34,18 @@ impl TrajectoryTrackerParameters {
 
 /// Keeps a robot on a trajectory: the speeds that it asks for, corrected for where the robot is, and commanded so that lagging
 /// motors reach them in time.
+///
+/// ```
+/// use roverlab::geometry::{Pose, Twist};
+/// use roverlab::maze::{RunLimits, Trajectory, TrajectoryTracker, TrajectoryTrackerParameters};
+/// let turn = Trajectory::pivot(Pose::default(), 1.5, &RunLimits::MICROMOUSE);
+/// let duration = turn.duration();
+/// let tracker = TrajectoryTracker::new(turn, TrajectoryTrackerParameters::MICROMOUSE, 0.02)?;
+/// let begin = tracker.step(0.0, Pose::default(), Twist::STOP).expect("it has just begun");
+/// assert!(begin.angular > 0.0 && begin.linear.abs() < 1e-9);
+/// assert_eq!(tracker.step(duration + 0.1, Pose::new(0.0, 0.0, 1.5), Twist::STOP), None, "it is over");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct TrajectoryTracker {
     trajectory: Trajectory,

@@ -33,6 +33,25 @@ use crate::world::{GridCell, World};
 /// [`Unreachable`](NavigatorOutcome::Unreachable) is told at once if the known world has no way. If what has been seen leaves
 /// none, it is forgotten and looked at anew first. A robot that does not get on takes down what is before it, backs off
 /// and plans anew; after several times it is [`Stuck`](NavigatorOutcome::Stuck).
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::nav::{Navigator, NavigatorOutcome, NavigatorParameters};
+/// use roverlab::world::{RobotSpec, Scene, Wall, World};
+/// let mut world = World::walled(3.0, 2.0);
+/// world.walls.push(Wall::new(Point::new(1.5, 0.0), Point::new(1.5, 1.4)));
+/// let (start, goal) = (Pose::new(0.5, 0.5, 0.0), Point::new(2.5, 0.5));
+/// let mut navigator = Navigator::new(&world, start, goal, NavigatorParameters::default())?;
+/// let scene = Scene::with_robot(world, RobotSpec::s4(), start);
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let outcome = run(&mut simulation.robot(0)?, &mut navigator, 120.0, |_, _, _| {})?;
+/// let truth = simulation.truth().robot(0)?;
+/// assert_eq!((outcome, truth.contacts), (NavigatorOutcome::Reached, 0));
+/// assert!(truth.pose.distance_to(goal) < 0.1);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Navigator {
     parameters: NavigatorParameters,

@@ -15,6 +15,14 @@ pub enum Edges {
 ///
 /// It does unless all four corners lie on the same side of the line, or the shadows of segment and box on one of the axes
 /// are apart. What touches counts as `edges` says. Exact for coordinates up to 2^30.
+///
+/// ```
+/// use roverlab::nav::grid::{Edges, segment_meets_box};
+/// let (lower, upper) = ((2, 2), (4, 4));
+/// assert!(segment_meets_box((0, 0), (6, 6), lower, upper, Edges::Open), "through the middle");
+/// assert!(!segment_meets_box((0, 4), (4, 0), lower, upper, Edges::Open), "it touches a corner");
+/// assert!(segment_meets_box((0, 4), (4, 0), lower, upper, Edges::Closed));
+/// ```
 pub fn segment_meets_box(
     a: (i64, i64),
     b: (i64, i64),
