@@ -2,7 +2,11 @@ use super::dispatch::{vectorised, vectorised_filter};
 use super::view::{flatten, require_size};
 use super::{GrayView, GrayViewMut, ImageError, RgbView, RgbViewMut};
 
-/// 255 where a pixel is above the threshold, 0 elsewhere (book, Program 11.7).
+/// Thresholds an image: 255 where a pixel is above the threshold, 0 elsewhere (book, Program 11.7).
+///
+/// # Errors
+///
+/// If the sizes differ.
 ///
 /// ```
 /// use roverlab::vision::{GrayView, GrayViewMut, threshold_into};
@@ -18,9 +22,12 @@ pub fn threshold_into(input: GrayView<'_>, output: GrayViewMut<'_>, threshold: u
     Ok(())
 }
 
-/// The first image in gray, and a colour (red, green, blue) wherever the second one is not 0 (book, section
-/// 11.2; RoBIOS's
-/// `IPOverlayGray`).
+/// Draws marks over a gray image: the colour (red, green, blue) where `marks` is not 0, the gray pixel
+/// elsewhere (book, section 11.2; `IPOverlayGray` of RoBIOS).
+///
+/// # Errors
+///
+/// If the sizes differ.
 ///
 /// ```
 /// use roverlab::vision::{GrayView, RgbViewMut, overlay_gray_into};
@@ -42,7 +49,12 @@ pub fn overlay_gray_into(
     Ok(())
 }
 
-/// The second image, and the first wherever the second is black (RoBIOS's `IPOverlay`).
+/// Overlays two images: the pixels of `top`, and those of `base` where `top` is black (`IPOverlay` of
+/// RoBIOS).
+///
+/// # Errors
+///
+/// If the sizes differ.
 ///
 /// ```
 /// use roverlab::vision::{RgbView, RgbViewMut, overlay_into};
