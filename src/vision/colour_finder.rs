@@ -164,10 +164,6 @@ impl ColourFinder {
 /// held before the camera. Counts are smoothed over neighbouring hues. `None` if less than an eighth of the
 /// pixels has that hue.
 ///
-/// # Errors
-///
-/// If the image has no pixels.
-///
 /// ```
 /// use roverlab::vision::{HueLimits, RgbView, teach_hue};
 /// let ball = [20, 20, 200].repeat(40 * 30);
@@ -176,6 +172,10 @@ impl ColourFinder {
 /// assert_eq!(teach_hue(RgbView::new(&wall, 40, 30)?, HueLimits::default())?, None);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the image has no pixels.
 pub fn teach_hue<'a>(
     image: impl TryInto<RgbView<'a>, Error: Into<ImageError>>,
     limits: HueLimits,

@@ -4,10 +4,6 @@ use super::{GrayView, GrayViewMut, ImageError, RgbView, RgbViewMut};
 
 /// Thresholds an image: 255 where a pixel is above the threshold, 0 elsewhere (book, Program 11.7).
 ///
-/// # Errors
-///
-/// If the sizes differ.
-///
 /// ```
 /// use roverlab::vision::{GrayView, GrayViewMut, threshold_into};
 /// let mut mask = [0; 4];
@@ -15,6 +11,10 @@ use super::{GrayView, GrayViewMut, ImageError, RgbView, RgbViewMut};
 /// assert_eq!(mask, [0, 0, 255, 255]);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn threshold_into(input: GrayView<'_>, output: GrayViewMut<'_>, threshold: u8) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);
@@ -25,10 +25,6 @@ pub fn threshold_into(input: GrayView<'_>, output: GrayViewMut<'_>, threshold: u
 /// Draws marks over a gray image: the colour (red, green, blue) where `marks` is not 0, the gray pixel
 /// elsewhere (book, section 11.2; `IPOverlayGray` of RoBIOS).
 ///
-/// # Errors
-///
-/// If the sizes differ.
-///
 /// ```
 /// use roverlab::vision::{GrayView, RgbViewMut, overlay_gray_into};
 /// let (image, edges) = (GrayView::new(&[10, 20], 2, 1)?, GrayView::new(&[0, 255], 2, 1)?);
@@ -37,6 +33,10 @@ pub fn threshold_into(input: GrayView<'_>, output: GrayViewMut<'_>, threshold: u
 /// assert_eq!(shown, [10, 10, 10, 255, 0, 0]);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn overlay_gray_into(
     base: GrayView<'_>,
     marks: GrayView<'_>,
@@ -52,10 +52,6 @@ pub fn overlay_gray_into(
 /// Overlays two images: the pixels of `top`, and those of `base` where `top` is black (`IPOverlay` of
 /// RoBIOS).
 ///
-/// # Errors
-///
-/// If the sizes differ.
-///
 /// ```
 /// use roverlab::vision::{RgbView, RgbViewMut, overlay_into};
 /// let (base, top) = (RgbView::new(&[1, 2, 3, 4, 5, 6], 2, 1)?, RgbView::new(&[0, 0, 0, 0, 0, 9], 2, 1)?);
@@ -64,6 +60,10 @@ pub fn overlay_gray_into(
 /// assert_eq!(shown, [1, 2, 3, 0, 0, 9]);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn overlay_into(
     base: RgbView<'_>,
     top: RgbView<'_>,

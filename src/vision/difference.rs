@@ -4,10 +4,6 @@ use super::{GrayView, GrayViewMut, ImageError};
 
 /// Absolute difference `|first - second|`, pixel by pixel (book, Program 11.13).
 ///
-/// # Errors
-///
-/// If the sizes differ.
-///
 /// ```
 /// use roverlab::vision::{GrayView, GrayViewMut, absolute_difference_into};
 /// let (before, after) = (GrayView::new(&[10, 200, 30], 3, 1)?, GrayView::new(&[10, 180, 70], 3, 1)?);
@@ -16,6 +12,10 @@ use super::{GrayView, GrayViewMut, ImageError};
 /// assert_eq!(change, [0, 20, 40]);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn absolute_difference_into(
     first: GrayView<'_>,
     second: GrayView<'_>,

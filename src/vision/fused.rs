@@ -7,10 +7,6 @@ use super::{HueLimits, HueRange, ImageError, RgbView};
 /// Counts, per column, the pixels whose hue is in the range (book, Program 11.9). Hues are on the RoBIOS
 /// scale. One pass from colours to histogram.
 ///
-/// # Errors
-///
-/// If `columns` does not have one entry per column.
-///
 /// ```
 /// use roverlab::vision::{HueLimits, HueRange, HueScale, RgbView, hue_histogram_into};
 /// let (red, blue) = ([200, 10, 10], [10, 10, 200]);
@@ -21,6 +17,10 @@ use super::{HueLimits, HueRange, ImageError, RgbView};
 /// assert_eq!(columns, [2, 1, 0], "red pixels in each column");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If `columns` does not have one entry per column.
 pub fn hue_histogram_into(
     input: RgbView<'_>,
     columns: &mut [u32],

@@ -76,10 +76,6 @@ impl GaussianKernel {
 /// Smooths an image. Each pixel becomes the weighted sum of its surroundings, rounded to the nearest, halves
 /// up. The image is mirrored at the border.
 ///
-/// # Errors
-///
-/// If the sizes differ.
-///
 /// ```
 /// use roverlab::vision::{GaussianKernel, GrayView, GrayViewMut, gaussian_into};
 /// let dot = [0, 0, 0, 0, 160, 0, 0, 0, 0];
@@ -89,6 +85,10 @@ impl GaussianKernel {
 /// assert_eq!(smooth[3..6], [40, 40, 40], "and the mirrored border sees it twice");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn gaussian_into(
     input: GrayView<'_>,
     mut output: GrayViewMut<'_>,

@@ -15,10 +15,6 @@ pub enum GrayWeights {
 
 /// Converts colour to gray levels.
 ///
-/// # Errors
-///
-/// If the sizes differ.
-///
 /// ```
 /// use roverlab::vision::{GrayViewMut, GrayWeights, RgbView, gray_into};
 /// let colours = [255, 0, 0, 0, 255, 0, 0, 0, 255];
@@ -27,6 +23,10 @@ pub enum GrayWeights {
 /// assert_eq!(gray, [76, 150, 29], "green is the brightest to the eye, blue the darkest");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn gray_into(
     input: RgbView<'_>,
     output: GrayViewMut<'_>,
@@ -40,10 +40,6 @@ pub fn gray_into(
 
 /// Converts gray levels to colour: each byte three times.
 ///
-/// # Errors
-///
-/// If the sizes differ.
-///
 /// ```
 /// use roverlab::vision::{GrayView, RgbViewMut, gray_to_rgb_into};
 /// let mut colours = [0; 6];
@@ -51,6 +47,10 @@ pub fn gray_into(
 /// assert_eq!(colours, [7, 7, 7, 90, 90, 90]);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn gray_to_rgb_into(input: GrayView<'_>, output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);

@@ -78,10 +78,6 @@ pub fn hsi_to_rgb(Hsi { hue, saturation, intensity }: Hsi) -> [u8; 3] {
 
 /// Converts an image to hue, saturation and intensity, stored in place of red, green and blue.
 ///
-/// # Errors
-///
-/// If the sizes differ.
-///
 /// ```
 /// use roverlab::vision::{RgbView, RgbViewMut, hsi_into, hsi_to_rgb_into};
 /// let colours = [255, 0, 0, 0, 0, 255];
@@ -92,6 +88,10 @@ pub fn hsi_to_rgb(Hsi { hue, saturation, intensity }: Hsi) -> [u8; 3] {
 /// assert_eq!(back, colours);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn hsi_into(input: RgbView<'_>, mut output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     for y in 0..input.height() {

@@ -33,10 +33,6 @@ pub fn rgb_to_hsv([red, green, blue]: [u8; 3]) -> Hsv {
 
 /// Converts an image to hue, saturation and value, stored in place of red, green and blue.
 ///
-/// # Errors
-///
-/// If the sizes differ.
-///
 /// ```
 /// use roverlab::vision::{RgbView, RgbViewMut, hsv_into, hsv_to_rgb_into};
 /// let colours = [255, 0, 0, 0, 0, 255];
@@ -47,6 +43,10 @@ pub fn rgb_to_hsv([red, green, blue]: [u8; 3]) -> Hsv {
 /// assert_eq!(back, colours);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn hsv_into(input: RgbView<'_>, output: RgbViewMut<'_>) -> Result<(), ImageError> {
     output.require_size(input.size())?;
     let (input, mut output) = flatten(input, output);

@@ -119,10 +119,6 @@ pub(super) fn fixed_point(n: i16, one: f32, d: u8) -> i16 {
 
 /// Hue of each pixel of an image; see [`hue`].
 ///
-/// # Errors
-///
-/// If the sizes differ.
-///
 /// ```
 /// use roverlab::vision::{GrayViewMut, HueLimits, HueScale, NO_HUE, RgbView, hue_into};
 /// let colours = [200, 10, 10, 10, 200, 10, 10, 10, 200, 90, 90, 90];
@@ -132,6 +128,10 @@ pub(super) fn fixed_point(n: i16, one: f32, d: u8) -> i16 {
 /// assert_eq!(hues, [42, 126, 210, NO_HUE], "red, green, blue, gray");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn hue_into(
     input: RgbView<'_>,
     output: GrayViewMut<'_>,

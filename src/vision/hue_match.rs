@@ -49,10 +49,6 @@ impl HueRange {
     /// The hues less than `threshold` away from that of a sample: `like([255, 0, 0], 20, scale)` is red on
     /// either scale.
     ///
-    /// # Errors
-    ///
-    /// If the sample is gray, which has no hue, or `threshold` is 0.
-    ///
     /// ```
     /// use roverlab::vision::{HueRange, HueScale};
     /// let red = HueRange::like([200, 30, 20], 20, HueScale::Robios)?;
@@ -60,6 +56,10 @@ impl HueRange {
     /// assert!(HueRange::like([90, 90, 90], 20, HueScale::Robios).is_err());
     /// # Ok::<(), roverlab::vision::ImageError>(())
     /// ```
+    ///
+    /// # Errors
+    ///
+    /// If the sample is gray, which has no hue, or `threshold` is 0.
     pub fn like(sample: [u8; 3], threshold: u8, scale: HueScale) -> Result<Self, ImageError> {
         let [red, green, blue] = sample;
         if red == green && green == blue {
@@ -96,10 +96,6 @@ fn require_hue(parameter: &'static str, hue: u8, scale: HueScale) -> Result<(), 
 /// 255 where the hue of a pixel is in the range, 0 elsewhere (book, section 11.4). One pass from colours to
 /// mask.
 ///
-/// # Errors
-///
-/// If the sizes differ.
-///
 /// ```
 /// use roverlab::vision::{GrayViewMut, HueLimits, HueRange, HueScale, RgbView, hue_match_into};
 /// let colours = [200, 10, 10, 10, 200, 10, 90, 90, 90];
@@ -110,6 +106,10 @@ fn require_hue(parameter: &'static str, hue: u8, scale: HueScale) -> Result<(), 
 /// assert_eq!(mask, [255, 0, 0]);
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn hue_match_into(
     input: RgbView<'_>,
     output: GrayViewMut<'_>,
@@ -128,10 +128,6 @@ pub fn hue_match_into(
 
 /// 255 where a hue image is in the range, 0 elsewhere.
 ///
-/// # Errors
-///
-/// If the sizes differ.
-///
 /// ```
 /// use roverlab::vision::{GrayView, GrayViewMut, HueRange, HueScale, NO_HUE, match_hue_image_into};
 /// let green = HueRange::around(126, 10, HueScale::Robios)?;
@@ -141,6 +137,10 @@ pub fn hue_match_into(
 /// assert_eq!(mask, [255, 255, 0, 0], "less than 10 away from 126");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn match_hue_image_into(
     input: GrayView<'_>,
     output: GrayViewMut<'_>,

@@ -21,10 +21,6 @@ pub fn laplace_into(
 /// Positive part of the Laplace operator, `n + s + e + w - 4 c` clamped to `0..=255`. It marks the dark side
 /// of edges.
 ///
-/// # Errors
-///
-/// If the sizes differ.
-///
 /// ```
 /// use roverlab::vision::{Border, GrayView, GrayViewMut, laplace_saturated_into};
 /// let step = [10, 10, 10, 60, 60, 60];
@@ -34,6 +30,10 @@ pub fn laplace_into(
 /// assert_eq!(edges, [0, 0, 50, 0, 0, 0], "the last dark pixel before the step");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn laplace_saturated_into(
     input: GrayView<'_>,
     mut output: GrayViewMut<'_>,

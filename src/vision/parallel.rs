@@ -14,10 +14,6 @@ const LEAST_ROWS: usize = 16;
 /// thresholds, 1 for Laplace and Sobel, 3 for a Gaussian of 7 x 7. Kernels that need the whole image (Canny,
 /// components, Hough) are not suitable.
 ///
-/// # Errors
-///
-/// If the sizes differ, or the kernel fails.
-///
 /// ```
 /// use roverlab::vision::{Border, GrayView, GrayViewMut, in_bands, laplace_into};
 ///
@@ -33,6 +29,10 @@ const LEAST_ROWS: usize = 16;
 /// # Ok(())
 /// # }
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ, or the kernel fails.
 pub fn in_bands<const C: usize, const D: usize>(
     input: View<'_, C>,
     output: ViewMut<'_, D>,

@@ -4,10 +4,6 @@ use super::{GrayView, ImageError};
 
 /// Sums of all columns and of all rows (book, section 11.4, for a mask).
 ///
-/// # Errors
-///
-/// If there is not one sum per column and row.
-///
 /// ```
 /// use roverlab::vision::{GrayView, maximum, projections_into};
 /// let matches = [0, 255, 0, 0, 255, 255];
@@ -17,6 +13,10 @@ use super::{GrayView, ImageError};
 /// assert_eq!(maximum(&columns), Some((1, 510)), "the object is in column 1");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If there is not one sum per column and row.
 pub fn projections_into(
     input: GrayView<'_>,
     columns: &mut [u32],

@@ -16,10 +16,6 @@ pub enum SobelScale {
 ///
 /// `dx = (ne + 2 e + se) - (nw + 2 w + sw)` and `dy = (sw + 2 s + se) - (nw + 2 n + ne)`.
 ///
-/// # Errors
-///
-/// If the sizes differ.
-///
 /// ```
 /// use roverlab::vision::{Border, GrayView, GrayViewMut, SobelScale, sobel_l1_into};
 /// let corner = [0, 0, 0, 0, 0, 20, 0, 20, 20];
@@ -29,6 +25,10 @@ pub enum SobelScale {
 /// assert_eq!(edges, [0, 0, 0, 0, 120, 0, 0, 0, 0], "dx = dy = 60");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn sobel_l1_into(
     input: GrayView<'_>,
     mut output: GrayViewMut<'_>,
@@ -46,10 +46,6 @@ pub fn sobel_l1_into(
 /// Sobel gradient: `sqrt(dx² + dy²)`, or a third of that, rounded to the nearest, at most 255; see
 /// [`sobel_l1_into`].
 ///
-/// # Errors
-///
-/// If the sizes differ.
-///
 /// ```
 /// use roverlab::vision::{Border, GrayView, GrayViewMut, SobelScale, sobel_l2_into};
 /// let corner = [0, 0, 0, 0, 0, 20, 0, 20, 20];
@@ -59,6 +55,10 @@ pub fn sobel_l1_into(
 /// assert_eq!(edges[4], 85, "dx = dy = 60, and the root of 60² + 60² is 84.9");
 /// # Ok::<(), roverlab::vision::ImageError>(())
 /// ```
+///
+/// # Errors
+///
+/// If the sizes differ.
 pub fn sobel_l2_into(
     input: GrayView<'_>,
     mut output: GrayViewMut<'_>,
