@@ -6,7 +6,7 @@
 //! # fn main() -> roverlab::io::Result<()> {
 //! # let (first, fitness) = (vec![vec![0_u8; 8]; 10], |genome: &Vec<u8>, _: Trial| Ok(f64::from(genome[0])));
 //! let file = &std::env::temp_dir().join(format!("run-{}.json", std::process::id()));
-//! //! // Everything that affects the run, so that checkpoints of other runs are rejected.
+//! // Everything that affects the run, so that checkpoints of other runs are rejected.
 //! let settings = "ten individuals of eight genes, six mutations, seed 1";
 //! let population = match checkpoint::load(file, settings)? {
 //!     Some(population) => population,

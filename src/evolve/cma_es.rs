@@ -32,7 +32,7 @@ pub struct Distribution {
 ///
 /// ```
 /// use roverlab::evolve::{CmaEs, Evolution, Serial, StopRules, Trial};
-/// /// // Rosenbrock's function: a curved valley with its optimum at (1, 1).
+/// // Rosenbrock's function: a curved valley with its optimum at (1, 1).
 /// let valley = |x: &Vec<f64>, _: Trial| Ok(-(1.0 - x[0]).powi(2) - 100.0 * (x[1] - x[0] * x[0]).powi(2));
 /// let mut search = CmaEs::new(vec![-1.0, 1.0], 0.5, 12, 1)?;
 /// search.run(&mut Serial::new(valley), &StopRules::generations(150), |_| Ok(()))?;

@@ -14,7 +14,7 @@ use crate::vision::{GrayView, GrayViewMut, ImageError};
 /// ```
 /// use roverlab::vision::motion::TurnCompensator;
 /// use roverlab::vision::{GrayView, mean_difference};
-/// /// // A camera with a field of view of 1 rad turns left by 0.1 rad: the scene moves to the right.
+/// // A camera with a field of view of 1 rad turns left by 0.1 rad: the scene moves to the right.
 /// let focal = 40.0 / 0.5_f64.tan();
 /// let wall = |turn: f64| -> Vec<u8> {
 ///     let angle = |column: usize| turn - ((column as f64 - 39.5) / focal).atan();
