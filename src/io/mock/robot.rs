@@ -19,7 +19,7 @@ use crate::kinematics::Displacement;
 /// use roverlab::geometry::Twist;
 /// use roverlab::io::{Call, Clock, DistanceSensors, Drive, Odometry, MockRobot, Psd, Result, Script};
 ///
-/// Drives until something is nearer than 20 cm; gives the distance that is left.
+/// /// Drives until something is nearer than 20 cm; gives the distance that is left.
 /// fn approach(robot: &mut (impl Clock + Drive + DistanceSensors)) -> Result<f64> {
 ///     robot.set_speed(Twist::new(0.1, 0.0))?;
 ///     loop {

@@ -18,7 +18,7 @@ use crate::io::{Key, Lcd, LidarScan, Psd, Result};
 /// use roverlab::io::sim::{Onlooking, SimOptions, Simulation, Watcher};
 /// use roverlab::world::{RobotSpec, Scene, World};
 ///
-/// Carries the robot away after a second.
+/// /// Carries the robot away after a second.
 /// #[derive(Debug)]
 /// struct Hand;
 ///

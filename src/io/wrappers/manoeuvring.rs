@@ -55,7 +55,7 @@ impl ManoeuvringParameters {
 /// use roverlab::io::wrappers::{Manoeuvring, ManoeuvringParameters};
 /// use roverlab::io::{Clock, Drive, Manoeuvres, MockRobot, Odometry};
 ///
-/// A robot that can do no more than this.
+/// /// A robot that can do no more than this.
 /// #[derive(Delegate)]
 /// #[delegate(Clock, target = "inner")]
 /// #[delegate(Drive, target = "inner")]
