@@ -46,10 +46,10 @@ pub fn petgraph_of_grid(grid: &BitGrid) -> UnGraph<GridCell, f64> {
     graph
 }
 
-/// The cheapest way from one node of a `petgraph` graph to another one, by A\*; see [`shortest_path`].
+/// The cheapest path between two nodes of a `petgraph` graph, by A\*; see [`shortest_path`].
 ///
-/// `cost` says what an edge costs, `estimate` a lower bound of the cost from a node to the goal: 0 for Dijkstra's
-/// algorithm.
+/// `cost` returns the cost of an edge, `estimate` a lower bound of the cost from a node to the goal: 0 gives
+/// Dijkstra's algorithm.
 ///
 /// ```
 /// use petgraph::graph::UnGraph;
