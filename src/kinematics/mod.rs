@@ -3,11 +3,12 @@
 //! [`Differential`] has two driven wheels, [`Ackermann`] is a car, [`Omni`] moves in every direction on three or four
 //! wheels with rollers, [`Tracked`] skids on two belts. The wheeled ones have `forward`, `inverse`, and `inverse_limited`, which keeps the direction of motion where a
 //! wheel would have to turn too fast. [`advance`] and [`advance_planar`] integrate in closed form.
-//! [`OdometryUncertainty`] says how far odometry may be wrong.
+//! [`marine`] moves craft in water. [`OdometryUncertainty`] says how far odometry may be wrong.
 
 mod ackermann;
 mod differential;
 mod integrate;
+pub mod marine;
 mod omni;
 mod planar;
 mod tracked;
