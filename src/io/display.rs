@@ -73,6 +73,12 @@ pub enum DisplayOption {
 /// Where an image goes on the display, and at what size.
 ///
 /// The default is where RoBIOS puts camera images: a QVGA window, 320 x 240 pixels, in the upper left corner.
+///
+/// ```
+/// use roverlab::io::Viewport;
+/// let right_half = Viewport::new((160, 0), 160, 240);
+/// assert_eq!((right_half.corner, right_half.width, right_half.height), ((160, 0), 160, 240));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Viewport {
     /// The upper left corner.

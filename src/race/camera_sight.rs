@@ -27,6 +27,22 @@ impl Default for CameraMount {
 
 /// Finds cones in images by their colours: hue, saturation and intensity tell blue, yellow and orange from the ground, connected
 /// pixels are a cone, and its lowest row says how far off it is on flat ground.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::io::{Camera, Resolution};
+/// use roverlab::race::{CameraMount, CameraSight, Cone, ConeColour, ConeTrack};
+/// let cone = Cone::new(Point::new(6.0, 1.5), ConeColour::Blue);
+/// let track = ConeTrack { cones: vec![cone], ..ConeTrack::default() };
+/// let simulation = Simulation::new(&track.scene(&[Pose::default()]), SimOptions::ideal())?;
+/// let mut car = simulation.robot(0)?;
+/// car.set_resolution(Resolution::Vga)?;
+/// let seen = CameraSight::new(CameraMount::default()).find(&car.image()?);
+/// assert_eq!((seen.len(), seen[0].colour), (1, ConeColour::Blue));
+/// assert!((seen[0].position - cone.position).norm() < 0.5, "6 m ahead, to half a metre");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct CameraSight {
     mount: CameraMount,

@@ -70,6 +70,14 @@ const MASS: f64 = 0.45;
 const MARGIN: f64 = 5.0;
 
 /// A cone on the ground.
+///
+/// ```
+/// use roverlab::geometry::Point;
+/// use roverlab::race::{Cone, ConeColour};
+/// let cone = Cone::new(Point::new(3.0, 1.5), ConeColour::Blue);
+/// assert_eq!(cone.colour.side(), -ConeColour::Yellow.side(), "blue and yellow stand on opposite edges");
+/// assert_eq!(Cone::unknown(cone.position).colour, ConeColour::Unknown);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cone {
     /// Where its axis meets the ground.

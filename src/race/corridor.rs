@@ -23,6 +23,17 @@ impl CrossSection {
 }
 
 /// A track as a centre line with widths, closed to a loop or open.
+///
+/// ```
+/// use roverlab::geometry::{Point, direction};
+/// use roverlab::race::Corridor;
+/// let angle = |k: u8| (4.0 * f64::from(k)).to_radians();
+/// let place = |k| (Point::origin() + direction(angle(k)) * 20.0, 2.0, 3.0);
+/// let ring = Corridor::closed(&(0..90).map(place).collect::<Vec<_>>())?;
+/// assert!((ring.length() - 125.6).abs() < 0.1, "2 pi 20 m");
+/// assert!(ring.edge(true).iter().all(|point| (point.coords.norm() - 18.0).abs() < 0.01), "to the left");
+/// # Ok::<(), roverlab::race::LineError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Corridor {
     stations: Vec<CrossSection>,

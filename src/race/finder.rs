@@ -7,6 +7,17 @@ use crate::geometry::Pose;
 /// Finds the lane ahead from moment to moment, by the cones that a car knows there, whoever has found them.
 ///
 /// It keeps what one moment tells the next: where the car was, and where the lane was found before.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::race::{Cone, LaneFinder, LaneParameters};
+/// let edge = |y: f64| (0..6).map(move |k| Cone::unknown(Point::new(3.0 * f64::from(k), y)));
+/// let cones: Vec<Cone> = edge(1.5).chain(edge(-1.5)).collect();
+/// let mut finder = LaneFinder::new(LaneParameters::default())?;
+/// let lane = finder.step(Pose::default(), &cones).expect("a lane between two rows");
+/// assert!(lane.points.iter().all(|point| point.y.abs() < 0.01), "in the middle between them");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct LaneFinder {
     parameters: LaneParameters,

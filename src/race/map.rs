@@ -48,6 +48,23 @@ impl ConeMapParameters {
 ///
 /// In the first lap errors add up with the way, so a cone is matched only while it was seen lately. [`close`](Self::close) ends
 /// that: back at the start, it finds the first cones again and takes what has added up out of the whole lap.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::race::{ConeColour, ConeMap, ConeMapParameters, ConeSighting};
+/// let mut map = ConeMap::new(ConeMapParameters::default())?;
+/// for step in 0..20 {
+///     // A cone at (8, 1), which the car drives towards.
+///     let car = Pose::new(0.2 * f64::from(step), 0.0, 0.0);
+///     let position = car.to_local(Point::new(8.0, 1.0));
+///     let range = position.coords.norm();
+///     let colour = ConeColour::Unknown;
+///     map.update(car, &[ConeSighting { position, size: 0.2, confidence: 1.0, range, error: 0.05, colour }]);
+/// }
+/// let cones: Vec<Point> = map.cones().map(|cone| cone.position).collect();
+/// assert!(cones.len() == 1 && (cones[0] - Point::new(8.0, 1.0)).norm() < 0.1);
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ConeMap {
     parameters: ConeMapParameters,

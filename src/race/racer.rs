@@ -107,6 +107,21 @@ pub enum RacePhase {
 }
 
 /// Races on a track that it does not know: between the cones that it sees in the first lap, on the racing line in all others.
+///
+/// ```
+/// use roverlab::io::control::run;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::race::{RaceOutcome, RacePhase, Racer, RacerParameters, TrackOptions, generate};
+/// let track = generate(1, &TrackOptions { length: [120.0, 180.0], ..TrackOptions::default() })?.track;
+/// let scene = track.scene(&[track.start_pose().expect("a start")]);
+/// let simulation = Simulation::new(&scene, SimOptions::default())?;
+/// let mut racer = Racer::new(RacerParameters::default())?;
+/// // The first ten seconds only: it drives between the cones that its lidar sees, and maps them.
+/// let outcome = run(&mut simulation.robot(0)?, &mut racer, 10.0, |_, _, _| {})?;
+/// assert_eq!((outcome, racer.phase()), (RaceOutcome::TimedOut, RacePhase::Mapping));
+/// assert!(racer.map().cones().count() > 10 && simulation.truth().robot(0)?.contacts == 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Racer {
     pub(super) parameters: RacerParameters,

@@ -24,6 +24,25 @@ impl RaceScore {
 }
 
 /// Takes the time and looks whether a car stays on its track.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose, direction};
+/// use roverlab::race::{Corridor, Referee};
+/// let place = |degrees: u32| Point::origin() + direction(f64::from(degrees).to_radians()) * 20.0;
+/// let ring = Corridor::closed(&(0..90).map(|k| (place(4 * k), 1.5, 1.5)).collect::<Vec<_>>())?;
+/// let wheels = [(0.0, 0.6), (0.0, -0.6), (1.55, 0.6), (1.55, -0.6)].map(|(x, y)| Point::new(x, y));
+/// let mut referee = Referee::new(ring, wheels);
+/// // Twice around at 36 degrees a second, from a line crossed to the next; a cone falls.
+/// for step in 0..730 {
+///     let at = place(step);
+///     let heading = f64::from(step).to_radians() + 0.5 * std::f64::consts::PI;
+///     referee.see(f64::from(step) / 36.0, Pose::new(at.x, at.y, heading), usize::from(step > 500));
+/// }
+/// let score = referee.verdict();
+/// assert!((score.lap_times[0] - 10.0).abs() < 0.2 && score.off_course == 0);
+/// assert!((score.total() - score.lap_times.iter().sum::<f64>() - 2.0).abs() < 1e-9, "2 s for the cone");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Referee {
     corridor: Corridor,

@@ -92,6 +92,18 @@ impl LineTrackerParameters {
 }
 
 /// A line with its speeds, and how far along it the car is.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose, Twist};
+/// use roverlab::race::{CarLimits, LineTracker, LineTrackerParameters, SpeedProfile};
+/// let line: Vec<Point> = (0..100).map(|k| Point::new(f64::from(k), 0.0)).collect();
+/// let profile = SpeedProfile::open(&line, &CarLimits::circle(10.0, 5.0, 8.0, 30.0), 5.0, 5.0)?;
+/// let mut tracker = LineTracker::new(line, profile, false, LineTrackerParameters::rolling())?;
+/// let car = Pose::new(10.0, 0.5, 0.0);
+/// let (twist, aside) = tracker.step(car, Twist::new(8.0, 0.0)).expect("the line goes on");
+/// assert!((aside - 0.5).abs() < 1e-9 && twist.angular < 0.0, "half a metre to the left: to the right");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct LineTracker {
     parameters: LineTrackerParameters,

@@ -19,6 +19,31 @@ pub struct Landmark {
 /// feedback in section 3.7).
 ///
 /// It starts at a known pose. One landmark suffices, because the pose at the start is known; more are better.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::io::Lidar;
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::kinematics::{Differential, OdometryErrors};
+/// use roverlab::scan::{Landmark, LandmarkFilter};
+/// use roverlab::world::{Colour, Object, ObjectKind, RobotSpec, Scene, Shape, World};
+/// let (mut world, place) = (World::empty(3.0, 3.0), Point::new(1.5, 1.2));
+/// let (radius, height) = (0.04, 0.15);
+/// let pole = ObjectKind::new("pole", Shape::Cylinder { radius, height }, Colour::GREEN);
+/// world.objects.push(Object::new(pole.into(), Pose::new(place.x, place.y, 0.0)));
+/// let truth = Pose::new(0.8, 1.0, 0.0);
+/// let scene = Scene::with_robot(world, RobotSpec::s4(), truth);
+/// let scan = Simulation::new(&scene, SimOptions::ideal())?.robot(0)?.scan()?;
+/// // It began at x = 0.3 m; odometry says 4 cm too much.
+/// let errors = OdometryErrors { wheel_scale: 0.1, ..Default::default() };
+/// let start = Pose::new(0.3, 1.0, 0.0);
+/// let (pole, drive) = (Landmark { position: place, radius }, Differential { track: 0.1 });
+/// let mut filter = LandmarkFilter::new(start, start, vec![pole], drive, errors, 0.005)?;
+/// filter.predict(Pose::new(0.84, 1.0, 0.0));
+/// assert_eq!(filter.correct(&scan), 1, "one landmark is seen");
+/// assert!(filter.pose().distance_to(truth.position()) < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct LandmarkFilter {
     landmarks: Vec<Landmark>,

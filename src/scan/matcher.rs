@@ -13,6 +13,30 @@ use crate::geometry::{Point, Pose, math, normalize_angle};
 ///
 /// Match and odometry are weighed by what each knows: odometry by how far the robot has moved, the match by the
 /// directions in which the visible surfaces hold the scan. Along a bare corridor or in a round room odometry decides.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::scan::ScanMatcher;
+/// // A room of 3 m by 2 m, as seen from a pose in it by a beam for each degree.
+/// let seen_from = |pose: Pose| -> Vec<Point> {
+///     let hit = |degree: i32| {
+///         let (sin, cos) = (pose.heading + f64::from(degree).to_radians()).sin_cos();
+///         let x = if cos > 0.0 { (1.5 - pose.x) / cos } else { (-1.5 - pose.x) / cos };
+///         let y = if sin > 0.0 { (1.0 - pose.y) / sin } else { (-1.0 - pose.y) / sin };
+///         pose.to_local(pose.position() + roverlab::geometry::Vector::new(cos, sin) * x.min(y))
+///     };
+///     (-180..180).map(hit).collect()
+/// };
+/// let mut matcher = ScanMatcher::new();
+/// // Odometry turns by 3 degrees too much for each metre.
+/// for step in 0..30 {
+///     let (way, turn) = (0.02 * f64::from(step), 0.001 * f64::from(step));
+///     let scan = seen_from(Pose::new(way, 0.0, 0.0));
+///     let pose = matcher.update(Pose::new(way, 0.0, turn), &scan);
+///     matcher.learn(&scan);
+///     assert!(step < 10 || pose.heading < 0.5 * turn, "{pose:?} after {step} steps");
+/// }
+/// ```
 #[derive(Debug, Clone)]
 pub struct ScanMatcher {
     references: Vec<Reference>,

@@ -107,6 +107,20 @@ impl<V: Verdict> Verdict for Result<V> {
 }
 
 /// The verdict of who watches until something is so.
+///
+/// ```
+/// use roverlab::drive::{AToB, AToBOutcome, AToBParameters, Goal, Method};
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::io::control::{run, until};
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// let scene = Scene::with_robot(World::empty(3.0, 3.0), RobotSpec::s4(), Pose::default());
+/// let simulation = Simulation::new(&scene, SimOptions::ideal())?;
+/// let mut drive = AToB::new(Method::Arc, Goal::point(Point::new(2.0, 1.0)), AToBParameters::default())?;
+/// let outcome = run(&mut simulation.robot(0)?, &mut drive, 60.0, |_, _, step| until(step.time > 2.0))?;
+/// assert_eq!(outcome, AToBOutcome::Stopped, "who watches had seen enough after two seconds");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 pub fn until(enough: bool) -> ControlFlow<()> {
     if enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }

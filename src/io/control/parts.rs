@@ -64,6 +64,27 @@ impl<R: Drive + Manoeuvres + ?Sized> Command<R> for Manoeuvre {
 /// A behaviour whose observations a function reads, given the robot and the time: by other sensors, or by an
 /// estimate that is better than odometry. The function also [prepares](Senses::prepare) the robot, if that is
 /// needed.
+///
+/// ```
+/// use roverlab::drive::{AToB, AToBObservation, AToBOutcome, AToBParameters, Goal, Method};
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::io::Manoeuvres;
+/// use roverlab::io::control::{SensedBy, run};
+/// use roverlab::io::sim::{SimOptions, SimRobot, Simulation};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// let scene = Scene::with_robot(World::empty(2.0, 2.0), RobotSpec::s4(), Pose::new(0.5, 0.5, 0.0));
+/// let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+/// let truth = simulation.truth();
+/// // Another sense of place than odometry: here the truth, in the frame of the start.
+/// let mut drive = AToB::new(Method::Turn, Goal::point(Point::new(1.0, 0.5)), AToBParameters::default())?;
+/// let mut sensed = SensedBy::new(&mut drive, |robot: &mut SimRobot, _, seen: &mut AToBObservation| {
+///     seen.done = robot.is_done()?;
+///     seen.pose = scene.robots[0].pose.inverse().compose(&truth.pose(0)?);
+///     Ok(())
+/// });
+/// assert_eq!(run(&mut simulation.robot(0)?, &mut sensed, 60.0, |_, _, _| {})?, AToBOutcome::Reached);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct SensedBy<'b, B: ?Sized, F> {
     behaviour: &'b mut B,

@@ -20,6 +20,29 @@
 //! | `/robot1/truth` | `roverlab.Call` | what a simulator was asked about the truth |
 //!
 //! Robots are numbered from 1 in topics. A metadata record named `roverlab` holds the [`Header`].
+//!
+//! ```
+//! use roverlab::geometry::{Pose, Twist};
+//! use roverlab::io::log::{Difference, Header, Log, LogWriter, Replay};
+//! use roverlab::io::sim::{SimOptions, Simulation};
+//! use roverlab::io::{Clock, Drive, Odometry, Result};
+//! use roverlab::world::{RobotSpec, Scene, World};
+//! fn program(robot: &mut (impl Clock + Drive + Odometry)) -> Result<Pose> {
+//!     robot.set_speed(Twist::new(0.2, 0.5))?;
+//!     robot.wait(1.0)?;
+//!     robot.pose()
+//! }
+//! let scene = Scene::with_robot(World::empty(2.0, 2.0), RobotSpec::s4(), Pose::default());
+//! let simulation = Simulation::new(&scene, SimOptions::with_noise(1.0, 1))?;
+//! let writer = LogWriter::new(Vec::new(), &Header::new("circle", ["--seed 1"]))?;
+//! let mut robot = writer.recorder(simulation.robot(0)?, 0);
+//! let end = program(&mut robot)?;
+//! drop(robot);
+//! let log = Log::read(writer.finish()?)?;
+//! assert_eq!(program(&mut Replay::new(&log, 0)?)?, end, "to the bit");
+//! assert_eq!(Difference::between(&log, &log), None);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod answer;
 mod answers;

@@ -15,6 +15,30 @@ use crate::io::{Clock, Error, ErrorKind, Key, Result};
 /// last at that time, or what it read first if that was later; a sensor that was never read is an error. Commands are
 /// written down and have no effect; [`report`](OpenLoop::report) compares them with the recorded ones. Behind the end
 /// of the recording every call fails with [`EndOfLog`](ErrorKind::EndOfLog).
+///
+/// ```
+/// use roverlab::geometry::{Pose, Twist};
+/// use roverlab::io::log::{Header, Log, LogWriter, OpenLoop};
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::io::{Clock, Drive, Odometry};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// let scene = Scene::with_robot(World::empty(2.0, 2.0), RobotSpec::s4(), Pose::default());
+/// let simulation = Simulation::new(&scene, SimOptions::ideal())?;
+/// let writer = LogWriter::new(Vec::new(), &Header::new("straight", ["--speed 0.2"]))?;
+/// let mut robot = writer.recorder(simulation.robot(0)?, 0);
+/// robot.set_speed(Twist::new(0.2, 0.0))?;
+/// robot.wait(2.0)?;
+/// let end = robot.pose()?;
+/// drop(robot);
+/// // Another program: it sees what was recorded, whatever it commands.
+/// let mut again = OpenLoop::new(&Log::read(writer.finish()?)?, 0)?;
+/// again.set_speed(Twist::new(0.3, 0.0))?;
+/// again.wait(1.0)?;
+/// assert_eq!(again.pose()?, end, "the only pose that was asked for");
+/// let report = again.report();
+/// assert_eq!((report.recorded, report.given, report.same), (1, 1, 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct OpenLoop {
     log: Log,

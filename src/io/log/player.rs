@@ -3,6 +3,26 @@ use super::stamp::nanoseconds;
 use super::{Log, LogError};
 
 /// Plays a recording: hands out its robots, and what was true about them.
+///
+/// ```
+/// use roverlab::geometry::Pose;
+/// use roverlab::io::Clock;
+/// use roverlab::io::log::{Header, Log, LogWriter, Player};
+/// use roverlab::io::sim::{SimOptions, Simulation};
+/// use roverlab::world::{RobotSpec, Scene, World};
+/// let scene = Scene::with_robot(World::empty(2.0, 2.0), RobotSpec::s4(), Pose::default());
+/// let simulation = Simulation::new(&scene, SimOptions::default())?;
+/// let writer = LogWriter::new(Vec::new(), &Header::new("waiting", [""]))?;
+/// let mut robot = writer.recorder(simulation.robot(0)?, 0);
+/// robot.wait(0.5)?;
+/// robot.wait(0.5)?;
+/// drop(robot);
+/// let player = Player::new(&Log::read(writer.finish()?)?);
+/// player.robot(0)?.wait(0.5)?;
+/// let (time, call) = player.rest().expect("one call is left");
+/// assert!(time >= 0.5 && call.contains("wait"), "{time}: {call}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Player {
     positions: Vec<Position>,

@@ -6,6 +6,17 @@ use crate::io::{Error, ErrorKind, Result};
 /// What a sensor of a [`MockRobot`](super::MockRobot) reads.
 ///
 /// A plain value converts to a constant, a vector or an array to a queue.
+///
+/// ```
+/// use roverlab::io::{DistanceSensors, MockRobot, Psd, Script};
+/// let mut robot = MockRobot::new()
+///     .with_distance(Psd::FRONT, Script::queue([0.5, 0.4]))
+///     .with_distance(Psd::LEFT, Script::function(|time| Ok(1.0 + time)));
+/// assert_eq!((robot.distance(Psd::FRONT)?, robot.distance(Psd::FRONT)?), (0.5, 0.4));
+/// assert!(robot.distance(Psd::FRONT).is_err(), "the script is over");
+/// assert_eq!(robot.distance(Psd::LEFT)?, 1.0);
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 pub struct Script<T>(Kind<T>);
 
 type Function<T> = Box<dyn FnMut(f64) -> Result<T> + Send>;

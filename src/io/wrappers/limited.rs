@@ -84,6 +84,18 @@ impl Limits {
 /// While a speed is being reached gradually, every call asks the robot's clock and moves the speed on, and a wait is
 /// cut into steps of 10 ms; at other times calls go straight through. A call that blocks in the robot inside, as
 /// waiting for a key does, keeps the speed that it finds.
+///
+/// ```
+/// use roverlab::geometry::Twist;
+/// use roverlab::io::wrappers::{Limited, Limits};
+/// use roverlab::io::{Call, Drive, MockRobot};
+/// let limits = Limits { linear: 0.2, ..Limits::default() };
+/// let mut robot = Limited::new(MockRobot::new(), limits)?;
+/// robot.set_speed(Twist::new(1.0, 0.5))?;
+/// let slower = Twist::new(0.2, 0.1);
+/// assert_eq!(robot.inner().calls(), [Call::SetSpeed(slower)], "on the same circle");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Limited<R> {
     inner: R,

@@ -12,6 +12,16 @@ const HEADER: &str = "tag,x,y,direction,x_variance,y_variance,xy_covariance";
 const TAGS: &str = "blue, yellow, orange, big_orange, unknown, car_start or midpoint";
 
 /// Reads a cone map of EUFS: a tag, metres, and for the start a direction in radians; variances are not used.
+///
+/// ```
+/// use roverlab::race::{ConeColour, parse_eufs, write_eufs};
+/// let text = "tag,x,y,direction,x_variance,y_variance,xy_covariance\n\
+///             blue,1.0,1.5,0,0,0,0\nyellow,1.0,-1.5,0,0,0,0\ncar_start,0,0,0.1,0,0,0\n";
+/// let track = parse_eufs(text, "short.csv")?;
+/// assert_eq!((track.of(ConeColour::Blue).count(), track.start.expect("a start").heading), (1, 0.1));
+/// assert_eq!(parse_eufs(&write_eufs(&track), "again.csv")?, track);
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
 pub fn parse_eufs(text: &str, file: &str) -> Result<ConeTrack, FormatError> {
     let mut rows = rows(text);
     let header = rows.next();

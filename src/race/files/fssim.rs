@@ -21,6 +21,15 @@ const WING: f64 = 2.15;
 /// Reads a track of FSSIM: lists of cones by colour, the pose of the front wing at the start, and the ends of the lines
 /// where time is taken. The start of the track is that of the rear axle, 2.15 m behind the wing. Other keys with lists of
 /// numbers are left out.
+///
+/// ```
+/// use roverlab::race::{ConeColour, parse_fssim, write_fssim};
+/// let text = "cones_left: [[1.0, 1.5]]\ncones_right: [[1.0, -1.5], [6.0, -1.5]]\n";
+/// let track = parse_fssim(text, "short.yaml")?;
+/// assert_eq!((track.of(ConeColour::Blue).count(), track.of(ConeColour::Yellow).count()), (1, 2));
+/// assert_eq!(parse_fssim(&write_fssim(&track), "again.yaml")?, track);
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
 pub fn parse_fssim(text: &str, file: &str) -> Result<ConeTrack, FormatError> {
     let mut events = YamlEvents::new(text, file, "keys with lists");
     let mut track = ConeTrack::default();

@@ -26,6 +26,16 @@ const KEYS: &str = "car_position, car_direction, car_speed or slam_cones";
 /// Reads a log of a car's own map of cones, as the planner `ft-fsd-path-planning` takes it: a JSON list of frames with
 /// `car_position` in metres, `car_direction` as a vector, `car_speed` in m/s where it is known, and `slam_cones`, five
 /// lists: without colour, yellow, blue, orange, large and orange. All are in one frame of reference.
+///
+/// ```
+/// use roverlab::race::{ConeColour, parse_cone_log};
+/// let text = r#"[{"car_position": [2.0, 0.0], "car_direction": [0.0, 1.0], "car_speed": 3.5,
+///     "slam_cones": [[], [[4.0, 1.0]], [], [], []]}]"#;
+/// let frames = parse_cone_log(text, "drive.json")?;
+/// assert_eq!((frames[0].speed, frames[0].cones[0].colour), (Some(3.5), ConeColour::Yellow));
+/// assert!((frames[0].car.heading - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
 pub fn parse_cone_log(text: &str, file: &str) -> Result<Vec<ConeFrame>, FormatError> {
     let mut events = YamlEvents::new(text, file, "a list of frames");
     match events.first()? {

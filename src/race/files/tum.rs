@@ -14,6 +14,17 @@ const HEADER: &str = "# x_m,y_m,w_tr_right_m,w_tr_left_m";
 
 /// Reads a circuit of the TUM race track database: a closed centre line in metres, and how far the track reaches to the
 /// right and to the left of each point.
+///
+/// ```
+/// use roverlab::race::{parse_line, parse_tum, write_tum};
+/// let text = "# x_m,y_m,w_tr_right_m,w_tr_left_m\n0,0,5,4\n100,0,5,4\n100,80,5,4\n50,80,5,4\n0,80,5,4\n";
+/// let circuit = parse_tum(text, "block.csv")?;
+/// assert!((circuit.length() - 360.0).abs() < 1.0 && circuit.stations()[0].left == 4.0);
+/// assert_eq!(parse_tum(&write_tum(&circuit), "again.csv")?, circuit);
+/// let error = parse_line("# x_m,y_m\n0,0\n1,up\n", "line.csv").unwrap_err();
+/// assert!(error.to_string().starts_with("line.csv:3:3"), "{error}");
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
 pub fn parse_tum(text: &str, file: &str) -> Result<Corridor, FormatError> {
     let numbers = table::<4>(text, file, HEADER)?;
     for (values, at) in &numbers {

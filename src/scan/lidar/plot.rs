@@ -20,6 +20,21 @@ const PROMINENCE: f64 = 0.08;
 ///
 /// The longest line stands for `range` metres; without it, for the longest range of the scan. A beam without a return is a
 /// gray line over the whole height.
+///
+/// ```
+/// use roverlab::io::{Lcd, LidarScan};
+/// use roverlab::scan::plot_scan;
+/// let step = 1_f64.to_radians();
+/// let ranges = (0..360).map(|beam| if beam < 180 { 0.5 } else { 2.0 }).collect();
+/// let (angle_min, angle_increment, range_max) = (-180.0 * step, step, 4.0);
+/// let scan = LidarScan { angle_min, angle_increment, range_max, ranges, ..LidarScan::default() };
+/// let mut display = Lcd::new();
+/// plot_scan(&mut display, &scan, None)?;
+/// let is_blue = |column, row| display.frame().get_pixel(column, row).0 == [0, 0, 255];
+/// let blue = |column| (0..250).filter(|&row| is_blue(column, row)).count();
+/// assert!(blue(40) > 2 * blue(320), "what is near, to the right, has short lines");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 pub fn plot_scan(display: &mut (impl Display + ?Sized), scan: &LidarScan, range: Option<f64>) -> Result<()> {
     let longest = scan.ranges.iter().copied().filter(|range| range.is_finite()).fold(0.0, f64::max);
     let full = range.unwrap_or(longest).max(1e-3);

@@ -5,6 +5,16 @@ use crate::world::space::{Scanner, Solid, Space};
 use crate::world::{Clearance, World};
 
 /// A world as a lidar sees it: what localisation knows.
+///
+/// ```
+/// use roverlab::geometry::Point;
+/// use roverlab::scan::LocalisationMap;
+/// use roverlab::world::World;
+/// let map = LocalisationMap::new(&World::walled(2.0, 2.0))?;
+/// assert!(map.is_free(Point::new(1.0, 1.0), 0.2));
+/// assert!(!map.is_free(Point::new(0.1, 1.0), 0.2), "a wall is in the way");
+/// # Ok::<(), roverlab::io::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct LocalisationMap {
     space: Space,

@@ -51,6 +51,15 @@
 //! | `psd_range MM` | how far the `psd` of the line before sees |
 //! | `lidar_range MM` | how far the lidar sees |
 //! | `camera_view DEG` | the camera's horizontal field of view |
+//!
+//! ```
+//! use roverlab::world::formats::robi;
+//! let text = "drive DIFFERENTIAL_DRIVE\nname Tiny\nwheel 54 3600 1100 45\npsd 1 FRONT 50 0 20 0 0 0\n";
+//! let spec = robi::parse(text, "tiny.robi")?.value;
+//! assert_eq!((spec.name.as_str(), spec.psds.len()), ("Tiny", 1));
+//! assert_eq!(robi::parse(&robi::print(&spec), "tiny.robi")?.value, spec);
+//! # Ok::<(), roverlab::world::formats::FormatError>(())
+//! ```
 
 mod mounts;
 mod parts;
