@@ -37,6 +37,8 @@ mod model;
 mod route;
 mod run;
 mod scale;
+#[cfg(feature = "petgraph")]
+mod with_petgraph;
 
 pub use compass::{Cell, Direction};
 pub use defect::{Defect, defects};
@@ -56,3 +58,5 @@ pub use run::{
     TrajectoryTracker, TrajectoryTrackerParameters, mouse,
 };
 pub use scale::Scale;
+#[cfg(feature = "petgraph")]
+pub use with_petgraph::petgraph_of_maze;

@@ -20,6 +20,8 @@ pub mod space;
 mod terrain;
 mod texture;
 mod wall;
+#[cfg(feature = "parry2d")]
+mod with_parry;
 
 pub use bit_grid::{BitGrid, BitGridError, GridCell};
 pub use body::{Axis, Body, Collider, Place3};
@@ -35,3 +37,5 @@ pub use scene::{Place, RobotPlacement, Scene, Settings, World};
 pub use terrain::{HeightField, Terrain};
 pub use texture::Texture;
 pub use wall::Wall;
+#[cfg(feature = "parry2d")]
+pub use with_parry::ParryError;
