@@ -6,7 +6,7 @@ use crate::geometry::Twist;
 use crate::io::control::{Behaviour, Decision, LidarObservation, Senses, halts};
 use crate::io::{Lidar, Odometry, Result};
 
-/// How a race, or an event, ended.
+/// How a race or an event ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum RaceOutcome {
@@ -14,15 +14,15 @@ pub enum RaceOutcome {
     Finished,
     /// It was lost, and stands.
     Lost,
-    /// The time was over first.
+    /// The time limit was exceeded.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped it.
     Stopped,
 }
 
 halts!(RaceOutcome { Finished: "the race is finished", Lost: "the car is lost" });
 
-/// Makes a racer with phases a behaviour of cars with a lidar.
+/// Implements the behaviour traits for a racer with phases.
 macro_rules! races {
     ($racer:ident, $phase:ident) => {
         impl Behaviour for $racer {
