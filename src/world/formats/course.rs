@@ -164,7 +164,11 @@ fn head(line: &Words<'_>) -> Result<(), FormatError> {
 
 /// Fails at a word that is too many.
 fn end(line: &Words<'_>, args: &Args<'_, '_>) -> Result<(), FormatError> {
-    if args.left() == 0 { Ok(()) } else { Err(line.error(line.words.len() - args.left(), "the end of the line")) }
+    if args.left() == 0 {
+        Ok(())
+    } else {
+        Err(line.error(line.words.len() - args.left(), "the end of the line"))
+    }
 }
 
 /// A word of a list.

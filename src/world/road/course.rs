@@ -186,7 +186,9 @@ pub enum CourseError {
         most: f64,
     },
     /// The end is not where the road begins.
-    #[error("the road ends {distance:.3} m and {degrees:.2} degrees off its beginning; expected less than {most} m and 3 degrees")]
+    #[error(
+        "the road ends {distance:.3} m and {degrees:.2} degrees off its beginning; expected less than {most} m and 3 degrees"
+    )]
     Open {
         /// Metres from its end to its beginning.
         distance: f64,
@@ -224,7 +226,9 @@ pub enum CourseError {
         car: f64,
     },
     /// The road crosses itself where no crossing is, or parts of it are too near to each other.
-    #[error("the road at {first:.2} m and at {second:.2} m crosses itself or comes too near; expected a crossing at both, or {apart} m between their edges")]
+    #[error(
+        "the road at {first:.2} m and at {second:.2} m crosses itself or comes too near; expected a crossing at both, or {apart} m between their edges"
+    )]
     CrossesItself {
         /// Metres along the line.
         first: f64,
