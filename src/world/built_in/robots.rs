@@ -200,7 +200,7 @@ impl RobotSpec {
             psds: Vec::new(),
             lidar: None,
             camera: Some(CameraSpec {
-                mount: Mount { x: 0.060, y: 0.0, z: 0.250, yaw: 0.0 },
+                mount: Mount { x: 0.060, y: 0.0, z: 0.250, yaw: 0.0, ..Mount::default() },
                 tilt: units::from_deg(-25.0),
                 max_pan: 0.0,
                 max_tilt: 0.0,
