@@ -95,7 +95,7 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
     ("world/formats/esobj.rs", "parse print", NONE_YET),
     (
         "world/formats/load.rs",
-        "load_object load_robot load_robot_tolerantly load_scene parse_robot parse_scene parse_scene_tolerantly read_file",
+        "load_object load_robot load_robot_tolerantly load_scene parse_robot parse_robot_tolerantly parse_scene parse_scene_tolerantly read_file",
         NONE_YET,
     ),
     ("world/formats/maz.rs", "MazGrid parse parse_maze print", NONE_YET),
