@@ -41,19 +41,29 @@ impl CommonArgs {
 
     /// The scene in the file of an option, as [`read`](Self::read) finds it, with the files that it names.
     pub(crate) fn load_scene(&self, option: &str, path: &Path) -> Result<Parsed<Scene>, FormatError> {
+        self.load(option, path, formats::parse_scene)
+    }
+
+    /// The robot in the file of an option, with its 3D model where that is found.
+    pub(crate) fn load_robot(&self, option: &str, path: &Path) -> Result<Parsed<RobotSpec>, FormatError> {
+        self.load(option, path, formats::parse_robot_tolerantly)
+    }
+
+    /// Reads the file of an option with those that it names; they go into the recording that is made.
+    fn load<T>(
+        &self,
+        option: &str,
+        path: &Path,
+        parse: impl FnOnce(Vec<u8>, &str, &mut dyn FileSource) -> Result<T, FormatError>,
+    ) -> Result<T, FormatError> {
         let bytes = self.read(option, path)?;
         let name = recorded_name(option, path);
         let log = self.origin.facts().log.filter(|log| log.header().attachment(&name).is_some());
         let log = log.filter(|_| path.to_str() == Some(&name));
         let mut files = Companions { main: name, log, disk: DiskFiles::new(), found: Vec::new() };
-        let scene = formats::parse_scene(bytes, &path.display().to_string(), &mut files);
+        let parsed = parse(bytes, &path.display().to_string(), &mut files);
         files.found.into_iter().for_each(|file| self.origin.attach(file));
-        scene
-    }
-
-    /// The robot in the file of an option.
-    pub(crate) fn load_robot(&self, option: &str, path: &Path) -> Result<Parsed<RobotSpec>, FormatError> {
-        formats::parse_robot(self.read(option, path)?, &path.display().to_string())
+        parsed
     }
 }
 
