@@ -16,6 +16,7 @@
 //! - [`WallFollower`]: along walls of any shape by three distance sensors (chapter 6); [`PidWallFollower`],
 //!   [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`] beside it;
 //! - [`colour`]: to what has a taught colour, and home with it (chapter 11);
+//! - [`lane_keeping`]: along the lane of a road, by what a camera sees, and [`traffic`]: who judges that (chapter 13);
 //! - [`motion_watch`]: turning to what moves (chapter 11);
 //! - [`Pid`] and [`RelayTuner`]: a PID controller and how to find its gains.
 
@@ -30,6 +31,7 @@ mod dubins;
 mod follow_me;
 mod follower;
 mod formation;
+pub mod lane_keeping;
 pub mod motion_watch;
 mod omni;
 mod path;
@@ -37,6 +39,7 @@ mod pid;
 mod random_drive;
 mod relay;
 mod spline;
+pub mod traffic;
 mod wall_following;
 mod way;
 

@@ -16,7 +16,7 @@
 //! # }
 //! ```
 //!
-//! [`motion`] has what moves in an image. The robots that drive by what they see are in
+//! [`motion`] has what moves in an image, [`lane_markings`] the lane before a car. The robots that drive by what they see are in
 //! [`drive`](crate::drive).
 //!
 //! The module `images` (feature `image`) has the same kernels on images of the crate `image`, which return new images.
@@ -60,6 +60,7 @@ mod hue;
 mod hue_match;
 #[cfg(feature = "image")]
 pub mod images;
+pub mod lane_markings;
 mod laplace;
 pub mod motion;
 #[cfg(feature = "rayon")]
