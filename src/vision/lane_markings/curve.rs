@@ -1,9 +1,9 @@
 use crate::geometry::{Point, Vector, math};
 
 /// Curvatures by which a road is known: at the car, and at even distances ahead. Between them they change evenly.
-pub(super) const KNOTS: usize = 5;
+pub(super) const KNOTS: usize = 6;
 /// Metres from knot to knot.
-pub(super) const SPACING: f64 = 0.5;
+pub(super) const SPACING: f64 = 0.4;
 /// Metres from one place of the table to the next, and how many of them there are.
 const STEP: f64 = 0.025;
 const PLACES: usize = 112;
@@ -132,7 +132,7 @@ mod tests {
 
     #[test]
     fn slopes_are_those_of_differences() {
-        let bends = [0.3, 0.6, 0.1, -0.4, 0.2];
+        let bends = [0.3, 0.6, 0.1, -0.4, 0.2, 0.0];
         let point = Point::new(1.3, 0.5);
         let foot = Curve::new(&bends).foot(point).unwrap();
         for knot in 0..KNOTS {

@@ -39,7 +39,7 @@ const FIRST: [f64; 5] = [0.12, 0.12, 0.7, 0.035, 0.01];
 /// Metres from the road's middle to an edge line, of a road that has not been seen.
 const EDGE_AT_FIRST: f64 = 0.42;
 /// Deviations that grow with the root of the metres driven.
-const DRIFT: [f64; 5] = [0.010, 0.015, 0.10, 0.006, 0.001];
+const DRIFT: [f64; 5] = [0.010, 0.020, 0.25, 0.006, 0.001];
 /// The deviation of a curvature that has come into view, for the root of a metre.
 const UNSEEN: f64 = 0.9;
 /// Metres by which a line's middle is uncertain: at any place, and as a share of a pixel.
@@ -47,7 +47,7 @@ const BLUR: (f64, f64) = (0.006, 0.6);
 /// Metres by which a line between knots is not as the model says, for the square of the metres ahead.
 const ROUGH: f64 = 0.006;
 /// Points of one frame err together, by the camera and by the model; so many count as one.
-const TOGETHER: f64 = 5.0;
+const TOGETHER: f64 = 8.0;
 /// Metres between the lines of a pair.
 const PAIR: f64 = 0.02;
 
