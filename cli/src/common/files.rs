@@ -7,8 +7,12 @@ use roverlab::world::{RobotSpec, Scene};
 
 use super::{CommonArgs, onlooker};
 
-/// The name that a file of an option has in recordings: that of the option, with the file's ending.
+/// The name that a file of an option has in recordings: that of the option, with the file's ending. A number is no file but a
+/// seed, and stays as it is.
 pub(crate) fn recorded_name(option: &str, path: &Path) -> String {
+    if let Some(seed) = path.to_str().filter(|text| text.parse::<u64>().is_ok()) {
+        return seed.to_owned();
+    }
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     let plain = !ending.is_empty() && ending.chars().all(|c| c.is_ascii_alphanumeric());
     if plain { format!("{option}.{}", ending.to_ascii_lowercase()) } else { option.to_owned() }
