@@ -81,7 +81,7 @@ pub use profile::{CarLimits, SpeedProfile};
 pub use racer::{RacePhase, Racer, RacerParameters};
 pub use racing_line::{CarOutline, LineSolver, RacingLine, RacingLineParameters, minimum_curvature};
 pub use referee::{RaceScore, Referee};
-pub use run::RaceOutcome;
+pub use run::{RaceObservation, RaceOutcome};
 pub use sight::{ConeSighting, sightings};
 pub use spline::{ClosedSpline, SplinePoint};
 pub use tracker::{LineTracker, LineTrackerParameters};
