@@ -117,10 +117,11 @@ fn the_campaign_checks_verdicts_and_bounds() {
     }
 }
 
-/// Lines to the goal that graze an obstacle or go on behind the goal, ends of thin walls before narrow gaps, obstacles met
-/// where others are as near, places to leave that are seen for a moment only, walls of no thickness that are seen along
-/// themselves, ends that a robot turns back at, ways that seem to lead out of a closed room, dead ends in which it turns round the
-/// other way, and places to leave that are passed the other way round a corner.
+/// Lines to the goal that graze an obstacle or go on behind the goal, ends of thin walls before narrow gaps,
+/// obstacles met where others are as near, places to leave that are seen for a moment only, walls of no
+/// thickness that are seen along themselves, ends that a robot turns back at, ways that seem to lead out of a
+/// closed room, dead ends in which it turns round the other way, and places to leave that are passed the
+/// other way round a corner.
 #[test]
 fn hard_worlds_are_done_right() {
     for (seed, bugs) in [

@@ -185,8 +185,8 @@ fn a_line_is_one_of_the_track() {
 
 #[test]
 fn two_cars_do_not_touch() {
-    // In the second one, they touched when the second car was driven by the book's program; in the others, when its side looked
-    // like cones.
+    // In the second one, they touched when the second car was driven by the book's program; in the others,
+    // when its side looked like cones.
     for seed in ["1", "14", "15", "24", "50"] {
         let (_, report, err) = race(&["--seed", seed, "--laps", "2", "--other"]);
         assert_eq!(err, "", "{report}");

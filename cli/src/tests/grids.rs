@@ -106,7 +106,8 @@ fn what_is_wrong_with_files_is_named() {
     assert!(status == 2 && err.contains("--scen"), "{err}");
 }
 
-/// Ways lead within water and within land, not from the one to the other; other queries are counted and left out.
+/// Ways lead within water and within land, not from the one to the other; other queries are counted and left
+/// out.
 #[test]
 fn water_is_a_map_of_its_own_and_blocked_ends_are_skipped() {
     let folder = folder();
@@ -131,8 +132,8 @@ fn water_is_a_map_of_its_own_and_blocked_ends_are_skipped() {
     }
 }
 
-/// The published Warcraft III maps, with the queries whose lengths are of other maps than those that are published: one
-/// map has gained blocked cells, another one water.
+/// The published Warcraft III maps, with the queries whose lengths are of other maps than those that are
+/// published: one map has gained blocked cells, another one water.
 #[test]
 #[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn published_lengths_with_water_are_met() {
@@ -155,8 +156,8 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Some queries of every published scenario file: as long as published by all octile planners, at most as long in any
-/// direction, and little longer than that through a quadtree.
+/// Some queries of every published scenario file: as long as published by all octile planners, at most as
+/// long in any direction, and little longer than that through a quadtree.
 #[test]
 #[ignore = "needs published data: ROVERLAB_DATA=FOLDER .ci/run tests"]
 fn published_lengths_are_met() {

@@ -8,14 +8,16 @@ struct Wrong {
     fault: &'static str,
     /// What it is seen as: one of these.
     causes: &'static [&'static str],
-    /// Seconds until it can be noticed, for a speed of the wheels in m/s, as the documentation of `Supervised` has it.
+    /// Seconds until it can be noticed, for a speed of the wheels in m/s, as the documentation of
+    /// `Supervised` has it.
     noticed: fn(f64) -> f64,
 }
 
 /// Seconds of a control period.
 const PERIOD: f64 = 0.02;
 
-/// Odometry stays for four looks before it is odd, and until 10 mm are missing, of which a part of the last look's.
+/// Odometry stays for four looks before it is odd, and until 10 mm are missing, of which a part of the last
+/// look's.
 fn frozen(speed: f64) -> f64 {
     f64::max(4.0 * PERIOD, 0.01 / speed.max(0.01) + PERIOD)
 }
@@ -61,8 +63,8 @@ const PROGRAMS: [(&str, [f64; 2], Drive); 18] = [
     ("wall_following", [2.0, 3.1], |options| run("wall_following", options)),
 ];
 
-/// Whether a stop is not what it has to be: seen, for one of some causes, one control period after it could be noticed, and within
-/// its bounds from where it began and from where the fault did.
+/// Whether a stop is not what it has to be: seen, for one of some causes, one control period after it could
+/// be noticed, and within its bounds from where it began and from where the fault did.
 fn wrong(stop: &Value, fault: &Wrong) -> bool {
     let number = |field: &str| stop[field].as_f64().unwrap_or(f64::NAN);
     let seen = stop["causes"].as_array().is_some_and(|seen| {
@@ -72,8 +74,8 @@ fn wrong(stop: &Value, fault: &Wrong) -> bool {
     let noticed = (fault.noticed)(0.001 * number("rolling_mm_s"));
     let prompt = number("time_s") - number("fault_s") <= noticed + PERIOD + 1e-6;
     let within = number("stop_mm") <= number("bound_mm") + 1.0;
-    // The robot goes on as it was until the fault is noticed, and answered; its way is measured from the look before the fault.
-    // While a call hangs, the robot has stopped by itself, from the look before as well.
+    // The robot goes on as it was until the fault is noticed, and answered; its way is measured from the look
+    // before the fault. While a call hangs, the robot has stopped by itself, from the look before as well.
     let unnoticed = if fault.fault.starts_with("hang") { 0.0 } else { noticed + PERIOD };
     let in_all = number("since_fault_mm") <= fastest * (unnoticed + PERIOD) + number("bound_mm") + 1.0;
     !(stop["state"] == "SafeStop" && seen && stop["stood"] == true && prompt && within && in_all)
@@ -97,7 +99,8 @@ fn failures(name: &str, time: f64, drive: Drive) -> Vec<String> {
     failures
 }
 
-/// Whatever goes wrong, and whatever the program does then, the robot stands within the distance that is proved.
+/// Whatever goes wrong, and whatever the program does then, the robot stands within the distance that is
+/// proved.
 #[test]
 fn every_robot_stands_after_every_fault() {
     let mut found = Vec::new();
@@ -142,7 +145,8 @@ fn without_a_fault_nothing_stops_any_program() {
     }
 }
 
-/// How long a robot is waited for goes by the time of its world: a fast car that brakes alone takes some, in waits that fail.
+/// How long a robot is waited for goes by the time of its world: a fast car that brakes alone takes some, in
+/// waits that fail.
 #[test]
 fn a_fast_car_without_a_link_is_seen_to_stand() {
     let (folder, files) = super::cones::events("supervised");
@@ -184,8 +188,8 @@ fn without_a_fault_nothing_stops_them() {
     assert_eq!(report["safety"][0]["state"], Value::Null, "{report}");
 }
 
-/// Milliseconds after which an event has to be answered: a period after the heartbeat was missing for 0.5 s, or the program for 0.4 s,
-/// which hangs in its next step of 50 ms; or a period.
+/// Milliseconds after which an event has to be answered: a period after the heartbeat was missing for 0.5 s,
+/// or the program for 0.4 s, which hangs in its next step of 50 ms; or a period.
 fn allowed(event: &Value) -> f64 {
     match event.as_str() {
         Some("radio") => 520.0,
@@ -274,7 +278,8 @@ fn the_driver_is_answered() {
     }
 }
 
-/// Nobody vouches for a sensor that is still late, so the car goes on standing; for one that was late, somebody does.
+/// Nobody vouches for a sensor that is still late, so the car goes on standing; for one that was late,
+/// somebody does.
 #[test]
 fn a_sensor_that_stays_late_keeps_the_car_standing() {
     for (fault, seed) in
@@ -282,7 +287,8 @@ fn a_sensor_that_stays_late_keeps_the_car_standing() {
     {
         let options = ["--fault", fault, "--event", "button", "--time-limit", "20", "--seed", seed];
         let (_, report, _) = run("safety", &options);
-        // It brakes without news of the lane, so a cone may stand on its way: what is promised is how long that is.
+        // It brakes without news of the lane, so a cone may stand on its way: what is promised is how long
+        // that is.
         assert_ne!(report["outcome"], "stood", "{report}");
         let stop = &report["stops"][0];
         let [driven, bound] = ["distance_m", "bound_m"].map(|field| stop[field].as_f64().unwrap());
