@@ -1,17 +1,18 @@
-//! Things that robots push or knock over.
+//! Pushing and knocking over objects.
 
 use super::engine::Engine;
 use super::movable::Movable;
 use crate::geometry::{Pose, Vector};
 use crate::world::space::{Contact, SolidId};
 
-/// What a push goes beyond the rim of the robot, in metres: nothing lies within another thing after it.
+/// Extra distance of a push beyond the robot's rim (m), which excludes overlaps afterwards.
 const CLEAR: f64 = 1e-6;
-/// The deepest that a thing may come to lie in another one by a push.
+/// Largest overlap of a pushed object with another one (m).
 const TOLERANCE: f64 = 1e-5;
 
 impl Engine {
-    /// Pushes what a robot at a pose would be in, as far as it can be pushed. Returns whether anything moved.
+    /// Pushes the objects that a robot at a pose would overlap, as far as possible. Returns whether anything
+    /// moved.
     pub(super) fn push(&mut self, index: usize, pose: &Pose) -> bool {
         self.depth_at(index, pose);
         let strength = self.bodies[index].spec.mass;
@@ -28,8 +29,8 @@ impl Engine {
         moved
     }
 
-    /// Knocks over what a robot at a pose would be in and what falls. Each is a contact. Returns whether
-    /// anything fell.
+    /// Knocks over the falling objects that a robot at a pose would overlap; each is a contact. Returns
+    /// whether anything fell.
     pub(super) fn topple(&mut self, index: usize, pose: &Pose) -> bool {
         self.depth_at(index, pose);
         let strength = self.bodies[index].spec.mass;
@@ -47,12 +48,12 @@ impl Engine {
         fell
     }
 
-    /// The object that a solid is; robots are none.
+    /// The object of a solid; `None` for robots.
     fn movable(&self, solid: SolidId) -> Option<&Movable> {
         self.movables.get(solid.index())
     }
 
-    /// Moves a thing unless that takes it into a wall, another thing, or a robot other than the one that pushes.
+    /// Moves an object, unless it would hit a wall, another object or a robot other than the pusher.
     fn shift(&mut self, solid: SolidId, way: Vector, pusher: usize) -> bool {
         let thing = *self.space.solid(solid);
         let place = thing.pose.position() + way;
@@ -63,7 +64,7 @@ impl Engine {
         let blocked = contacts.iter().any(|contact| contact.with != Some(me) && contact.depth > TOLERANCE);
         if !blocked {
             self.put(solid, there);
-            // It may have come near to robots that did not look for it.
+            // It may now be near robots whose distance budgets are outdated.
             for body in &mut self.bodies {
                 body.solid_budget = body.solid_budget.min(0.0);
             }
