@@ -49,8 +49,7 @@ const STANDING: f64 = 1e-6;
 
 impl Senses {
     fn new(noise: &NoiseModel, mut stream: Stream) -> Self {
-        // Relative drive errors are specified for robots with small wheels; tyres have the same errors in
-        // proportion.
+        // Noise level relative to the real robot, for the gyroscope.
         let size = noise.wheel_mismatch / NoiseModel::real().wheel_mismatch;
         Self {
             scale: 1.0 + noise.wheel_scale * stream.normal(),
