@@ -6,9 +6,9 @@ use image::RgbImage;
 use roverlab::geometry::{Pose, Twist};
 use roverlab::io::sim::{SimOptions, Simulation, TICK, Truth};
 use roverlab::io::{
-    Error, ErrorKind, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result, RobotIo,
+    Attitude, Error, ErrorKind, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result, RobotIo,
 };
-use roverlab::world::{DriveSpec, RobotSpec, Scene};
+use roverlab::world::{DriveSpec, InertialSpec, RobotSpec, Scene};
 
 use crate::walker::Walker;
 
@@ -61,6 +61,12 @@ pub enum Request {
     Encoder(u8),
     /// Resets an encoder to zero.
     ResetEncoder(u8),
+    /// The attitude by the inertial unit: roll, pitch and yaw.
+    Attitude,
+    /// Its turn rates about the forward, left and upright axes.
+    TurnRates,
+    /// Its accelerations along these axes.
+    Acceleration,
     /// True pose of a robot, by its number; 0 is the requesting robot.
     RobotAt(u32),
     /// Moves a robot; on hills it drops from a height above the floor (m).
@@ -100,6 +106,8 @@ pub enum Reply {
     Count(i64),
     /// A velocity.
     Twist(Twist),
+    /// Three numbers.
+    Three([f64; 3]),
     /// A pose, and height above the floor (m).
     Pose(Pose, f64),
     /// Ranges counter-clockwise; infinite without a return.
@@ -141,6 +149,8 @@ pub struct Identity {
     pub exact: bool,
     /// Whether the robot has a camera.
     pub camera: bool,
+    /// What its inertial unit measures, and on which channels.
+    pub inertial: InertialSpec,
 }
 
 /// Rim speed at 100 percent of a motor in EyeSim, whatever the motor's limit (m/s).
@@ -231,6 +241,7 @@ impl Seat {
             time_limit: terms.time_limit.unwrap_or(f64::INFINITY),
             exact: terms.exact,
             camera: spec.camera.is_some() && on_wheels,
+            inertial: if on_wheels { spec.inertial } else { InertialSpec::default() },
         };
         let (truth, scan) = (simulation.truth(), LidarScan::default());
         Self { robot, truth, identity, index, numbers, scan, walker, ahead: 0.0 }
@@ -304,6 +315,12 @@ impl Seat {
             Request::Servo(servo, position) => done(robot.set_servo(servo, position)?),
             Request::Encoder(motor) => Reply::Count(robot.encoder(motor)?),
             Request::ResetEncoder(motor) => done(robot.reset_encoder(motor)?),
+            Request::Attitude => {
+                let Attitude { roll, pitch, yaw } = robot.attitude()?;
+                Reply::Three([roll, pitch, yaw])
+            }
+            Request::TurnRates => Reply::Three(robot.turn_rates()?.into()),
+            Request::Acceleration => Reply::Three(robot.acceleration()?.into()),
             Request::RobotAt(id) => {
                 let index = self.robot_index(id)?;
                 // The poses of others depend on their programs, which may be behind; its own does not.

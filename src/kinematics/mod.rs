@@ -4,11 +4,12 @@
 //! or four wheels with rollers, [`Tracked`] skids on two belts. The wheeled drives have `forward`, `inverse`
 //! and `inverse_limited`; the last one preserves the direction of motion where a wheel would have to turn too
 //! fast. [`advance`] and [`advance_planar`] integrate in closed form. [`OdometryUncertainty`] propagates the
-//! uncertainty of odometry.
+//! uncertainty of odometry. [`marine`] moves craft in water.
 
 mod ackermann;
 mod differential;
 mod integrate;
+pub mod marine;
 mod omni;
 mod planar;
 mod tracked;

@@ -96,6 +96,11 @@ impl<'b, B: ?Sized, F> SensedBy<'b, B, F> {
     pub fn new(behaviour: &'b mut B, sense: F) -> Self {
         Self { behaviour, sense }
     }
+
+    /// Who decides.
+    pub fn behaviour(&self) -> &B {
+        self.behaviour
+    }
 }
 
 impl<B: Behaviour + ?Sized, F> Behaviour for SensedBy<'_, B, F> {

@@ -111,6 +111,13 @@ macro_rules! signatures {
             fn reset_encoder(motor: u8) -> ();
         } }
     };
+    (Inertial => $then:ident!($($context:tt)*)) => {
+        $then! { $($context)* Inertial {
+            fn attitude() -> Attitude;
+            fn turn_rates() -> Vector3;
+            fn acceleration() -> Vector3;
+        } }
+    };
 }
 
 /// Implements capabilities for a wrapper: calls the wrapper's method `hook`, which may fail, then the wrapped
