@@ -38,13 +38,13 @@ struct Senses {
 
 /// Integration steps of the tyre forces per tick.
 const SUBSTEPS: u32 = 5;
-/// Speed below which wheels roll without slip (m/s).
+/// Metres per second below which wheels roll.
 const ROLLS: f64 = 2.0;
-/// Gyroscope bias at noise 1 (rad/s).
+/// The rate in rad/s that a gyroscope reads standing, for noise 1.
 const GYRO_BIAS: f64 = 0.001;
 /// Standard deviation of a gyroscope reading at noise 1 (rad/s).
 const GYRO_NOISE: f64 = 0.003;
-/// Speed below which a car that is to stop is at rest (m/s).
+/// The speed, in m/s, below which a car that shall stand does.
 const STANDING: f64 = 1e-6;
 
 impl Senses {
@@ -148,7 +148,7 @@ impl Bicycle {
         }
         if share < 1.0 {
             let along = before.along + push * dt;
-            // Braking ends at standstill.
+            // It does not brake beyond standing.
             let stops = (slows && along * before.along < 0.0) || (speed == 0.0 && along.abs() < STANDING);
             self.roll(if stops { 0.0 } else { along }, steering, share);
             self.hold(&before, dt);
@@ -245,7 +245,7 @@ mod tests {
         car
     }
 
-    /// Acceleration of the centre of mass between two steps, in the world's frame.
+    /// The acceleration of the centre of mass between two steps, in the frame of the world.
     fn acceleration(before: &Speeds, after: &Speeds) -> f64 {
         let (sin, cos) = math::sin_cos(DT * after.yaw_rate);
         let (x, y) = (cos * after.along - sin * after.across, sin * after.along + cos * after.across);
@@ -275,7 +275,8 @@ mod tests {
         }
     }
 
-    /// For any motion and any command, including sideways and backward sliding; all sliding ends.
+    /// However it moves and whatever it is told, sliding sideways and backwards included, and the sliding
+    /// comes to an end.
     #[test]
     fn nor_does_any_from_random_driving() {
         let mut random = Stream::new(11);
@@ -297,14 +298,14 @@ mod tests {
         }
     }
 
-    /// Whether the tyres sustain a lateral acceleration in bends that are wide for the car.
+    /// Whether tyres hold an acceleration across, on bends that are wide for the car.
     fn balances(spec: &CarDynamics, across: f64) -> bool {
         let (stiffness, strained) = (spec.stiffness * units::GRAVITY, across / spec.grip);
         if strained >= 1.0 {
             return false;
         }
         let rear = across / (stiffness * (1.0 - strained * strained).sqrt());
-        // The front axle's force grows with its slip and shrinks with its steering angle.
+        // The front axle gives more the more it slips, and less the more it is turned.
         (0..400).any(|k| {
             let slip = 1.2 * f64::from(k) / 400.0;
             let steering = slip - rear;
@@ -320,7 +321,7 @@ mod tests {
         let bound =
             (0..1200).map(|k| 0.01 * f64::from(k)).take_while(|&a| balances(&spec, a)).last().unwrap();
         for curvature in [0.03, 0.08, 0.15, 0.25] {
-            // The best of all steady circles of about that curvature.
+            // Of all circles that the car comes to drive at some speeds, those of about that curvature.
             let mut best = 0.0_f64;
             for steering in 1..30 {
                 for speed in 1..20 {
@@ -342,7 +343,7 @@ mod tests {
         let mut car = settled(20.0, 0.0, 6.0);
         assert!((car.speed() - 20.0).abs() < 0.01);
         let way: f64 = (0..600).map(|_| car.step(0.0, [0.0; 2]).forward).sum();
-        // v²/2a, plus v/gain for the soft end of braking.
+        // v²/2a, and v/gain for the end that it brakes softly.
         let bound = 20.0 * 20.0 / (2.0 * car.spec.brake) + 20.0 * car.motor.time_constant;
         assert!(car.speed() == 0.0 && way < bound && way > 15.0, "{way} of {bound}");
     }

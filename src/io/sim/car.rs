@@ -32,7 +32,7 @@ pub(super) struct Car {
     measured: Twist,
 }
 
-/// Steering rate of a servo (degrees/s).
+/// Degrees per second at which a servo turns the wheels.
 const STEERING_RATE: f64 = 30.0;
 
 impl Car {

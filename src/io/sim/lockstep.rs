@@ -280,7 +280,7 @@ mod tests {
     use crate::random::Stream;
     use proptest::prelude::*;
 
-    /// A world whose state is the history of the programs' messages per tick.
+    /// A world whose state is the history of what programs have told it, tick by tick.
     #[derive(Debug, Clone, Default)]
     struct Ledger {
         time: u64,
@@ -300,13 +300,13 @@ mod tests {
         }
     }
 
-    /// A program: it waits some milliseconds, sends a number and reads the history, repeatedly.
+    /// What a program does: it waits some milliseconds, tells a number and reads the history.
     type Script = Vec<(u16, u64)>;
 
     const TICK: f64 = 0.010;
     const CALL: f64 = 0.0003;
 
-    /// Readings of each program in its own thread, with artificial delays and in some order of start.
+    /// What each program reads, each in a thread of its own that `delays` hold up, started in some order.
     fn in_threads(scripts: &[Script], backwards: bool, delays: u64) -> Vec<Vec<(u64, u64)>> {
         let ledger = Ledger { told: vec![0; scripts.len()], ..Ledger::default() };
         let shared = Arc::new(Lockstep::new(ledger, TICK, scripts.len()));
@@ -346,7 +346,7 @@ mod tests {
         })
     }
 
-    /// The same in one thread: everything due at a tick happens before the next tick.
+    /// The same in one thread: whatever is due at a tick happens before the next one.
     fn one_by_one(scripts: &[Script]) -> Vec<Vec<(u64, u64)>> {
         let mut world = Ledger { told: vec![0; scripts.len()], ..Ledger::default() };
         let mut calls = Vec::new();

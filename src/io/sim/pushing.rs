@@ -5,9 +5,9 @@ use super::movable::Movable;
 use crate::geometry::{Pose, Vector};
 use crate::world::space::{Contact, SolidId};
 
-/// Extra distance of a push beyond the robot's rim (m), which excludes overlaps afterwards.
+/// What a push goes beyond the rim of the robot, in metres: nothing lies within another thing after it.
 const CLEAR: f64 = 1e-6;
-/// Largest overlap of a pushed object with another one (m).
+/// The deepest that a thing may come to lie in another one by a push.
 const TOLERANCE: f64 = 1e-5;
 
 impl Engine {
@@ -64,7 +64,7 @@ impl Engine {
         let blocked = contacts.iter().any(|contact| contact.with != Some(me) && contact.depth > TOLERANCE);
         if !blocked {
             self.put(solid, there);
-            // It may now be near robots whose distance budgets are outdated.
+            // It may have come near to robots that did not look for it.
             for body in &mut self.bodies {
                 body.solid_budget = body.solid_budget.min(0.0);
             }

@@ -32,7 +32,7 @@ pub(super) struct WheelSpec {
 }
 
 impl WheelSpec {
-    /// Highest rim speed.
+    /// The fastest rim speed.
     pub(super) fn limit(&self) -> f64 {
         0.5 * self.diameter * self.max_speed
     }

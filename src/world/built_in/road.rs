@@ -46,7 +46,7 @@ impl Road {
 
     /// Adds a straight part of the centre line.
     fn lay(&mut self, part: Segment, along: f64) {
-        /// Distance from the centre line to the outer edge of the outer line (m).
+        /// Metres from the middle of a road to its outer line's far edge.
         const REACH: f64 = LANE + LINE;
         let pixel = self.pixel;
         let pixels = |low: f64, high: f64| {

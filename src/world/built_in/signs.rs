@@ -103,7 +103,7 @@ fn drawn(colour: impl Fn(f64, f64) -> Option<Colour>) -> RgbaImage {
 
 /// Relative distance of a point in a triangle on its tip: 1 at its edge.
 fn triangle(x: f64, y: f64) -> f64 {
-    /// Half the width of a triangle of equal height and width, relative to its height.
+    /// Half the width of a triangle as high as it is wide, as a share.
     const SLANT: f64 = 0.5;
     let side = (x.abs() - SLANT * (1.0 - y)) / SLANT;
     (side + 1.0).max(-y)

@@ -78,12 +78,12 @@ pub struct RosMap {
 }
 
 impl RosMap {
-    /// Default threshold.
+    /// The threshold of files that state none.
     pub const DEFAULT_OCCUPIED_THRESHOLD: f64 = 0.65;
-    /// Default threshold.
+    /// The threshold of files that state none.
     pub const DEFAULT_FREE_THRESHOLD: f64 = 0.196;
 
-    /// A trinary map with the default thresholds.
+    /// A trinary map with the usual thresholds.
     pub fn new(image: impl Into<String>, grid: OccupancyGrid) -> Self {
         Self {
             image: image.into(),

@@ -7,8 +7,8 @@
 //! | `X1 Y1 X2 Y2 [THICKNESS HEIGHT [R G B]]` | a wall; with other counts, the first four numbers are used |
 //! | `push X Y PHI` … `pop` | moves the walls between them by (X, Y), then turns them **clockwise** by PHI |
 //! | `position X Y PHI` | the start pose, PHI counter-clockwise |
-//! | `terrain W H TOP FILE` | hills that carry robots and block rays; also sets the floor's size |
-//! | `water_level Z` | water in pictures, in which robots on hills drown |
+//! | `terrain W H TOP FILE` | hills, which carry robots and stop rays; sets the floor's size too |
+//! | `water_level Z` | water, in pictures, and in which robots on hills drown |
 //!
 //! The elevations come from a gray PNG, JPEG or BMP image, with black at 0 and white at TOP, or from an ESRI
 //! ASCII grid (`.asc`), with its lowest point at 0 and its highest at TOP. Like a floor image, the image has

@@ -128,7 +128,7 @@ impl HeightField {
         f64::from(self.heights[row * self.columns + column])
     }
 
-    /// Lowest elevation (m).
+    /// The lowest elevation in metres.
     pub fn lowest(&self) -> f64 {
         f64::from(self.pyramid.whole().low)
     }
@@ -138,7 +138,7 @@ impl HeightField {
         f64::from(self.pyramid.whole().high)
     }
 
-    /// Elevation at a point (m); `None` beyond the surface.
+    /// The elevation at a point in metres; `None` beyond the surface.
     #[inline]
     pub fn height(&self, point: Point) -> Option<f64> {
         self.spot(point).map(|spot| self.height_at(&spot))

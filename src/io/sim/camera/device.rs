@@ -27,11 +27,11 @@ pub(in crate::io::sim) struct CameraDevice {
     last: Option<(u64, RgbImage)>,
 }
 
-/// Images per second. Within a frame, the same image is returned.
+/// Images that the camera takes in a second. Who asks more often gets the same image again.
 const FRAME_RATE: f64 = 30.0;
-/// Turning rate of a servo (degrees/s).
+/// Degrees per second at which a servo turns.
 const SERVO_RATE: f64 = 30.0;
-/// Widest view of a pinhole camera (degrees); its pictures grow without bound towards 180 degrees.
+/// Pictures of a pinhole camera grow without end towards 180 degrees.
 const WIDEST: f64 = 170.0;
 
 /// Time and light of an image.

@@ -56,7 +56,7 @@ impl Cutter {
         }
     }
 
-    /// Blends a convex face over the floor.
+    /// Lays a convex face of the floor over what is there.
     pub(super) fn tint(
         &mut self,
         canvas: &mut Canvas,
@@ -72,8 +72,7 @@ impl Cutter {
         }
     }
 
-    /// Transforms a face's corners into the camera's frame. Returns its plane, if it has one that does not
-    /// contain the eye.
+    /// Takes a face's corners into the camera's frame. Returns its plane, if it has one that does not hold the eye.
     pub(super) fn look(&mut self, view: &View, corners: &[Place]) -> Option<Plane> {
         self.seen.clear();
         self.seen.extend(corners.iter().map(|&corner| view.see(corner)));

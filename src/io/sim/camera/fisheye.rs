@@ -14,7 +14,8 @@ use crate::world::space::Space;
 /// which are then sampled through the lens.
 #[derive(Debug)]
 pub(super) struct Fisheye {
-    /// Width and height of the picture, horizontal field of view and tilt of the present lookup tables.
+    /// Width and height of the picture, the angle across it, and the tilt, for which the sides were worked
+    /// out.
     of: (usize, usize, f64, f64),
     /// Pixels along each edge of the cube.
     edge: usize,
@@ -36,7 +37,7 @@ pub(super) struct Gaze {
     pub(super) eye: Place,
     pub(super) heading: f64,
     pub(super) tilt: f64,
-    /// Horizontal field of view (rad).
+    /// Radians from the picture's left edge to its right one.
     pub(super) field_of_view: f64,
     pub(super) dimensions: (u32, u32),
 }
@@ -77,7 +78,7 @@ impl Fisheye {
         Ok(())
     }
 
-    /// Computes the lookup table from the picture's pixels to those of the sides.
+    /// Finds which pixel of which side each pixel of the picture shows.
     fn work_out(&mut self, of: (usize, usize, f64, f64)) {
         let (width, height, field_of_view, tilt) = of;
         let focal = width as f64 / field_of_view;

@@ -21,7 +21,7 @@ enum Coat {
     Image(Texture),
 }
 
-/// Pose of a thing: its foot and the unit vector of its heading.
+/// Where a thing stands: its foot, and the unit vector along its heading.
 #[derive(Debug, Clone, Copy)]
 struct Stand {
     foot: Place,
@@ -37,7 +37,7 @@ impl Model {
         Self { faces: mesh.faces.clone(), coats: coats.collect(), reach: mesh.reach() }
     }
 
-    /// Draws it at a pose and height above the floor, with the depth test.
+    /// Draws it at a pose, some metres above the floor, where it is nearer than what is there.
     pub(super) fn draw(
         &self,
         cutter: &mut Cutter,
@@ -162,7 +162,7 @@ fn step(place: impl Fn(usize, usize) -> [f64; 2], column: usize, row: usize) -> 
     beside(place(column + 1, row)).max(beside(place(column, row + 1)))
 }
 
-/// A colour times `light` 256ths.
+/// A colour in 256ths of the light.
 fn dimmed(colour: Packed, light: u32) -> Packed {
     let part = |mask: Packed| (((colour & mask) * light) >> 8) & mask;
     part(0xff_00_ff) | part(0xff00)

@@ -10,7 +10,7 @@ const BACK: Colour = Colour::from_hex(0x80_80_80);
 /// Smallest visible opacity of a texel.
 const OPAQUE: u8 = 128;
 
-/// Draws a picture on a board with the depth test.
+/// Draws a picture on a board where it is nearer than what is there.
 pub(super) fn draw_poster(cutter: &mut Cutter, canvas: &mut Canvas, view: &View, board: &Billboard) {
     let (columns, rows) = board.image.dimensions();
     if columns == 0 || rows == 0 {

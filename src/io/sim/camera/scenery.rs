@@ -66,7 +66,7 @@ const ROBOTS: [Colour; 5] = [
 ];
 /// Colour of a robot's lower part with the wheels, and its fraction of the height.
 const CHASSIS: (Colour, f64) = (Colour::from_hex(0x2a_2a_2e), 0.4);
-/// Height range of a robot's front, as fractions of its height.
+/// Between which shares of its height a robot's front is.
 const FRONT: (f64, f64) = (0.5, 0.92);
 /// Radius of a marker (m).
 const MARKER: f64 = 0.010;
@@ -98,7 +98,7 @@ impl Scenery {
         }
     }
 
-    /// Draws the view of a camera on a robot.
+    /// Draws what a camera sees that sits on a robot.
     pub(super) fn draw(&mut self, canvas: &mut Canvas, view: &View, space: &Space, me: usize) -> Result<()> {
         canvas.reset(view.width, view.height);
         if self.ground.is_none() {
@@ -167,7 +167,7 @@ impl Thing {
         }
     }
 
-    /// Slightly protruding boxes in the middle of a robot's front and back.
+    /// Boxes in the middle of a robot's front and back that stand out a little.
     fn plates(&self) -> [Aabb; 2] {
         let (ahead, behind, half) = match self.form {
             Form::Ball(radius) | Form::Cylinder(radius) | Form::Cone(radius, _) => {

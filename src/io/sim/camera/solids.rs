@@ -13,7 +13,7 @@ pub(super) struct Standing {
     pub(super) colour: Colour,
 }
 
-/// Largest number of facets on the visible side of a cylinder.
+/// Most facets on the side of a cylinder that the camera sees.
 const MAX_FACETS: usize = 32;
 
 /// Draws upright solids with flat tops.

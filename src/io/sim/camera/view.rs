@@ -6,7 +6,7 @@ pub(super) type Place = [f64; 3];
 /// Distance of the near plane (m).
 pub(super) const NEAR: f64 = 0.002;
 
-/// A pinhole camera without roll: projects points of the world to columns and rows of its picture.
+/// A pinhole camera that does not roll: how places in the world fall onto the columns and rows of its picture.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct View {
     pub(super) eye: Place,
@@ -16,7 +16,7 @@ pub(super) struct View {
     /// Sine and cosine of the elevation angle.
     pub(super) sin: f64,
     pub(super) cos: f64,
-    /// Pixels per metre at a distance of one metre.
+    /// Pixels that one metre covers at a distance of one metre.
     pub(super) focal: f64,
     pub(super) width: usize,
     pub(super) height: usize,
