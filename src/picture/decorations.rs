@@ -17,10 +17,12 @@ pub(super) fn heading(picture: &Picture, corner: Pixel, room: f64) -> (Group, f6
     if let Some(title) = &picture.title {
         base += text::LINE;
         let title = text::fit(&text::clean(title), BOLD * text::LINE, room);
-        group = group.add(words(&title, Pixel::new(corner.x, base), text::LINE, INK).set("font-weight", "bold"));
+        group =
+            group.add(words(&title, Pixel::new(corner.x, base), text::LINE, INK).set("font-weight", "bold"));
         base += 4.0;
     }
-    for row in picture.caption.iter().flat_map(|caption| text::wrapped(&text::clean(caption), text::SIZE, room))
+    for row in
+        picture.caption.iter().flat_map(|caption| text::wrapped(&text::clean(caption), text::SIZE, room))
     {
         base += text::LINE;
         group = group.add(words(&row, Pixel::new(corner.x, base), text::SIZE, PALE_INK));

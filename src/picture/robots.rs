@@ -2,12 +2,12 @@
 
 use svg::node::element::Group;
 
-use super::{Mark, Style};
 use super::canvas::{area, disc, line, number, path_data};
 use super::colours::PAGE;
 use super::film::Film;
 use super::frame::{Frame, Pixel};
 use super::scenery::turned;
+use super::{Mark, Style};
 use crate::geometry::{Aabb, Pose, Vector};
 use crate::world::{Colour, Footprint};
 

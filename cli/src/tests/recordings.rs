@@ -268,7 +268,7 @@ fn a_recording_has_no_files_written() {
 fn the_model_of_a_robot_is_recorded() {
     let robot = Path::new(DATA).join("formats/cart.robi");
     let log = assert_replays("a_to_b", &["--robot", text(&robot), "--time-limit", "1"]);
-    let log = Log::open(log).unwrap();
+    let log = Log::read(fs::read(log).unwrap()).unwrap();
     assert!(log.header().attachment("robot.robi 001 cart.obj").is_some());
     let bare = file("bare.robi");
     fs::copy(robot, &bare).unwrap();

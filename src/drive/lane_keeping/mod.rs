@@ -59,4 +59,3 @@ impl From<&CameraSpec> for RoadCamera {
         }
     }
 }
-
