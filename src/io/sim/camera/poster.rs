@@ -5,9 +5,9 @@ use super::view::{NEAR, Place, View};
 use crate::geometry::direction;
 use crate::world::{Billboard, Colour};
 
-/// The back of a billboard.
+/// Colour of a billboard's back.
 const BACK: Colour = Colour::from_hex(0x80_80_80);
-/// Texels at least this opaque are seen.
+/// Smallest visible opacity of a texel.
 const OPAQUE: u8 = 128;
 
 /// Draws a picture on a board, which stands on ground of some level, where it is nearer than what is there.
@@ -23,7 +23,7 @@ pub(super) fn draw_poster(
         return;
     }
     let facing = direction(board.pose.heading);
-    // From the board's left to its right as seen by who stands before it.
+    // From the board's left to its right, as seen from the front.
     let across = [-facing.y * board.width, facing.x * board.width, 0.0];
     let foot = level + board.elevation;
     let top = foot + board.height;
