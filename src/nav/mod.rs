@@ -1,12 +1,14 @@
 //! Navigation (book, chapter 10): sensor-based navigation among unknown obstacles, the truth about which goals
-//! can be reached, and planning on maps ([`grid`]) and in graphs ([`graph`]).
+//! can be reached, and planning on maps ([`grid`]), on hills ([`elevation`]) and in graphs ([`graph`]).
 
 mod boundary;
 mod bug;
+pub mod elevation;
 pub mod graph;
 pub mod grid;
 mod navigate;
 mod reachability;
+mod summit;
 mod surroundings;
 
 pub use crate::geometry::WallSide;
@@ -16,3 +18,4 @@ pub use bug::{
 };
 pub use navigate::{Navigator, NavigatorEvent, NavigatorOutcome, NavigatorParameters, NavigatorPhase};
 pub use reachability::{CellPath, Reachability};
+pub use summit::{SummitObservation, SummitOutcome, SummitParameters, SummitPhase, SummitSearch};

@@ -2,11 +2,12 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::components::GridComponents;
-use super::cost::{DIAGONAL, STRAIGHT, octile};
+use super::cost::{StepCosts, Uniform, in_cells, octile, of_step};
 use super::path::{End, GridPath, PlanError, SearchStatistics};
 use crate::world::{BitGrid, GridCell};
 
-/// D\* Lite: the shortest octile path of a robot that finds out on its way that the map is different.
+/// D\* Lite: the cheapest octile path of a robot that finds out on its way that the map is different. Steps cost their
+/// length, or what [`StepCosts`] say.
 ///
 /// The search runs from the goal to the robot and is kept. When cells turn out to be blocked or free, what depends on
 /// them alone is computed anew.
@@ -27,7 +28,8 @@ use crate::world::{BitGrid, GridCell};
 /// # Ok::<(), roverlab::world::BitGridError>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct DStarLite {
+pub struct DStarLite<C = Uniform> {
+    costs: C,
     grid: BitGrid,
     robot: GridCell,
     goal: GridCell,
@@ -62,11 +64,19 @@ const FAR: u64 = u64::MAX / 4;
 impl DStarLite {
     /// Takes over a map, the robot's cell and the goal. The goal may be blocked now and become free later.
     pub fn new(grid: &BitGrid, robot: GridCell, goal: GridCell) -> Result<Self, PlanError> {
+        Self::by(grid, Uniform, robot, goal)
+    }
+}
+
+impl<C: StepCosts> DStarLite<C> {
+    /// As [`new`](DStarLite::new), by what steps cost.
+    pub fn by(grid: &BitGrid, costs: C, robot: GridCell, goal: GridCell) -> Result<Self, PlanError> {
         if grid.width() == 0 || grid.height() == 0 {
             return Err(PlanError::EmptyMap);
         }
         let unknown = Distances { settled: FAR, implied: FAR, key: None };
         let mut this = Self {
+            costs,
             cells: vec![unknown; grid.width() * grid.height()],
             grid: grid.clone(),
             robot,
@@ -90,6 +100,11 @@ impl DStarLite {
         &self.grid
     }
 
+    /// What steps cost, as it is known.
+    pub fn costs(&self) -> &C {
+        &self.costs
+    }
+
     /// Tells where the robot is.
     pub fn move_to(&mut self, robot: GridCell) -> Result<(), PlanError> {
         self.check_inside(End::Start, robot)?;
@@ -106,7 +121,19 @@ impl DStarLite {
             return;
         }
         self.grid.set_free(cell, free);
-        // All steps that the cell is part of, or beside, begin and end around it.
+        self.update_around(cell);
+    }
+
+    /// Tells that steps to and from a cell cost something else. Outside the map nothing happens.
+    pub fn set_costs(&mut self, cell: GridCell, change: impl FnOnce(&mut C)) {
+        if self.grid.contains(cell) {
+            change(&mut self.costs);
+            self.update_around(cell);
+        }
+    }
+
+    /// All steps that a cell is part of, or beside, begin and end around it.
+    fn update_around(&mut self, cell: GridCell) {
         for row in cell.row.saturating_sub(1)..(cell.row + 2).min(self.grid.height()) {
             for column in cell.column.saturating_sub(1)..(cell.column + 2).min(self.grid.width()) {
                 self.update(GridCell::new(column, row));
@@ -142,7 +169,11 @@ impl DStarLite {
             at = next;
             cells.push(at);
         }
-        Ok(GridPath::through(&cells, self.statistics))
+        let mut path = GridPath::through(&cells, self.statistics);
+        if !C::UNIFORM {
+            path.cost = in_cells(self.cells[self.index(self.robot)].implied);
+        }
+        Ok(path)
     }
 
     /// Computes distances until that of the robot is right.
@@ -214,7 +245,8 @@ impl DStarLite {
         let steps = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
         steps.map(|(dx, dy)| {
             let open = free(0, 0) && free(dx, dy) && free(dx, 0) && free(0, dy);
-            open.then(|| (at(dx, dy), if dx != 0 && dy != 0 { DIAGONAL } else { STRAIGHT }))
+            let cost = || of_step(&self.costs, dx != 0 && dy != 0, || (cell, at(dx, dy)));
+            open.then(|| (at(dx, dy), cost()))
         })
     }
 

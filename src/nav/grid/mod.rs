@@ -12,6 +12,8 @@
 //! | [`LazyThetaStar`] | short, in any direction | nothing |
 //! | [`QuadtreePlanner`] | short, in any direction | a [`Quadtree`], and which of its leaves are neighbours |
 //!
+//! The first one, and [`DStarLite`], also plan by [`StepCosts`]: [`elevation`](super::elevation) does so on hills.
+//!
 //! [`DStarLite`] keeps its plan while the map changes. [`inflated`] leaves a robot's outline room, [`DistanceField`] tells
 //! how much there is.
 //!
@@ -33,6 +35,7 @@ mod tests;
 
 pub use any_angle::{AnyAngle, LazyThetaStar};
 pub use components::GridComponents;
+pub use cost::{StepCosts, Uniform};
 pub use distance::DistanceField;
 pub use dstar_lite::DStarLite;
 pub use inflate::inflated;
