@@ -6,9 +6,9 @@ use image::RgbImage;
 use roverlab::geometry::{Pose, Twist};
 use roverlab::io::sim::{SimOptions, Simulation, TICK, Truth};
 use roverlab::io::{
-    Error, ErrorKind, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result, RobotIo,
+    Attitude, Error, ErrorKind, LidarScan, LidarSettings, Psd, RadioMessage, Resolution, Result, RobotIo,
 };
-use roverlab::world::{DriveSpec, RobotSpec, Scene};
+use roverlab::world::{DriveSpec, InertialSpec, RobotSpec, Scene};
 
 use crate::walker::Walker;
 
@@ -61,6 +61,12 @@ pub enum Request {
     Encoder(u8),
     /// Sets an encoder's count to zero.
     ResetEncoder(u8),
+    /// The attitude by the inertial unit: roll, pitch and yaw.
+    Attitude,
+    /// Its turn rates about the forward, left and upright axes.
+    TurnRates,
+    /// Its accelerations along these axes.
+    Acceleration,
     /// Where a robot truly is, by its number; 0 is the robot that asks.
     RobotAt(u32),
     /// Puts a robot somewhere else; on hills it drops from so many metres above the floor.
@@ -101,6 +107,8 @@ pub enum Reply {
     Count(i64),
     /// A speed.
     Twist(Twist),
+    /// Three numbers.
+    Three([f64; 3]),
     /// A pose, and metres above the floor.
     Pose(Pose, f64),
     /// Distances counter-clockwise; infinity where there is no return.
@@ -142,6 +150,8 @@ pub struct Identity {
     pub exact: bool,
     /// Whether it has a camera.
     pub camera: bool,
+    /// What its inertial unit measures, and on which channels.
+    pub inertial: InertialSpec,
 }
 
 /// EyeSim drives motors with percentages of this speed, in metres per second, whatever they could do.
@@ -232,6 +242,7 @@ impl Seat {
             time_limit: terms.time_limit.unwrap_or(f64::INFINITY),
             exact: terms.exact,
             camera: spec.camera.is_some() && on_wheels,
+            inertial: if on_wheels { spec.inertial } else { InertialSpec::default() },
         };
         let (truth, scan) = (simulation.truth(), LidarScan::default());
         Self { robot, truth, identity, index, numbers, scan, walker, ahead: 0.0 }
@@ -304,6 +315,12 @@ impl Seat {
             Request::Servo(servo, position) => done(robot.set_servo(servo, position)?),
             Request::Encoder(motor) => Reply::Count(robot.encoder(motor)?),
             Request::ResetEncoder(motor) => done(robot.reset_encoder(motor)?),
+            Request::Attitude => {
+                let Attitude { roll, pitch, yaw } = robot.attitude()?;
+                Reply::Three([roll, pitch, yaw])
+            }
+            Request::TurnRates => Reply::Three(robot.turn_rates()?.into()),
+            Request::Acceleration => Reply::Three(robot.acceleration()?.into()),
             Request::RobotAt(id) => {
                 let index = self.robot_index(id)?;
                 // Where others are depends on their programs, which may be behind; where it is itself does not.

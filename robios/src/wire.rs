@@ -8,6 +8,7 @@
 use image::RgbImage;
 use roverlab::geometry::{Pose, Twist};
 use roverlab::io::{Error, ErrorKind, LidarSettings, RadioMessage, Result};
+use roverlab::world::InertialSpec;
 
 use crate::ask::{Identity, Reply, Request};
 
@@ -69,6 +70,10 @@ impl Writer {
         self.number(pose.x).number(pose.y).number(pose.heading)
     }
 
+    fn channels(self, channels: Option<[u8; 3]>) -> Self {
+        self.bytes(&channels.unwrap_or_default())
+    }
+
     fn request(self, request: &Request) -> Self {
         let w = self;
         match *request {
@@ -101,6 +106,9 @@ impl Writer {
             Request::ObjectAt(id) => w.byte(24).word(id),
             Request::PlaceObject(id, pose) => w.byte(25).word(id).pose(pose),
             Request::Numbers => w.byte(26),
+            Request::Attitude => w.byte(27),
+            Request::TurnRates => w.byte(28),
+            Request::Acceleration => w.byte(29),
         }
     }
 
@@ -131,7 +139,11 @@ impl Writer {
                 .number(identity.call_duration)
                 .number(identity.time_limit)
                 .byte(u8::from(identity.exact))
-                .byte(u8::from(identity.camera)),
+                .byte(u8::from(identity.camera))
+                .channels(identity.inertial.attitude)
+                .channels(identity.inertial.turn_rates)
+                .channels(identity.inertial.acceleration),
+            Reply::Three([a, b, c]) => w.byte(12).number(*a).number(*b).number(*c),
         }
     }
 }
@@ -159,6 +171,10 @@ impl<'a> Reader<'a> {
 
     fn pose(&mut self) -> Option<Pose> {
         Some(Pose::new(self.number()?, self.number()?, self.number()?))
+    }
+
+    fn channels(&mut self) -> Option<Option<[u8; 3]>> {
+        self.take().map(|channels| (channels != [0; 3]).then_some(channels))
     }
 
     fn request(&mut self) -> Option<Request> {
@@ -194,6 +210,9 @@ impl<'a> Reader<'a> {
             24 => Request::ObjectAt(r.word()?),
             25 => Request::PlaceObject(r.word()?, r.pose()?),
             26 => Request::Numbers,
+            27 => Request::Attitude,
+            28 => Request::TurnRates,
+            29 => Request::Acceleration,
             _ => return None,
         })
     }
@@ -233,8 +252,14 @@ impl<'a> Reader<'a> {
                     time_limit: r.number()?,
                     exact: r.byte()? != 0,
                     camera: r.byte()? != 0,
+                    inertial: InertialSpec {
+                        attitude: r.channels()?,
+                        turn_rates: r.channels()?,
+                        acceleration: r.channels()?,
+                    },
                 })
             }
+            12 => Reply::Three([r.number()?, r.number()?, r.number()?]),
             11 => {
                 let (numbers, odd) = r.rest().as_chunks();
                 odd.is_empty().then_some(())?;
@@ -336,6 +361,9 @@ mod tests {
             Request::PlaceRobot(8, pose, 0.25),
             Request::PlaceObject(9, pose),
             Request::Servo(2, -0.5),
+            Request::Attitude,
+            Request::TurnRates,
+            Request::Acceleration,
         ] {
             let question =
                 Question { debt: 0.25, wanted: vec![Request::Pose, Request::Distance(3)], request };
@@ -349,6 +377,7 @@ mod tests {
             Reply::Done,
             Reply::Flag(true),
             Reply::Count(-5),
+            Reply::Three([1.0, -2.0, 0.5]),
             Reply::Numbers(vec![1, 3]),
             Reply::Ranges(vec![1.0, f64::INFINITY]),
             Reply::Image(RgbImage::from_pixel(2, 1, image::Rgb([1, 2, 3]))),

@@ -38,10 +38,10 @@
 
 // A macro names the types of its capability's methods as the trait does, so they have to be in scope where it is used.
 pub use super::{
-    DisplayImage, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Pixel, Psd, RadioMessage,
-    Resolution, Result, Viewport,
+    Attitude, DisplayImage, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Pixel, Psd,
+    RadioMessage, Resolution, Result, Viewport,
 };
-pub use crate::geometry::{Pose, Twist};
+pub use crate::geometry::{Pose, Twist, Vector3};
 pub use crate::world::Colour;
 pub use image::{GrayImage, RgbImage};
 
@@ -53,6 +53,7 @@ pub use super::drive::{
     ambassador_impl_Drive, ambassador_impl_Manoeuvres, ambassador_impl_Odometry,
     ambassador_impl_StallDetector,
 };
+pub use super::inertial::ambassador_impl_Inertial;
 pub use super::keys::ambassador_impl_Keys;
 pub use super::lidar::ambassador_impl_Lidar;
 pub use super::psd::ambassador_impl_DistanceSensors;

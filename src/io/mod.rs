@@ -20,6 +20,7 @@ pub mod delegate;
 mod display;
 mod drive;
 pub(crate) mod error;
+mod inertial;
 mod keys;
 mod lcd;
 mod lidar;
@@ -43,6 +44,7 @@ pub use display::{Display, DisplayImage, DisplayOption, Fill, Font, FontFamily, 
 pub use drive::{Drive, Manoeuvres, Odometry, StallDetector};
 pub use error::{Error, ErrorKind, Result};
 pub use fleet::{FleetIo, FleetStep};
+pub use inertial::{Attitude, Inertial};
 pub use keys::{Key, Keys};
 pub use lcd::Lcd;
 pub use lidar::{Lidar, LidarScan, LidarSettings};
@@ -67,6 +69,7 @@ pub trait RobotIo:
     + Motors
     + Servos
     + Encoders
+    + Inertial
 {
 }
 
@@ -85,6 +88,7 @@ impl<R> RobotIo for R where
         + Motors
         + Servos
         + Encoders
+        + Inertial
         + ?Sized
 {
 }

@@ -5,12 +5,12 @@ use image::RgbImage;
 use super::health::digest;
 use super::supervised::{LONGEST, Supervised, fault};
 use super::{Causes, Station};
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::wrappers::signatures;
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
-    Fill, Font, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
-    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
+    ErrorKind, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
+    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -30,6 +30,7 @@ signatures! { StallDetector => passed_on!() }
 signatures! { Display => passed_on!() }
 signatures! { Radio => passed_on!() }
 signatures! { Encoders => passed_on!() }
+signatures! { Inertial => passed_on!() }
 
 impl<R: Clock + Drive + Odometry + Keys, S: Station> Keys for Supervised<R, S> {
     fn read_key(&mut self) -> Result<Option<Key>> {

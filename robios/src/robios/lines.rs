@@ -1,9 +1,11 @@
 use std::collections::{BTreeMap, VecDeque};
 
+use roverlab::geometry::units;
 use roverlab::io::Result;
 use roverlab::world::formats::DiskFiles;
 
 use super::{Robios, invalid};
+use crate::ask::{Reply, Request};
 
 /// What a simulated robot has no counterpart for: digital and analog lines and serial ports. They are looped back:
 /// what a program writes is what it reads.
@@ -83,13 +85,27 @@ impl Robios {
         self.charge()
     }
 
-    /// `ANALOGRead`: the supply on channel 0, silence elsewhere.
+    /// `ANALOGRead`: the inertial unit where its robot's description says so, the supply on channel 0, silence
+    /// elsewhere.
     pub fn analog_read(&mut self, channel: i32) -> Result<i32> {
+        let unit = self.identity.inertial;
+        let tenths_of_degrees = |radians| 10.0 * units::to_deg(radians);
+        let groups: [(_, _, fn(f64) -> f64); 3] = [
+            (unit.attitude, Request::Attitude, tenths_of_degrees),
+            (unit.turn_rates, Request::TurnRates, tenths_of_degrees),
+            (unit.acceleration, Request::Acceleration, units::to_mm),
+        ];
+        for (channels, request, scale) in groups {
+            let place = channels.and_then(|group| group.iter().position(|&own| i32::from(own) == channel));
+            let Some(place) = place else { continue };
+            let Reply::Three(numbers) = self.ask(&request)? else { return Err(super::foreign()) };
+            return Ok(scale(numbers[place]).round() as i32);
+        }
         self.charge()?;
         match channel {
             0 => Ok(SUPPLY),
             1..=8 => Ok(SILENCE.into()),
-            _ => Err(invalid("analog channel", channel, "0 to 8")),
+            _ => Err(invalid("analog channel", channel, "0 to 8, or one of the inertial unit")),
         }
     }
 

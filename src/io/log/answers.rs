@@ -8,11 +8,11 @@ use super::parts::{ScanHead, Size};
 use super::replay::Replay;
 use super::values::{self, Put, Values};
 use super::wire;
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Camera, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key, Keys,
-    Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
-    Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font,
+    Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
+    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -70,6 +70,7 @@ macro_rules! answering {
         signatures! { Motors => answered!($robot) }
         signatures! { Servos => answered!($robot) }
         signatures! { Encoders => answered!($robot) }
+        signatures! { Inertial => answered!($robot) }
     )* };
 }
 

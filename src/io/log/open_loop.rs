@@ -68,7 +68,7 @@ pub struct OpenLoopReport {
 const CALL: u64 = 100_000;
 
 /// Calls that are questions; all others are commands.
-const QUESTIONS: [&str; 18] = [
+const QUESTIONS: [&str; 21] = [
     "speed",
     "pose",
     "remaining",
@@ -84,6 +84,9 @@ const QUESTIONS: [&str; 18] = [
     "radio_id",
     "radio_peers",
     "encoder",
+    "attitude",
+    "turn_rates",
+    "acceleration",
     "resolution",
     "image_into",
     "wait_done",

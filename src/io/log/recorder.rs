@@ -10,11 +10,11 @@ use super::topics::{CALLS, CAMERA, Channel, LIDAR, ODOMETRY, TRANSFORMS};
 use super::values::Put;
 use super::wire::Fields;
 use super::writer::LogWriter;
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key,
-    Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
-    Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill,
+    Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd,
+    Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -172,3 +172,4 @@ signatures! { Radio => recorded!() }
 signatures! { Motors => recorded!() }
 signatures! { Servos => recorded!() }
 signatures! { Encoders => recorded!() }
+signatures! { Inertial => recorded!() }

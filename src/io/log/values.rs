@@ -1,10 +1,10 @@
 use image::RgbImage;
 
 use super::wire::{self, Field, Fields, Reading};
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    DisplayImage, DisplayOption, Fill, Font, FontFamily, FontStyle, Key, LidarSettings, Psd, RadioMessage,
-    Resolution, Viewport,
+    Attitude, DisplayImage, DisplayOption, Fill, Font, FontFamily, FontStyle, Key, LidarSettings, Psd,
+    RadioMessage, Resolution, Viewport,
 };
 use crate::world::Colour;
 
@@ -283,6 +283,8 @@ compounds! {
     (i32, i32): v => [v.0, v.1], [a, b] => (a, b);
     Twist: v => [v.linear, v.angular], [linear, angular] => Twist::new(linear, angular);
     Pose: v => [v.x, v.y, v.heading], [x, y, heading] => Pose::new(x, y, heading);
+    Vector3: v => [v.x, v.y, v.z], [x, y, z] => Vector3::new(x, y, z);
+    Attitude: v => [v.roll, v.pitch, v.yaw], [roll, pitch, yaw] => Attitude { roll, pitch, yaw };
     Psd: v => [v.0], [number] => Psd(number);
     Colour: v => [v.red, v.green, v.blue], [red, green, blue] => Colour::new(red, green, blue);
     LidarSettings: v => [v.field_of_view, v.tilt, v.points],
@@ -382,6 +384,8 @@ mod tests {
             survives(&peers);
             survives(&RadioMessage { from, data });
             survives(&Some(Pose::new(x, -x, 0.5 * x)));
+            survives(&Vector3::new(x, -x, 0.5 * x));
+            survives(&Attitude { roll: x, pitch: -x, yaw: 0.5 * x });
             survives(&LidarSettings { field_of_view: x, tilt: -x, points: from as usize });
         }
     }

@@ -5,8 +5,10 @@ use image::RgbImage;
 use super::call::{Call, difference};
 use super::ideal::IdealDrive;
 use super::script::Script;
-use crate::geometry::{Pose, Twist};
-use crate::io::{Error, ErrorKind, Key, Lcd, LidarScan, Pixel, Psd, RadioMessage, Resolution, Result};
+use crate::geometry::{Pose, Twist, Vector3};
+use crate::io::{
+    Attitude, Error, ErrorKind, Key, Lcd, LidarScan, Pixel, Psd, RadioMessage, Resolution, Result,
+};
 use crate::kinematics::Displacement;
 
 /// A robot for unit tests of programs: its sensors read what a script says, and it writes down every command.
@@ -62,6 +64,9 @@ pub struct MockRobot {
     pub(super) remaining: Option<Script<f64>>,
     pub(super) stalled: Option<Script<bool>>,
     pub(super) encoders: BTreeMap<u8, Script<i64>>,
+    pub(super) attitude: Option<Script<Attitude>>,
+    pub(super) turn_rates: Option<Script<Vector3>>,
+    pub(super) acceleration: Option<Script<Vector3>>,
     pub(super) keys: Option<Events<Key>>,
     pub(super) touches: Option<Events<Pixel>>,
     pub(super) radio: Option<(u32, Vec<u32>)>,
@@ -93,7 +98,7 @@ impl MockRobot {
     }
 
     /// Readings without a script are quiet instead of errors: nothing in range, an empty scan, a black image, standing still at the
-    /// origin, no key, touch or message, robot 1 alone on the radio.
+    /// origin, level, no key, touch or message, robot 1 alone on the radio.
     #[must_use]
     pub fn lenient(self) -> Self {
         Self { lenient: true, ..self }
@@ -153,6 +158,24 @@ impl MockRobot {
     pub fn with_encoder(mut self, motor: u8, script: impl Into<Script<i64>>) -> Self {
         self.encoders.insert(motor, script.into());
         self
+    }
+
+    /// How the inertial unit says that the robot is turned.
+    #[must_use]
+    pub fn with_attitude(self, script: impl Into<Script<Attitude>>) -> Self {
+        Self { attitude: Some(script.into()), ..self }
+    }
+
+    /// How the inertial unit says that the robot turns, in radians per second.
+    #[must_use]
+    pub fn with_turn_rates(self, script: impl Into<Script<Vector3>>) -> Self {
+        Self { turn_rates: Some(script.into()), ..self }
+    }
+
+    /// What the inertial unit says of the acceleration, in metres per second squared.
+    #[must_use]
+    pub fn with_acceleration(self, script: impl Into<Script<Vector3>>) -> Self {
+        Self { acceleration: Some(script.into()), ..self }
     }
 
     /// Which keys are pressed, and when in seconds; none at all if empty. Waiting for a key lets time pass until the

@@ -109,6 +109,7 @@ functions! {
     SERVOSet: fn(c_int, c_int) -> c_int;
     ENCODERRead: fn(c_int) -> c_int;
     ENCODERReset: fn(c_int) -> c_int;
+    ANALOGRead: fn(c_int) -> c_int;
     LCDPrintf: fn(*const c_char; ...) -> c_int;
     SIMGetRobot: fn(c_int, *mut c_int, *mut c_int, *mut c_int, *mut c_int) -> ();
 }

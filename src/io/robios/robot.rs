@@ -8,13 +8,14 @@ use image::RgbImage;
 use super::library::Functions;
 use super::numbers::{NOTHING, degrees, metres, millimetres, radians, range, whole};
 use super::truth::{RobiosTruth, Told};
-use crate::geometry::{Pose, Twist, normalize_angle};
+use crate::geometry::{Pose, Twist, Vector3, normalize_angle, units};
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, ErrorKind,
-    Fill, Font, FontFamily, FontStyle, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
-    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
+    ErrorKind, Fill, Font, FontFamily, FontStyle, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings,
+    Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector,
+    Viewport,
 };
-use crate::world::Colour;
+use crate::world::{Colour, InertialSpec};
 
 /// A robot behind a RoBIOS library.
 ///
@@ -30,6 +31,7 @@ pub struct RobiosRobot {
     camera_is_on: bool,
     radio_is_on: bool,
     turns: bool,
+    inertial: InertialSpec,
 }
 
 /// Bytes of the longest radio message that is received.
@@ -89,7 +91,21 @@ impl RobiosRobot {
             camera_is_on: false,
             radio_is_on: false,
             turns: false,
+            inertial: InertialSpec::default(),
         })
+    }
+
+    /// Gives the robot an inertial unit, which the library reads on these channels: RoBIOS does not tell of any.
+    #[must_use]
+    pub fn with_inertial(self, inertial: InertialSpec) -> Self {
+        Self { inertial, ..self }
+    }
+
+    /// What three analog channels read.
+    fn channels(&mut self, name: &str, channels: Option<[u8; 3]>) -> Result<[f64; 3]> {
+        let [a, b, c] = channels.ok_or_else(|| Error::unsupported(name))?;
+        let read = |channel: u8| -> Result<f64> { Ok(call!(self, ANALOGRead(channel.into())).into()) };
+        Ok([read(a)?, read(b)?, read(c)?])
     }
 
     /// What is known about the robot where somebody asks for the truth. It starts at a pose in the world.
@@ -484,5 +500,25 @@ impl Encoders for RobiosRobot {
 
     fn reset_encoder(&mut self, motor: u8) -> Result<()> {
         order!(self, ENCODERReset(motor.into()))
+    }
+}
+
+/// Tenths of degrees.
+fn from_tenths(tenths: f64) -> f64 {
+    units::from_deg(tenths / 10.0)
+}
+
+impl Inertial for RobiosRobot {
+    fn attitude(&mut self) -> Result<Attitude> {
+        let [roll, pitch, yaw] = self.channels("attitude", self.inertial.attitude)?.map(from_tenths);
+        Ok(Attitude { roll, pitch, yaw })
+    }
+
+    fn turn_rates(&mut self) -> Result<Vector3> {
+        Ok(self.channels("turn rates", self.inertial.turn_rates)?.map(from_tenths).into())
+    }
+
+    fn acceleration(&mut self) -> Result<Vector3> {
+        Ok(self.channels("acceleration", self.inertial.acceleration)?.map(units::from_mm).into())
     }
 }

@@ -1,11 +1,11 @@
 use image::RgbImage;
 
-use crate::geometry::{Pose, Twist, angle_difference};
+use crate::geometry::{Pose, Twist, Vector3, angle_difference};
 use crate::io::control::Stopwatch;
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key,
-    Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
-    Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill,
+    Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd,
+    Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::kinematics::{Displacement, arc_between};
 use crate::parameter::{ParameterError, require_finite, require_not_negative, require_positive};
@@ -404,5 +404,6 @@ hooked!(
     Keys,
     Radio,
     Servos,
-    Encoders
+    Encoders,
+    Inertial
 );

@@ -1,12 +1,12 @@
 use ambassador::Delegate;
 use image::RgbImage;
 
-use crate::geometry::{Pose, Twist, math, normalize_angle, units};
+use crate::geometry::{Pose, Twist, Vector3, math, normalize_angle, units};
 use crate::io::delegate::ambassador_impl_StallDetector;
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error, Fill, Font,
-    Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio,
-    RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
+    Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel,
+    Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -97,6 +97,11 @@ fn length(metres: f64) -> f64 {
 /// The nearest whole degree.
 fn angle(radians: f64) -> f64 {
     whole(units::to_deg(radians), units::from_deg)
+}
+
+/// The nearest tenth of a degree.
+fn tenths(radians: f64) -> f64 {
+    units::from_deg((10.0 * units::to_deg(radians)).round() / 10.0 + 0.0)
 }
 
 fn pose(pose: Pose) -> Pose {
@@ -391,6 +396,27 @@ impl<R: Encoders> Encoders for Quantised<R> {
 
     fn reset_encoder(&mut self, motor: u8) -> Result<()> {
         self.inner.reset_encoder(motor)
+    }
+}
+
+/// Each number is on a channel of its own, and is read at a time of its own.
+impl<R: Inertial> Inertial for Quantised<R> {
+    fn attitude(&mut self) -> Result<Attitude> {
+        let roll = tenths(self.inner.attitude()?.roll);
+        let pitch = tenths(self.inner.attitude()?.pitch);
+        Ok(Attitude { roll, pitch, yaw: tenths(self.inner.attitude()?.yaw) })
+    }
+
+    fn turn_rates(&mut self) -> Result<Vector3> {
+        let forward = tenths(self.inner.turn_rates()?.x);
+        let left = tenths(self.inner.turn_rates()?.y);
+        Ok(Vector3::new(forward, left, tenths(self.inner.turn_rates()?.z)))
+    }
+
+    fn acceleration(&mut self) -> Result<Vector3> {
+        let forward = length(self.inner.acceleration()?.x);
+        let left = length(self.inner.acceleration()?.y);
+        Ok(Vector3::new(forward, left, length(self.inner.acceleration()?.z)))
     }
 }
 

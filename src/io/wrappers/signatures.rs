@@ -111,6 +111,13 @@ macro_rules! signatures {
             fn reset_encoder(motor: u8) -> ();
         } }
     };
+    (Inertial => $then:ident!($($context:tt)*)) => {
+        $then! { $($context)* Inertial {
+            fn attitude() -> Attitude;
+            fn turn_rates() -> Vector3;
+            fn acceleration() -> Vector3;
+        } }
+    };
 }
 
 /// Implements capabilities for a wrapper by calling the wrapper's own method `hook` first, which may fail, and then

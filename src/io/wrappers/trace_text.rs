@@ -2,10 +2,10 @@ use std::fmt::Write;
 
 use image::RgbImage;
 
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    DisplayImage, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Psd, RadioMessage, Resolution,
-    Viewport,
+    Attitude, DisplayImage, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Psd, RadioMessage,
+    Resolution, Viewport,
 };
 use crate::world::Colour;
 
@@ -72,6 +72,8 @@ macro_rules! list_tokens {
 list_tokens! {
     Twist, t => [t.linear, t.angular];
     Pose, p => [p.x, p.y, p.heading];
+    Vector3, v => [v.x, v.y, v.z];
+    Attitude, a => [a.roll, a.pitch, a.yaw];
     LidarSettings, s => [s.field_of_view, s.tilt, Text(s.points)];
     Font, f => [Text(f.family), Text(f.style), f.size];
     Viewport, v => [v.corner, v.width, v.height];

@@ -4,11 +4,11 @@ use std::io;
 use image::RgbImage;
 
 use super::trace_text::{Digest, Token, put_scan};
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key,
-    Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd, Radio, RadioMessage,
-    Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill,
+    Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd,
+    Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -260,3 +260,4 @@ signatures! { Radio => traced_impl!() }
 signatures! { Motors => traced_impl!() }
 signatures! { Servos => traced_impl!() }
 signatures! { Encoders => traced_impl!() }
+signatures! { Inertial => traced_impl!() }

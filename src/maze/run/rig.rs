@@ -9,7 +9,7 @@ pub fn mouse() -> RobotSpec {
     let psd = |id: u8, name: &str, x, y, yaw| PsdSpec {
         id,
         name: name.into(),
-        mount: Mount { x, y, z: 0.020, yaw },
+        mount: Mount { x, y, z: 0.020, yaw, ..Mount::default() },
         max_range: 1.0,
     };
     RobotSpec {

@@ -14,10 +14,10 @@ const FEW_SOLIDS: usize = 64;
 /// A laser scanner's beams, worked out once, and the memory that a scan needs.
 #[derive(Debug, Clone)]
 pub struct Scanner {
-    buffer: PolarBuffer,
+    pub(super) buffer: PolarBuffer,
     z: f64,
-    tilt: f64,
-    max_range: f64,
+    pub(super) tilt: f64,
+    pub(super) max_range: f64,
     /// Whether the beams go round counter-clockwise, at most once or so: what a polar buffer can draw.
     drawn: bool,
     /// What may be seen; its order, nearest first: the distance's leading bits, then a place in `sights`; and which
