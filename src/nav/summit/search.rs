@@ -5,7 +5,7 @@ use super::reckoning::Reckoning;
 use super::sight_map::{Chart, SightMap};
 use super::sweep::Sweep;
 use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math};
-use crate::io::control::{Behaviour, Decision, Halt, Senses, halts};
+use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{Attitude, Error, Inertial, Lidar, LidarScan, LidarSettings, Odometry, Result};
 use crate::nav::grid::{GridComponents, GridPlanner, GridSearch};
 use crate::world::GridCell;
