@@ -17,6 +17,7 @@
 //!   [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`] beside it;
 //! - [`colour`]: to what has a taught colour, and home with it (chapter 11);
 //! - [`motion_watch`]: turning to what moves (chapter 11);
+//! - [`terrain`]: up the steepest way (chapter 7);
 //! - [`Pid`] and [`RelayTuner`]: a PID controller and how to find its gains.
 
 mod a_to_b;
@@ -37,6 +38,7 @@ mod pid;
 mod random_drive;
 mod relay;
 mod spline;
+pub mod terrain;
 mod wall_following;
 mod way;
 

@@ -18,4 +18,4 @@ pub use bug::{
 };
 pub use navigate::{Navigator, NavigatorEvent, NavigatorOutcome, NavigatorParameters, NavigatorPhase};
 pub use reachability::{CellPath, Reachability};
-pub use summit::{SummitObservation, SummitOutcome, SummitParameters, SummitPhase, SummitSearch};
+pub use summit::{Fence, SummitObservation, SummitOutcome, SummitParameters, SummitPhase, SummitSearch};

@@ -51,8 +51,13 @@ impl CommonArgs {
         scene
     }
 
-    /// The robot in the file of an option.
+    /// The robot in the file of an option, or the one that every scene knows by that name.
     pub(crate) fn load_robot(&self, option: &str, path: &Path) -> Result<Parsed<RobotSpec>, FormatError> {
+        // A robot that every scene knows needs no file.
+        let known = path.to_str().filter(|_| !path.exists()).and_then(RobotSpec::predefined);
+        if let Some(value) = known {
+            return Ok(Parsed { value, warnings: Vec::new() });
+        }
         formats::parse_robot(self.read(option, path)?, &path.display().to_string())
     }
 }

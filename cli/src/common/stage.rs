@@ -10,7 +10,7 @@ use roverlab::geometry::Pose;
 use roverlab::io::log::{Attachment, FleetIo, GroundTruth, Header, LogError, LogWriter, Player};
 use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, Simulation, Watcher};
 use roverlab::io::wrappers::{Deadman, Fault, Faulty, Quantised};
-use roverlab::io::{self, Key, RobotIo};
+use roverlab::io::{self, Key, RobotIo, TruthInSpace};
 use roverlab::safety::{SpeedError, StoppingModel};
 use roverlab::world::{RobotPlacement, Scene, formats};
 
@@ -151,6 +151,10 @@ impl GroundTruth for SharedTruth {
 
     fn object(&mut self, object: usize) -> io::Result<Pose> {
         self.ask(|truth| truth.object(object))
+    }
+
+    fn in_space(&mut self, robot: usize) -> io::Result<TruthInSpace> {
+        self.ask(|truth| truth.in_space(robot))
     }
 }
 

@@ -11,7 +11,7 @@ use super::topics::TRUTH;
 use super::values::{Put, Take, Taking, Values};
 use super::{LogError, LogWriter};
 use crate::geometry::{Point, Pose};
-use crate::io::{Error, ErrorKind, GroundTruth, Result, RobotTruth, TrailPoint};
+use crate::io::{Error, ErrorKind, GroundTruth, Result, RobotTruth, TrailPoint, TruthInSpace};
 
 /// Ground truth that is recorded, made by [`LogWriter::truth`](super::LogWriter::truth).
 #[derive(Debug)]
@@ -55,6 +55,12 @@ impl<T: GroundTruth, W: Write> GroundTruth for RecordedTruth<T, W> {
     fn object(&mut self, object: usize) -> Result<Pose> {
         let result = self.inner.object(object);
         self.notes.note("object", &object, &result);
+        result
+    }
+
+    fn in_space(&mut self, robot: usize) -> Result<TruthInSpace> {
+        let result = self.inner.in_space(robot);
+        self.notes.note("in_space", &robot, &result);
         result
     }
 }
@@ -198,6 +204,7 @@ pub struct ReplayTruth {
     time: Option<f64>,
     poses: BTreeMap<usize, Pose>,
     objects: BTreeMap<usize, Pose>,
+    in_space: BTreeMap<usize, TruthInSpace>,
     robots: BTreeMap<usize, RobotTruth>,
 }
 
@@ -213,8 +220,8 @@ type Question<'a> = (&'a str, Option<usize>);
 
 impl ReplayTruth {
     pub(super) fn new(position: Position) -> Self {
-        let (poses, objects, robots) = Default::default();
-        Self { position, next: 0, time: None, poses, objects, robots }
+        let (poses, objects, in_space, robots) = Default::default();
+        Self { position, next: 0, time: None, poses, objects, in_space, robots }
     }
 
     /// Takes in the recorded answers up to the next one to a question; all those before the robot's next call if there
@@ -253,6 +260,11 @@ impl ReplayTruth {
             ("object", Some(object)) => {
                 if let Some(pose) = result.take() {
                     self.objects.insert(object, pose);
+                }
+            }
+            ("in_space", Some(robot)) => {
+                if let Some(truth) = result.take() {
+                    self.in_space.insert(robot, truth);
                 }
             }
             ("robot", Some(robot)) => {
@@ -294,5 +306,10 @@ impl GroundTruth for ReplayTruth {
     fn object(&mut self, object: usize) -> Result<Pose> {
         self.catch_up(("object", Some(object)));
         self.objects.get(&object).copied().ok_or_else(|| untold("where the object was"))
+    }
+
+    fn in_space(&mut self, robot: usize) -> Result<TruthInSpace> {
+        self.catch_up(("in_space", Some(robot)));
+        self.in_space.get(&robot).copied().ok_or_else(|| untold("where the robot was in space"))
     }
 }

@@ -58,7 +58,7 @@ pub use noise::NoiseModel;
 pub use options::SimOptions;
 pub use robot::SimRobot;
 pub use simulation::Simulation;
-pub use terrain::Mishap;
+pub use super::Mishap;
 pub use truth::Truth;
 pub use watch::{Onlooking, Watcher};
 

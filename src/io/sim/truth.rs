@@ -2,9 +2,8 @@ use std::sync::Arc;
 
 use super::engine::{Engine, Thing};
 use super::lockstep::Lockstep;
-use super::terrain::Mishap;
 use crate::geometry::{Pose, Pose3};
-use crate::io::{Error, GroundTruth, Result, RobotTruth};
+use crate::io::{Error, GroundTruth, Mishap, Result, RobotTruth, TruthInSpace};
 use crate::parameter::require_finite;
 
 /// What is true in a simulated world. No robot reaches it; verdicts, pictures and tests do.
@@ -156,5 +155,9 @@ impl GroundTruth for Truth {
 
     fn object(&mut self, object: usize) -> Result<Pose> {
         Truth::object(self, object)
+    }
+
+    fn in_space(&mut self, robot: usize) -> Result<TruthInSpace> {
+        Ok(TruthInSpace { pose: self.pose_in_space(robot)?, mishap: self.mishap(robot)? })
     }
 }

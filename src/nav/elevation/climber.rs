@@ -42,7 +42,7 @@ impl Climber {
         };
         let (tips, slips) = (math::atan2(support, MIDDLE * spec.height), math::atan(spec.friction));
         let (slope, step) = (TRUSTED * tips.min(slips), 0.5 * CLIMBED * wheel_diameter);
-        Self { slope, step, radius: 0.75 * reach }
+        Self { slope, step, radius: reach }
     }
 
     /// The same with a slope limit of its own, in radians.

@@ -34,7 +34,7 @@ impl Objective {
             Self::Energy { resistance } => require_positive("resistance to rolling", resistance),
             Self::Time { speed, climb } => {
                 require_positive("speed", speed)?;
-                require_positive("climbing speed", climb)
+                require_positive("climb speed", climb)
             }
         }
     }

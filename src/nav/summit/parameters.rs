@@ -1,8 +1,9 @@
 use crate::ParameterError;
-use crate::geometry::Pose3;
+use crate::geometry::{Aabb, Point, Pose, Pose3};
+use crate::kinematics::Tracked;
 use crate::nav::elevation::Climber;
-use crate::parameter::{require, require_finite, require_positive};
-use crate::world::RobotSpec;
+use crate::parameter::{require, require_finite, require_not_negative, require_positive};
+use crate::world::{DriveSpec, RobotSpec};
 
 /// The parameters of a [`SummitSearch`](super::SummitSearch).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,6 +12,8 @@ pub struct SummitParameters {
     pub climber: Climber,
     /// Where the lidar sits.
     pub lidar: Pose3,
+    /// Metres that a turn of one radian on the spot takes it downhill for a slope of 1; 0 for wheels.
+    pub slide: f64,
     /// Metres per second.
     pub speed: f64,
     /// Radians per second.
@@ -25,8 +28,26 @@ pub struct SummitParameters {
     pub tolerance: f64,
     /// The elevation above the start, in metres, below which the robot does not go, such as that of water.
     pub lowest: Option<f64>,
+    /// The area that the robot does not leave, if it has been told of one.
+    pub fence: Option<Fence>,
     /// Seconds from one step to the next.
     pub period: f64,
+}
+
+/// An area along the axes of a world, and where in it a robot starts that counts from there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fence {
+    /// The area in the world.
+    pub area: Aabb,
+    /// Where the robot starts.
+    pub start: Pose,
+}
+
+impl Fence {
+    /// Whether a place, as the robot counts, is inside.
+    pub fn holds(&self, place: Point) -> bool {
+        self.area.contains(self.start.to_world(place))
+    }
 }
 
 /// The most cells of a map along an axis.
@@ -36,9 +57,16 @@ impl SummitParameters {
     /// Those for a robot; `None` without a lidar.
     pub fn of(spec: &RobotSpec) -> Option<Self> {
         let mount = spec.lidar?.mount;
+        let slide = match spec.drive {
+            DriveSpec::Tracked { track, length, width, .. } => {
+                Tracked { track, length, width }.downhill_drift() / spec.friction.max(0.1)
+            }
+            _ => 0.0,
+        };
         Some(Self {
             climber: Climber::of(spec),
             lidar: mount.frame(),
+            slide,
             speed: 0.15_f64.min(0.5 * spec.drive.top_speed()),
             turn_rate: 0.8,
             stride: 0.8,
@@ -46,6 +74,7 @@ impl SummitParameters {
             extent: 7.0,
             tolerance: 0.01,
             lowest: None,
+            fence: None,
             period: 0.05,
         })
     }
@@ -55,6 +84,7 @@ impl SummitParameters {
         self.climber.validate()?;
         let at = self.lidar.position;
         require("lidar height", at.z, self.lidar.is_finite() && at.z > 0.0, "more than 0")?;
+        require_not_negative("slide", self.slide)?;
         require_positive("speed", self.speed)?;
         require_positive("turn rate", self.turn_rate)?;
         require_positive("stride", self.stride)?;
@@ -65,6 +95,13 @@ impl SummitParameters {
         let cells = 2.0 * self.extent / self.resolution;
         let good = (8.0..=MOST_CELLS).contains(&cells);
         require("extent", self.extent, good, "4 to 1000 times the resolution")?;
+        if let Some(Fence { area, start }) = self.fence {
+            let size = area.size();
+            for (name, side) in [("fence along x", size.x), ("fence along y", size.y)] {
+                require_positive(name, side)?;
+            }
+            require("start in the fence", start.x, start.is_finite(), "a finite pose")?;
+        }
         require_finite("lowest elevation", self.lowest.unwrap_or(0.0))
     }
 }

@@ -1,4 +1,4 @@
-use crate::geometry::{Point3, Pose, Pose3, angle_difference, direction, math};
+use crate::geometry::{Point3, Pose, Pose3, Vector, angle_difference, direction, math};
 use crate::io::Attitude;
 
 /// Dead reckoning on hills: wheels say how far along the ground, the inertial unit how steeply and which way.
@@ -17,7 +17,8 @@ pub(super) struct Reckoning {
 const TRUST: f64 = 0.02;
 
 impl Reckoning {
-    pub(super) fn update(&mut self, odometry: Pose, attitude: Attitude) {
+    /// Takes in how the wheels turned. In a turn of one radian belts slide so many metres downhill for a slope of 1.
+    pub(super) fn update(&mut self, odometry: Pose, attitude: Attitude, slide: f64) {
         let Some((before, first_yaw)) = self.before else {
             self.before = Some((odometry, attitude.yaw));
             return;
@@ -27,10 +28,13 @@ impl Reckoning {
         let turned = angle_difference(odometry.heading, before.heading);
         let (rise, run) = math::sin_cos(-(attitude.pitch - self.bias[1]));
         let place = self.pose.position() + direction(self.pose.heading + 0.5 * turned) * (length * run);
+        let up = self.in_space(attitude).up();
+        let downhill = Vector::new(up.x, up.y) / up.z.max(0.1);
+        let place = place + downhill * (slide * turned.abs());
         let heading = self.pose.heading + turned;
         let heading = heading + TRUST * angle_difference(attitude.yaw - first_yaw, heading);
         self.pose = Pose::new(place.x, place.y, crate::geometry::normalize_angle(heading));
-        self.elevation += length * rise;
+        self.elevation += length * rise - downhill.norm_squared() * slide * turned.abs();
         self.before = Some((odometry, first_yaw));
     }
 

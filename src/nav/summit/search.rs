@@ -1,10 +1,13 @@
 use std::ops::ControlFlow;
 
+use super::align::{Shift, align};
 use super::parameters::SummitParameters;
 use super::reckoning::Reckoning;
 use super::sight_map::{Chart, SightMap};
 use super::sweep::Sweep;
-use crate::geometry::{Point, Pose, Twist, angle_difference, direction, math};
+use crate::geometry::{
+    Point, Point3, Pose, Twist, Vector, angle_difference, direction, math, normalize_angle,
+};
 use crate::io::control::{Behaviour, Decision, Senses, halts};
 use crate::io::{Attitude, Error, Inertial, Lidar, LidarScan, LidarSettings, Odometry, Result};
 use crate::nav::grid::{GridComponents, GridPlanner, GridSearch};
@@ -47,10 +50,17 @@ pub struct SummitSearch {
     parameters: SummitParameters,
     reckoning: Reckoning,
     map: SightMap,
+    /// Whether the last look did not lie on the map.
+    lost: bool,
+    /// How often it has been next to the top.
+    approaches: u32,
     state: State,
     looks: u32,
-    /// The normal of the ground around by the first look.
-    first_plane: Option<Attitude>,
+    first_heading: f64,
+    /// From where it has looked around.
+    views: Vec<Point>,
+    /// What it wanted to see when it looked last.
+    target: Option<Point>,
     unknown: usize,
     highest: f64,
 }
@@ -91,16 +101,21 @@ enum State {
     Looking(Sweep),
     Turning { to: f64 },
     Driving(Drive),
-    BackingOff { from: Point },
+    BackingOff { from: Point, sign: f64 },
 }
 
 #[derive(Debug, Clone)]
 struct Drive {
     way: Vec<Point>,
+    /// Whether it leads back, so that the robot need not turn round: belts slide in turns.
+    backwards: bool,
     /// The point that was passed last.
     passed: usize,
     /// The least distance to the end so far, and since when.
     nearest: (f64, f64),
+    /// The heading before, and by how much it has changed on the spot in all.
+    heading: f64,
+    turned: f64,
 }
 
 /// What a [`SummitSearch`] sees at a step.
@@ -121,7 +136,9 @@ const AHEAD: f64 = 0.18;
 /// Metres to the end of a way at which it has arrived.
 const ARRIVED: f64 = 0.04;
 /// Radians beyond which it turns on the spot.
-const ASIDE: f64 = 0.5;
+const ASIDE: f64 = 0.9;
+/// Radians of turning after which it looks around to see where it is: belts slide in turns.
+const UNSURE: f64 = 0.9;
 /// Radians by which a half turn may be missed.
 const ALIGNED: f64 = 0.1;
 /// Seconds without getting nearer after which it does not get on.
@@ -130,14 +147,23 @@ const PATIENCE: f64 = 8.0;
 const TOO_STEEP: f64 = 0.1;
 /// Metres that it backs off.
 const BACK: f64 = 0.15;
-/// Metres within which what was measured before is compared with a look.
-const NEAR: f64 = 1.5;
-/// The fewest comparisons that count.
-const ENOUGH: usize = 60;
+/// Metres within which a look is compared with the map.
+const NEAR: f64 = 4.0;
+/// By how much the inertial unit may be wrong, in radians, before and after it has been calibrated.
+const UNCALIBRATED: f64 = 0.03;
+const CALIBRATED: f64 = 0.002;
 /// Metres that a way has to lead on for the robot to drive it.
 const LEAST_WAY: f64 = 0.1;
+/// Metres to ground from which it can drive on, if it stands beside it.
+const NEXT: f64 = 0.7;
 /// Metres around a place at which a way ends, of which another look from there shows no more.
 const LOST_SIGHT: f64 = 0.15;
+/// Metres from a place from which another look around shows nothing new.
+const VIEW: f64 = 0.4;
+/// Metres from what it is after that belong to it.
+const SAME: f64 = 0.4;
+/// The most ways on the top, each after another look.
+const MOST_APPROACHES: u32 = 8;
 /// The most looks of a search.
 const MOST_LOOKS: u32 = 400;
 
@@ -147,11 +173,15 @@ impl SummitSearch {
         parameters.validate()?;
         Ok(Self {
             map: SightMap::new(parameters.resolution, parameters.extent),
+            lost: false,
+            approaches: 0,
             parameters,
             reckoning: Reckoning::default(),
             state: State::Settling { until: None },
             looks: 0,
-            first_plane: None,
+            first_heading: 0.0,
+            views: Vec::new(),
+            target: None,
             unknown: 0,
             highest: 0.0,
         })
@@ -169,6 +199,11 @@ impl SummitSearch {
     /// Where the robot takes itself to be, from its start, and how far above it.
     pub fn pose(&self) -> (Pose, f64) {
         (self.reckoning.pose, self.reckoning.elevation)
+    }
+
+    /// The errors of roll and pitch of its inertial unit that it has found, in radians.
+    pub fn bias(&self) -> [f64; 2] {
+        self.reckoning.bias
     }
 
     /// How often it has looked around.
@@ -202,68 +237,79 @@ impl SummitSearch {
     /// Takes in a complete look, and decides where to go.
     fn understand(&mut self, time: f64, sweep: &Sweep) -> ControlFlow<SummitOutcome, Twist> {
         self.looks += 1;
-        if self.looks == 1 {
-            self.first_plane = self.by_plane(sweep);
-            let to = self.reckoning.pose.heading + std::f64::consts::PI;
-            self.state = State::Turning { to };
-            return ControlFlow::Continue(Twist::STOP);
+        match self.looks {
+            1 => {
+                self.take_in(sweep);
+                let to = self.reckoning.pose.heading + std::f64::consts::FRAC_PI_2;
+                self.state = State::Turning { to };
+                self.first_heading = self.reckoning.pose.heading;
+                return ControlFlow::Continue(Twist::STOP);
+            }
+            2 => {
+                if let Some(shift) = self.align(sweep, UNCALIBRATED) {
+                    self.calibrate(shift.tilt);
+                }
+                self.map.clear();
+            }
+            MOST_LOOKS => return ControlFlow::Break(SummitOutcome::Stuck),
+            _ => {
+                // What does not lie on the map is not put there; once more, and the map is wrong.
+                let fits = self.align(sweep, CALIBRATED).is_some();
+                if !fits && !self.lost {
+                    self.lost = true;
+                    return ControlFlow::Continue(self.settle());
+                }
+                if !fits {
+                    self.map.clear();
+                }
+            }
         }
-        if self.looks == 2 {
-            self.calibrate(sweep);
-        }
+        self.lost = false;
         self.take_in(sweep);
-        if self.looks > MOST_LOOKS {
-            return ControlFlow::Break(SummitOutcome::Stuck);
-        }
+        self.views.push(self.reckoning.pose.position());
         self.decide(time)
     }
 
-    /// Roll and pitch that the plane of the ground around has by the inertial unit.
-    fn by_plane(&self, sweep: &Sweep) -> Option<Attitude> {
-        let normal = sweep.plane(&self.parameters.lidar, NEAR)?;
-        let level = Attitude { yaw: 0.0, ..sweep.attitude() }.frame().rotate(normal);
-        // The slope of the ground along the robot's heading and to its left.
-        Some(Attitude { pitch: level.x / level.z, roll: level.y / level.z, yaw: self.reckoning.pose.heading })
+    /// Corrects where the robot takes itself to be by what it knows of the ground. `None` if what it sees does not lie on that.
+    fn align(&mut self, sweep: &Sweep, tilt: f64) -> Option<Shift> {
+        let lidar = self.parameters.lidar;
+        let robot = self.reckoning.in_space(sweep.attitude());
+        let near = sweep.fans(&robot, &lidar).flatten().filter(|beam| beam.range < NEAR);
+        let points: Vec<Point3> = near.filter_map(|beam| beam.end()).collect();
+        let shift = align(&self.map, robot.position, &points, tilt)?;
+        let Pose { x, y, heading } = self.reckoning.pose;
+        self.reckoning.pose = Pose::new(x + shift.place.x, y + shift.place.y, heading + shift.turn);
+        self.reckoning.elevation += shift.up;
+        Some(shift)
     }
 
     /// Seen the other way round, the ground is as steep; what is not is the unit's error.
-    fn calibrate(&mut self, sweep: &Sweep) {
-        let (Some(first), Some(second)) = (self.first_plane, self.by_plane(sweep)) else { return };
-        // The first one's slope in the second one's axes.
-        let (sin, cos) = math::sin_cos(angle_difference(second.yaw, first.yaw));
-        let turned = [cos * first.pitch + sin * first.roll, cos * first.roll - sin * first.pitch];
-        let off = [second.pitch - turned[0], second.roll - turned[1]];
-        // An error of the pitch p shows as p along the heading, whichever way that is: once as itself, once turned away. The two
-        // equations (1 - R) e = off.
+    fn calibrate(&mut self, tilt: Vector) {
+        // An error of the attitude is the same in the robot's axes, e, so that by both looks e turned by the first heading and by
+        // the second one differ as the second look is tilted.
+        let heading = self.reckoning.pose.heading;
+        let (sin, cos) = math::sin_cos(angle_difference(heading, self.first_heading));
+        let forward = direction(heading);
+        // The correction along the robot's axes: that of the second look less that of the first one, in the axes of the second.
+        let off = [tilt.dot(&forward), tilt.dot(&Vector::new(-forward.y, forward.x))];
         let (a, b) = (1.0 - cos, -sin);
         let square = a * a + b * b;
-        let along = (a * off[0] - b * off[1]) / square;
+        let ahead = (a * off[0] - b * off[1]) / square;
         let left = (b * off[0] + a * off[1]) / square;
-        self.reckoning.bias = [-left, along];
+        // What is too low ahead was taken for a nose too low.
+        self.reckoning.bias = [-left, ahead];
     }
 
     fn take_in(&mut self, sweep: &Sweep) {
-        let lidar = self.parameters.lidar;
-        let attitude = sweep.attitude();
-        let robot = self.reckoning.in_space(attitude);
-        let mut off = Vec::new();
-        for fan in sweep.fans(&robot, &lidar) {
-            self.map.differences(fan, NEAR, &mut off);
-        }
-        if off.len() >= ENOUGH {
-            off.sort_by(f64::total_cmp);
-            self.reckoning.elevation += off[off.len() / 2];
-        }
-        let robot = self.reckoning.in_space(attitude);
-        for fan in sweep.fans(&robot, &lidar) {
+        let robot = self.reckoning.in_space(sweep.attitude());
+        for fan in sweep.fans(&robot, &self.parameters.lidar) {
             self.map.add_fan(fan);
         }
         self.map.stand(self.reckoning.pose.position(), self.reckoning.elevation);
     }
 
     fn decide(&mut self, time: f64) -> ControlFlow<SummitOutcome, Twist> {
-        let lowest = self.parameters.lowest.unwrap_or(f64::NEG_INFINITY);
-        let mut chart = self.map.chart(&self.parameters.climber, lowest);
+        let mut chart = self.map.chart(&self.parameters);
         let here = self.reckoning.pose.position();
         let Some(start) = self.footing(&mut chart, here) else {
             return ControlFlow::Break(SummitOutcome::Stuck);
@@ -273,41 +319,56 @@ impl SummitSearch {
             let level = self.height(top);
             self.highest = level;
             let higher = self.map.higher(&chart, start, level + self.parameters.tolerance);
-            self.unknown = higher.len();
+            self.unknown = higher.iter().map(Vec::len).sum();
             // The view is better from above.
-            let climbs = level > self.reckoning.elevation + 4.0 * self.parameters.tolerance;
-            if climbs || higher.is_empty() {
-                let way = self.way_over(&chart.safe, &chart, start, top);
-                let near = way.as_ref().is_none_or(|way| length(way) <= 1.5 * self.parameters.resolution);
-                if near && higher.is_empty() {
-                    return ControlFlow::Break(SummitOutcome::Highest);
-                }
-                if let Some(way) = way.filter(|_| !near) {
-                    return ControlFlow::Continue(self.drive(time, &way, !higher.is_empty()));
-                }
+            let (above, place) = (level - self.reckoning.elevation, self.map.place(top));
+            let new = self.views.iter().all(|view| (view - place).norm() > VIEW);
+            let climbs = new && above > 4.0 * self.parameters.tolerance;
+            if higher.is_empty() {
+                return self.approach(time, &chart, start, top);
             }
-            let nearest = |a: &&GridCell, b: &&GridCell| {
-                let away = |cell: &GridCell| (self.map.place(*cell) - here).norm_squared();
-                away(a).total_cmp(&away(b))
-            };
-            let Some(&target) = higher.iter().min_by(nearest) else {
+            if climbs && let Some(way) = self.way_over(&chart.safe, &chart, start, top) {
+                return ControlFlow::Continue(self.drive(time, &way));
+            }
+            let Some(target) = self.next_target(&higher, here) else {
                 return ControlFlow::Break(SummitOutcome::Highest);
             };
+            self.target = Some(self.map.place(target));
             let Some(way) = self.way_over(&chart.perhaps, &chart, start, target) else {
                 return ControlFlow::Break(SummitOutcome::Stuck);
             };
             let known = self.known_part(&chart, &way);
             if length(known) > LEAST_WAY {
-                return ControlFlow::Continue(self.drive(time, known, true));
+                return ControlFlow::Continue(self.drive(time, known));
             }
             // It has looked from here, and does not see that it could go on: nor will it.
             let beyond = way[known.len().min(way.len() - 1)];
             self.map.shun(beyond, LOST_SIGHT);
-            chart = self.map.chart(&self.parameters.climber, lowest);
+            chart = self.map.chart(&self.parameters);
             if self.footing(&mut chart, here).is_none() {
                 return ControlFlow::Break(SummitOutcome::Stuck);
             }
         }
+    }
+
+    /// What to see next: what it has been after, while there is something left of it, or else the patch that is large for its
+    /// distance.
+    fn next_target(&self, patches: &[Vec<GridCell>], here: Point) -> Option<GridCell> {
+        let nearest = |cells: &[GridCell], to: Point| {
+            let away = |cell: GridCell| (self.map.place(cell) - to).norm();
+            let cells = cells.iter().map(|&cell| (away(cell), cell));
+            cells.min_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let same = self.target.and_then(|target| {
+            let cells = patches.iter().filter_map(|patch| nearest(patch, target));
+            cells.filter(|(away, _)| *away < SAME).min_by(|a, b| a.0.total_cmp(&b.0))
+        });
+        let worth = |patch: &Vec<GridCell>| {
+            let (away, cell) = nearest(patch, here)?;
+            Some((patch.len() as f64 / (away + SAME), cell))
+        };
+        let best = || patches.iter().filter_map(worth).max_by(|a, b| a.0.total_cmp(&b.0));
+        same.or_else(best).map(|(_, cell)| cell)
     }
 
     /// The cell on which the robot stands, or the nearest one from which it can drive; where it stands counts as safe.
@@ -316,7 +377,7 @@ impl SummitSearch {
         if chart.safe.is_free(cell) {
             return Some(cell);
         }
-        let reach = (0.3 / self.parameters.resolution) as isize;
+        let reach = (NEXT / self.parameters.resolution) as isize;
         let mut free = Vec::new();
         for (dx, dy) in (-reach..=reach).flat_map(|dx| (-reach..=reach).map(move |dy| (dx, dy))) {
             let near = GridCell::new(cell.column.wrapping_add_signed(dx), cell.row.wrapping_add_signed(dy));
@@ -372,10 +433,37 @@ impl SummitSearch {
         cut(&way[..known], self.parameters.stride)
     }
 
-    fn drive(&mut self, time: f64, way: &[Point], looks: bool) -> Twist {
-        // On its way up a robot looks around as well, but not at the end of a search.
-        let way = if looks { cut(way, 2.0 * self.parameters.stride) } else { way }.to_vec();
-        self.state = State::Driving(Drive { way, passed: 0, nearest: (f64::INFINITY, time) });
+    /// The last part of a search: to the highest place, until it is no more than the map's errors away.
+    fn approach(
+        &mut self,
+        time: f64,
+        chart: &Chart,
+        start: GridCell,
+        top: GridCell,
+    ) -> ControlFlow<SummitOutcome, Twist> {
+        let way = self.way_over(&chart.safe, chart, start, top).unwrap_or_default();
+        let gain = self.height(top) - self.reckoning.elevation;
+        let there = length(&way) <= 1.5 * self.parameters.resolution || gain < 0.5 * self.parameters.tolerance;
+        if there || self.approaches >= MOST_APPROACHES {
+            return ControlFlow::Break(SummitOutcome::Highest);
+        }
+        // Ways that end on the top, not those that lead to it.
+        self.approaches += u32::from(length(&way) < self.parameters.stride);
+        ControlFlow::Continue(self.drive(time, &way))
+    }
+
+    fn drive(&mut self, time: f64, way: &[Point]) -> Twist {
+        let way = cut(way, 2.0 * self.parameters.stride).to_vec();
+        let ahead = way.iter().find(|point| self.reckoning.pose.distance_to(**point) > AHEAD);
+        let bearing = ahead.map_or(0.0, |&point| self.reckoning.pose.bearing_to(point));
+        self.state = State::Driving(Drive {
+            way,
+            backwards: bearing.abs() > std::f64::consts::FRAC_PI_2,
+            passed: 0,
+            nearest: (f64::INFINITY, time),
+            heading: self.reckoning.pose.heading,
+            turned: 0.0,
+        });
         Twist::STOP
     }
 
@@ -395,19 +483,27 @@ impl SummitSearch {
         let too_steep = turned.frame().tilt() > self.parameters.climber.slope + TOO_STEEP;
         let lost = time - drive.nearest.1 > PATIENCE + 4.0 * length(&drive.way) / self.parameters.speed;
         if too_steep || lost {
-            let ahead = pose.position() + direction(pose.heading) * AHEAD;
+            let sign = if drive.backwards { -1.0 } else { 1.0 };
+            let ahead = pose.position() + direction(pose.heading) * (sign * AHEAD);
             self.map.shun(ahead, 0.1);
-            self.state = State::BackingOff { from: pose.position() };
+            self.state = State::BackingOff { from: pose.position(), sign };
             return Some(Twist::STOP);
         }
         while drive.passed + 1 < drive.way.len() && pose.distance_to(drive.way[drive.passed]) < AHEAD {
             drive.passed += 1;
         }
-        let bearing = angle_difference(pose.bearing_to(drive.way[drive.passed]), 0.0);
+        let sign = if drive.backwards { -1.0 } else { 1.0 };
+        let aside = pose.bearing_to(drive.way[drive.passed]);
+        let bearing = if drive.backwards { normalize_angle(aside + std::f64::consts::PI) } else { aside };
+        drive.turned += angle_difference(pose.heading, drive.heading).abs();
+        drive.heading = pose.heading;
+        if drive.turned > UNSURE && bearing.abs() < 0.3 * ASIDE {
+            return None;
+        }
         let SummitParameters { speed, turn_rate, .. } = self.parameters;
         let turn = (2.0 * bearing).clamp(-turn_rate, turn_rate);
         let fast = speed.min(0.03 + 0.8 * rest);
-        Some(if bearing.abs() > ASIDE { Twist::new(0.0, turn) } else { Twist::new(fast * math::cos(bearing), turn) })
+        Some(if bearing.abs() > ASIDE { Twist::new(0.0, turn) } else { Twist::new(sign * fast * math::cos(bearing), turn) })
     }
 }
 
@@ -444,7 +540,7 @@ impl Behaviour for SummitSearch {
             let found = format!("{:?} {:?}", seen.odometry, seen.attitude);
             return Err(Error::invalid_input("observed pose", found, "finite numbers"));
         }
-        self.reckoning.update(seen.odometry, seen.attitude);
+        self.reckoning.update(seen.odometry, seen.attitude, self.parameters.slide);
         let go_on = |twist| Ok(ControlFlow::Continue(twist));
         match &mut self.state {
             State::Settling { until } => {
@@ -475,11 +571,11 @@ impl Behaviour for SummitSearch {
                 let twist = next.unwrap_or_else(|| self.settle());
                 go_on(twist)
             }
-            State::BackingOff { from } => {
+            State::BackingOff { from, sign } => {
                 if self.reckoning.pose.distance_to(*from) > BACK {
                     return go_on(self.settle());
                 }
-                go_on(Twist::new(-0.5 * self.parameters.speed, 0.0))
+                go_on(Twist::new(-0.5 * *sign * self.parameters.speed, 0.0))
             }
         }
     }

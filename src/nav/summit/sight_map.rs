@@ -1,6 +1,7 @@
+use super::parameters::SummitParameters;
 use super::sweep::Beam;
-use crate::geometry::{Aabb, Point, Point3, Vector};
-use crate::nav::elevation::{Climber, ElevationMap};
+use crate::geometry::{Aabb, Point, Point3, Vector, math};
+use crate::nav::elevation::ElevationMap;
 use crate::nav::grid::GridComponents;
 use crate::world::{BitGrid, GridCell, HeightField};
 
@@ -27,7 +28,7 @@ const FAR: f64 = 1.0;
 /// Metres beyond the last return that a beam shows to be no ground.
 const REACH: f64 = 9.5;
 /// The weight from which a cell is known well enough to compare with.
-const KNOWN: f64 = 1.0;
+const KNOWN: f64 = 0.15;
 
 /// The map as the robot plans on it.
 #[derive(Debug)]
@@ -37,7 +38,22 @@ pub(super) struct Chart {
     pub(super) safe: BitGrid,
     /// Where it could drive at best.
     pub(super) perhaps: BitGrid,
+    /// The elevation of each cell, or the most that it can be where the robot can drive.
+    pub(super) potential: Vec<f64>,
 }
+
+/// Elevations of all cells, which of them are known, and how many cells the others are away from such.
+struct Filled {
+    heights: Vec<f32>,
+    known: Vec<bool>,
+    away: Vec<u16>,
+}
+
+/// Square metres of a patch that is worth a look.
+const PATCH: f64 = 0.04;
+/// Metres below what a slope could lead to that are a drop, and metres that the robot keeps from one beside its own size.
+const DROP: f64 = 0.04;
+const CAUTION: f64 = 0.2;
 
 impl SightMap {
     pub(super) fn new(resolution: f64, extent: f64) -> Self {
@@ -78,20 +94,26 @@ impl SightMap {
         (weight > 0.0).then_some(height)
     }
 
-    /// The most that the elevation of a cell can be, or what it is.
-    pub(super) fn potential(&self, index: usize) -> f64 {
-        self.height(index).unwrap_or(self.ceilings[index])
+    /// Elevation and gradient at a place all around which the ground has been seen.
+    pub(super) fn surface(&self, place: Point) -> Option<(f64, Vector)> {
+        let cell = self.cell_at(place)?;
+        let inside = |at: usize| at > 0 && at + 1 < self.side;
+        if !inside(cell.column) || !inside(cell.row) {
+            return None;
+        }
+        let index = self.index_of(cell);
+        let known = |index: usize| (self.seen[index].0 >= KNOWN).then(|| self.seen[index].1);
+        let (middle, width) = (known(index)?, 2.0 * self.resolution);
+        let rise = Vector::new(
+            (known(index + 1)? - known(index - 1)?) / width,
+            (known(index + self.side)? - known(index - self.side)?) / width,
+        );
+        Some((middle + rise.dot(&(place - self.place(cell))), rise))
     }
 
-    /// By how much what is well known lies above where a fan's beams end, each within some metres.
-    pub(super) fn differences(&self, beams: impl Iterator<Item = Beam>, within: f64, into: &mut Vec<f64>) {
-        for end in beams.filter(|beam| beam.range < within).filter_map(|beam| beam.end()) {
-            if let Some((weight, height)) = self.index(end.xy()).map(|index| self.seen[index])
-                && weight >= KNOWN
-            {
-                into.push(height - end.z);
-            }
-        }
+    /// Forgets all that was seen.
+    pub(super) fn clear(&mut self) {
+        *self = Self::new(self.resolution, self.extent);
     }
 
     /// Takes in the beams of one azimuth, from the lowest tilt up.
@@ -165,14 +187,16 @@ impl SightMap {
     }
 
     /// Where the robot can drive, and where it perhaps can.
-    pub(super) fn chart(&self, climber: &Climber, lowest: f64) -> Chart {
-        let (heights, known) = self.filled();
+    pub(super) fn chart(&self, parameters: &SummitParameters) -> Chart {
+        let climber = &parameters.climber;
+        let lowest = parameters.lowest.unwrap_or(f64::NEG_INFINITY);
+        let Filled { heights, known, away } = self.filled();
         let corner = Point::new(self.extent, self.extent);
         let area = Aabb::new(-corner, corner);
         let field = HeightField::new(self.side, self.side, area, heights).expect("a map of finite heights");
         let elevation = ElevationMap::new(&field, climber).expect("parameters that have been checked");
         let reach = (climber.radius / self.resolution).round() as usize;
-        let covered = eroded(&known, self.side, reach);
+        let covered = eroded(&known, self.side, reach + 1);
         let grid = |is_free: &dyn Fn(usize) -> bool| {
             let side = self.side;
             BitGrid::from_fn(side, side, |x, y| is_free(y * side + x)).expect("a map's cells")
@@ -182,19 +206,36 @@ impl SightMap {
             let cell = GridCell::new(index % self.side, index / self.side);
             elevation.open().is_free(cell) && dry(index) && !self.shunned[index]
         };
-        let safe = grid(&|index| covered[index] && open(index));
-        let perhaps = grid(&|index| !self.shunned[index] && (!covered[index] || open(index)));
-        Chart { elevation, safe, perhaps }
+        // What lies lower than a slope could lead to that the robot can drive.
+        let steepest = math::tan(climber.slope) * self.resolution;
+        let drops = |index: usize| {
+            let least = f64::from(field_height(&field, index)) - steepest * f64::from(away[index]) - DROP;
+            !known[index] && self.ceilings[index] < least
+        };
+        let fenced = |index: usize| {
+            let place = self.place(GridCell::new(index % self.side, index / self.side));
+            parameters.fence.is_none_or(|fence| fence.holds(place))
+        };
+        let holds: Vec<bool> = (0..known.len()).map(|index| fenced(index) && !drops(index)).collect();
+        let far_from_drops = eroded(&holds, self.side, reach + (CAUTION / self.resolution).round() as usize);
+        let safe = grid(&|index| covered[index] && far_from_drops[index] && open(index));
+        let perhaps = grid(&|index| !self.shunned[index] && holds[index] && (!covered[index] || open(index)));
+        let potential = (0..known.len()).map(|index| {
+            let slope = f64::from(field_height(&field, index)) + steepest * f64::from(away[index]) + DROP;
+            self.height(index).unwrap_or_else(|| self.ceilings[index].min(slope))
+        });
+        Chart { elevation, safe, perhaps, potential: potential.collect() }
     }
 
     /// Elevations of all cells, and which of them have been seen or lie in small gaps between such. Where nothing is known, the
     /// ground goes on as it is at the nearest known place.
-    fn filled(&self) -> (Vec<f32>, Vec<bool>) {
+    fn filled(&self) -> Filled {
         let mut known: Vec<bool> = self.seen.iter().map(|(weight, _)| *weight > 0.0).collect();
         let mut heights: Vec<f32> = self.seen.iter().map(|(_, height)| *height as f32).collect();
         let mut filled = known.clone();
         let mut edge: Vec<usize> = (0..filled.len()).filter(|&index| filled[index]).collect();
-        for round in 0.. {
+        let mut away = vec![0; filled.len()];
+        for round in 1.. {
             let mut next: Vec<usize> =
                 edge.iter().flat_map(|&index| self.neighbours(index)).filter(|&index| !filled[index]).collect();
             next.sort_unstable();
@@ -211,13 +252,13 @@ impl SightMap {
                 })
                 .collect();
             for &(index, height, around) in &values {
-                (heights[index], filled[index]) = (height, true);
+                (heights[index], filled[index], away[index]) = (height, true, round);
                 // A gap of a cell or two is no gap.
-                known[index] |= round < 2 && around >= 5;
+                known[index] |= round <= 2 && around >= 5;
             }
             edge = next;
         }
-        (heights, known)
+        Filled { heights, known, away }
     }
 
     fn neighbours(&self, index: usize) -> impl Iterator<Item = usize> + use<> {
@@ -227,18 +268,27 @@ impl SightMap {
             .filter(move |&near| near != index)
     }
 
-    /// The cells that may be higher than a level and may be reached from a cell, in patches and not one by one.
-    pub(super) fn higher(&self, chart: &Chart, from: GridCell, level: f64) -> Vec<GridCell> {
+    /// The cells that may be higher than a level and may be reached from a cell, in patches that are worth a look.
+    pub(super) fn higher(&self, chart: &Chart, from: GridCell, level: f64) -> Vec<Vec<GridCell>> {
         let perhaps = GridComponents::new(&chart.perhaps);
         let safe = GridComponents::new(&chart.safe);
         let is_higher = |index: usize| {
             let cell = GridCell::new(index % self.side, index / self.side);
-            self.potential(index) > level && perhaps.connected(from, cell) && !safe.connected(from, cell)
+            chart.potential[index] > level && perhaps.connected(from, cell) && !safe.connected(from, cell)
         };
-        let flags: Vec<bool> = (0..self.seen.len()).map(is_higher).collect();
-        let patch = |&index: &usize| flags[index] && self.neighbours(index).filter(|&near| flags[near]).count() >= 6;
-        let cells = (0..flags.len()).filter(patch);
-        cells.map(|index| GridCell::new(index % self.side, index / self.side)).collect()
+        let side = self.side;
+        let cells = BitGrid::from_fn(side, side, |x, y| is_higher(y * side + x)).expect("a map's cells");
+        let patches = GridComponents::new(&cells);
+        let sizes = patches.sizes();
+        let least = (PATCH / (self.resolution * self.resolution)) as usize;
+        let mut list = vec![Vec::new(); patches.count()];
+        for cell in cells.free_cells() {
+            if let Some(patch) = patches.region(cell).filter(|&patch| sizes[patch] >= least) {
+                list[patch].push(cell);
+            }
+        }
+        list.retain(|patch| !patch.is_empty());
+        list
     }
 }
 

@@ -71,20 +71,4 @@ impl Sweep {
             })
         })
     }
-
-    /// The normal of the plane through what is near, in the robot's frame.
-    pub(super) fn plane(&self, lidar: &Pose3, reach: f64) -> Option<Vector3> {
-        let near = self.rings.iter().flatten().filter(|(_, range)| *range < reach);
-        let points: Vec<Vector3> = near.map(|(own, range)| lidar.position.coords + own * *range).collect();
-        let count = points.len() as f64;
-        let middle = points.iter().sum::<Vector3>() / count;
-        let spread = points.iter().map(|point| (point - middle) * (point - middle).transpose());
-        let moments: nalgebra::Matrix3<f64> = spread.sum();
-        let (xx, xy, yy) = (moments.m11, moments.m12, moments.m22);
-        let (xz, yz) = (moments.m13, moments.m23);
-        let determinant = xx * yy - xy * xy;
-        let slope = [(xz * yy - yz * xy) / determinant, (yz * xx - xz * xy) / determinant];
-        let good = points.len() > 50 && slope.iter().all(|part| part.is_finite());
-        good.then(|| Vector3::new(-slope[0], -slope[1], 1.0).normalize())
-    }
 }

@@ -113,7 +113,7 @@ struct Hill {
 impl Hill {
     fn draw(stream: &mut Stream, options: &ReliefOptions, mesa: bool) -> Self {
         let ReliefOptions { side, top, slope, .. } = *options;
-        let middle = Point::new(stream.between(0.15, 0.85) * side, stream.between(0.15, 0.85) * side);
+        let middle = Point::new(stream.between(0.2, 0.8) * side, stream.between(0.2, 0.8) * side);
         let height = stream.between(0.35, 1.0) * top;
         // The side of a bell is 0.61 times its height over its width at the steepest.
         let steepness = math::tan(slope) * if mesa { 3.0 } else { stream.between(0.5, 1.4) };
@@ -155,7 +155,7 @@ fn ground_of(world: &World) -> &HeightField {
 /// Places drawn for a start.
 const DRAWN: usize = 200;
 /// The share of the side that a start is away from the border.
-const INSIDE: f64 = 0.08;
+const INSIDE: f64 = 0.12;
 
 /// The lowest of some places near the border whose surroundings are gentle; a way to look that is drawn too.
 fn low_start(stream: &mut Stream, options: &ReliefOptions, ground: &HeightField) -> Pose {
