@@ -10,8 +10,8 @@ use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
 use roverlab::drive::{
     AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters, Goal,
     LidarWallFollower, LidarWallFollowerParameters, Method, OmniDriver, OmniParameters, OmniTracker,
-    PidWallFollower, PidWallFollowerParameters, RandomDrive, RandomDriveParameters, TwoLevelWallFollower,
-    WallFollower, WallFollowerParameters,
+    PidWallFollower, PidWallFollowerParameters, RandomDrive, RandomDriveParameters, Tour, TourParameters,
+    TwoLevelWallFollower, WallFollower, WallFollowerParameters,
 };
 use roverlab::evolve::Gait;
 use roverlab::geometry::{Point, Pose, Twist};
@@ -54,7 +54,7 @@ where
     Ok(format!("{outcome:?}"))
 }
 
-const CASES: [Case; 26] = [
+const CASES: [Case; 27] = [
     ("turn", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Turn, robot, limit, stop)),
     ("spline", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Spline, robot, limit, stop)),
     ("by another estimate", RobotSpec::s4, |robot, limit, stop| {
@@ -76,6 +76,10 @@ const CASES: [Case; 26] = [
         let driver = OmniDriver::new(Omni::mecanum(0.2, 0.2).unwrap(), 0.5).unwrap();
         let tracker = OmniTracker::new(Pose::default(), &[GOAL], OmniParameters::default())?;
         driven(robot, &mut tracker.by(driver), limit, stop)
+    }),
+    ("tour", RobotSpec::s4, |robot, limit, stop| {
+        let corners = [START.position(), Point::new(5.0, 5.0), Point::new(1.0, 5.0)];
+        driven(robot, &mut Tour::new(&corners, TourParameters::default())?, limit, stop)
     }),
     ("wall", RobotSpec::s4, |robot, limit, stop| {
         let follower = WallFollower::new(WallFollowerParameters::default())?;

@@ -1,31 +1,21 @@
-//! Puts the parts of a picture on a page.
+//! Assembles the parts of a picture on a page.
 
 use svg::Document;
 use svg::node::element::{ClipPath, Definitions, Group};
 
 use super::canvas::{FONTS, number, rectangle};
 use super::colours::PAGE;
-use super::decorations::{SCALE_HEIGHT, heading, pace, scale_bar, title_width};
+use super::decorations::{heading, pace, scale_bar, title_width};
 use super::film::Film;
-use super::frame::{Frame, Pixel};
+use super::frame::{Frame, GAP, Pixel};
 use super::items::{Figure, Item, Picture, is_finite};
 use super::legend::{Arrangement, Legend};
 use super::lines::{self, Path};
 use super::{Mark, names, robots, scenery};
 use crate::geometry::{Aabb, Point, Vector};
 
-/// Pixels round the plot.
-const MARGIN: f64 = 20.0;
-/// Pixels between plot and legend.
-const GUTTER: f64 = 20.0;
-/// Pixels of the page's width at least, for titles.
-const NARROWEST_PAGE: f64 = 340.0;
-/// Pixels of the page's width at most.
-const WIDEST_PAGE: f64 = 600.0;
-/// Beside a plot narrower than this, and not below it, stands the legend.
-const NARROW_PLOT: f64 = 300.0;
-/// Pixels around the world where paths still show.
-const BLEED: f64 = 10.0;
+/// Pixels that a title has at least. Beside a narrower plot, and not below it, stands the legend.
+const NARROW: f64 = 300.0;
 /// The name of the outline beyond which nothing is drawn.
 const CLIP: &str = "frame";
 
@@ -35,8 +25,8 @@ impl Picture {
         page(&self.at(self.duration()), None)
     }
 
-    /// The picture as an SVG document that moves, again and again: at the run's pace if that takes no longer than some
-    /// seconds, and faster otherwise. Where nothing moves, it is the still one.
+    /// The picture as an animated SVG document in an endless loop: at the run's pace for up to 14 seconds,
+    /// faster otherwise. Still if nothing moves.
     pub fn to_moving_svg(&self) -> String {
         match Film::of(self.duration()) {
             Some(film) => page(self, Some(&film)),
@@ -44,7 +34,7 @@ impl Picture {
         }
     }
 
-    /// The highest speed along the paths that are coloured by it, in metres per second.
+    /// Highest speed along the paths coloured by speed (m/s).
     pub(super) fn top_speed(&self) -> f64 {
         let speeds = self.items.iter().filter_map(|item| match &item.figure {
             Figure::Line { speeds, .. } => Some(speeds),
@@ -58,25 +48,25 @@ fn page(picture: &Picture, film: Option<&Film>) -> String {
     let region = picture.region();
     let wide = Frame::around(region, Pixel::origin()).pixels().size().x;
     let legend = Legend::of(picture);
-    let below = if picture.to_scale || film.is_some() { SCALE_HEIGHT } else { 0.0 };
-    let beside = wide < NARROW_PLOT && !legend.is_empty();
+    let below = if picture.to_scale || film.is_some() { 1.5 * GAP } else { 0.0 };
+    let beside = wide < NARROW && !legend.is_empty();
     let (arrangement, wanted) = if beside {
-        (Arrangement::Column, wide + GUTTER + legend.size(Arrangement::Column).x)
+        (Arrangement::Column, wide + GAP + legend.size(Arrangement::Column).x)
     } else {
-        (Arrangement::Rows(wide.max(NARROWEST_PAGE)), wide)
+        (Arrangement::Rows(wide.max(NARROW)), wide)
     };
-    let room = wanted.max(title_width(picture)).clamp(NARROWEST_PAGE, WIDEST_PAGE);
-    let (heading, height) = heading(picture, Pixel::new(MARGIN, MARGIN), room);
-    let frame = Frame::around(region, Pixel::new(MARGIN, MARGIN + height));
+    let room = wanted.max(title_width(picture)).clamp(NARROW, Frame::WIDEST);
+    let (heading, height) = heading(picture, Pixel::new(GAP, GAP), room);
+    let frame = Frame::around(region, Pixel::new(GAP, GAP + height));
     let plot = frame.pixels();
     let corner = if beside {
-        Pixel::new(plot.max.x + GUTTER, plot.min.y)
+        Pixel::new(plot.max.x + GAP, plot.min.y)
     } else {
         Pixel::new(plot.min.x, plot.max.y + below + 5.0)
     };
     let extent = if legend.is_empty() { Vector::zeros() } else { legend.size(arrangement) };
     let bottom = (plot.max.y + below).max(corner.y + extent.y);
-    let size = Vector::new((corner.x + extent.x - MARGIN).max(room) + 2.0 * MARGIN, bottom + 0.75 * MARGIN);
+    let size = Vector::new((corner.x + extent.x - GAP).max(room) + 2.0 * GAP, bottom + 0.75 * GAP);
     let mut text = Group::new().add(heading).add(legend.draw(corner, arrangement));
     if picture.to_scale {
         text = text.add(scale_bar(&frame));
@@ -98,11 +88,11 @@ fn page(picture: &Picture, film: Option<&Film>) -> String {
 }
 
 fn clip(plot: &Aabb) -> Definitions {
-    let outline = rectangle(plot.inflated(BLEED), PAGE);
+    let outline = rectangle(plot.inflated(0.5 * GAP), PAGE);
     Definitions::new().add(ClipPath::new().set("id", CLIP).add(outline))
 }
 
-/// What lies above what.
+/// Drawing order from the bottom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Layer {
     Areas,
@@ -126,7 +116,7 @@ impl Layer {
     }
 }
 
-/// Everything that is drawn to scale, from the floor up.
+/// Everything drawn to scale, from the floor up.
 fn plotted(picture: &Picture, frame: &Frame, film: Option<&Film>) -> Group {
     let top = picture.top_speed();
     let layer = |layer: Layer| {
@@ -145,7 +135,7 @@ fn plotted(picture: &Picture, frame: &Frame, film: Option<&Film>) -> Group {
     above.into_iter().fold(group, |group, above| group.add(layer(above)))
 }
 
-/// One item; the highest speed of all, and the item's number, which names what belongs to it.
+/// One item. `top` is the highest speed of the picture; the item's number names its mask.
 fn draw(
     picture: &Picture,
     item: &Item,
@@ -180,10 +170,10 @@ fn draw(
     }
 }
 
-/// The radius of a ring around a robot that ends near a place, in pixels; 0 if there is none.
+/// Radius in pixels of a ring around a robot that ends near a place; 0 without one.
 fn around(picture: &Picture, place: Point, frame: &Frame) -> f64 {
     let near = picture.items.iter().filter_map(|item| match &item.figure {
-        // Pale ones show where a robot was, or will be.
+        // Pale robots show former or future poses.
         Figure::Robot { poses, footprint } if item.style.opacity >= 1.0 => {
             let (_, pose) = poses.last()?;
             let (off, reach) = (pose.distance_to(place), footprint.bounding_radius());

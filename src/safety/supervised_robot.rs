@@ -1,4 +1,4 @@
-//! What a supervised robot does for a program: the commands that reach the wheels, and the readings that are looked at.
+//! The robot traits of [`Supervised`]: commands are filtered, readings are checked.
 
 use image::RgbImage;
 
@@ -14,7 +14,7 @@ use crate::io::{
 };
 use crate::world::Colour;
 
-/// Capabilities that drive nothing and tell nothing of the surroundings: calls take time all the same.
+/// Traits that neither drive nor sense the surroundings; their calls still take time.
 macro_rules! passed_on {
     ($capability:ident { $( fn $name:ident($($arg:ident: $type:ty),*) -> $result:ty; )* }) => {
         impl<R: Clock + Drive + Odometry + $capability, S: Station> $capability for Supervised<R, S> {
@@ -38,7 +38,7 @@ impl<R: Clock + Drive + Odometry + Keys, S: Station> Keys for Supervised<R, S> {
         self.inner.read_key()
     }
 
-    /// Asks once in every control period, and looks.
+    /// Polls once per control period, and runs the checks.
     fn wait_key(&mut self) -> Result<Key> {
         loop {
             if let Some(key) = self.read_key()? {
@@ -171,7 +171,7 @@ impl<R: Clock + Drive + Odometry + Manoeuvres + StallDetector, S: Station> Manoe
     }
 
     fn wait_done(&mut self) -> Result<()> {
-        // A manoeuvre that stopped is none that runs: what brakes is a speed.
+        // After a stop no manoeuvre is active: the brakes use a speed command.
         while !self.inner.is_done()? && !self.inner.is_stalled()? && self.core.state().lets_drive() {
             self.wait(self.parameters.period)?;
         }

@@ -7,6 +7,13 @@ use crate::geometry::{Aabb, Point3, Pose3};
 use crate::parameter::{require, require_finite, require_not_negative, require_positive};
 
 /// A description of a robot: its drive, outline and sensors. EyeSim's `.robi`.
+///
+/// ```
+/// use roverlab::world::{Footprint, RobotSpec};
+/// let mut robot = RobotSpec { name: "wide".into(), ..RobotSpec::s4() };
+/// robot.footprint = Footprint::Disc { radius: 0.2 };
+/// assert_eq!((robot.footprint.bounding_radius(), robot.validate().is_ok()), (0.2, true));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobotSpec {
     /// The name under which scenes place it.

@@ -5,6 +5,12 @@ use crate::parameter::require;
 ///
 /// `NoiseModel::real()` is noise factor 1 of every example and campaign; [`scaled`](NoiseModel::scaled) multiplies
 /// all of it. Drive errors are drawn once for a robot, slip at every step, range errors at every reading.
+///
+/// ```
+/// use roverlab::io::sim::NoiseModel;
+/// assert_eq!(NoiseModel::real().scaled(0.0), NoiseModel::ideal());
+/// assert_eq!(NoiseModel::real().scaled(2.0).range, 2.0 * NoiseModel::real().range);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoiseModel {
     /// Relative error of both wheels' diameters together.

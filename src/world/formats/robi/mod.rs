@@ -56,6 +56,15 @@
 //! | `lidar_range MM` | how far the lidar sees |
 //! | `inertial` and 3, 6 or 9 channels | an inertial unit: which channels of `ANALOGRead` tell roll, pitch and yaw, the turn rates, and the accelerations, each about or along forward, left, up: [`InertialSpec`](crate::world::InertialSpec); 0 0 0 for what it does not measure |
 //! | `camera_view DEG` | the camera's horizontal field of view |
+//!
+//! ```
+//! use roverlab::world::formats::robi;
+//! let text = "drive DIFFERENTIAL_DRIVE\nname Tiny\nwheel 54 3600 1100 45\npsd 1 FRONT 50 0 20 0 0 0\n";
+//! let spec = robi::parse(text, "tiny.robi")?.value;
+//! assert_eq!((spec.name.as_str(), spec.psds.len()), ("Tiny", 1));
+//! assert_eq!(robi::parse(&robi::print(&spec), "tiny.robi")?.value, spec);
+//! # Ok::<(), roverlab::world::formats::FormatError>(())
+//! ```
 
 mod mounts;
 mod parts;
