@@ -32,7 +32,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (truth, end) = (simulation.truth().robot(0)?, simulation.truth().pose_in_space(0)?);
     let below = |height: f64| units::to_mm(top.z - height);
     let (looks, length, height) = (search.looks(), truth.path_length, end.position.z);
-    println!("search: {outcome} after {looks} looks and {length:.1} m, {:.0} mm below the summit", below(height));
+    println!(
+        "search: {outcome} after {looks} looks and {length:.1} m, {:.0} mm below the summit",
+        below(height)
+    );
     assert_eq!(outcome, SummitOutcome::Highest);
     assert!(below(height) < 15.0 && simulation.truth().mishap(0)?.is_none());
 
@@ -45,7 +48,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let mut picture = Picture::new(&range.world);
     picture.title("To the highest place that can be reached");
-    let path = |trail: &[roverlab::io::TrailPoint]| trail.iter().map(|at| at.pose.position()).collect::<Vec<_>>();
+    let path =
+        |trail: &[roverlab::io::TrailPoint]| trail.iter().map(|at| at.pose.position()).collect::<Vec<_>>();
     picture.line(path(&alone.trail), Style::odometry().labelled("steepest ascent"));
     picture.true_path(path(&truth.trail)).robot(truth.pose, &spec.footprint);
     picture.mark(Mark::Start, range.start.position()).mark(Mark::Goal, top.xy());

@@ -91,7 +91,8 @@ impl Tracked {
     pub fn downhill_drift(&self) -> f64 {
         let half = 0.5 * self.equivalent().track;
         let slides = self.places(1.0).map(|place| math::hypot(half - place.y, place.x));
-        let (sum, count) = slides.fold((0.0, 0.0), |(sum, count), slide| (sum + 1.0 / slide.max(1e-6), count + 1.0));
+        let (sum, count) =
+            slides.fold((0.0, 0.0), |(sum, count), slide| (sum + 1.0 / slide.max(1e-6), count + 1.0));
         // A pull along the slide meets no more than friction anyway: of the two directions one yields.
         2.0 * count / sum
     }

@@ -123,7 +123,8 @@ fn patch_colour(
     row: usize,
 ) -> (u8, u8, u8) {
     let [a, b, c, d] = raster.patch(column, row);
-    let rise = Vector::new((b + c - a - d) / raster.size.x, (c + d - a - b) / raster.size.y) * (0.5 * EXAGGERATION);
+    let rise =
+        Vector::new((b + c - a - d) / raster.size.x, (c + d - a - b) / raster.size.y) * (0.5 * EXAGGERATION);
     let normal = Vector3::new(-rise.x, -rise.y, 1.0).normalize();
     // From the upper left, halfway up.
     let light = Vector3::new(-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2).dot(&normal);
@@ -133,7 +134,11 @@ fn patch_colour(
     let shade = (light.clamp(0.0, 1.0) * SHADES).round() / SHADES;
     let ground = mix(FLOOR, HILL, 0.15 + 0.7 * tint);
     // On level ground the light is 0.71, which leaves the tint as it is.
-    let lit = if shade > 0.7 { mix(ground, Colour::WHITE, 1.2 * (shade - 0.7)) } else { mix(ground, INK, 0.75 * (0.7 - shade)) };
+    let lit = if shade > 0.7 {
+        mix(ground, Colour::WHITE, 1.2 * (shade - 0.7))
+    } else {
+        mix(ground, INK, 0.75 * (0.7 - shade))
+    };
     let lit = if water.is_some_and(|level| middle < level) { mix(WATER, lit, 0.25) } else { lit };
     (lit.red, lit.green, lit.blue)
 }

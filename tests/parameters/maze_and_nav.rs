@@ -6,9 +6,7 @@ use roverlab::maze::{
     TrajectoryTrackerParameters,
 };
 use roverlab::nav::elevation::{Climber, ElevationMap, ElevationPlanner, Objective};
-use roverlab::nav::{
-    BugParameters, DistBug, Navigator, NavigatorParameters, SummitParameters, SummitSearch,
-};
+use roverlab::nav::{BugParameters, DistBug, Navigator, NavigatorParameters, SummitParameters, SummitSearch};
 use roverlab::scan::{
     LocalisationMap, Localiser, LocaliserParameters, LogOddsMap, LogOddsMapParameters,
     ScanFeaturesParameters, extract_features,

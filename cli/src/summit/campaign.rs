@@ -59,8 +59,10 @@ pub(crate) fn campaign(args: &Args) -> Result<Report, Failure> {
             "median_path_ratio": rounded(ratio),
         }));
     }
-    let wrong: Vec<u64> =
-        of(Method::Search).filter(|trial| !trial.reached || trial.is_lost()).map(|trial| trial.seed).collect();
+    let wrong: Vec<u64> = of(Method::Search)
+        .filter(|trial| !trial.reached || trial.is_lost())
+        .map(|trial| trial.seed)
+        .collect();
     for trial in of(Method::Search).filter(|trial| wrong.contains(&trial.seed)) {
         args.common.tell(format_args!(
             "seed {}: {:?}, claims the top: {}, {:.0} mm from it, {:.0} mm below",

@@ -48,7 +48,9 @@ impl Summit {
         let map = hike.map(&args.climber(hike.spec()))?;
         let start = hike.start().position();
         let place = map.highest_reachable(start).ok_or_else(|| {
-            Failure::input("found a start too steep, or too near to the hills' border; expected gentle ground")
+            Failure::input(
+                "found a start too steep, or too near to the hills' border; expected gentle ground",
+            )
         })?;
         let mut planner = ElevationPlanner::astar(&map, Objective::Length).map_err(Failure::input)?;
         let way = planner.plan_any_angle(start, place.xy()).ok().map(|way| way.cost);
@@ -123,7 +125,8 @@ pub(crate) fn climb(
         });
     }
     let sensor = if method == Method::Psd { SlopeSensor::psds(spec) } else { SlopeSensor::lidar(spec) };
-    let sensor = sensor.ok_or_else(|| Failure::input("found a robot without a lidar; expected one with a lidar"))?;
+    let sensor =
+        sensor.ok_or_else(|| Failure::input("found a robot without a lidar; expected one with a lidar"))?;
     let parameters = AscentParameters { slope: args.climber(spec).slope, ..AscentParameters::of(spec) };
     conditions.run(&hike.scene, watch, |robot, step| {
         let mut ascent = Ascent::new(sensor, parameters)?;

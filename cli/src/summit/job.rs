@@ -59,17 +59,14 @@ fn fields(report: Report, run: &Run<Ascended>, ride: Option<Ride>, summit: &Summ
         .field("unknown_m2", ended.map(|ended| (100.0 * ended.unknown).round() / 100.0))
 }
 
-fn picture(
-    method: Method,
-    hike: &Hike,
-    run: &Run<Ascended>,
-    summit: &Summit,
-    ride: Option<Ride>,
-) -> Picture {
+fn picture(method: Method, hike: &Hike, run: &Run<Ascended>, summit: &Summit, ride: Option<Ride>) -> Picture {
     let mut picture = Picture::new(&hike.scene.world);
     let reached = ride.is_some_and(|ride| summit.is_reached(&ride.end));
     let title = if reached { "on the highest place that can be reached" } else { "not on the highest place" };
-    picture.title(format!("{}: {title}", if method == Method::Search { "Summit search" } else { "Steepest ascent" }));
+    picture.title(format!(
+        "{}: {title}",
+        if method == Method::Search { "Summit search" } else { "Steepest ascent" }
+    ));
     let (metres, seconds) = (run.truth.path_length, run.sim_time);
     let below = ride.map_or(0.0, |ride| units::to_mm(summit.place.z - ride.height()));
     picture.caption(format!("{metres:.1} m in {seconds:.0} s, {below:.0} mm below the summit"));

@@ -34,7 +34,9 @@ impl Hike {
             return Err(Failure::input(format!("{name}found a world without hills; expected a line {line}")));
         };
         if ground.height(scene.robots[0].pose.position()).is_none() {
-            return Err(Failure::input(format!("{name}found a start beyond the hills; expected one on them")));
+            return Err(Failure::input(format!(
+                "{name}found a start beyond the hills; expected one on them"
+            )));
         }
         Ok(Self { scene, ground })
     }

@@ -104,7 +104,7 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = Planner::AnyAngle)]
     pub(crate) planner: Planner,
 
-    /// The steepest ground [default: three quarters of where the robot would slip or tip].
+    /// The steepest ground [default: seven tenths of where the robot would slip or tip].
     #[arg(long, value_name = "DEG", value_parser = parse_slope, allow_hyphen_values = true)]
     pub(crate) slope: Option<f64>,
 

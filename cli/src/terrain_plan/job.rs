@@ -68,7 +68,10 @@ fn hills(args: &Args) -> Result<(World, Point), Failure> {
     let scene = formats::load_scene(file).map_err(Failure::input)?.value;
     let own = scene.robots.first().map(|robot| robot.pose).or(scene.world.start);
     let start = args.start.or(own).ok_or_else(|| {
-        Failure::input(format!("{}: found no start; expected --start X,Y,DEG or a robot in a .sim", file.display()))
+        Failure::input(format!(
+            "{}: found no start; expected --start X,Y,DEG or a robot in a .sim",
+            file.display()
+        ))
     })?;
     Ok((scene.world, start.position()))
 }

@@ -30,7 +30,8 @@ fn hill(name: &str) -> String {
 fn a_robot_finds_the_summit_of_a_world() {
     let world = hill("summit");
     for options in [&["--robot", "Blizzard"][..], &["--method", "psd"], &["--method", "ascent"]] {
-        let options = [&["--world", &world, "--start", "700,700,0", "--noise", "1", "--seed", "3"], options].concat();
+        let options =
+            [&["--world", &world, "--start", "700,700,0", "--noise", "1", "--seed", "3"], options].concat();
         let (status, report, err): Ended = run("summit", &options);
         assert_eq!((status, report["outcome"].as_str(), err.as_str()), (0, Some("reached"), ""), "{report}");
         let (top, height) = (number(&report, "highest_reachable_mm"), number(&report, "height_mm"));
@@ -60,7 +61,8 @@ fn what_is_no_hill_is_refused() {
 
 #[test]
 fn a_campaign_tells_all_methods_apart() {
-    let args = summit::Args::try_parse_from(["summit", "--campaign", "--runs", "1", "--time-limit", "60"]).unwrap();
+    let args =
+        summit::Args::try_parse_from(["summit", "--campaign", "--runs", "1", "--time-limit", "60"]).unwrap();
     let trials = summit::trials(&args).unwrap();
     assert_eq!(trials.len(), 3);
     assert!(trials.iter().all(|trial| trial.sim_time <= 61.0 && !trial.is_lost()), "{trials:?}");

@@ -139,7 +139,8 @@ impl Ascent {
             // What was to the left is ahead after a turn to the left.
             let turned = seen.odometry.heading - before.heading;
             let (sin, cos) = math::sin_cos(turned);
-            self.rise = self.rise.map(|rise| Vector::new(cos * rise.x + sin * rise.y, cos * rise.y - sin * rise.x));
+            self.rise =
+                self.rise.map(|rise| Vector::new(cos * rise.x + sin * rise.y, cos * rise.y - sin * rise.x));
         }
     }
 }
@@ -224,7 +225,10 @@ mod tests {
             (Vector::new(-0.1, -0.2), -1.0, false),
         ] {
             let ControlFlow::Continue(twist) = ascent().step(0.0, &seen(rise)).unwrap() else { panic!() };
-            assert!(twist.angular * turns >= 0.0 && (twist.angular.abs() > 0.1) == (turns != 0.0), "{twist:?}");
+            assert!(
+                twist.angular * turns >= 0.0 && (twist.angular.abs() > 0.1) == (turns != 0.0),
+                "{twist:?}"
+            );
             assert_eq!(twist.linear > 0.01, drives, "{twist:?}");
         }
     }

@@ -76,9 +76,7 @@ impl SlopeSensor {
     /// Sets up the robot.
     pub(super) fn prepare<R: Lidar + ?Sized>(&self, robot: &mut R) -> Result<()> {
         match self.lidar {
-            Some(_) => {
-                robot.configure_lidar(LidarSettings { field_of_view: TAU, tilt: TILT, points: BEAMS })
-            }
+            Some(_) => robot.configure_lidar(LidarSettings { field_of_view: TAU, tilt: TILT, points: BEAMS }),
             None => Ok(()),
         }
     }

@@ -4,8 +4,8 @@ use nalgebra::{Quaternion, UnitQuaternion};
 use super::wire::{self, Field, Fields, Reading};
 use crate::geometry::{Point3, Pose, Pose3, Twist, Vector3};
 use crate::io::{
-    Attitude, DisplayImage, DisplayOption, Fill, Font, FontFamily, FontStyle, Key, LidarSettings, Mishap, Psd,
-    RadioMessage, Resolution, TruthInSpace, Viewport,
+    Attitude, DisplayImage, DisplayOption, Fill, Font, FontFamily, FontStyle, Key, LidarSettings, Mishap,
+    Psd, RadioMessage, Resolution, TruthInSpace, Viewport,
 };
 use crate::world::Colour;
 

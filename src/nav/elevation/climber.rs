@@ -17,7 +17,7 @@ pub struct Climber {
 }
 
 /// The share of the slope on which it would slip or tip that a robot is trusted with.
-const TRUSTED: f64 = 0.75;
+const TRUSTED: f64 = 0.7;
 /// The share of a wheel's radius that it climbs as a step.
 const CLIMBED: f64 = 0.6;
 /// The height of the middle of the mass as a share of the robot's, and the share of the way from the axle to the castor,
@@ -26,15 +26,17 @@ const MIDDLE: f64 = 0.4;
 const BETWEEN: f64 = 0.3;
 
 impl Climber {
-    /// What a robot can do by its friction, its wheels or belts and the height of its mass: three quarters of the slope on
-    /// which it would slip or tip over.
+    /// What a robot can do by its friction, its wheels or belts and the height of its mass: seven tenths of the slope on which it
+    /// would slip or tip over.
     pub fn of(spec: &RobotSpec) -> Self {
         let reach = spec.footprint.bounding_radius();
         let (wheel_diameter, support) = match spec.drive {
             DriveSpec::Differential { wheel_diameter, track, .. } => {
                 (wheel_diameter, (BETWEEN * reach).min(0.5 * track))
             }
-            DriveSpec::Tracked { wheel_diameter, track, length, .. } => (wheel_diameter, 0.5 * track.min(length)),
+            DriveSpec::Tracked { wheel_diameter, track, length, .. } => {
+                (wheel_diameter, 0.5 * track.min(length))
+            }
             DriveSpec::Ackermann { wheel_diameter, track, wheelbase, .. }
             | DriveSpec::Omni { wheel_diameter, track, wheelbase, .. } => {
                 (wheel_diameter, 0.5 * track.min(wheelbase))

@@ -99,7 +99,12 @@ impl ElevationMap {
     }
 
     /// Changes a sample, and tells about those around it that open or close by that.
-    pub(super) fn set_height(&mut self, cell: GridCell, height: f64, mut changed: impl FnMut(GridCell, bool)) {
+    pub(super) fn set_height(
+        &mut self,
+        cell: GridCell,
+        height: f64,
+        mut changed: impl FnMut(GridCell, bool),
+    ) {
         self.footing.heights[cell.row * self.footing.columns + cell.column] = micrometres(height);
         let [x, y] = self.footing.reach;
         // A step to the next sample counts at the first of the two.
@@ -127,7 +132,8 @@ impl Footing {
         let (columns, rows) = (field.columns(), field.rows());
         let pitch = [field.pitch().x, field.pitch().y];
         // A window wider than the surface closes all of it.
-        let reach = pitch.map(|pitch| ((climber.radius / pitch).round() as usize).clamp(1, HeightField::MAX_SAMPLES));
+        let reach =
+            pitch.map(|pitch| ((climber.radius / pitch).round() as usize).clamp(1, HeightField::MAX_SAMPLES));
         let squares = reach.map(|reach| (1..=reach).map(|i| 2.0 * (i * i) as f64).sum::<f64>());
         let width = reach.map(|reach| (2 * reach + 1) as f64);
         let slope = math::tan(climber.slope);

@@ -35,9 +35,11 @@ impl ElevationReplanner {
     pub fn new(map: ElevationMap, objective: Objective, robot: Point, goal: Point) -> Result<Self> {
         objective.validate()?;
         let costs = GroundCosts::new(map.field(), objective);
-        let ends = cell_of(&map, End::Start, robot).and_then(|robot| Ok((robot, cell_of(&map, End::Goal, goal)?)));
+        let ends =
+            cell_of(&map, End::Start, robot).and_then(|robot| Ok((robot, cell_of(&map, End::Goal, goal)?)));
         let planner = ends.and_then(|(robot, goal)| DStarLite::by(map.open(), costs, robot, goal));
-        let planner = planner.map_err(|error| crate::io::Error::invalid_input("way", error, "ends on the surface"))?;
+        let planner =
+            planner.map_err(|error| crate::io::Error::invalid_input("way", error, "ends on the surface"))?;
         Ok(Self { map, planner })
     }
 

@@ -7,7 +7,8 @@ use crate::world::{BitGrid, GridCell};
 /// the given one, and lower where a straight line is.
 pub(super) fn straightened(costs: &GroundCosts, open: &BitGrid, cells: &[GridCell]) -> (Vec<GridCell>, f64) {
     // From each cell back over 1, 2, 4, 8, ... others; then between any two of those that are left.
-    let halves = |to: usize| std::iter::successors(Some(1), |back| Some(2 * back)).take_while(move |&b| b <= to);
+    let halves =
+        |to: usize| std::iter::successors(Some(1), |back| Some(2 * back)).take_while(move |&b| b <= to);
     let few = shortest(costs, open, cells, |to| halves(to).map(|back| to - back).collect()).0;
     shortest(costs, open, &few, |to| (0..to).collect())
 }

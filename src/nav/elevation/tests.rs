@@ -22,7 +22,8 @@ fn rough(seed: u64, samples: usize) -> HeightField {
     let waves: Vec<_> = (0..6)
         .map(|_| (direction(stream.between(0.0, 3.0)) * stream.between(1.0, 6.0), stream.between(0.0, 6.0)))
         .collect();
-    let height = |at: Point| waves.iter().map(|(wave, phase)| 0.05 * math::sin(wave.dot(&at.coords) + phase)).sum();
+    let height =
+        |at: Point| waves.iter().map(|(wave, phase)| 0.05 * math::sin(wave.dot(&at.coords) + phase)).sum();
     let side = 0.05 * (samples - 1) as f64;
     HeightField::from_fn(samples, samples, square(side), height).unwrap()
 }
@@ -43,7 +44,8 @@ fn dijkstra(map: &ElevationMap, objective: Objective, start: Point, goal: Point)
     let steps = |node: usize, visit: &mut dyn FnMut(usize, f64)| {
         let (x, y) = ((node % columns) as i64, (node / columns) as i64);
         for (dx, dy) in (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy))) {
-            if (dx, dy) != (0, 0) && free(x, y) && free(x + dx, y) && free(x, y + dy) && free(x + dx, y + dy) {
+            if (dx, dy) != (0, 0) && free(x, y) && free(x + dx, y) && free(x, y + dy) && free(x + dx, y + dy)
+            {
                 let next = GridCell::new((x + dx) as usize, (y + dy) as usize);
                 let way = map.point(next) - map.point(GridCell::new(x as usize, y as usize));
                 visit(next.row * columns + next.column, objective.of_stretch(way.xy().norm(), way.z));
@@ -235,7 +237,9 @@ fn planning_on_512_by_512_samples() {
             let least = times.iter().map(|(time, _)| *time).min().unwrap();
             let cost = times[0].1.as_ref().map(|plan| (plan.cost, plan.statistics.expanded));
             let any = any.map(|any| (any.cost, any.points.len()));
-            println!("{seed} {objective:?}: map {prepared:?}, plan {least:?} {cost:?}, any angle {any_time:?} {any:?}");
+            println!(
+                "{seed} {objective:?}: map {prepared:?}, plan {least:?} {cost:?}, any angle {any_time:?} {any:?}"
+            );
         }
     }
 }

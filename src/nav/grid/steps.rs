@@ -176,7 +176,8 @@ impl<C: StepCosts> GridSearch<C> {
                     continue;
                 }
                 let next = node.wrapping_add_signed(offsets[i]);
-                let ends = || (cell(x, y), cell(x.wrapping_add_signed(COLUMNS[i]), y.wrapping_add_signed(ROWS[i])));
+                let ends =
+                    || (cell(x, y), cell(x.wrapping_add_signed(COLUMNS[i]), y.wrapping_add_signed(ROWS[i])));
                 let total = cost + cost::of_step(&self.costs, i >= 4, ends);
                 let label = self.labels[next];
                 if label.is_of(self.query) && label.cost() <= total {

@@ -82,6 +82,8 @@ impl SummitParameters {
     /// Fails with the name of the parameter that is out of range.
     pub fn validate(&self) -> Result<(), ParameterError> {
         self.climber.validate()?;
+        let slope = self.climber.slope;
+        require("slope", slope, slope < 1.4, "less than 1.4 rad")?;
         let at = self.lidar.position;
         require("lidar height", at.z, self.lidar.is_finite() && at.z > 0.0, "more than 0")?;
         require_not_negative("slide", self.slide)?;

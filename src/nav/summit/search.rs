@@ -18,7 +18,7 @@ use crate::world::GridCell;
 /// Where it stands, the robot looks around with its lidar at many tilts. What beams meet is mapped; what they pass over is no
 /// higher than they are. While anything may be higher than the highest place that it has a safe way to, and may be reached,
 /// it drives there, or to where it sees more; so it leaves local maxima behind. It drives only over ground that it has seen
-/// and that its [`Climber`](crate::nav::elevation::Climber) allows. The first two looks, with half a turn between, show by how much
+/// and that its [`Climber`](crate::nav::elevation::Climber) allows. The first two looks, with a quarter of a turn between, show by how much
 /// the inertial unit is wrong.
 ///
 /// It ends on the highest place that can be reached; what is still unknown when the time is over tells
@@ -163,7 +163,7 @@ const VIEW: f64 = 0.4;
 /// Metres from what it is after that belong to it.
 const SAME: f64 = 0.4;
 /// The most ways on the top, each after another look.
-const MOST_APPROACHES: u32 = 8;
+const MOST_APPROACHES: u32 = 16;
 /// The most looks of a search.
 const MOST_LOOKS: u32 = 400;
 
@@ -334,9 +334,8 @@ impl SummitSearch {
                 return ControlFlow::Break(SummitOutcome::Highest);
             };
             self.target = Some(self.map.place(target));
-            let Some(way) = self.way_over(&chart.perhaps, &chart, start, target) else {
-                return ControlFlow::Break(SummitOutcome::Stuck);
-            };
+            let way = self.way_over(&chart.perhaps, &chart, start, target);
+            let way = way.unwrap_or_else(|| vec![self.map.place(target)]);
             let known = self.known_part(&chart, &way);
             if length(known) > LEAST_WAY {
                 return ControlFlow::Continue(self.drive(time, known));
@@ -390,7 +389,8 @@ impl SummitSearch {
         let steps = nearest.column.abs_diff(cell.column).max(nearest.row.abs_diff(cell.row)).max(1);
         for step in 0..=4 * steps {
             let share = step as f64 / (4 * steps) as f64;
-            let at = |from: usize, to: usize| (from as f64 + (to as f64 - from as f64) * share).round() as usize;
+            let at =
+                |from: usize, to: usize| (from as f64 + (to as f64 - from as f64) * share).round() as usize;
             for row in [at(cell.row, nearest.row), at(cell.row, nearest.row) + 1] {
                 let near = GridCell::new(at(cell.column, nearest.column), row);
                 if chart.safe.contains(near) {
@@ -443,7 +443,8 @@ impl SummitSearch {
     ) -> ControlFlow<SummitOutcome, Twist> {
         let way = self.way_over(&chart.safe, chart, start, top).unwrap_or_default();
         let gain = self.height(top) - self.reckoning.elevation;
-        let there = length(&way) <= 1.5 * self.parameters.resolution || gain < 0.5 * self.parameters.tolerance;
+        let there =
+            length(&way) <= 1.5 * self.parameters.resolution || gain < 0.5 * self.parameters.tolerance;
         if there || self.approaches >= MOST_APPROACHES {
             return ControlFlow::Break(SummitOutcome::Highest);
         }
@@ -503,12 +504,17 @@ impl SummitSearch {
         let SummitParameters { speed, turn_rate, .. } = self.parameters;
         let turn = (2.0 * bearing).clamp(-turn_rate, turn_rate);
         let fast = speed.min(0.03 + 0.8 * rest);
-        Some(if bearing.abs() > ASIDE { Twist::new(0.0, turn) } else { Twist::new(sign * fast * math::cos(bearing), turn) })
+        Some(if bearing.abs() > ASIDE {
+            Twist::new(0.0, turn)
+        } else {
+            Twist::new(sign * fast * math::cos(bearing), turn)
+        })
     }
 }
 
 /// What ways are to cost little of: climbing costs as much as ten times the way.
-const OBJECTIVE: crate::nav::elevation::Objective = crate::nav::elevation::Objective::Energy { resistance: 0.5 };
+const OBJECTIVE: crate::nav::elevation::Objective =
+    crate::nav::elevation::Objective::Energy { resistance: 0.5 };
 
 fn length(way: &[Point]) -> f64 {
     way.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
@@ -535,7 +541,8 @@ impl Behaviour for SummitSearch {
     }
 
     fn step(&mut self, time: f64, seen: &SummitObservation) -> Decision<Self> {
-        let finite = [seen.attitude.roll, seen.attitude.pitch, seen.attitude.yaw].iter().all(|a| a.is_finite());
+        let finite =
+            [seen.attitude.roll, seen.attitude.pitch, seen.attitude.yaw].iter().all(|a| a.is_finite());
         if !seen.odometry.is_finite() || !finite {
             let found = format!("{:?} {:?}", seen.odometry, seen.attitude);
             return Err(Error::invalid_input("observed pose", found, "finite numbers"));

@@ -1,7 +1,7 @@
 use super::parameters::SummitParameters;
 use super::sweep::Beam;
 use crate::geometry::{Aabb, Point, Point3, Vector, math};
-use crate::nav::elevation::ElevationMap;
+use crate::nav::elevation::{Climber, ElevationMap};
 use crate::nav::grid::GridComponents;
 use crate::world::{BitGrid, GridCell, HeightField};
 
@@ -49,6 +49,9 @@ struct Filled {
     away: Vec<u16>,
 }
 
+/// Radians and metres by which slopes and steps of the map may be wrong.
+const MEASURED: f64 = 0.06;
+const NOISE: f64 = 0.01;
 /// Square metres of a patch that is worth a look.
 const PATCH: f64 = 0.04;
 /// Metres below what a slope could lead to that are a drop, and metres that the robot keeps from one beside its own size.
@@ -188,7 +191,12 @@ impl SightMap {
 
     /// Where the robot can drive, and where it perhaps can.
     pub(super) fn chart(&self, parameters: &SummitParameters) -> Chart {
-        let climber = &parameters.climber;
+        // Ground that is just gentle enough may seem steeper than it is.
+        let climber = &Climber {
+            slope: parameters.climber.slope + MEASURED,
+            step: parameters.climber.step + NOISE,
+            ..parameters.climber
+        };
         let lowest = parameters.lowest.unwrap_or(f64::NEG_INFINITY);
         let Filled { heights, known, away } = self.filled();
         let corner = Point::new(self.extent, self.extent);
@@ -236,8 +244,11 @@ impl SightMap {
         let mut edge: Vec<usize> = (0..filled.len()).filter(|&index| filled[index]).collect();
         let mut away = vec![0; filled.len()];
         for round in 1.. {
-            let mut next: Vec<usize> =
-                edge.iter().flat_map(|&index| self.neighbours(index)).filter(|&index| !filled[index]).collect();
+            let mut next: Vec<usize> = edge
+                .iter()
+                .flat_map(|&index| self.neighbours(index))
+                .filter(|&index| !filled[index])
+                .collect();
             next.sort_unstable();
             next.dedup();
             if next.is_empty() {

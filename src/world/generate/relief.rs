@@ -53,7 +53,12 @@ impl ReliefOptions {
         require_up_to("top", self.top, 0.25 * self.side)?;
         require("slope", self.slope, (0.05..=1.0).contains(&self.slope), "0.05 to 1 rad")?;
         let fits = self.top / math::tan(self.slope) <= ROOM * self.side;
-        require("slope", self.slope, fits, "steep enough that a ramp to the top is shorter than 0.47 of the side")?;
+        require(
+            "slope",
+            self.slope,
+            fits,
+            "steep enough that a ramp to the top is shorter than 0.47 of the side",
+        )?;
         let count = (33..=HeightField::MAX_SAMPLES).contains(&self.samples);
         require("samples", self.samples as f64, count, "33 to 4097")
     }
@@ -239,7 +244,8 @@ fn ramp(stream: &mut Stream, options: &ReliefOptions) -> Result<Relief, Paramete
         let at = local(point);
         let on_first = at.y.abs() <= 0.5 * width;
         let on_second = (at.y - apart).abs() <= 0.5 * width;
-        let (least, most) = (0.5 * (apart - apart.abs()) - 0.5 * width, 0.5 * (apart + apart.abs()) + 0.5 * width);
+        let (least, most) =
+            (0.5 * (apart - apart.abs()) - 0.5 * width, 0.5 * (apart + apart.abs()) + 0.5 * width);
         if (length..=length + width).contains(&at.x) && (least..=most).contains(&at.y) {
             top
         } else if (0.0..length).contains(&at.x) && (on_first || (back && on_second)) {
@@ -256,7 +262,11 @@ fn ramp(stream: &mut Stream, options: &ReliefOptions) -> Result<Relief, Paramete
         Point::new(length + 0.5 * width, apart),
         Point::new(if back { 0.0 } else { depth }, apart),
     ];
-    let start = frame.compose(&Pose::new(-0.1 * side, stream.between(-0.1, 0.1) * width, stream.between(-0.08, 0.08)));
+    let start = frame.compose(&Pose::new(
+        -0.1 * side,
+        stream.between(-0.1, 0.1) * width,
+        stream.between(-0.08, 0.08),
+    ));
     let way = way.map(|point| frame.to_world(point)).to_vec();
     Ok(Relief { world: world(options, height)?, start, way })
 }
