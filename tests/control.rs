@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
+use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
 use roverlab::drive::{
     AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters, Goal,
     LidarWallFollower, LidarWallFollowerParameters, Method, OmniDriver, OmniParameters, OmniTracker,
@@ -23,7 +24,9 @@ use roverlab::maze::{
     Direction, LeftHand, LeftHandParameters, LidarLeft, LidarLeftParameters, Maze, MazeRunner,
     MazeRunnerParameters, RecursiveExplorer, Rig, Scale, WallState, mouse,
 };
-use roverlab::nav::{BugKind, BugParameters, DistBug, Navigator, NavigatorParameters};
+use roverlab::nav::{
+    BugKind, BugParameters, DistBug, Navigator, NavigatorParameters, SummitParameters, SummitSearch,
+};
 use roverlab::race::{
     Cone, ConeTrack, EventParameters, EventRacer, GapDriver, RaceOutcome, Racer, RacerParameters,
 };
@@ -51,7 +54,7 @@ where
     Ok(format!("{outcome:?}"))
 }
 
-const CASES: [Case; 25] = [
+const CASES: [Case; 27] = [
     ("turn", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Turn, robot, limit, stop)),
     ("spline", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Spline, robot, limit, stop)),
     ("by another estimate", RobotSpec::s4, |robot, limit, stop| {
@@ -121,6 +124,15 @@ const CASES: [Case; 25] = [
         let goal = Point::new(5.5, 5.5);
         let mut navigator = Navigator::new(&room(), START, goal, NavigatorParameters::default())?;
         driven(robot, &mut navigator, limit, stop)
+    }),
+    ("summit", RobotSpec::blizzard, |robot, limit, stop| {
+        let parameters = SummitParameters::of(&RobotSpec::blizzard()).unwrap();
+        driven(robot, &mut SummitSearch::new(parameters)?, limit, stop)
+    }),
+    ("ascent", RobotSpec::blizzard, |robot, limit, stop| {
+        let spec = RobotSpec::blizzard();
+        let mut ascent = Ascent::new(SlopeSensor::lidar(&spec).unwrap(), AscentParameters::of(&spec))?;
+        driven(robot, &mut ascent, limit, stop)
     }),
     ("colour", RobotSpec::s4, |robot, limit, stop| {
         let mut tracker = ColourTracker::new(finder(), ColourTrackerParameters::default())?;

@@ -68,6 +68,7 @@ lessons!(
     safety,
     #[cfg(feature = "physics")]
     starman,
+    summit,
     two_robots,
     wall_following,
     world_files,

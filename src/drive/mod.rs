@@ -18,6 +18,7 @@
 //! - [`colour`]: to what has a taught colour, and home with it (chapter 11);
 //! - [`lane_keeping`]: along the lane of a road, by what a camera sees, and [`traffic`]: who judges that (chapter 13);
 //! - [`motion_watch`]: turning to what moves (chapter 11);
+//! - [`terrain`]: up the steepest way (chapter 7);
 //! - [`Pid`] and [`RelayTuner`]: a PID controller and how to find its gains.
 
 mod a_to_b;
@@ -39,6 +40,7 @@ mod pid;
 mod random_drive;
 mod relay;
 mod spline;
+pub mod terrain;
 pub mod traffic;
 mod wall_following;
 mod way;

@@ -1,5 +1,6 @@
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
+use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
 use roverlab::drive::{
     AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters,
     CoverageMap, CoverageMapParameters, Cruise, CruiseParameters, Follower, FollowerParameters, Formation,
@@ -41,6 +42,13 @@ fn colours_and_motion() {
     check!(MotionParameters = MotionParameters::default(),
         |p| ends(RobotSpec::s4(), MotionWatch::new(MotionWatchParameters { turning: p, ..MotionWatchParameters::new(1.0) })?),
         { Bounded: block; NotNegative: threshold; Positive: least_noise; });
+}
+
+#[test]
+fn hills() {
+    let sensor = || SlopeSensor::lidar(&RobotSpec::blizzard()).expect("a lidar");
+    check!(AscentParameters = AscentParameters::of(&RobotSpec::blizzard()), |p| Ascent::new(sensor(), p)?,
+        { Bounded: slope, smoothing; Positive: speed, turn_rate, patience, gain, period; });
 }
 
 #[test]

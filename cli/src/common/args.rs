@@ -27,7 +27,7 @@ pub(crate) struct CommonArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) world: Option<PathBuf>,
 
-    /// Robot description [default: the built-in S4].
+    /// Robot description, or the name of a built-in robot [default: S4].
     #[arg(long, value_name = "FILE.robi")]
     pub(crate) robot: Option<PathBuf>,
 

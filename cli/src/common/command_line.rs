@@ -5,6 +5,7 @@ use std::path::Path;
 use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, Command};
 use roverlab::io::log::Log;
+use roverlab::world::RobotSpec;
 
 use super::files::recorded_name;
 use super::origin::Facts;
@@ -162,8 +163,15 @@ fn recording(wanted: &str, command: &Command, file: &OsString) -> Result<Log, Fa
 fn affects_run(command: &Command, option: &str) -> bool {
     let name = name_of(option);
     let known = command.get_arguments().any(|arg| arg.get_long() == Some(name));
-    let is_own = |value: &str| value == recorded_name(name, Path::new(value));
+    let is_own = |value: &str| {
+        value == recorded_name(name, Path::new(value)) || (name == "robot" && is_built_in(value))
+    };
     known && !NOT_RECORDED.contains(&name) && (!FILES.contains(&name) || value_of(option).is_some_and(is_own))
+}
+
+/// Whether it is a built-in robot's name, and no file has it.
+fn is_built_in(name: &str) -> bool {
+    RobotSpec::predefined(name).is_some() && !Path::new(name).exists()
 }
 
 /// Whether a recorded option is given again.
@@ -198,7 +206,11 @@ fn options(command: &Command, matches: &ArgMatches) -> Vec<String> {
         let values =
             matches.get_raw(id).into_iter().flatten().map(|value| value.to_string_lossy().into_owned());
         let is_file = FILES.contains(&id);
-        let values = values.map(|value| if is_file { recorded_name(id, Path::new(&value)) } else { value });
+        let is_name = |value: &str| id == "robot" && is_built_in(value);
+        let values = values.map(|value| match is_file && !is_name(&value) {
+            true => recorded_name(id, Path::new(&value)),
+            false => value,
+        });
         options.extend(values.map(|value| match &name {
             Some(name) => format!("{name}={value}"),
             None => value,

@@ -48,8 +48,12 @@ impl CommonArgs {
         self.load(option, path, formats::parse_scene)
     }
 
-    /// The robot in the file of an option, with its 3D model where that is found.
+    /// The robot in the file of an option, with its 3D model where that is found, or the built-in robot of that name.
     pub(crate) fn load_robot(&self, option: &str, path: &Path) -> Result<Parsed<RobotSpec>, FormatError> {
+        let built_in = path.to_str().filter(|_| !path.exists()).and_then(RobotSpec::predefined);
+        if let Some(value) = built_in {
+            return Ok(Parsed { value, warnings: Vec::new() });
+        }
         self.load(option, path, formats::parse_robot_tolerantly)
     }
 

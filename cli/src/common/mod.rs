@@ -99,8 +99,6 @@ pub(crate) use run::{Printed, parser, refused, run, run_plain, run_printing, wri
 pub(crate) use stage::{Claimed, Driven, Stage, StageTruth};
 pub(crate) use supervision::DEADMAN;
 pub(crate) use trip::{StandIn, Trip};
-#[cfg(test)]
-pub(crate) use values::parse_pose;
-pub(crate) use values::{GoalOption, parse_noise, parse_picture, parse_point, parse_seconds};
+pub(crate) use values::{GoalOption, parse_noise, parse_picture, parse_point, parse_pose, parse_seconds};
 pub(crate) use wall_clock::{Pacer, Progress, Stopwatch};
 pub(crate) use workers::{share_out, threads};

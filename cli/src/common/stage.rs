@@ -6,11 +6,11 @@ use std::ops::{Deref, DerefMut};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use roverlab::geometry::{Pose, Pose3};
+use roverlab::geometry::Pose;
 use roverlab::io::log::{Attachment, FleetIo, GroundTruth, Header, LogError, LogWriter, Player};
 use roverlab::io::sim::{Fleet, RobotTruth, SimOptions, Simulation, Watcher};
 use roverlab::io::wrappers::{Deadman, Fault, Faulty, Quantised};
-use roverlab::io::{self, Key, RobotIo};
+use roverlab::io::{self, Key, RobotIo, TruthInSpace};
 use roverlab::safety::{SpeedError, StoppingModel};
 use roverlab::world::{RobotPlacement, Scene, formats};
 
@@ -145,16 +145,16 @@ impl GroundTruth for SharedTruth {
         self.ask(|truth| truth.pose(robot))
     }
 
-    fn pose_in_space(&mut self, robot: usize) -> io::Result<Pose3> {
-        self.ask(|truth| truth.pose_in_space(robot))
-    }
-
     fn robot(&mut self, robot: usize) -> io::Result<RobotTruth> {
         self.ask(|truth| truth.robot(robot))
     }
 
     fn object(&mut self, object: usize) -> io::Result<Pose> {
         self.ask(|truth| truth.object(object))
+    }
+
+    fn in_space(&mut self, robot: usize) -> io::Result<TruthInSpace> {
+        self.ask(|truth| truth.in_space(robot))
     }
 }
 

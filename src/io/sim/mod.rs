@@ -54,12 +54,12 @@ mod truth;
 mod watch;
 mod wheels;
 
+pub use super::Mishap;
 pub use fleet::{Fleet, FleetRobot};
 pub use noise::NoiseModel;
 pub use options::SimOptions;
 pub use robot::SimRobot;
 pub use simulation::Simulation;
-pub use terrain::Mishap;
 pub use truth::Truth;
 pub use watch::{Onlooking, Watcher};
 

@@ -8,7 +8,7 @@
 //! Algorithms that find their way to a goal by sensors (chapter 10) are judged on such courses.
 //!
 //! [`room`] draws a room with corners of many angles, curved walls and doors, whose wall can be followed all the way round
-//! (chapter 6).
+//! (chapter 6). [`relief`] draws hills, craters, ramps and steps (chapter 7).
 
 mod bent;
 mod border;
@@ -21,6 +21,7 @@ mod family;
 mod figure;
 mod layout;
 mod options;
+mod relief;
 mod repertoire;
 mod room;
 mod round;
@@ -30,5 +31,6 @@ mod survey;
 pub use course::{Course, obstacle_course};
 pub use family::{CourseFamily, UnknownFamily};
 pub use options::CourseOptions;
+pub use relief::{Relief, ReliefKind, ReliefOptions, relief};
 pub use repertoire::ObstacleKind;
 pub use room::{Room, RoomFeature, RoomOptions, room};

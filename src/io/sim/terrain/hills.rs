@@ -1,7 +1,8 @@
 use std::sync::Arc;
 
-use super::{Mishap, RigidBody, Undercarriage, Watch};
+use super::{RigidBody, Undercarriage, Watch};
 use crate::geometry::{Point, Pose, Pose3, angle_difference};
+use crate::io::Mishap;
 use crate::io::sim::TICK;
 use crate::io::sim::body::Body;
 use crate::kinematics::{PlanarMotion, PlanarTwist};

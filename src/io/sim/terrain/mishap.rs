@@ -1,34 +1,10 @@
 use super::RigidBody;
 use super::undercarriage::GRAVITY;
 use crate::geometry::Pose3;
+use crate::io::Mishap;
 use crate::io::sim::TICK;
 use crate::kinematics::PlanarTwist;
 use crate::world::HeightField;
-
-/// What becomes of a robot on hills that drives no more, or in vain.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Mishap {
-    /// It lies on its side or on its back.
-    Tipped,
-    /// It fell by more than its own height, or off the world.
-    Fell,
-    /// Its wheels have turned for two seconds and moved it next to nothing. It is over when it moves again.
-    Stuck,
-    /// The middle of its mass is below the water's surface.
-    Drowned,
-}
-
-impl std::fmt::Display for Mishap {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Tipped => "tipped over",
-            Self::Fell => "fell",
-            Self::Stuck => "stuck",
-            Self::Drowned => "drowned",
-        })
-    }
-}
 
 /// Who watches a robot for mishaps.
 #[derive(Debug, Clone)]

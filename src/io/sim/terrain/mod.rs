@@ -25,8 +25,6 @@ mod rigid_body;
 mod tests;
 mod undercarriage;
 
-pub use mishap::Mishap;
-
 pub(super) use hills::Hills;
 use mishap::Watch;
 use rigid_body::RigidBody;
