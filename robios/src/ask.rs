@@ -494,6 +494,8 @@ fn speeds(spec: &RobotSpec) -> (f64, f64, f64) {
         DriveSpec::Ackermann { wheel_diameter, max_wheel_speed, ticks_per_turn, .. } => {
             (wheel_diameter, max_wheel_speed, ticks_per_turn, FULL_SPEED_OF_CARS)
         }
+        // Thrusters: as if wheels of 2 m turned so that their rims have its top speed.
+        DriveSpec::Craft(_) => (2.0, spec.drive.top_speed(), 1.0, FULL_SPEED),
         _ => (0.0, 0.0, 1.0, FULL_SPEED),
     };
     let top_speed = 0.5 * diameter * fastest;

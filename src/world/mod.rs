@@ -20,6 +20,7 @@ pub mod space;
 mod terrain;
 mod texture;
 mod wall;
+mod water;
 #[cfg(feature = "parry2d")]
 mod with_parry;
 
@@ -38,5 +39,6 @@ pub use scene::{Place, RobotPlacement, Scene, Settings, World};
 pub use terrain::{HeightField, Terrain};
 pub use texture::Texture;
 pub use wall::Wall;
+pub use water::{Water, Waves};
 #[cfg(feature = "parry2d")]
 pub use with_parry::ParryError;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use super::{Body, Mesh};
 use crate::ParameterError;
 use crate::geometry::{Aabb, Point3, Pose3};
+use crate::kinematics::marine::CraftSpec;
 use crate::parameter::{require, require_finite, require_not_negative, require_positive};
 
 /// A description of a robot: its drive, outline and sensors. EyeSim's `.robi`.
@@ -49,7 +50,7 @@ pub struct RobotSpec {
 }
 
 /// How a robot moves.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum DriveSpec {
     /// Two driven wheels side by side.
@@ -109,16 +110,19 @@ pub enum DriveSpec {
         /// Encoder ticks in one turn of a wheel.
         ticks_per_turn: f64,
     },
+    /// A boat or an underwater craft: its hull, its mass and its thrusters, about a point on the floor below it.
+    Craft(Arc<CraftSpec>),
 }
 
 impl DriveSpec {
-    /// The fastest rim speed of its wheels, in metres per second.
+    /// The fastest rim speed of its wheels, or the speed of a craft at full thrust, in metres per second.
     pub fn top_speed(&self) -> f64 {
         match *self {
             Self::Differential { wheel_diameter, max_wheel_speed, .. }
             | Self::Ackermann { wheel_diameter, max_wheel_speed, .. }
             | Self::Tracked { wheel_diameter, max_wheel_speed, .. }
             | Self::Omni { wheel_diameter, max_wheel_speed, .. } => 0.5 * wheel_diameter * max_wheel_speed,
+            Self::Craft(ref craft) => craft.top_speed(),
         }
     }
 
@@ -126,7 +130,7 @@ impl DriveSpec {
     pub fn dynamics(&self) -> Option<CarDynamics> {
         match *self {
             Self::Ackermann { dynamics, .. } => dynamics,
-            Self::Differential { .. } | Self::Tracked { .. } | Self::Omni { .. } => None,
+            Self::Differential { .. } | Self::Tracked { .. } | Self::Omni { .. } | Self::Craft(_) => None,
         }
     }
 }
@@ -502,6 +506,11 @@ impl RobotSpec {
                 require_positive("wheelbase", wheelbase)?;
                 require_positive("maximal wheel speed", max_wheel_speed)?;
                 require_positive("ticks per turn", ticks_per_turn)?;
+            }
+            DriveSpec::Craft(ref craft) => {
+                let parts = craft.hull.len();
+                require("hull parts of a craft", parts as f64, parts > 0, "at least one")?;
+                craft.validate()?;
             }
         }
         let lag = self.motor.time_constant;

@@ -37,6 +37,7 @@ mod engine;
 mod fleet;
 mod inertial_unit;
 mod lockstep;
+mod marine;
 mod mechanics;
 mod movable;
 mod noise;

@@ -17,6 +17,9 @@ pub enum Mishap {
     Stuck,
     /// The middle of its mass is below the water's surface.
     Drowned,
+    /// The numbers of its motion have come to an end, so that it stays where it was: its description is of no craft that
+    /// could be.
+    Broken,
 }
 
 impl std::fmt::Display for Mishap {
@@ -26,6 +29,7 @@ impl std::fmt::Display for Mishap {
             Self::Fell => "fell",
             Self::Stuck => "stuck",
             Self::Drowned => "drowned",
+            Self::Broken => "broken",
         })
     }
 }
