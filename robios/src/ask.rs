@@ -61,6 +61,8 @@ pub enum Request {
     Encoder(u8),
     /// Sets an encoder's count to zero.
     ResetEncoder(u8),
+    /// The depth by the pressure sensor.
+    Depth,
     /// The attitude by the inertial unit: roll, pitch and yaw.
     Attitude,
     /// Its turn rates about the forward, left and upright axes.
@@ -150,6 +152,8 @@ pub struct Identity {
     pub exact: bool,
     /// Whether it has a camera.
     pub camera: bool,
+    /// The channel of its depth sensor; 0 without one.
+    pub depth_channel: u8,
     /// What its inertial unit measures, and on which channels.
     pub inertial: InertialSpec,
 }
@@ -242,6 +246,7 @@ impl Seat {
             time_limit: terms.time_limit.unwrap_or(f64::INFINITY),
             exact: terms.exact,
             camera: spec.camera.is_some() && on_wheels,
+            depth_channel: spec.depth_sensor.map_or(0, |sensor| sensor.channel),
             inertial: if on_wheels { spec.inertial } else { InertialSpec::default() },
         };
         let (truth, scan) = (simulation.truth(), LidarScan::default());
@@ -315,6 +320,7 @@ impl Seat {
             Request::Servo(servo, position) => done(robot.set_servo(servo, position)?),
             Request::Encoder(motor) => Reply::Count(robot.encoder(motor)?),
             Request::ResetEncoder(motor) => done(robot.reset_encoder(motor)?),
+            Request::Depth => Reply::Number(robot.depth()?),
             Request::Attitude => {
                 let Attitude { roll, pitch, yaw } = robot.attitude()?;
                 Reply::Three([roll, pitch, yaw])

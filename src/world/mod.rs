@@ -32,8 +32,8 @@ pub use grid::{Occupancy, OccupancyGrid};
 pub use mesh::{Face, Material, Mesh};
 pub use object::{Billboard, Marker, Object, ObjectKind, Shape};
 pub use robot::{
-    CameraSpec, CarDynamics, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, MotorSpec, Mount, PsdSpec,
-    RobotSpec,
+    CameraSpec, CarDynamics, DepthSensorSpec, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, MotorSpec,
+    Mount, PsdSpec, RobotSpec,
 };
 pub use scene::{Place, RobotPlacement, Scene, Settings, World};
 pub use terrain::{HeightField, Terrain};

@@ -39,6 +39,8 @@ pub struct RobotSpec {
     pub lidar: Option<LidarSpec>,
     /// Its camera, if it has one.
     pub camera: Option<CameraSpec>,
+    /// Its pressure sensor, if it has one.
+    pub depth_sensor: Option<DepthSensorSpec>,
     /// What its inertial unit measures.
     pub inertial: InertialSpec,
     /// The file of its 3D model, if it has one.
@@ -394,6 +396,15 @@ impl CameraSpec {
     }
 }
 
+/// A pressure sensor that measures depth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DepthSensorSpec {
+    /// The channel by which RoBIOS programs read it with `ANALOGRead`, in mm.
+    pub channel: u8,
+    /// Metres above the robot's origin.
+    pub z: f64,
+}
+
 /// What a robot's inertial unit measures, and the channels by which RoBIOS programs read it with `ANALOGRead`. The
 /// default measures nothing: a robot without a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -521,6 +532,10 @@ impl RobotSpec {
         require_not_negative("mass", self.mass)?;
         require_not_negative("friction", self.friction)?;
         self.inertial.validate()?;
+        if let Some(DepthSensorSpec { channel, z }) = self.depth_sensor {
+            require("channel of the depth sensor", channel.into(), channel > 0, "1 to 255")?;
+            require_finite("height of the depth sensor", z)?;
+        }
         for psd in &self.psds {
             require_positive("PSD maximal range", psd.max_range)?;
             psd.mount.validate()?;

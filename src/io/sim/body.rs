@@ -4,6 +4,7 @@ use std::sync::Arc;
 use super::SimOptions;
 use super::camera::CameraDevice;
 use super::course::Course;
+use super::depth_gauge::DepthGauge;
 use super::inertial_unit::InertialUnit;
 use super::mechanics::Powertrain;
 use crate::geometry::{Point, Point3, Pose, Pose3, Vector3, direction, math};
@@ -31,6 +32,7 @@ pub(super) struct Body {
     pub(super) lidar: Option<Box<LidarDevice>>,
     pub(super) camera: Option<Box<CameraDevice>>,
     pub(super) inertial: Option<Box<InertialUnit>>,
+    pub(super) depth: Option<Box<DepthGauge>>,
     pub(super) mailbox: VecDeque<RadioMessage>,
     pub(super) keys: VecDeque<KeyPress>,
     /// Made when the program first draws: most robots of a fleet never do.
@@ -189,6 +191,7 @@ impl Body {
                 Box::new(CameraDevice::new(camera, placement.elevation, streams.child("camera", 0)))
             }),
             inertial: InertialUnit::of(spec.inertial, streams),
+            depth: spec.depth_sensor.map(|own| Box::new(DepthGauge::new(own, streams.child("depth", 0)))),
             mailbox: VecDeque::new(),
             keys: VecDeque::new(),
             lcd: None,

@@ -356,6 +356,14 @@ impl Engine {
         Ok(())
     }
 
+    pub(super) fn depth(&mut self, index: usize) -> Result<f64> {
+        let (time, sigma) = (self.time(), self.options.noise.depth);
+        let body = &mut self.bodies[index];
+        let Some(gauge) = &mut body.depth else { return Err(Error::unsupported("depth sensor")) };
+        let depth = self.hills.as_ref().map_or(0.0, |hills| hills.depth(index, gauge.spec.z, time));
+        Ok(gauge.read(depth, sigma))
+    }
+
     fn inertial(&mut self, index: usize) -> Result<&mut InertialUnit> {
         self.bodies[index].inertial.as_deref_mut().ok_or_else(|| Error::unsupported("inertial unit"))
     }

@@ -30,6 +30,7 @@ mod camera;
 mod car;
 mod collision;
 mod course;
+mod depth_gauge;
 mod drive_errors;
 mod drive_mechanics;
 mod drivetrain;

@@ -3,8 +3,8 @@ use std::sync::Arc;
 use crate::geometry::{Aabb, Point, units};
 use crate::kinematics::marine::CraftSpec;
 use crate::world::{
-    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, MotorSpec, Mount,
-    PsdSpec, RobotSpec,
+    Body, CameraSpec, CarDynamics, DepthSensorSpec, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast,
+    MotorSpec, Mount, PsdSpec, RobotSpec,
 };
 
 impl RobotSpec {
@@ -55,6 +55,7 @@ impl RobotSpec {
                 field_of_view: CameraSpec::DEFAULT_FIELD_OF_VIEW,
                 fisheye: false,
             }),
+            depth_sensor: None,
             inertial: InertialSpec::default(),
             model: None,
             mesh: None,
@@ -286,6 +287,7 @@ impl RobotSpec {
                 field_of_view: CameraSpec::DEFAULT_FIELD_OF_VIEW,
                 fisheye: false,
             }),
+            depth_sensor: Some(DepthSensorSpec { channel: 18, z: 0.26 }),
             inertial: InertialSpec::ALL,
             body: Body { mass_centre: [0.0, 0.0, 0.20], ..Body::default() },
             ..Self::s4()

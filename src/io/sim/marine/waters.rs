@@ -53,6 +53,11 @@ impl Waters {
         self.water.density
     }
 
+    /// The level of the surface at a place and a time.
+    pub(in crate::io::sim) fn surface(&self, at: Point, time: f64) -> f64 {
+        self.around(at, self.level, time).level
+    }
+
     pub(super) fn wind(&self) -> Vector {
         self.water.wind
     }

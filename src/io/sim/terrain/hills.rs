@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use super::{Mishap, RigidBody, Undercarriage, Watch};
-use crate::geometry::{Aabb, Point, Pose, Pose3, Vector, angle_difference};
+use crate::geometry::{Aabb, Point, Point3, Pose, Pose3, Vector, angle_difference};
 use crate::io::Result;
 use crate::io::sim::TICK;
 use crate::io::sim::body::Body;
@@ -85,6 +85,12 @@ impl Hills {
     /// Where a robot is in space.
     pub(in crate::io::sim) fn pose(&self, robot: usize) -> Pose3 {
         self.movers[robot].pose()
+    }
+
+    /// Metres of water above a place so many metres above a robot's origin.
+    pub(in crate::io::sim) fn depth(&self, robot: usize, up: f64, time: f64) -> f64 {
+        let place = self.pose(robot).to_world(Point3::new(0.0, 0.0, up));
+        (self.waters.surface(place.xy(), time) - place.z).max(0.0)
     }
 
     /// What has become of a robot that can drive no more.

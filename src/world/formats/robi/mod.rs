@@ -67,6 +67,7 @@
 //! | `mast BACK RIGHT FRONT LEFT HEIGHT` | a narrow part that stands up above the rest, which rays meet |
 //! | `psd_range MM` | how far the `psd` of the line before sees |
 //! | `lidar_range MM` | how far the lidar sees |
+//! | `depth_sensor CHANNEL [Z]` | a pressure sensor: which channel of `ANALOGRead` tells its depth in mm, and its height |
 //! | `inertial` and 3, 6 or 9 channels | an inertial unit: which channels of `ANALOGRead` tell roll, pitch and yaw, the turn rates, and the accelerations, each about or along forward, left, up: [`InertialSpec`](crate::world::InertialSpec); 0 0 0 for what it does not measure |
 //! | `camera_view DEG` | the camera's horizontal field of view |
 //!

@@ -15,8 +15,8 @@ use super::parts::{self, Wheel};
 use crate::geometry::{math, units};
 use crate::world::formats::{number, stem};
 use crate::world::{
-    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, Mesh, Mount, PsdSpec,
-    RobotSpec,
+    Body, CameraSpec, CarDynamics, DepthSensorSpec, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast,
+    Mesh, Mount, PsdSpec, RobotSpec,
 };
 
 /// The largest steering angle of cars that state none, in radians: 30 degrees.
@@ -129,6 +129,7 @@ impl<'f> Reader<'f> {
             psds: Vec::new(),
             lidar: None,
             camera: None,
+            depth_sensor: None,
             inertial: InertialSpec::default(),
             mast: None,
             ..RobotSpec::s4()
@@ -220,6 +221,11 @@ impl<'f> Reader<'f> {
             }
             "friction" => {
                 self.spec.friction = args.plain("the coefficient of friction", 0.0..=1e9)?;
+            }
+            "depth_sensor" => {
+                let channel = args.count("the depth sensor's channel", 1..=255)? as u8;
+                let z = if args.left() > 0 { args.length("the depth sensor's height")? } else { 0.0 };
+                self.spec.depth_sensor = Some(DepthSensorSpec { channel, z });
             }
             "inertial" => self.spec.inertial = parts::inertial(line, args)?,
             "dynamics" => self.dynamics = Some(parts::dynamics(args)?),

@@ -39,6 +39,9 @@ fn write_spec(text: &mut String, spec: &RobotSpec) -> Result {
     spec.psds.iter().try_for_each(|psd| write_psd(text, psd, spec.body.axle[0]))?;
     write_lidar(text, spec)?;
     spec.camera.iter().try_for_each(|camera| write_camera(text, camera, spec.body.axle[0]))?;
+    if let Some(sensor) = &spec.depth_sensor {
+        writeln!(text, "depth_sensor {} {}", sensor.channel, millimetres(sensor.z))?;
+    }
     write_inertial(text, &spec.inertial)
 }
 
