@@ -1,9 +1,8 @@
-//! Requests and replies as bytes, for programs that share a world with others and live in processes of their own.
+//! Requests and replies as bytes, for programs in their own processes that share a world.
 //!
-//! A question is the seconds that the program has spent, the readings that it will want to know too, and the
-//! request: a number for what is asked, and its arguments. An answer is the robot's time, these readings, and
-//! the reply: a number, and what is answered or the error. Numbers are little-endian. Whatever comes in is
-//! checked: nonsense is an error.
+//! A question contains the time spent by the program, the readings it will want as well, and the request: a
+//! number for its kind, and its arguments. An answer contains the robot's time, these readings, and the
+//! reply: a number for its kind, and a value or an error. Numbers are little-endian. All input is validated.
 
 use image::RgbImage;
 use roverlab::geometry::{Pose, Twist};
@@ -12,30 +11,30 @@ use roverlab::world::InertialSpec;
 
 use crate::ask::{Identity, Reply, Request};
 
-/// The longest reply in bytes: an image of five million pixels and its header.
+/// Maximum size of a reply (bytes): an image of five million pixels and its header.
 pub const LONGEST: usize = 16 << 20;
-/// The longest request in bytes: a radio message and its header.
+/// Maximum size of a request (bytes): a radio message and its header.
 pub const LONGEST_REQUEST: usize = 70_000;
 
-/// A request with the seconds that the program has spent without the world.
+/// A request with the time spent by the program in local calls.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Question {
-    /// Seconds.
+    /// Time (s).
     pub debt: f64,
-    /// What the program has read lately, and will want to read again once the request is done.
+    /// Recent readings, likely to be needed again after the request.
     pub wanted: Vec<Request>,
-    /// What is asked.
+    /// The request.
     pub request: Request,
 }
 
-/// A reply with the robot's own time after it.
+/// A reply with the robot's time after it.
 #[derive(Debug)]
 pub struct Answer {
-    /// Seconds.
+    /// Time (s).
     pub now: f64,
-    /// The readings that were wanted.
+    /// The wanted readings.
     pub readings: Vec<Reply>,
-    /// What is answered.
+    /// The reply.
     pub reply: Result<Reply>,
 }
 
@@ -283,14 +282,14 @@ impl<'a> Reader<'a> {
 }
 
 impl Question {
-    /// The question as a frame.
+    /// Encodes the question.
     pub fn encode(&self) -> Vec<u8> {
         let w = Writer::new().number(self.debt).byte(self.wanted.len() as u8);
         let w = self.wanted.iter().fold(w, Writer::request);
         w.request(&self.request).0
     }
 
-    /// A question from the bytes of a frame; `None` if they are none.
+    /// Decodes a question; `None` for invalid bytes.
     pub fn decode(frame: &[u8]) -> Option<Self> {
         let mut r = Reader(frame);
         let debt = r.number()?;
@@ -313,7 +312,7 @@ const KINDS: [ErrorKind; 7] = [
 ];
 
 impl Answer {
-    /// The answer as a frame.
+    /// Encodes the answer.
     pub fn encode(&self) -> Vec<u8> {
         let w = Writer::new().number(self.now).byte(self.readings.len() as u8);
         let w = self.readings.iter().fold(w, Writer::reply);
@@ -327,7 +326,7 @@ impl Answer {
         .0
     }
 
-    /// An answer from the bytes of a frame; `None` if they are none.
+    /// Decodes an answer; `None` for invalid bytes.
     pub fn decode(frame: &[u8]) -> Option<Self> {
         let mut r = Reader(frame);
         let now = r.number()?;

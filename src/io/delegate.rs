@@ -1,7 +1,7 @@
-//! Macros for writing wrappers: robots that change one thing and pass on the rest.
+//! Macros for wrappers: robots that change one capability and forward the rest.
 //!
-//! Each forwards one capability to a field through the `ambassador` crate's derive macro. The wrapper then has every
-//! such capability that the robot inside it has. The types that the macros need come along with a glob import:
+//! Each macro forwards one capability to a field through the `ambassador` crate's derive macro. The wrapper
+//! then has this capability if the robot inside has it. A glob import brings the types that the macros need:
 //!
 //! ```
 //! use ambassador::Delegate;
@@ -36,7 +36,7 @@
 //! # }
 //! ```
 
-// A macro names the types of its capability's methods as the trait does, so they have to be in scope where it is used.
+// A macro names the types of its methods as the trait does, so they must be in scope at its use.
 pub use super::{
     Attitude, DisplayImage, DisplayOption, Fill, Font, Key, LidarScan, LidarSettings, Pixel, Psd,
     RadioMessage, Resolution, Result, Viewport,

@@ -13,6 +13,7 @@ pub mod generate;
 mod grid;
 mod mesh;
 mod object;
+pub mod road;
 mod robot;
 mod scene;
 mod site;

@@ -1,4 +1,4 @@
-//! Robots that answer from a recording: what all of them share.
+//! Code shared by the robots that answer from a recording.
 
 use image::RgbImage;
 
@@ -16,7 +16,7 @@ use crate::io::{
 };
 use crate::world::Colour;
 
-/// The ranges or the pixels in a recorded scan or image.
+/// The ranges or pixels of a recorded scan or image.
 fn bulk_of(message: &[u8]) -> &[u8] {
     wire::bytes_of(message, 6).unwrap_or_default()
 }
@@ -54,7 +54,7 @@ macro_rules! answered {
     }};
 }
 
-/// All capabilities but the clock.
+/// Implements every capability except the clock.
 macro_rules! answering {
     ($($robot:ident),*) => { $(
         signatures! { Drive => answered!($robot) }

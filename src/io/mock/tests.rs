@@ -50,7 +50,7 @@ fn a_lenient_robot_reads_quiet_answers() {
     assert!(robot.is_done().unwrap() && !robot.is_stalled().unwrap());
     assert_eq!((robot.read_key().unwrap(), robot.read_touch().unwrap()), (None, None));
     assert_eq!((robot.radio_peers().unwrap(), robot.receive().unwrap()), (vec![1], None));
-    // There is no quiet answer to waiting for ever.
+    // Waiting for ever has no quiet answer.
     assert!(robot.wait_key().is_err());
 }
 

@@ -431,7 +431,7 @@ impl Engine {
             let (ground, pose) = (self.hills.as_deref().map(Hills::ground), robot.compose(&device.frame));
             self.space.scan_over(ground, &device.scanner, &pose, Some(body.solid), &mut scan.ranges);
         }
-        for range in &mut scan.ranges {
+        for range in scan.ranges.iter_mut().filter(|range| range.is_finite()) {
             *range = noisy(*range, sigma, device.max_range, &mut device.noise);
         }
         if let Some(watcher) = &mut self.watcher {
@@ -504,6 +504,7 @@ fn check_placement(placement: &RobotPlacement) -> Result<()> {
 }
 
 /// A reading with its noise; no return stays no return.
+#[inline]
 fn noisy(range: f64, sigma: f64, max_range: f64, stream: &mut Stream) -> f64 {
     if sigma == 0.0 || range.is_infinite() {
         return range;

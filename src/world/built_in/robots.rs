@@ -172,6 +172,51 @@ impl RobotSpec {
         }
     }
 
+    /// A model car in 1:10 for roads by the rules of the CAuDri-Challenge (book, chapter 13): 3 m/s at most, tyres that slip, and
+    /// a wide camera on a mast above the rear axle, which looks down on the road.
+    pub fn road_car() -> Self {
+        let (wheelbase, half_width) = (0.260, 0.095);
+        Self {
+            name: "RoadCar".into(),
+            drive: DriveSpec::Ackermann {
+                wheel_diameter: 0.066,
+                track: 0.165,
+                wheelbase,
+                max_steering: units::from_deg(28.0),
+                max_wheel_speed: 3.0 / 0.033,
+                ticks_per_turn: 1300.0,
+                // Rubber on the smooth floor of a hall; a servo of 60 degrees in 0.12 s turns the wheels.
+                dynamics: Some(CarDynamics {
+                    mass_centre: 0.125,
+                    gyration: 0.110,
+                    grip: 7.0,
+                    stiffness: 20.0,
+                    balance: 0.95,
+                    brake: 5.0,
+                    steering_rate: 5.0,
+                }),
+            },
+            motor: MotorSpec { time_constant: 0.1, max_acceleration: 3.0 },
+            footprint: Footprint::Rectangle(Aabb::new(
+                Point::new(-0.080, -half_width),
+                Point::new(0.350, half_width),
+            )),
+            height: 0.120,
+            mass: 2.5,
+            psds: Vec::new(),
+            lidar: None,
+            camera: Some(CameraSpec {
+                mount: Mount { x: 0.060, y: 0.0, z: 0.250, yaw: 0.0, ..Mount::default() },
+                tilt: units::from_deg(-25.0),
+                max_pan: 0.0,
+                max_tilt: 0.0,
+                field_of_view: units::from_deg(95.0),
+                fisheye: false,
+            }),
+            ..Self::s4()
+        }
+    }
+
     /// A student's Formula car (book, section 14.5), with a motor at each wheel, a low lidar at its nose and
     /// a camera above the driver's head.
     pub fn race_car() -> Self {

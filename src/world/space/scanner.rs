@@ -171,22 +171,18 @@ impl Space {
 
     /// Draws the solids of some cells, but for those in cells that are hidden.
     fn draw_block(&self, buffer: &mut PolarBuffer, cells: Cells, z: f64, seen: &mut [bool]) -> bool {
-        let lattice = &self.grid.lattice;
-        cells.iter().any(|(x, y)| {
-            let solids = self.grid.solids_in(lattice.index(x, y));
-            solids.iter().any(|&number| {
-                if seen[number as usize] {
-                    return false;
-                }
-                let shape = &self.solids[number as usize].shape;
-                // To draw a disc takes no longer than to see whether it is hidden.
-                if matches!(shape, Shape::Box(_)) {
-                    let (sector, near) = buffer.sector_of(shape);
-                    // What is hidden now stays so.
-                    seen[number as usize] = buffer.hides(sector, near);
-                }
-                self.draw_solid(buffer, number, z, seen)
-            })
+        self.grid.solids_of(cells).any(|&number| {
+            if seen[number as usize] {
+                return false;
+            }
+            let shape = &self.solids[number as usize].shape;
+            // To draw a disc takes no longer than to see whether it is hidden.
+            if matches!(shape, Shape::Box(_)) {
+                let (sector, near) = buffer.sector_of(shape);
+                // What is hidden now stays so.
+                seen[number as usize] = buffer.hides(sector, near);
+            }
+            self.draw_solid(buffer, number, z, seen)
         })
     }
 

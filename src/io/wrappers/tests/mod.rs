@@ -12,7 +12,7 @@ use crate::io::{
 };
 use crate::world::Colour;
 
-/// A mock whose readings all change with time, and whose every call takes a little.
+/// A mock with readings that change with time and calls that take some time.
 fn busy_robot() -> MockRobot {
     let scan = |time: f64| LidarScan {
         angle_min: -1.0,
@@ -43,7 +43,7 @@ fn busy_robot() -> MockRobot {
 
 const CALLS: u8 = 44;
 
-/// Makes one of all the calls that a robot understands and gives what came back.
+/// Makes one of all possible calls and returns its answer.
 fn call(robot: &mut (impl RobotIo + ?Sized), number: u8) -> String {
     let colours = (Colour::RED, Colour::BLUE);
     let image = image::RgbImage::from_pixel(3, 2, image::Rgb([1, 2, 3]));
