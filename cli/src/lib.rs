@@ -15,6 +15,7 @@ mod cone_race;
 mod cones;
 mod coverage;
 mod distbug;
+mod dive;
 mod driving;
 mod edges;
 mod follow_me;

@@ -17,6 +17,7 @@
 //!   [`LidarWallFollower`] and the book's [`TwoLevelWallFollower`] beside it;
 //! - [`colour`]: to what has a taught colour, and home with it (chapter 11);
 //! - [`lane_keeping`]: along the lane of a road, by what a camera sees, and [`traffic`]: who judges that (chapter 13);
+//! - [`marine`]: craft in water (chapter 8);
 //! - [`motion_watch`]: turning to what moves (chapter 11);
 //! - [`terrain`]: up the steepest way (chapter 7);
 //! - [`Pid`] and [`RelayTuner`]: a PID controller and how to find its gains.
@@ -33,6 +34,7 @@ mod follow_me;
 mod follower;
 mod formation;
 pub mod lane_keeping;
+pub mod marine;
 pub mod motion_watch;
 mod omni;
 mod path;

@@ -21,6 +21,7 @@ pub mod space;
 mod terrain;
 mod texture;
 mod wall;
+mod water;
 #[cfg(feature = "parry2d")]
 mod with_parry;
 
@@ -32,12 +33,13 @@ pub use grid::{Occupancy, OccupancyGrid};
 pub use mesh::{Face, Material, Mesh};
 pub use object::{Billboard, Marker, Object, ObjectKind, Shape};
 pub use robot::{
-    CameraSpec, CarDynamics, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, MotorSpec, Mount, PsdSpec,
-    RobotSpec,
+    CameraSpec, CarDynamics, DepthSensorSpec, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, MotorSpec,
+    Mount, PsdSpec, RobotSpec,
 };
 pub use scene::{Place, RobotPlacement, Scene, Settings, World};
 pub use terrain::{HeightField, Terrain};
 pub use texture::Texture;
 pub use wall::Wall;
+pub use water::{Water, Waves};
 #[cfg(feature = "parry2d")]
 pub use with_parry::ParryError;

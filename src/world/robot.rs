@@ -4,6 +4,7 @@ use std::sync::Arc;
 use super::{Body, Mesh};
 use crate::ParameterError;
 use crate::geometry::{Aabb, Point3, Pose3};
+use crate::kinematics::marine::CraftSpec;
 use crate::parameter::{require, require_finite, require_not_negative, require_positive};
 
 /// A description of a robot: its drive, outline and sensors. EyeSim's `.robi`.
@@ -38,6 +39,8 @@ pub struct RobotSpec {
     pub lidar: Option<LidarSpec>,
     /// Its camera, if it has one.
     pub camera: Option<CameraSpec>,
+    /// Its pressure sensor, if it has one.
+    pub depth_sensor: Option<DepthSensorSpec>,
     /// What its inertial unit measures.
     pub inertial: InertialSpec,
     /// The file of its 3D model, if it has one.
@@ -49,7 +52,7 @@ pub struct RobotSpec {
 }
 
 /// How a robot moves.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum DriveSpec {
     /// Two driven wheels side by side.
@@ -109,16 +112,19 @@ pub enum DriveSpec {
         /// Encoder ticks in one turn of a wheel.
         ticks_per_turn: f64,
     },
+    /// A boat or an underwater craft: its hull, its mass and its thrusters, about a point on the floor below it.
+    Craft(Arc<CraftSpec>),
 }
 
 impl DriveSpec {
-    /// The fastest rim speed of its wheels, in metres per second.
+    /// The fastest rim speed of its wheels, or the speed of a craft at full thrust, in metres per second.
     pub fn top_speed(&self) -> f64 {
         match *self {
             Self::Differential { wheel_diameter, max_wheel_speed, .. }
             | Self::Ackermann { wheel_diameter, max_wheel_speed, .. }
             | Self::Tracked { wheel_diameter, max_wheel_speed, .. }
             | Self::Omni { wheel_diameter, max_wheel_speed, .. } => 0.5 * wheel_diameter * max_wheel_speed,
+            Self::Craft(ref craft) => craft.top_speed(),
         }
     }
 
@@ -126,7 +132,7 @@ impl DriveSpec {
     pub fn dynamics(&self) -> Option<CarDynamics> {
         match *self {
             Self::Ackermann { dynamics, .. } => dynamics,
-            Self::Differential { .. } | Self::Tracked { .. } | Self::Omni { .. } => None,
+            Self::Differential { .. } | Self::Tracked { .. } | Self::Omni { .. } | Self::Craft(_) => None,
         }
     }
 }
@@ -390,6 +396,15 @@ impl CameraSpec {
     }
 }
 
+/// A pressure sensor that measures depth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DepthSensorSpec {
+    /// The channel by which RoBIOS programs read it with `ANALOGRead`, in mm.
+    pub channel: u8,
+    /// Metres above the robot's origin.
+    pub z: f64,
+}
+
 /// What a robot's inertial unit measures, and the channels by which RoBIOS programs read it with `ANALOGRead`. The
 /// default measures nothing: a robot without a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -503,6 +518,11 @@ impl RobotSpec {
                 require_positive("maximal wheel speed", max_wheel_speed)?;
                 require_positive("ticks per turn", ticks_per_turn)?;
             }
+            DriveSpec::Craft(ref craft) => {
+                let parts = craft.hull.len();
+                require("hull parts of a craft", parts as f64, parts > 0, "at least one")?;
+                craft.validate()?;
+            }
         }
         let lag = self.motor.time_constant;
         require("motor time constant", lag, lag.is_finite() && lag >= 0.0, "a finite number of at least 0")?;
@@ -512,6 +532,10 @@ impl RobotSpec {
         require_not_negative("mass", self.mass)?;
         require_not_negative("friction", self.friction)?;
         self.inertial.validate()?;
+        if let Some(DepthSensorSpec { channel, z }) = self.depth_sensor {
+            require("channel of the depth sensor", channel.into(), channel > 0, "1 to 255")?;
+            require_finite("height of the depth sensor", z)?;
+        }
         for psd in &self.psds {
             require_positive("PSD maximal range", psd.max_range)?;
             psd.mount.validate()?;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use super::SimOptions;
 use super::camera::CameraDevice;
 use super::course::Course;
+use super::depth_gauge::DepthGauge;
 use super::inertial_unit::InertialUnit;
 use super::mechanics::Powertrain;
 use crate::geometry::{Point, Point3, Pose, Pose3, Vector3, direction, math};
@@ -31,6 +32,7 @@ pub(super) struct Body {
     pub(super) lidar: Option<Box<LidarDevice>>,
     pub(super) camera: Option<Box<CameraDevice>>,
     pub(super) inertial: Option<Box<InertialUnit>>,
+    pub(super) depth: Option<Box<DepthGauge>>,
     pub(super) mailbox: VecDeque<RadioMessage>,
     pub(super) keys: VecDeque<KeyPress>,
     /// Made when the program first draws: most robots of a fleet never do.
@@ -189,6 +191,7 @@ impl Body {
                 Box::new(CameraDevice::new(camera, placement.elevation, streams.child("camera", 0)))
             }),
             inertial: InertialUnit::of(spec.inertial, streams),
+            depth: spec.depth_sensor.map(|own| Box::new(DepthGauge::new(own, streams.child("depth", 0)))),
             mailbox: VecDeque::new(),
             keys: VecDeque::new(),
             lcd: None,
@@ -228,21 +231,23 @@ impl Body {
         self.touch.held_ticks = if held { self.touch.held_ticks.saturating_add(1) } else { 0 };
     }
 
-    /// The motor that a motor's or an encoder's number means.
-    pub(super) fn motor_index(&self, number: u8, device: &str) -> Result<usize> {
-        let motors = self.drive.get().motors();
-        let index = usize::from(number).checked_sub(1).filter(|&index| index < motors);
-        index.ok_or_else(|| Error::unsupported(format!("{device} {number}")))
+    /// The motor that a number means.
+    pub(super) fn motor_index(&self, number: u8) -> Result<usize> {
+        device_index("motor", number, self.drive.get().motors())
+    }
+
+    fn encoder_index(&self, number: u8) -> Result<usize> {
+        device_index("encoder", number, self.drive.get().encoders())
     }
 
     /// An encoder's count since the last reset.
     pub(super) fn encoder(&self, motor: u8) -> Result<i64> {
-        let wheel = self.motor_index(motor, "encoder")?;
+        let wheel = self.encoder_index(motor)?;
         Ok(self.drive.get().count(wheel) - self.encoder_offsets[wheel])
     }
 
     pub(super) fn reset_encoder(&mut self, motor: u8) -> Result<()> {
-        let wheel = self.motor_index(motor, "encoder")?;
+        let wheel = self.encoder_index(motor)?;
         self.encoder_offsets[wheel] = self.drive.get().count(wheel);
         Ok(())
     }
@@ -258,6 +263,12 @@ impl Body {
         let due = self.keys.front().is_some_and(|press| press.time <= now);
         if due { self.keys.pop_front().map(|press| press.key) } else { None }
     }
+}
+
+/// The index of the device that a number from 1 means.
+fn device_index(device: &str, number: u8, count: usize) -> Result<usize> {
+    let index = usize::from(number).checked_sub(1).filter(|&index| index < count);
+    index.ok_or_else(|| Error::unsupported(format!("{device} {number}")))
 }
 
 fn span(placement: &RobotPlacement) -> Span {

@@ -192,7 +192,7 @@ impl Engine {
         body.touch.leave();
         self.space.set_pose(body.solid, pose);
         if let Some(hills) = &mut self.hills {
-            hills.place(index, pose, z - hills.level(pose.position()));
+            hills.place(index, pose, z - hills.ground_level(pose.position()));
         }
         self.begin_inertial(index);
         self.look_around_again();
@@ -202,7 +202,7 @@ impl Engine {
     pub(super) fn place_object(&mut self, object: usize, pose: Pose) {
         self.movables[object].velocity = Vector::zeros();
         let movable = self.movables[object];
-        self.put(movable.solid, pose);
+        self.put(&movable, pose);
         // A hand puts it upright.
         self.space.set_top(movable.solid, movable.top);
         self.look_around_again();

@@ -110,10 +110,11 @@ impl Engine {
             outbox: Vec::new(),
             moves: Vec::new(),
             studio,
-            hills: Hills::of(&scene.world, &scene.robots),
+            hills: None,
             trail_ticks,
             watcher: None,
         };
+        engine.hills = Hills::of(&scene.world, &scene.robots, &mut engine.bodies, engine.options.seed)?;
         engine.stand_on_hills();
         (0..engine.bodies.len()).for_each(|index| engine.begin_inertial(index));
         Ok(engine)
@@ -124,16 +125,16 @@ impl Engine {
         let Some(hills) = &mut self.hills else { return };
         for movable in &self.movables {
             let place = self.space.solid(movable.solid).pose.position();
-            self.space.set_level(movable.solid, hills.level(place));
+            self.space.set_level(movable.solid, hills.level(place, movable));
         }
         hills.yield_to(&mut self.bodies, &mut self.space);
     }
 
-    /// Puts a solid somewhere else, at its height above the ground there.
-    pub(super) fn put(&mut self, solid: SolidId, pose: Pose) {
-        self.space.set_pose(solid, pose);
+    /// Puts an object somewhere else, at its height above the ground there.
+    pub(super) fn put(&mut self, object: &Movable, pose: Pose) {
+        self.space.set_pose(object.solid, pose);
         if let Some(hills) = &self.hills {
-            self.space.set_level(solid, hills.level(pose.position()));
+            self.space.set_level(object.solid, hills.level(pose.position(), object));
         }
     }
 
@@ -216,7 +217,8 @@ impl Engine {
             moving |= *motion != PlanarMotion::default();
         }
         if let Some(hills) = &mut self.hills {
-            moving = hills.ride(&self.bodies, &mut motions);
+            let time = self.tick as f64 / TICKS_PER_SECOND;
+            moving = hills.ride(&mut self.bodies, &mut motions, time);
         }
         if moving {
             self.move_bodies(&motions);
@@ -310,7 +312,7 @@ impl Engine {
 
     pub(super) fn set_motor(&mut self, index: usize, motor: u8, fraction: f64) -> Result<()> {
         let body = &mut self.bodies[index];
-        let motor = body.motor_index(motor, "motor")?;
+        let motor = body.motor_index(motor)?;
         if !(-1.0..=1.0).contains(&fraction) {
             return Err(Error::invalid_input("motor speed", fraction, "-1 to 1"));
         }
@@ -354,6 +356,14 @@ impl Engine {
             watcher.image(index, image);
         }
         Ok(())
+    }
+
+    pub(super) fn depth(&mut self, index: usize) -> Result<f64> {
+        let (time, sigma) = (self.time(), self.options.noise.depth);
+        let body = &mut self.bodies[index];
+        let Some(gauge) = &mut body.depth else { return Err(Error::unsupported("depth sensor")) };
+        let depth = self.hills.as_ref().map_or(0.0, |hills| hills.depth(index, gauge.spec.z, time));
+        Ok(gauge.read(depth, sigma))
     }
 
     fn inertial(&mut self, index: usize) -> Result<&mut InertialUnit> {

@@ -31,6 +31,8 @@ pub struct NoiseModel {
     pub exposure: f64,
     /// Blur of the camera, in pixels of an image 320 pixels wide; in proportion for others.
     pub blur: f64,
+    /// Error of the depth sensor, in metres: one is drawn once, and one for each reading.
+    pub depth: f64,
     /// Error of the inertial unit's roll, pitch and yaw, in radians: one is drawn once, and one for each reading. The
     /// yaw's wanders besides, as much in a minute.
     pub attitude: f64,
@@ -53,6 +55,7 @@ impl NoiseModel {
             shot: 0.0,
             exposure: 0.0,
             blur: 0.0,
+            depth: 0.0,
             attitude: 0.0,
             turn_rate: 0.0,
             acceleration: 0.0,
@@ -71,6 +74,8 @@ impl NoiseModel {
             shot: 3.0,
             exposure: 0.03,
             blur: 0.5,
+            // The resolution of the Bar30 of 300 m, zeroed at the surface.
+            depth: 0.002,
             // As data sheets of small units state: Xsens MTi 1 (0.5 degrees), InvenSense MPU-6050 (0.05 degrees per
             // second, and 4 mg in a band of 100 Hz).
             attitude: 0.0087,
@@ -97,6 +102,7 @@ impl NoiseModel {
             shot: self.shot * factor,
             exposure: self.exposure * factor,
             blur: self.blur * factor,
+            depth: self.depth * factor,
             attitude: self.attitude * factor,
             turn_rate: self.turn_rate * factor,
             acceleration: self.acceleration * factor,
@@ -115,6 +121,7 @@ impl NoiseModel {
             ("shot noise", self.shot, 255.0),
             ("exposure error", self.exposure, 1.0),
             ("blur", self.blur, 10.0),
+            ("depth error", self.depth, 1000.0),
             ("attitude error", self.attitude, 10.0),
             ("turn rate error", self.turn_rate, 1000.0),
             ("acceleration error", self.acceleration, 1000.0),

@@ -63,7 +63,9 @@ impl Engine {
         let me = self.bodies[pusher].solid;
         let blocked = contacts.iter().any(|contact| contact.with != Some(me) && contact.depth > TOLERANCE);
         if !blocked {
-            self.put(solid, there);
+            if let Some(&object) = self.movable(solid) {
+                self.put(&object, there);
+            }
             // It may have come near to robots that did not look for it.
             for body in &mut self.bodies {
                 body.solid_budget = body.solid_budget.min(0.0);

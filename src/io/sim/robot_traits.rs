@@ -4,9 +4,9 @@ use super::engine::Engine;
 use super::{FleetRobot, SimRobot};
 use crate::geometry::{Pose, Twist, Vector3};
 use crate::io::{
-    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
-    ErrorKind, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
-    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive,
+    Encoders, Error, ErrorKind, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres,
+    Motors, Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::kinematics::Displacement;
 use crate::world::Colour;
@@ -276,6 +276,12 @@ macro_rules! robot_through_engine {
 
             fn reset_encoder(&mut self, motor: u8) -> Result<()> {
                 self.call(|engine, i| engine.bodies[i].reset_encoder(motor))
+            }
+        }
+
+        impl DepthSensor for $robot {
+            fn depth(&mut self) -> Result<f64> {
+                self.call(|engine, i| engine.depth(i))
             }
         }
 

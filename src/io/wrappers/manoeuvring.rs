@@ -3,9 +3,9 @@ use image::RgbImage;
 use crate::geometry::{Pose, Twist, Vector3, angle_difference};
 use crate::io::control::Stopwatch;
 use crate::io::{
-    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill,
-    Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel, Psd,
-    Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive,
+    Encoders, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry,
+    Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::kinematics::{Displacement, arc_between};
 use crate::parameter::{ParameterError, require_finite, require_not_negative, require_positive};
@@ -405,5 +405,6 @@ hooked!(
     Radio,
     Servos,
     Encoders,
-    Inertial
+    Inertial,
+    DepthSensor
 );

@@ -4,9 +4,9 @@ use image::RgbImage;
 use crate::geometry::{Pose, Twist, Vector3, math, normalize_angle, units};
 use crate::io::delegate::ambassador_impl_StallDetector;
 use crate::io::{
-    Attitude, Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Error,
-    Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors, Odometry, Pixel,
-    Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
+    Attitude, Camera, Clock, DepthSensor, Display, DisplayImage, DisplayOption, DistanceSensors, Drive,
+    Encoders, Error, Fill, Font, Inertial, Key, Keys, Lidar, LidarScan, LidarSettings, Manoeuvres, Motors,
+    Odometry, Pixel, Psd, Radio, RadioMessage, Resolution, Result, Servos, StallDetector, Viewport,
 };
 use crate::world::Colour;
 
@@ -396,6 +396,12 @@ impl<R: Encoders> Encoders for Quantised<R> {
 
     fn reset_encoder(&mut self, motor: u8) -> Result<()> {
         self.inner.reset_encoder(motor)
+    }
+}
+
+impl<R: DepthSensor> DepthSensor for Quantised<R> {
+    fn depth(&mut self) -> Result<f64> {
+        Ok(length(self.inner.depth()?))
     }
 }
 

@@ -1,12 +1,15 @@
+use std::sync::Arc;
+
 use crate::geometry::{Aabb, Point, units};
+use crate::kinematics::marine::CraftSpec;
 use crate::world::{
-    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, MotorSpec, Mount,
-    PsdSpec, RobotSpec,
+    Body, CameraSpec, CarDynamics, DepthSensorSpec, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast,
+    MotorSpec, Mount, PsdSpec, RobotSpec,
 };
 
 impl RobotSpec {
     /// The robots that every scene knows by name.
-    pub const PREDEFINED: [&'static str; 13] = [
+    pub const PREDEFINED: [&'static str; 15] = [
         "S4",
         "SoccerBot",
         "LabBot",
@@ -20,6 +23,8 @@ impl RobotSpec {
         "Car",
         "Ackermann",
         "SAE",
+        "Mako",
+        "SolarRaft",
     ];
 
     /// EyeSim's S4: a small differential drive robot with four PSDs, a lidar and a camera.
@@ -50,6 +55,7 @@ impl RobotSpec {
                 field_of_view: CameraSpec::DEFAULT_FIELD_OF_VIEW,
                 fisheye: false,
             }),
+            depth_sensor: None,
             inertial: InertialSpec::default(),
             model: None,
             mesh: None,
@@ -289,6 +295,69 @@ impl RobotSpec {
         Self { name: "LidarBot".into(), psds, lidar: Some(lidar), ..s4 }
     }
 
+    /// The underwater craft Mako (book, chapter 8), with PSDs ahead, to the left, to the right, back, up and down.
+    ///
+    /// Its body is [`CraftSpec::mako`](crate::kinematics::marine::CraftSpec::mako).
+    pub fn mako() -> Self {
+        let psd = |id, name: &str, (x, y, z), (pitch, yaw)| PsdSpec {
+            id,
+            name: name.into(),
+            mount: Mount { x, y, z, roll: 0.0, pitch: units::from_deg(pitch), yaw: units::from_deg(yaw) },
+            max_range: PsdSpec::DEFAULT_MAX_RANGE,
+        };
+        let (half_length, half_width, height) = (0.670, 0.3225, 0.460);
+        Self {
+            name: "Mako".into(),
+            drive: DriveSpec::Craft(Arc::new(CraftSpec::mako())),
+            footprint: Footprint::Rectangle(Aabb::new(
+                Point::new(-half_length, -half_width),
+                Point::new(half_length, half_width),
+            )),
+            height,
+            mass: 35.0,
+            psds: vec![
+                psd(1, "PSD_FRONT", (half_length, 0.0, 0.34), (0.0, 0.0)),
+                psd(2, "PSD_LEFT", (0.0, half_width, 0.26), (0.0, 90.0)),
+                psd(3, "PSD_RIGHT", (0.0, -half_width, 0.26), (0.0, -90.0)),
+                psd(4, "PSD_BACK", (-half_length, 0.0, 0.34), (0.0, 180.0)),
+                psd(5, "PSD_UP", (0.0, 0.0, height), (-90.0, 0.0)),
+                psd(6, "PSD_DOWN", (0.0, 0.0, 0.0), (90.0, 0.0)),
+            ],
+            lidar: None,
+            camera: Some(CameraSpec {
+                mount: Mount { x: 0.60, z: 0.10, ..Mount::default() },
+                tilt: 0.0,
+                max_pan: 0.0,
+                max_tilt: units::from_deg(90.0),
+                field_of_view: CameraSpec::DEFAULT_FIELD_OF_VIEW,
+                fisheye: false,
+            }),
+            depth_sensor: Some(DepthSensorSpec { channel: 18, z: 0.26 }),
+            inertial: InertialSpec::ALL,
+            body: Body { mass_centre: [0.0, 0.0, 0.20], ..Body::default() },
+            ..Self::s4()
+        }
+    }
+
+    /// The solar raft (book, section 8.1): a boat with two thrusters.
+    ///
+    /// Its body is [`CraftSpec::solar_raft`](crate::kinematics::marine::CraftSpec::solar_raft).
+    pub fn solar_raft() -> Self {
+        Self {
+            name: "SolarRaft".into(),
+            drive: DriveSpec::Craft(Arc::new(CraftSpec::solar_raft())),
+            footprint: Footprint::Rectangle(Aabb::new(Point::new(-0.65, -0.38), Point::new(0.65, 0.38))),
+            height: 0.24,
+            mass: 20.0,
+            psds: Vec::new(),
+            lidar: None,
+            camera: None,
+            inertial: InertialSpec::ALL,
+            body: Body { mass_centre: [0.0, 0.0, 0.08], ..Body::default() },
+            ..Self::s4()
+        }
+    }
+
     /// A robot of [`PREDEFINED`](Self::PREDEFINED), without regard to case.
     pub fn predefined(name: &str) -> Option<Self> {
         let name = Self::PREDEFINED.into_iter().find(|known| known.eq_ignore_ascii_case(name))?;
@@ -299,6 +368,8 @@ impl RobotSpec {
             "Blizzard" => Self::blizzard(),
             "Car" | "Ackermann" => Self::car(),
             "SAE" => Self::sae(),
+            "Mako" => Self::mako(),
+            "SolarRaft" => Self::solar_raft(),
             _ => Self::s4(),
         };
         Some(Self { name: name.into(), ..spec })

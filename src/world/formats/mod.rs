@@ -22,6 +22,7 @@ pub mod ros_map;
 pub mod sim;
 mod source;
 mod terrain_file;
+mod water;
 pub mod wld;
 mod world_file;
 mod yaml;

@@ -12,8 +12,8 @@ use crate::io::delegate::{
 use crate::io::sim::Lcd;
 use crate::io::sim::lockstep::{Lockstep, Program};
 use crate::io::{
-    Attitude, Camera, Clock, DistanceSensors, Drive, Encoders, Error, ErrorKind, Inertial, Keys, Lidar,
-    Manoeuvres, Motors, Odometry, Radio, Servos, StallDetector,
+    Attitude, Camera, Clock, DepthSensor, DistanceSensors, Drive, Encoders, Error, ErrorKind, Inertial, Keys,
+    Lidar, Manoeuvres, Motors, Odometry, Radio, Servos, StallDetector,
 };
 
 /// A simulated Starman, in virtual time.
@@ -164,6 +164,7 @@ signatures! { Radio => lacks!("radio") }
 signatures! { Motors => lacks!("motors") }
 signatures! { Encoders => lacks!("encoders") }
 signatures! { Inertial => lacks!("inertial unit") }
+signatures! { DepthSensor => lacks!("depth sensor") }
 
 #[cfg(test)]
 mod tests {

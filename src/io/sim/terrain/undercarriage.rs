@@ -93,6 +93,7 @@ impl Undercarriage {
                 }
                 (4, 0.0)
             }
+            DriveSpec::Craft(_) => (0, 0.0),
         };
         feet.extend(chassis(spec, ahead));
         let centre = stated_centre(spec).unwrap_or(Vector3::new(ahead, 0.0, MIDDLE * spec.height));
@@ -194,6 +195,7 @@ fn wheel_diameter(spec: &RobotSpec) -> f64 {
         | DriveSpec::Ackermann { wheel_diameter, .. }
         | DriveSpec::Tracked { wheel_diameter, .. }
         | DriveSpec::Omni { wheel_diameter, .. } => wheel_diameter,
+        DriveSpec::Craft(_) => 0.0,
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! | line | meaning |
 //! |---|---|
+//! | `drive AUV_DRIVE`, `BOAT_DRIVE` | a craft in water, underwater or on the surface: names of our own |
 //! | `drive DIFFERENTIAL_DRIVE`, `ACKERMANN_DRIVE`, `OMNI_DRIVE`, `TRACKED_DRIVE` | how it moves; `TRACK_DRIVE` and `CHAIN_DRIVE` are tracked too, other names are read as differential |
 //! | `name NAME` | by which scenes place it; the file's name without it |
 //! | `model FILE [X Y Z RX RY RZ]` | the 3D model that cameras see, and how it is shifted and turned |
@@ -39,6 +40,13 @@
 //!   yaw. The tilt is the angle of each beam above that plane.
 //! * `camera`: forward, left, up, unless X is 0 and Y is not; then Y is forward.
 //!
+//! # Craft without lines of their own
+//!
+//! What a craft's file does not say follows from its mass and its colliders: these are the hull, scaled so that an underwater
+//! craft has 2 % of its volume in reserve and a boat floats at least half out of the water; inertia, added mass and damping are
+//! those of [`CraftSpec::of_hull`](crate::kinematics::marine::CraftSpec::of_hull); an underwater craft has four thrusters as
+//! Mako has them (1 left, 2 front, 3 right, 4 back), a boat two at its stern (1 left, 2 right), each pushing 1 N for a kilogram.
+//!
 //! # Lines of our own
 //!
 //! EyeSim skips keywords that it does not know, so a description can say here what EyeSim's formats cannot:
@@ -49,11 +57,17 @@
 //! | `steering DEG` | the largest steering angle; 30 without it |
 //! | `dynamics MASS GYRATION GRIP STIFFNESS BALANCE BRAKE STEERING` | a fast car's mass and tyres: [`CarDynamics`](crate::world::CarDynamics), in millimetres, their products with 1/s², and degrees per second |
 //! | `tracks LENGTH WIDTH` | a tracked robot's belts: their length on the ground, and their width |
+//! | `thruster ID NAME X Y Z DX DY DZ FORCE [BACK]` | a craft's thruster: place, direction (both forward, left, up), newtons forward and backward; BACK is 0.7 of FORCE without it |
+//! | `hull box SX SY SZ X Y Z`, `hull capsule R LENGTH X Y Z [x\|y\|z]`, `hull ellipsoid A B C X Y Z` | what displaces water: sizes (or half axes), then middle, forward, left, up |
+//! | `damping` and 12 numbers | a craft's linear damping in surge, sway, heave, roll, pitch, yaw, then its quadratic damping: N s/m and so on |
+//! | `added_mass` and 6 numbers | kg and kg m² |
+//! | `inertia IXX IYY IZZ IXY IXZ IYZ` | a craft's inertia about the middle of its mass, in kg m² |
 //! | `friction MU` | the coefficient of friction on hills; 0.8 without it |
 //! | `outline disc R HEIGHT`, `outline rectangle BACK RIGHT FRONT LEFT HEIGHT` | footprint about the driven axle |
 //! | `mast BACK RIGHT FRONT LEFT HEIGHT` | a narrow part that stands up above the rest, which rays meet |
 //! | `psd_range MM` | how far the `psd` of the line before sees |
 //! | `lidar_range MM` | how far the lidar sees |
+//! | `depth_sensor CHANNEL [Z]` | a pressure sensor: which channel of `ANALOGRead` tells its depth in mm, and its height |
 //! | `inertial` and 3, 6 or 9 channels | an inertial unit: which channels of `ANALOGRead` tell roll, pitch and yaw, the turn rates, and the accelerations, each about or along forward, left, up: [`InertialSpec`](crate::world::InertialSpec); 0 0 0 for what it does not measure |
 //! | `camera_view DEG` | the camera's horizontal field of view |
 //!
@@ -66,6 +80,7 @@
 //! # Ok::<(), roverlab::world::formats::FormatError>(())
 //! ```
 
+mod craft;
 mod mounts;
 mod parts;
 mod read;

@@ -9,13 +9,14 @@ use super::super::limits::{MAX_METRES, MAX_PARTS};
 use super::super::model;
 use super::super::number::MILLI;
 use super::super::source::{Files, check_length};
+use super::craft::CraftLines;
 use super::mounts::{self, Columns, Raw};
 use super::parts::{self, Wheel};
 use crate::geometry::{math, units};
 use crate::world::formats::{number, stem};
 use crate::world::{
-    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, Mesh, Mount, PsdSpec,
-    RobotSpec,
+    Body, CameraSpec, CarDynamics, DepthSensorSpec, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast,
+    Mesh, Mount, PsdSpec, RobotSpec,
 };
 
 /// The largest steering angle of cars that state none, in radians: 30 degrees.
@@ -85,6 +86,8 @@ enum Drive {
     Ackermann,
     Tracked,
     Omni,
+    Submarine,
+    Boat,
 }
 
 /// A `psd` line.
@@ -105,6 +108,7 @@ struct Reader<'f> {
     /// Length and width of belts.
     tracks: Option<[f64; 2]>,
     steering: f64,
+    craft: CraftLines,
     dynamics: Option<CarDynamics>,
     psds: Vec<Psd>,
     lidar_mount: Option<Raw>,
@@ -125,6 +129,7 @@ impl<'f> Reader<'f> {
             psds: Vec::new(),
             lidar: None,
             camera: None,
+            depth_sensor: None,
             inertial: InertialSpec::default(),
             mast: None,
             ..RobotSpec::s4()
@@ -136,6 +141,7 @@ impl<'f> Reader<'f> {
             turn_axle: None,
             tracks: None,
             steering: DEFAULT_STEERING,
+            craft: CraftLines::default(),
             dynamics: None,
             psds: Vec::new(),
             lidar_mount: None,
@@ -216,6 +222,11 @@ impl<'f> Reader<'f> {
             "friction" => {
                 self.spec.friction = args.plain("the coefficient of friction", 0.0..=1e9)?;
             }
+            "depth_sensor" => {
+                let channel = args.count("the depth sensor's channel", 1..=255)? as u8;
+                let z = if args.left() > 0 { args.length("the depth sensor's height")? } else { 0.0 };
+                self.spec.depth_sensor = Some(DepthSensorSpec { channel, z });
+            }
             "inertial" => self.spec.inertial = parts::inertial(line, args)?,
             "dynamics" => self.dynamics = Some(parts::dynamics(args)?),
             "outline" => self.outline = Some(parts::outline(line, args)?),
@@ -230,7 +241,7 @@ impl<'f> Reader<'f> {
                 let angle = args.degrees("the camera's angle", f64::MIN_POSITIVE..=360.0)?;
                 self.camera_view = Some((units::from_deg(angle), false));
             }
-            _ => return Ok(false),
+            _ => return self.craft.line(keyword, line, args),
         }
         Ok(true)
     }
@@ -242,6 +253,8 @@ impl<'f> Reader<'f> {
             "DIFFERENTIAL_DRIVE" => Drive::Differential,
             "ACKERMANN_DRIVE" => Drive::Ackermann,
             "OMNI_DRIVE" => Drive::Omni,
+            "AUV_DRIVE" => Drive::Submarine,
+            "BOAT_DRIVE" => Drive::Boat,
             "TRACKED_DRIVE" | "TRACK_DRIVE" | "CHAIN_DRIVE" => Drive::Tracked,
             _ => {
                 let message = format!("unknown drive {}; read as DIFFERENTIAL_DRIVE", shown(name));
@@ -379,6 +392,12 @@ impl<'f> Reader<'f> {
     }
 
     fn drive_spec(&mut self, drive: Drive) -> Result<DriveSpec, FormatError> {
+        if matches!(drive, Drive::Submarine | Drive::Boat) {
+            self.spec.body.turn_axle_height = 0.0;
+            let lines = std::mem::take(&mut self.craft);
+            let craft = lines.finish(drive == Drive::Boat, &self.spec, &mut self.notes)?;
+            return Ok(DriveSpec::Craft(Arc::new(craft)));
+        }
         let wheel = self.wheel.unwrap_or_else(|| {
             self.notes.warn(Location::START, "no `wheel` line; the wheels of an S4 are taken");
             Wheel { diameter: 0.054, max_speed: units::from_deg(3600.0), ticks: 1100.0, track: 0.090 }
@@ -484,6 +503,7 @@ impl<'f> Reader<'f> {
             | DriveSpec::Ackermann { wheel_diameter, track, .. }
             | DriveSpec::Tracked { wheel_diameter, track, .. }
             | DriveSpec::Omni { wheel_diameter, track, .. } => 0.5 * (track + wheel_diameter),
+            DriveSpec::Craft(ref craft) => CraftLines::radius(craft),
         };
         let fallback = (Footprint::Disc { radius: wheels }, DEFAULT_HEIGHT);
         (self.spec.footprint, self.spec.height) = self.outline.take().or(derived).unwrap_or(fallback);

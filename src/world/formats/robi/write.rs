@@ -23,6 +23,8 @@ fn write_spec(text: &mut String, spec: &RobotSpec) -> Result {
         DriveSpec::Ackermann { .. } => "ACKERMANN_DRIVE",
         DriveSpec::Tracked { .. } => "TRACKED_DRIVE",
         DriveSpec::Omni { .. } => "OMNI_DRIVE",
+        // What tells boats from underwater craft stands in its lines.
+        DriveSpec::Craft(_) => "AUV_DRIVE",
     };
     writeln!(text, "drive {drive}\nname {}", quote(&spec.name))?;
     write_model(text, spec)?;
@@ -37,6 +39,9 @@ fn write_spec(text: &mut String, spec: &RobotSpec) -> Result {
     spec.psds.iter().try_for_each(|psd| write_psd(text, psd, spec.body.axle[0]))?;
     write_lidar(text, spec)?;
     spec.camera.iter().try_for_each(|camera| write_camera(text, camera, spec.body.axle[0]))?;
+    if let Some(sensor) = &spec.depth_sensor {
+        writeln!(text, "depth_sensor {} {}", sensor.channel, millimetres(sensor.z))?;
+    }
     write_inertial(text, &spec.inertial)
 }
 
@@ -66,6 +71,10 @@ fn write_drive(text: &mut String, spec: &RobotSpec) -> Result {
         writeln!(text, "axel drive {up} {ahead}\naxel turn {turn_up} {turn}")
     };
     match spec.drive {
+        DriveSpec::Craft(ref craft) => {
+            writeln!(text, "axis {up} {ahead}")?;
+            super::craft::write(text, craft)
+        }
         DriveSpec::Differential { wheel_diameter, track, max_wheel_speed, ticks_per_turn } => {
             writeln!(text, "axis {up} {ahead}")?;
             write_wheel(text, "", [wheel_diameter, max_wheel_speed, ticks_per_turn, track])
