@@ -93,6 +93,8 @@ pub enum Mishap {
     Stuck,
     /// The middle of its mass is below the water's surface.
     Drowned,
+    /// Its motion is no number any more, so that it stays where it was: its description is of no craft that could be.
+    Broken,
 }
 
 impl std::fmt::Display for Mishap {
@@ -102,6 +104,7 @@ impl std::fmt::Display for Mishap {
             Self::Fell => "fell",
             Self::Stuck => "stuck",
             Self::Drowned => "drowned",
+            Self::Broken => "broken",
         })
     }
 }

@@ -280,7 +280,7 @@ macro_rules! compounds {
 }
 
 /// The numbers of mishaps in recordings; 0 is none.
-const MISHAPS: [Mishap; 4] = [Mishap::Tipped, Mishap::Fell, Mishap::Stuck, Mishap::Drowned];
+const MISHAPS: [Mishap; 5] = [Mishap::Tipped, Mishap::Fell, Mishap::Stuck, Mishap::Drowned, Mishap::Broken];
 
 fn mishap_number(mishap: Mishap) -> u8 {
     MISHAPS.iter().position(|&known| known == mishap).map_or(0, |index| index as u8 + 1)

@@ -41,6 +41,8 @@ impl Climber {
             | DriveSpec::Omni { wheel_diameter, track, wheelbase, .. } => {
                 (wheel_diameter, 0.5 * track.min(wheelbase))
             }
+            // Craft climb nothing.
+            DriveSpec::Craft(_) => (0.0, 0.0),
         };
         let (tips, slips) = (math::atan2(support, MIDDLE * spec.height), math::atan(spec.friction));
         let (slope, step) = (TRUSTED * tips.min(slips), 0.5 * CLIMBED * wheel_diameter);

@@ -2,11 +2,11 @@ use std::sync::Arc;
 
 use super::{RigidBody, Undercarriage, Watch};
 use crate::geometry::{Aabb, Point, Point3, Pose, Pose3, Vector, angle_difference};
-use crate::io::{Mishap, Result};
 use crate::io::sim::TICK;
 use crate::io::sim::body::Body;
 use crate::io::sim::marine::{Swimmer, Waters};
 use crate::io::sim::movable::Movable;
+use crate::io::{Mishap, Result};
 use crate::kinematics::{PlanarMotion, PlanarTwist};
 use crate::world::space::Space;
 use crate::world::{DriveSpec, HeightField, RobotPlacement, World};
