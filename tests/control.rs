@@ -5,12 +5,13 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
+use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::{
     AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters, Goal,
     LidarWallFollower, LidarWallFollowerParameters, Method, OmniDriver, OmniParameters, OmniTracker,
-    PidWallFollower, PidWallFollowerParameters, RandomDrive, RandomDriveParameters, TwoLevelWallFollower,
-    WallFollower, WallFollowerParameters,
+    PidWallFollower, PidWallFollowerParameters, RandomDrive, RandomDriveParameters, Tour, TourParameters,
+    TwoLevelWallFollower, WallFollower, WallFollowerParameters,
 };
 use roverlab::evolve::Gait;
 use roverlab::geometry::{Point, Pose, Twist};
@@ -28,6 +29,7 @@ use roverlab::race::{
     Cone, ConeTrack, EventParameters, EventRacer, GapDriver, RaceOutcome, Racer, RacerParameters,
 };
 use roverlab::random::Stream;
+use roverlab::vision::lane_markings::RoadModel;
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
 use roverlab::world::{RobotSpec, Scene, World};
 
@@ -51,7 +53,17 @@ where
     Ok(format!("{outcome:?}"))
 }
 
-const CASES: [Case; 24] = [
+const CASES: [Case; 27] = [
+    ("lane", RobotSpec::s4, |robot, limit, stop| {
+        let camera = RobotSpec::s4().camera.as_ref().unwrap().into();
+        let mut behaviour = LaneKeeper::new(camera, RoadModel::default(), LaneKeeperParameters::default())?;
+        driven(robot, &mut behaviour, limit, stop)
+    }),
+    ("the book's lane", RobotSpec::s4, |robot, limit, stop| {
+        let mut behaviour = BookLaneKeeper::new(BookLaneParameters::default())
+            .map_err(|error| Error::new(ErrorKind::Other, error.to_string()))?;
+        driven(robot, &mut behaviour, limit, stop)
+    }),
     ("turn", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Turn, robot, limit, stop)),
     ("spline", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Spline, robot, limit, stop)),
     ("by another estimate", RobotSpec::s4, |robot, limit, stop| {
@@ -73,6 +85,10 @@ const CASES: [Case; 24] = [
         let driver = OmniDriver::new(Omni::mecanum(0.2, 0.2).unwrap(), 0.5).unwrap();
         let tracker = OmniTracker::new(Pose::default(), &[GOAL], OmniParameters::default())?;
         driven(robot, &mut tracker.by(driver), limit, stop)
+    }),
+    ("tour", RobotSpec::s4, |robot, limit, stop| {
+        let corners = [START.position(), Point::new(5.0, 5.0), Point::new(1.0, 5.0)];
+        driven(robot, &mut Tour::new(&corners, TourParameters::default())?, limit, stop)
     }),
     ("wall", RobotSpec::s4, |robot, limit, stop| {
         let follower = WallFollower::new(WallFollowerParameters::default())?;

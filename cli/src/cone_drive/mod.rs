@@ -3,14 +3,15 @@
 use std::path::PathBuf;
 
 use roverlab::geometry::Pose;
+use roverlab::io::control::until;
 use roverlab::io::sim::{RobotTruth, SimOptions};
-use roverlab::io::{self, LidarScan, LidarSettings, RobotIo};
+use roverlab::io::{self, LidarSettings, RobotIo};
 use roverlab::picture::Picture;
 use roverlab::race::{GapDriver, RaceScore};
 use roverlab::world::RobotSpec;
 
 use crate::common::{CommonArgs, Failure, Outcome, Report, Stage, rounded};
-use crate::cones::{Course, Judge, Passed, check_campaign, check_race, drawing, pass};
+use crate::cones::{Course, Judge, Passed, check_campaign, check_race, drawing, judged};
 
 /// The command line of `cone-drive`.
 #[derive(Debug, Clone, clap::Parser)]
@@ -134,25 +135,18 @@ fn drive(course: &Course, args: &Args, stage: &Stage) -> Result<Driven, Failure>
 
 /// Drives until all laps are driven, time is over, or the car is lost.
 fn laps<R: RobotIo + ?Sized>(course: &Course, args: &Args, car: &mut R, judge: &mut Judge) -> io::Result<()> {
-    let mut driver = GapDriver::default();
-    let mut scan = LidarScan::default();
+    let mut driver = GapDriver::with_speed(args.speed / RobotSpec::race_car().drive.top_speed())?;
     let laps = usize::from(args.laps);
     let usual = 1.5 * course.corridor.length() * laps as f64 / args.speed + 10.0;
     let limit = args.common.time_limit.unwrap_or(usual);
     // As the book sets it: 180 points over 180 degrees.
     car.configure_lidar(LidarSettings { field_of_view: std::f64::consts::PI, tilt: 0.0, points: 180 })?;
-    car.set_motor(1, args.speed / RobotSpec::race_car().drive.top_speed())?;
-    while judge.time() < limit && judge.verdict().lap_times.len() < laps {
-        car.scan_into(&mut scan)?;
-        if let Some(position) = driver.step(&scan) {
-            car.set_servo(1, position)?;
-        }
-        pass(car, judge, 0.1)?;
+    judged(car, &mut driver, limit, judge, |_, _, judge| {
+        let verdict = judge.verdict();
         // Off the track for good: there are no cones to steer by.
-        if judge.verdict().off_course > 0 && lost(course, judge.truth().pose) {
-            break;
-        }
-    }
+        let lost = verdict.off_course > 0 && lost(course, judge.truth().pose);
+        until(lost || verdict.lap_times.len() >= laps)
+    })?;
     Ok(())
 }
 

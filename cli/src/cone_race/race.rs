@@ -1,21 +1,23 @@
 //! One race.
 
+use std::ops::ControlFlow;
 use std::thread;
 
 use image::RgbImage;
 use roverlab::geometry::{Point, Pose, Twist};
+use roverlab::io::control::{Behaviour, Decision, Halt, LidarObservation, SensedBy, Senses, until};
 use roverlab::io::sim::{RobotTruth, SimOptions};
-use roverlab::io::{self, LidarScan, RobotIo};
+use roverlab::io::{self, Resolution, RobotIo};
 use roverlab::race::{
-    CameraMount, CameraSight, CarLimits, Cone, ConeMap, ConeSighting, LaneFinder, LineTracker, RacePhase,
-    RaceScore, Racer, SpeedProfile, sightings,
+    CameraMount, CameraSight, CarLimits, Cone, ConeMap, LaneFinder, LineTracker, RaceObservation,
+    RaceOutcome, RacePhase, RaceScore, Racer, SpeedProfile, sightings,
 };
 use roverlab::world::{RobotSpec, Scene};
 
 use super::Sensors;
 use super::event;
 use crate::common::{Claimed, Failure, Stage};
-use crate::cones::{Course, Judge, Passed, pass};
+use crate::cones::{Course, Judge, Passed, judged};
 
 /// What a race is made of, beside its course.
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +68,6 @@ struct Other {
 
 /// What the second car knows.
 struct Pilot {
-    scan: LidarScan,
     map: ConeMap,
     lane: LaneFinder,
 }
@@ -82,7 +83,7 @@ impl Other {
         let judge = Judge::new(course, stage.truth(1)?, 1).map_err(Failure::run)?;
         let parameters = course.parameters(1);
         let (map, lane) = (ConeMap::new(parameters.map)?, LaneFinder::new(parameters.lane)?);
-        let pilot = Pilot { scan: LidarScan::default(), map, lane };
+        let pilot = Pilot { map, lane };
         Ok(Self { car: stage.claim(1)?, pilot, judge })
     }
 
@@ -90,26 +91,37 @@ impl Other {
     fn drive(self, limit: f64) -> Result<Second, Failure> {
         let Self { car, mut pilot, mut judge } = self;
         let mut car = car.ready()?;
-        while judge.time() < limit && car.receive()?.is_none() {
-            let command = pilot.decide(car.as_mut())?;
-            car.set_speed(command)?;
-            pass(car.as_mut(), &mut judge, OTHER_PERIOD)?;
-        }
+        judged(car.as_mut(), &mut pilot, limit, &mut judge, |car, _, _| {
+            Ok::<_, io::Error>(until(car.receive()?.is_some()))
+        })?;
         Ok(Second { cones_hit: judge.verdict().cones_hit, trail: judge.trail().to_vec() })
     }
 }
 
-impl Pilot {
-    fn decide(&mut self, car: &mut dyn RobotIo) -> io::Result<Twist> {
-        car.scan_into(&mut self.scan)?;
-        self.map.update(car.pose()?, &sightings(&self.scan));
+impl Behaviour for Pilot {
+    type Observation = LidarObservation;
+    type Command = Twist;
+    type Outcome = Halt;
+
+    fn period(&self) -> f64 {
+        OTHER_PERIOD
+    }
+
+    fn step(&mut self, _time: f64, seen: &LidarObservation) -> Decision<Self> {
+        self.map.update(seen.odometry, &sightings(&seen.scan));
         let pose = self.map.pose();
         let near: Vec<Cone> =
             self.map.fresh_cones().filter(|cone| (cone.position - pose.position()).norm() < SIGHT).collect();
         let middle = pose.compose(&Pose::new(MIDDLE, 0.0, 0.0));
         let lane = self.lane.step(middle, &near);
         // Without a lane it stands, and looks on.
-        Ok(lane.map_or(Twist::STOP, |lane| pursue(&lane.points, pose)))
+        Ok(ControlFlow::Continue(lane.map_or(Twist::STOP, |lane| pursue(&lane.points, pose))))
+    }
+}
+
+impl<R: RobotIo + ?Sized> Senses<R> for Pilot {
+    fn sense(&mut self, car: &mut R, _time: f64, seen: &mut LidarObservation) -> io::Result<()> {
+        seen.read(car)
     }
 }
 
@@ -140,6 +152,18 @@ pub(crate) enum Ending {
     Lost,
     /// The car stood, but not behind the finish and before the end of the lane there; or it counted other laps than the referee.
     Missed,
+}
+
+impl Ending {
+    /// How a race ended for the car, and whether the referee has seen all of it.
+    pub(super) fn of(outcome: RaceOutcome, complete: bool) -> Self {
+        match outcome {
+            RaceOutcome::Finished if complete => Self::Finished,
+            RaceOutcome::Finished => Self::Missed,
+            RaceOutcome::Lost => Self::Lost,
+            _ => Self::TimedOut,
+        }
+    }
 }
 
 /// What came out of a race.
@@ -179,29 +203,40 @@ impl Outcome {
 pub(super) struct Eyes {
     sensors: Sensors,
     camera: CameraSight,
-    scan: LidarScan,
     image: RgbImage,
 }
 
 impl Eyes {
-    pub(super) fn new(sensors: Sensors) -> Self {
+    pub(super) fn new<R: RobotIo + ?Sized>(
+        sensors: Sensors,
+        resolution: Resolution,
+        car: &mut R,
+    ) -> io::Result<Self> {
+        if sensors != Sensors::Lidar {
+            car.set_resolution(resolution)?;
+        }
         let camera = CameraSight::new(CameraMount::default());
-        Self { sensors, camera, scan: LidarScan::default(), image: RgbImage::default() }
+        Ok(Self { sensors, camera, image: RgbImage::default() })
     }
 
-    /// The cones around a car.
-    pub(super) fn look<R: RobotIo + ?Sized>(&mut self, car: &mut R) -> io::Result<Vec<ConeSighting>> {
-        let mut seen = Vec::new();
+    /// The cones around a car, and its own motion.
+    pub(super) fn look<R: RobotIo + ?Sized>(
+        &mut self,
+        car: &mut R,
+        seen: &mut RaceObservation,
+    ) -> io::Result<()> {
         if self.sensors != Sensors::Camera {
-            car.scan_into(&mut self.scan)?;
-            seen = sightings(&self.scan);
+            car.scan_into(&mut seen.scan)?;
+            seen.cones = sightings(&seen.scan);
         }
         if self.sensors != Sensors::Lidar {
             car.image_into(&mut self.image)?;
             let found = self.camera.find(&self.image);
-            seen = if self.sensors == Sensors::Both { self.camera.fuse(&seen, &found) } else { found };
+            let both = self.sensors == Sensors::Both;
+            seen.cones = if both { self.camera.fuse(&seen.cones, &found) } else { found };
         }
-        Ok(seen)
+        (seen.odometry, seen.speed) = (car.pose()?, car.speed()?);
+        Ok(())
     }
 }
 
@@ -285,27 +320,10 @@ fn drive<R: RobotIo + ?Sized>(
     judge: &mut Judge,
     mut see: impl FnMut(&Racer),
 ) -> io::Result<Ending> {
-    let parameters = course.parameters(settings.laps);
-    let mut racer = Racer::new(parameters)?;
-    let mut eyes = Eyes::new(settings.sensors);
-    if settings.sensors != Sensors::Lidar {
-        car.set_resolution(course.resolution())?;
-    }
-    let limit = settings.limit(course);
-    while judge.time() < limit {
-        let seen = eyes.look(car)?;
-        let (pose, speed) = (car.pose()?, car.speed()?);
-        car.set_speed(racer.decide(pose, speed, &seen))?;
-        pass(car, judge, parameters.period)?;
-        see(&racer);
-        if racer.is_done(speed) {
-            break;
-        }
-    }
-    Ok(match racer.phase() {
-        RacePhase::Finished if judge.verdict().lap_times.len() == settings.laps => Ending::Finished,
-        RacePhase::Finished => Ending::Missed,
-        RacePhase::Lost => Ending::Lost,
-        RacePhase::Mapping | RacePhase::Racing => Ending::TimedOut,
-    })
+    let mut racer = Racer::new(course.parameters(settings.laps))?;
+    let mut eyes = Eyes::new(settings.sensors, course.resolution(), car)?;
+    let mut seeing = SensedBy::new(&mut racer, |car: &mut R, _, seen: &mut _| eyes.look(car, seen));
+    let watch = |_: &mut R, racer: &SensedBy<'_, Racer, _>, _: &Judge| see(racer.behaviour());
+    let outcome = judged(car, &mut seeing, settings.limit(course), judge, watch)?;
+    Ok(Ending::of(outcome, judge.verdict().lap_times.len() == settings.laps))
 }

@@ -1,6 +1,9 @@
 //! Who watches a car: the referee, with what is true about it.
 
+use std::ops::ControlFlow;
+
 use roverlab::geometry::{Point, Pose};
+use roverlab::io::control::{Command, Halt, Run, Senses, Verdict};
 use roverlab::io::sim::{RobotTruth, TICK};
 use roverlab::io::{self, Clock};
 use roverlab::race::{EventReferee, RaceScore, Referee};
@@ -142,6 +145,36 @@ impl Judge {
             self.clean = Some(self.last.path_length);
         }
         Ok(())
+    }
+}
+
+/// Lets a behaviour drive a car, while the judge looks at every tick and `watch` at every decision.
+pub(crate) fn judged<R, B, V>(
+    car: &mut R,
+    behaviour: &mut B,
+    limit: f64,
+    judge: &mut Judge,
+    mut watch: impl FnMut(&mut R, &B, &Judge) -> V,
+) -> io::Result<B::Outcome>
+where
+    R: Clock + ?Sized,
+    B: Senses<R>,
+    B::Command: Command<R>,
+    V: Verdict,
+{
+    let mut run = Run::new(behaviour, limit)?;
+    loop {
+        if let ControlFlow::Break(outcome) = run.step(car, behaviour)? {
+            return Ok(outcome);
+        }
+        let passed = pass(car, judge, behaviour.period());
+        let ended = match passed.and_then(|()| watch(car, behaviour, judge).verdict()) {
+            Ok(ControlFlow::Continue(())) => continue,
+            Ok(ControlFlow::Break(())) => Ok(behaviour.halt(Halt::Stopped)),
+            Err(error) => Err(error),
+        };
+        let stopped = B::Command::stop(car);
+        return ended.and_then(|outcome| stopped.map(|()| outcome));
     }
 }
 

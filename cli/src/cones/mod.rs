@@ -6,5 +6,5 @@ mod judge;
 mod options;
 
 pub(crate) use course::{Course, Spoils};
-pub(crate) use judge::{Judge, Passed, pass};
+pub(crate) use judge::{Judge, Passed, judged, pass};
 pub(crate) use options::{check_campaign, check_race, refuse};

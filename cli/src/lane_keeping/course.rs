@@ -34,7 +34,13 @@ impl Setting {
                 course::parse(&text, &path.display().to_string()).map_err(Failure::input)?
             }
         };
-        let setting = Self { name, course, look: Appearance { seed, ..Appearance::default() }, light: args.light, seed };
+        let setting = Self {
+            name,
+            course,
+            look: Appearance { seed, ..Appearance::default() },
+            light: args.light,
+            seed,
+        };
         setting.check()?;
         Ok(setting)
     }
@@ -43,7 +49,12 @@ impl Setting {
     pub(super) fn drawn(seed: u64) -> Result<Self, Failure> {
         let mut random = Stream::new(seed).child("lane keeping", 0);
         let light = random.between(0.5, 1.5);
-        let look = Appearance { wear: random.between(0.0, 0.35), glare: random.below(6), seed, ..Appearance::default() };
+        let look = Appearance {
+            wear: random.between(0.0, 0.35),
+            glare: random.below(6),
+            seed,
+            ..Appearance::default()
+        };
         let setting = Self { name: seed.to_string(), course: generated(seed)?, look, light, seed };
         setting.check()?;
         Ok(setting)
@@ -56,7 +67,9 @@ impl Setting {
             roverlab::world::Footprint::Rectangle(outline) => outline.size().y,
             other => 2.0 * other.bounding_radius(),
         };
-        self.course.check_car(width).map_err(|error| Failure::input(format!("--course {}: {error}", self.name)))
+        self.course
+            .check_car(width)
+            .map_err(|error| Failure::input(format!("--course {}: {error}", self.name)))
     }
 
     /// The car at the start of the course.

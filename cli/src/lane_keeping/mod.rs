@@ -2,8 +2,8 @@
 
 mod campaign;
 mod course;
-mod drive;
 mod drawing;
+mod drive;
 
 use roverlab::drive::traffic::{FreeDriveRules, FreeDriveScore};
 

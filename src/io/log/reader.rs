@@ -6,16 +6,16 @@ use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use super::LogError;
 
-/// The bytes with which MCAP files begin and end.
+/// Bytes at the beginning and the end of MCAP files.
 const MAGIC: &[u8] = mcap::MAGIC;
-/// An opcode and a length.
+/// Size of an opcode and a length.
 const FRAME: usize = 9;
-/// Bytes of a footer: two places and a checksum.
+/// Size of a footer: two positions and a checksum (bytes).
 const FOOTER: usize = 8 + 8 + CRC;
-/// Bytes of a checksum.
+/// Size of a checksum (bytes).
 const CRC: usize = 4;
 
-/// A record in a file: its kind, where it begins, and what it holds.
+/// A record in a file: kind, position and content.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Framed<'a> {
     pub(super) opcode: u8,
@@ -24,7 +24,7 @@ pub(super) struct Framed<'a> {
 }
 
 impl<'a> Framed<'a> {
-    /// Where the next record begins.
+    /// Position of the next record.
     pub(super) fn end(&self) -> usize {
         self.start + FRAME + self.body.len()
     }
@@ -38,7 +38,7 @@ impl<'a> Framed<'a> {
     }
 }
 
-/// Whether an attachment's fields end before its last four bytes, as the parser takes for granted.
+/// Whether an attachment's fields end before its last four bytes, as the parser assumes.
 fn attachment_fits(body: &[u8]) -> bool {
     let length = |at: usize, size: usize| {
         let bytes = body.get(at..at.checked_add(size)?)?;
@@ -50,7 +50,7 @@ fn attachment_fits(body: &[u8]) -> bool {
     data.and_then(|at| at.checked_add(8 + 4)).is_some_and(|end| end <= body.len())
 }
 
-/// The records in some bytes, from a place on; `None` for one that is cut off.
+/// The records in some bytes from a position on; `None` for a truncated one.
 pub(super) fn records(bytes: &[u8], start: usize) -> impl Iterator<Item = Option<Framed<'_>>> {
     let mut at = start;
     std::iter::from_fn(move || {
@@ -63,7 +63,7 @@ pub(super) fn records(bytes: &[u8], start: usize) -> impl Iterator<Item = Option
     })
 }
 
-/// The record that begins at a place, if it is there as a whole.
+/// The record at a position, if it is complete.
 pub(super) fn record_at(bytes: &[u8], start: usize) -> Option<Framed<'_>> {
     let head = bytes.get(start..start + FRAME)?;
     let length = u64::from_le_bytes(head[1..].try_into().ok()?);
@@ -79,7 +79,7 @@ pub(super) struct MessageAt<'a> {
     pub(super) data: &'a [u8],
 }
 
-/// The parts of a message record's body.
+/// Splits the body of a message record.
 pub(super) fn message(body: &[u8]) -> Option<MessageAt<'_>> {
     let (head, data) = body.split_at_checked(22)?;
     let header = MessageHeader {
@@ -91,7 +91,7 @@ pub(super) fn message(body: &[u8]) -> Option<MessageAt<'_>> {
     Some(MessageAt { header, data })
 }
 
-/// How many files some bytes are, one behind the other, whole or cut off.
+/// Number of concatenated files, whole or truncated.
 pub(super) fn runs(bytes: &[u8]) -> usize {
     let begins = |at: usize| {
         bytes[at..].starts_with(MAGIC)
@@ -101,7 +101,7 @@ pub(super) fn runs(bytes: &[u8]) -> usize {
     bytes.iter().enumerate().filter(|&(at, &byte)| byte == MAGIC[0] && begins(at)).count()
 }
 
-/// The schemas and channels that the summary of a file repeats; none if its end is cut off or damaged.
+/// Schemas and channels repeated in a file's summary; none if its end is truncated or damaged.
 pub(super) fn declarations(bytes: &[u8]) -> Vec<Framed<'_>> {
     let in_summary = || {
         let at = bytes.len().checked_sub(FRAME + FOOTER + MAGIC.len())?;
@@ -116,7 +116,7 @@ pub(super) fn declarations(bytes: &[u8]) -> Vec<Framed<'_>> {
     in_summary().unwrap_or_default()
 }
 
-/// The records of a whole file, up to the end of its data. Fails if a byte of the file is not as it was written.
+/// The records of a whole file up to the end of its data. Fails if any byte of the file is corrupted.
 pub(super) fn whole(bytes: &[u8]) -> Result<Vec<Framed<'_>>, LogError> {
     if !bytes.starts_with(MAGIC) {
         let cut_off = bytes.len() < MAGIC.len() && MAGIC.starts_with(bytes) && !bytes.is_empty();
@@ -150,14 +150,14 @@ fn truncated(bytes: &[u8]) -> LogError {
 }
 
 fn check(part: &str, saved: u32, bytes: &[u8]) -> Result<(), LogError> {
-    // Zero says that no checksum was made.
+    // Zero means that no checksum was made.
     if saved == 0 || saved == crc32fast::hash(bytes) {
         return Ok(());
     }
     Err(LogError::damaged(format!("the checksum of the {part} differs")))
 }
 
-/// Checks the summary, the footer and what follows it.
+/// Checks the summary, the footer and what follows.
 fn check_end(bytes: &[u8], start: usize, footer: &Framed<'_>) -> Result<(), LogError> {
     let Record::Footer(parsed) = footer.parse()? else { return Ok(()) };
     let end = footer.end();
@@ -175,12 +175,12 @@ fn check_end(bytes: &[u8], start: usize, footer: &Framed<'_>) -> Result<(), LogE
     }
 }
 
-/// Whether a chunk has a checksum that tells whether it is intact.
+/// Whether a chunk has a checksum.
 pub(super) fn has_checksum(chunk: &Framed<'_>) -> bool {
     chunk.body.get(24..28).is_some_and(|crc| crc != [0; 4])
 }
 
-/// The bytes of what a chunk holds, unpacked. Fails if they are not as they were written.
+/// The uncompressed content of a chunk. Fails if it is corrupted.
 pub(super) fn contents<'a>(record: &Framed<'a>) -> Result<Cow<'a, [u8]>, LogError> {
     let mut fixed = record.body.iter().as_slice();
     let mut number = |size: usize| -> Option<u64> {
@@ -209,9 +209,9 @@ pub(super) fn contents<'a>(record: &Framed<'a>) -> Result<Cow<'a, [u8]>, LogErro
     Ok(data)
 }
 
-/// Unpacks a compressed chunk.
+/// Decompresses a chunk.
 fn unpacked(chunk: &Framed<'_>, name: &str, size: u64) -> Result<Vec<u8>, LogError> {
-    /// No chunk of a recording is as large.
+    /// Upper limit of a chunk's size (bytes).
     const LARGEST: usize = 1 << 30;
     let damaged = |error: &dyn std::fmt::Display| {
         LogError::damaged(format!("{error} in the chunk at byte {}", chunk.start))
@@ -246,7 +246,7 @@ fn unpacked(chunk: &Framed<'_>, name: &str, size: u64) -> Result<Vec<u8>, LogErr
     Ok(plain)
 }
 
-/// The records in the bytes of a chunk: its messages and what declares them.
+/// The records in a chunk: its messages and their declarations.
 pub(super) fn inner(contents: &[u8]) -> Result<Vec<Framed<'_>>, LogError> {
     let cut_off = || LogError::damaged("a record is longer than the chunk that holds it");
     records(contents, 0).map(|record| record.ok_or_else(cut_off)).collect()

@@ -22,7 +22,12 @@ impl RoadCamera {
     pub fn validate(&self) -> Result<(), ParameterError> {
         let widest = if self.fisheye { std::f64::consts::TAU } else { std::f64::consts::PI };
         let view = self.field_of_view;
-        require("field of view", view, view > 0.0 && view < widest, "more than 0, and less than the lens can show")?;
+        require(
+            "field of view",
+            view,
+            view > 0.0 && view < widest,
+            "more than 0, and less than the lens can show",
+        )?;
         require("camera tilt", self.tilt, self.tilt.abs() < 1.5, "between -1.5 and 1.5 rad")?;
         require_positive("camera height", self.height)?;
         require_finite("camera ahead", self.ahead)
@@ -31,7 +36,11 @@ impl RoadCamera {
     /// Pixels for a radian, of a fisheye, or for a metre a metre away.
     fn focal(&self, width: u32) -> f64 {
         let width = f64::from(width);
-        if self.fisheye { width / self.field_of_view } else { 0.5 * width / math::tan(0.5 * self.field_of_view) }
+        if self.fisheye {
+            width / self.field_of_view
+        } else {
+            0.5 * width / math::tan(0.5 * self.field_of_view)
+        }
     }
 
     /// Column and row of a point of the ground, in the robot's frame, in an image of a size; pixel (0, 0) has its middle at

@@ -89,8 +89,7 @@ impl Road {
     /// The deviation of a sum of offset and a share of the edge, of the heading, and of the curvature.
     pub(super) fn sigmas(&self, share: f64) -> [f64; 3] {
         let p = &self.covariance;
-        let offset =
-            p[(OFFSET, OFFSET)] + 2.0 * share * p[(OFFSET, EDGE)] + share * share * p[(EDGE, EDGE)];
+        let offset = p[(OFFSET, OFFSET)] + 2.0 * share * p[(OFFSET, EDGE)] + share * share * p[(EDGE, EDGE)];
         [offset, p[(HEADING, HEADING)], p[(BENDS, BENDS)]].map(|variance| variance.max(0.0).sqrt())
     }
 

@@ -1,7 +1,7 @@
 use crate::geometry::{Aabb, Point, units};
 use crate::world::{
-    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, LidarSpec, Mast, MotorSpec, Mount, PsdSpec,
-    RobotSpec,
+    Body, CameraSpec, CarDynamics, DriveSpec, Footprint, InertialSpec, LidarSpec, Mast, MotorSpec, Mount,
+    PsdSpec, RobotSpec,
 };
 
 impl RobotSpec {
@@ -43,13 +43,14 @@ impl RobotSpec {
             psds: four_psds(0.060, 0.045, 0.030),
             lidar: Some(LidarSpec::default()),
             camera: Some(CameraSpec {
-                mount: Mount { x: 0.062, y: 0.0, z: 0.060, yaw: 0.0 },
+                mount: Mount { x: 0.062, z: 0.060, ..Mount::default() },
                 tilt: 0.0,
                 max_pan: units::from_deg(90.0),
                 max_tilt: units::from_deg(90.0),
                 field_of_view: CameraSpec::DEFAULT_FIELD_OF_VIEW,
                 fisheye: false,
             }),
+            inertial: InertialSpec::default(),
             model: None,
             mesh: None,
             body: Body::default(),
@@ -103,7 +104,8 @@ impl RobotSpec {
         }
     }
 
-    /// A snow truck on two belts, a model in 1:12 (book, section 7.3), with an S4's sensors and a lidar on its roof.
+    /// A snow truck on two belts, a model in 1:12 (book, section 7.3), with an S4's sensors, a lidar on
+    /// its roof and an inertial unit.
     pub fn blizzard() -> Self {
         let (half_length, half_width) = (0.200, 0.130);
         Self {
@@ -128,6 +130,7 @@ impl RobotSpec {
                 mount: Mount { x: 0.120, z: 0.170, ..Mount::default() },
                 ..camera
             }),
+            inertial: InertialSpec::ALL,
             ..Self::s4()
         }
     }
@@ -197,7 +200,7 @@ impl RobotSpec {
             psds: Vec::new(),
             lidar: None,
             camera: Some(CameraSpec {
-                mount: Mount { x: 0.060, y: 0.0, z: 0.250, yaw: 0.0 },
+                mount: Mount { x: 0.060, y: 0.0, z: 0.250, yaw: 0.0, ..Mount::default() },
                 tilt: units::from_deg(-25.0),
                 max_pan: 0.0,
                 max_tilt: 0.0,
@@ -308,7 +311,7 @@ fn front_and_back(front: f64, back: f64, z: f64) -> Vec<PsdSpec> {
         .map(|(id, name, x, yaw)| PsdSpec {
             id,
             name: name.into(),
-            mount: Mount { x, y: 0.0, z, yaw: units::from_deg(yaw) },
+            mount: Mount { x, z, yaw: units::from_deg(yaw), ..Mount::default() },
             max_range: PsdSpec::DEFAULT_MAX_RANGE,
         })
         .collect()
@@ -326,7 +329,7 @@ fn four_psds(ahead: f64, aside: f64, z: f64) -> Vec<PsdSpec> {
     .map(|(id, name, x, y, yaw)| PsdSpec {
         id,
         name: name.into(),
-        mount: Mount { x, y, z, yaw: units::from_deg(yaw) },
+        mount: Mount { x, y, z, yaw: units::from_deg(yaw), ..Mount::default() },
         max_range: PsdSpec::DEFAULT_MAX_RANGE,
     })
     .collect()

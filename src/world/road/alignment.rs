@@ -187,7 +187,8 @@ impl Alignment {
             _ => (0, count),
         };
         let away = |index: usize| (self.stations[index % count].pose.position() - point).norm_squared();
-        let nearest = (first..first + number).min_by(|&a, &b| away(a).total_cmp(&away(b))).unwrap_or(0) % count;
+        let nearest =
+            (first..first + number).min_by(|&a, &b| away(a).total_cmp(&away(b))).unwrap_or(0) % count;
         let own = self.stations[nearest].pose.to_local(point);
         // On a circle, the angle to the foot is that of the point about the centre.
         let bend = 1.0 - own.y * self.stations[nearest].curvature;

@@ -18,8 +18,7 @@ pub(super) fn check(course: &Course) -> Result<(), CourseError> {
     let size = course.size;
     let count = (line.length() / (STRIDE * size)).ceil() as usize;
     let stride = line.length() / count as f64;
-    let places: Vec<Point> =
-        (0..count).map(|i| line.at(stride * i as f64).pose.position()).collect();
+    let places: Vec<Point> = (0..count).map(|i| line.at(stride * i as f64).pose.position()).collect();
     let width = 2.0 * course.edge() + course.line_width;
     let near = width + APART * size;
     // Along a bend, the road is as near to itself as half the way around: that is no crossing.

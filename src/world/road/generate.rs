@@ -93,9 +93,8 @@ fn attempt_course(random: &mut Stream, options: &CourseOptions) -> Option<Result
         return None;
     }
     // The road begins in the middle of its longest straight; of an eight, on none that is crossed.
-    let first = (0..count)
-        .filter(|i| !eight || (i + 1) % 3 != 0)
-        .max_by(|&a, &b| free(a).total_cmp(&free(b)))?;
+    let first =
+        (0..count).filter(|i| !eight || (i + 1) % 3 != 0).max_by(|&a, &b| free(a).total_cmp(&free(b)))?;
     if free(first) < 1.6 {
         return None;
     }
@@ -207,9 +206,8 @@ impl Marker<'_> {
     /// Takes a part of the road, if it is free.
     fn take(&mut self, from: f64, to: f64) -> bool {
         let length = self.course.line.length();
-        let apart = |&(a, b): &(f64, f64)| {
-            [0.0, length, -length].iter().all(|turn| to < a + turn || from > b + turn)
-        };
+        let apart =
+            |&(a, b): &(f64, f64)| [0.0, length, -length].iter().all(|turn| to < a + turn || from > b + turn);
         let is_free = from >= 0.0 && to <= length && self.taken.iter().all(apart);
         if is_free {
             self.taken.push((from, to));
@@ -237,9 +235,10 @@ impl Marker<'_> {
             // The other road has no direction.
             if angle < 0.0 { angle + std::f64::consts::PI } else { angle }
         };
-        for (at, other, right_of_way) in
-            [(a, b, RightOfWay::Priority), (b, a, if self.random.chance(0.5) { RightOfWay::Stop } else { RightOfWay::GiveWay })]
-        {
+        for (at, other, right_of_way) in [
+            (a, b, RightOfWay::Priority),
+            (b, a, if self.random.chance(0.5) { RightOfWay::Stop } else { RightOfWay::GiveWay }),
+        ] {
             self.taken.push((at - 1.3, at + 1.3));
             let angle = turn(at, other);
             self.put(at, MarkKind::Crossing(Crossing { angle, arms: [0.0; 2], right_of_way }));
@@ -260,8 +259,8 @@ impl Marker<'_> {
                 if self.room_for_arms(middle) && self.take(middle - 1.0, middle + 1.0) {
                     let angle = self.random.between(70.0, 110.0).to_radians();
                     let arms = [[0.8, 0.8], [0.8, 0.0], [0.0, 0.8]][self.random.below(3)];
-                    let right_of_way = [RightOfWay::Priority, RightOfWay::Stop, RightOfWay::GiveWay]
-                        [self.random.below(3)];
+                    let right_of_way =
+                        [RightOfWay::Priority, RightOfWay::Stop, RightOfWay::GiveWay][self.random.below(3)];
                     self.put(middle, MarkKind::Crossing(Crossing { angle, arms, right_of_way }));
                 } else if self.take(middle - 0.5, middle + 0.5) {
                     let side = [Direction::Left, Direction::Right][self.random.below(2)];
@@ -269,7 +268,9 @@ impl Marker<'_> {
                 }
             } else if self.random.chance(self.options.zebras) && self.take(middle - 0.7, middle + 0.7) {
                 self.put(middle - 0.2, MarkKind::Zebra);
-            } else if self.random.chance(0.3 * self.options.crossings) && self.take(middle - 0.3, middle + 0.5) {
+            } else if self.random.chance(0.3 * self.options.crossings)
+                && self.take(middle - 0.3, middle + 0.5)
+            {
                 let value = 10 * (1 + self.random.below(8)) as u8;
                 let struck = self.random.chance(0.5);
                 self.put(middle, MarkKind::Speed(value, struck));
@@ -328,9 +329,10 @@ impl Marker<'_> {
             let place = self.course.line.beside(at, left);
             let (_, aside) = self.course.line.locate(place, None);
             let reach = self.course.edge() + 0.12 + 0.5 * (long + wide);
-            let near_crossing = self.course.crossings().any(|(middle, _)| {
-                (self.course.line.at(middle).pose.position() - place).norm() < 2.2
-            });
+            let near_crossing = self
+                .course
+                .crossings()
+                .any(|(middle, _)| (self.course.line.at(middle).pose.position() - place).norm() < 2.2);
             if aside.abs() > reach && !near_crossing {
                 self.put(at, MarkKind::Artefact(left, long, wide));
             }

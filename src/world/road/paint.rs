@@ -216,7 +216,8 @@ impl Painter<'_> {
 
     /// From the inner edge of the line between the lanes to that of the own edge line.
     fn own_lane(&self) -> Part {
-        let (inner, outer) = (0.5 * self.course.line_width, self.course.edge() - 0.5 * self.course.line_width);
+        let (inner, outer) =
+            (0.5 * self.course.line_width, self.course.edge() - 0.5 * self.course.line_width);
         match self.course.traffic {
             Traffic::Right => (-outer, -inner),
             Traffic::Left => (inner, outer),
@@ -388,7 +389,8 @@ impl Painter<'_> {
         let far = edge + depth;
         self.ribbon((at, at + long), sign * far, self.course.line_width);
         let width = self.course.line_width;
-        let spots = if side == Direction::Right { 1 } else { (long / self.size(SPOT)).floor().max(1.0) as usize };
+        let spots =
+            if side == Direction::Right { 1 } else { (long / self.size(SPOT)).floor().max(1.0) as usize };
         for i in 0..=spots {
             let along = at + long * i as f64 / spots as f64;
             let frame = self.course.line.at(along).pose;

@@ -44,7 +44,10 @@ fn what_is_no_course_is_refused_by_name() {
             "course 1\nlane 300\nstraight 3000\narc 1500 180\nstraight 3000\narc 1500 180",
             "x:1:1: found lanes of 0.3 m; expected 0.35 to 0.45 m",
         ),
-        ("course 1\nstraight 9000", "x:1:1: found the road ends 9.000 m and 0.00 degrees off its beginning; expected less than 0.1 m and 3 degrees"),
+        (
+            "course 1\nstraight 9000",
+            "x:1:1: found the road ends 9.000 m and 0.00 degrees off its beginning; expected less than 0.1 m and 3 degrees",
+        ),
         (
             "course 1\nstraight 3000\narc 700 180\nstraight 3000\narc 700 180",
             "x:1:1: found at 3.000 m the road's middle has a radius of 0.700 m; expected at least 1 m",
@@ -66,7 +69,9 @@ fn what_is_no_course_is_refused_by_name() {
 #[test]
 fn a_road_that_crosses_itself_needs_a_crossing() {
     let eight = |mark: &str| {
-        format!("course 1\nstraight 3000\n{mark}straight 3000\narc 3000 270\nstraight 3000\n{mark}straight 3000\narc 3000 -270\n")
+        format!(
+            "course 1\nstraight 3000\n{mark}straight 3000\narc 3000 270\nstraight 3000\n{mark}straight 3000\narc 3000 -270\n"
+        )
     };
     let error = file::parse(&eight(""), "x").unwrap_err().to_string();
     assert!(error.contains("crosses itself"), "{error}");
@@ -76,7 +81,9 @@ fn a_road_that_crosses_itself_needs_a_crossing() {
 
 #[test]
 fn lanes_lie_on_the_side_of_the_traffic() {
-    let text = |side: &str| format!("course 1\ntraffic {side}\nscale 2\nstraight 3000\narc 1500 180\nstraight 3000\narc 1500 180");
+    let text = |side: &str| {
+        format!("course 1\ntraffic {side}\nscale 2\nstraight 3000\narc 1500 180\nstraight 3000\narc 1500 180")
+    };
     let right = file::parse(&text("right"), "x").unwrap();
     let left = file::parse(&text("left"), "x").unwrap();
     assert_eq!(right.start().y, -left.start().y);
@@ -114,8 +121,7 @@ fn a_picture_shows_lines_where_they_are() {
 proptest! {
     #![proptest_config(crate::testing::cases(24))]
     #[test]
-    fn everything_that_is_painted_is_convex(seed in 0_u64..10_000) {
-        let course = generate(seed, &CourseOptions { zebras: 0.5, ..CourseOptions::default() }).unwrap();
+    fn everything_that_is_painted_is_convex(course in crate::testing::courses()) {
         prop_assert!(quads(&course).iter().all(is_convex));
     }
 
