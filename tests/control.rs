@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
+use roverlab::drive::lane_keeping::{BookLaneKeeper, BookLaneParameters, LaneKeeper, LaneKeeperParameters};
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::terrain::{Ascent, AscentParameters, SlopeSensor};
 use roverlab::drive::{
@@ -31,6 +32,7 @@ use roverlab::race::{
     Cone, ConeTrack, EventParameters, EventRacer, GapDriver, RaceOutcome, Racer, RacerParameters,
 };
 use roverlab::random::Stream;
+use roverlab::vision::lane_markings::RoadModel;
 use roverlab::vision::{CameraGeometry, ColourFinder, FindMethod};
 use roverlab::world::{RobotSpec, Scene, World};
 
@@ -54,7 +56,17 @@ where
     Ok(format!("{outcome:?}"))
 }
 
-const CASES: [Case; 27] = [
+const CASES: [Case; 29] = [
+    ("lane", RobotSpec::s4, |robot, limit, stop| {
+        let camera = RobotSpec::s4().camera.as_ref().unwrap().into();
+        let mut behaviour = LaneKeeper::new(camera, RoadModel::default(), LaneKeeperParameters::default())?;
+        driven(robot, &mut behaviour, limit, stop)
+    }),
+    ("the book's lane", RobotSpec::s4, |robot, limit, stop| {
+        let mut behaviour = BookLaneKeeper::new(BookLaneParameters::default())
+            .map_err(|error| Error::new(ErrorKind::Other, error.to_string()))?;
+        driven(robot, &mut behaviour, limit, stop)
+    }),
     ("turn", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Turn, robot, limit, stop)),
     ("spline", RobotSpec::s4, |robot, limit, stop| a_to_b(Method::Spline, robot, limit, stop)),
     ("by another estimate", RobotSpec::s4, |robot, limit, stop| {

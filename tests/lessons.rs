@@ -48,6 +48,7 @@ lessons!(
     follow_me,
     genetic,
     grid_planning,
+    lane_keeping,
     lidar_scan,
     localise,
     maze_explore,

@@ -10,6 +10,7 @@ mod evolution;
 mod grids;
 mod heed;
 mod hills;
+mod lane_keeping;
 mod lidar;
 mod maze_drives;
 mod mazes;

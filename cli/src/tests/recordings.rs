@@ -82,6 +82,7 @@ fn short(program: &str) -> &'static [&'static str] {
         "edges" => &["--repeat", "3"],
         "follow_me" => &["--followers", "3", "--mode", "radio"],
         "genetic" => &["--task", "wall", "--generations", "1"],
+        "lane_keeping" => &["--course", "3", "--minutes", "0.05"],
         "random_drive" => &["--robots", "3"],
         "safety" => &["--track", "../tests/data/cones/oval.csv", "--event", "radio"],
         "starman" => &["--population", "4", "--generations", "2", "--seconds", "4"],

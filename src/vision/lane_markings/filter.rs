@@ -19,6 +19,28 @@ pub struct MarkingPoint {
 ///
 /// On each row of ground, the mean over a line's width is compared with the brighter one of those beside it, half a line's
 /// width away; peaks that are bright enough for their surroundings are lines.
+///
+/// ```
+/// use roverlab::geometry::Point;
+/// use roverlab::vision::GrayView;
+/// use roverlab::vision::lane_markings::{MarkingFilter, RoadCamera};
+///
+/// let camera = RoadCamera { field_of_view: 1.6, fisheye: false, tilt: -0.4, height: 0.25, ahead: 0.0 };
+/// let mut image = vec![40; 320 * 240];
+/// // A line straight ahead, 20 mm wide.
+/// for step in 200..1500 {
+///     for across in -10..=10 {
+///         let place = Point::new(f64::from(step) / 1000.0, f64::from(across) / 1000.0);
+///         if let Some((x, y)) = camera.project(place, 0.0, (320, 240)) && y < 240.0 {
+///             image[y as usize * 320 + x as usize] = 220;
+///         }
+///     }
+/// }
+/// let mut points = Vec::new();
+/// MarkingFilter::new(camera, 0.02, 1.5)?.find(GrayView::new(&image, 320, 240)?, &mut points);
+/// assert!(points.len() > 30 && points.iter().all(|point| point.place.y.abs() < 0.01));
+/// # Ok::<(), roverlab::vision::ImageError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct MarkingFilter {
     camera: RoadCamera,

@@ -27,6 +27,7 @@ const KEYWORDS: &str = "a statement of a course: traffic, scale, lane, line, sta
 /// let text = "course 1\nstraight 3000\narc 1500 180\nstraight 3000\nzebra\narc 1500 180\n";
 /// let course = course::parse(text, "oval.course")?;
 /// assert!((course.line.length() - 15.42).abs() < 0.01);
+/// assert!(course::print(&course).contains("zebra"));
 /// # Ok::<(), roverlab::world::formats::FormatError>(())
 /// ```
 pub fn parse(text: &str, file: &str) -> Result<Course, FormatError> {

@@ -15,8 +15,24 @@
 //! assert!(course.locate(&start, None).offset.abs() < 1e-6, "the middle of its lane");
 //! # Ok::<(), roverlab::world::road::CourseError>(())
 //! ```
+//!
+//! One of one's own is a chain of elements:
+//!
+//! ```
+//! use std::f64::consts::PI;
+//! use roverlab::geometry::Pose;
+//! use roverlab::world::road::{Alignment, Course, CourseError, Element};
+//!
+//! let half = [Element::straight(3.0), Element::arc(1.5, PI)];
+//! let oval = Course::new(Alignment::new(Pose::default(), [half, half].concat()))?;
+//! assert!((oval.line.length() - 15.42).abs() < 0.01);
+//! let open = Course::new(Alignment::new(Pose::default(), [half, half, half].concat()));
+//! assert!(matches!(open, Err(CourseError::Open { .. })));
+//! # Ok::<(), CourseError>(())
+//! ```
 
 mod alignment;
+mod check;
 mod course;
 mod crossings;
 mod generate;
