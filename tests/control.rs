@@ -5,13 +5,12 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use roverlab::drive::colour::{ColourTracker, ColourTrackerParameters, PushHome, PushHomeParameters};
-use roverlab::drive::coverage::{Tour, TourParameters};
 use roverlab::drive::motion_watch::{MotionWatch, MotionWatchParameters};
 use roverlab::drive::{
     AToB, AToBParameters, AlongWall, CarDriver, CarToB, CarToBParameters, Chase, ChaseParameters, Goal,
     LidarWallFollower, LidarWallFollowerParameters, Method, OmniDriver, OmniParameters, OmniTracker,
-    PidWallFollower, PidWallFollowerParameters, RandomDrive, RandomDriveParameters, TwoLevelWallFollower,
-    WallFollower, WallFollowerParameters,
+    PidWallFollower, PidWallFollowerParameters, RandomDrive, RandomDriveParameters, Tour, TourParameters,
+    TwoLevelWallFollower, WallFollower, WallFollowerParameters,
 };
 use roverlab::evolve::Gait;
 use roverlab::geometry::{Point, Pose, Twist};

@@ -1,4 +1,4 @@
-//! The lines above the picture, and the scale bar below it.
+//! Title and caption above the picture, scale bar below it.
 
 use svg::node::element::Group;
 
@@ -17,7 +17,7 @@ const CAPTION: f64 = 12.5;
 /// Pixels from one line of the caption to the next.
 const LINE: f64 = 17.0;
 
-/// Title and caption of a page with this much room, and their height with the space below them.
+/// Title and caption within a width of `room` pixels, and their height including the space below.
 pub(super) fn heading(picture: &Picture, corner: Pixel, room: f64) -> (Group, f64) {
     let mut group = Group::new();
     let mut base = corner.y;
@@ -39,7 +39,7 @@ pub(super) fn heading(picture: &Picture, corner: Pixel, room: f64) -> (Group, f6
 /// How much wider bold letters are.
 const BOLD: f64 = 1.12;
 
-/// The width that the title would like.
+/// Width of the title in pixels.
 pub(super) fn title_width(picture: &Picture) -> f64 {
     picture.title.as_ref().map_or(0.0, |title| text::width(title, BOLD * TITLE))
 }
@@ -47,7 +47,7 @@ pub(super) fn title_width(picture: &Picture) -> f64 {
 /// The height of the scale bar with the space above it.
 pub(super) const SCALE_HEIGHT: f64 = 30.0;
 
-/// How fast a film is, below the frame's lower right corner.
+/// Playback speed of a film, below the frame's lower right corner.
 pub(super) fn pace(frame: &Frame, film: &Film) -> Group {
     let words_for =
         if film.pace() > 1.05 { format!("{:.1} times as fast", film.pace()) } else { "real time".into() };
@@ -56,7 +56,7 @@ pub(super) fn pace(frame: &Frame, film: &Film) -> Group {
     Group::new().add(words(&words_for, left, 12.0, PALE_INK)).add(film.progress(&frame.pixels()))
 }
 
-/// A bar as long as one step of the grid, with its length, below the frame's lower left corner.
+/// A bar of one grid step with its length, below the frame's lower left corner.
 pub(super) fn scale_bar(frame: &Frame) -> Group {
     let bounds = frame.pixels();
     let left = Pixel::new(bounds.min.x, bounds.max.y + 19.0);
@@ -69,7 +69,7 @@ pub(super) fn scale_bar(frame: &Frame) -> Group {
     Group::new().add(line(data, PALE_INK, 1.6)).add(text)
 }
 
-/// Metres in the unit that needs the fewest digits.
+/// A length in the unit that needs the fewest digits.
 fn length_in_words(metres: f64) -> String {
     let (number, unit) = match metres {
         m if m < 0.000_999 => (m * 1e6, "µm"),

@@ -1,4 +1,4 @@
-//! Robots as seen from above.
+//! Robots seen from above.
 
 use svg::node::element::Group;
 
@@ -14,7 +14,7 @@ use crate::world::{Colour, Footprint};
 /// Robots that reach less far than this many pixels from their origin are drawn as an arrowhead.
 const SMALLEST: f64 = 6.0;
 
-/// A robot where it stands, or as it drives.
+/// A robot, standing or driving.
 pub(super) fn robot(
     poses: &[(f64, Pose)],
     footprint: &Footprint,
@@ -36,8 +36,8 @@ pub(super) fn robot(
     }
 }
 
-/// A robot's outline with an arrowhead inside that shows its heading; the arrowhead alone where the outline would be
-/// too small to see. `scale` is the pixels in a metre.
+/// A robot's outline with an arrowhead for its heading; the arrowhead alone where the outline is too small to
+/// see. `scale` is in pixels per metre.
 pub(super) fn outline(at: Pixel, heading: f64, footprint: &Footprint, style: &Style, scale: f64) -> Group {
     let colour = style.colour;
     let radius = scale * footprint.bounding_radius();
@@ -58,7 +58,7 @@ pub(super) fn outline(at: Pixel, heading: f64, footprint: &Footprint, style: &St
     }
 }
 
-/// The outline's box on the page, for names that keep off it; `None` for a robot that is nowhere.
+/// Bounding box of the outline on the page, which names avoid; `None` for a pose that is not finite.
 pub(super) fn extent(pose: &Pose, footprint: &Footprint, frame: &Frame) -> Option<Aabb> {
     let at = frame.at(pose.position());
     let radius = frame.length(footprint.bounding_radius()).max(SMALLEST);
@@ -79,7 +79,7 @@ fn box_body(at: Pixel, heading: f64, bounds: &Aabb, scale: f64, colour: Colour) 
     line(path_data(&pixels, true), colour, 2.2).set("fill", PAGE.to_string()).set("fill-opacity", "0.88")
 }
 
-/// An arrowhead of a length from its middle to its tip.
+/// An arrowhead with `reach` pixels from its centre to its tip.
 fn arrowhead(at: Pixel, heading: f64, reach: f64, colour: Colour) -> svg::node::element::Path {
     let corners = [(1.0, 0.0), (-0.7, 0.62), (-0.36, 0.0), (-0.7, -0.62)]
         .map(|(x, y)| at + turned(Vector::new(x, y) * reach, heading));

@@ -1,11 +1,11 @@
-//! How much room a text takes, without asking a font.
+//! Estimates the size of a text without a font.
 
-/// The width of a text in pixels at a font size: that of a wide typeface, a little rounded up.
+/// Width of a text in pixels at a font size, as for a wide typeface.
 pub(super) fn width(text: &str, size: f64) -> f64 {
     text.chars().map(relative_width).sum::<f64>() * size
 }
 
-/// The text, or its beginning and an ellipsis if it is wider than `room` pixels.
+/// The text, or its beginning with an ellipsis if it is wider than `room` pixels.
 pub(super) fn fit(text: &str, size: f64, room: f64) -> String {
     if width(text, size) <= room {
         return text.to_owned();
@@ -24,7 +24,7 @@ pub(super) fn fit(text: &str, size: f64, room: f64) -> String {
     short
 }
 
-/// The text in lines of at most `room` pixels, broken between words; a word that is wider is cut.
+/// The text in lines of at most `room` pixels, broken between words; a word that is too wide is cut.
 pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -39,7 +39,7 @@ pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
     lines
 }
 
-/// One line without characters that XML forbids or that would break the line.
+/// One line, without line breaks and characters that XML forbids.
 pub(super) fn clean(text: &str) -> String {
     let forbidden = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
     text.chars().map(|c| if forbidden(c) { ' ' } else { c }).collect::<String>().trim().to_owned()

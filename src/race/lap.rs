@@ -1,4 +1,4 @@
-//! The corridor of a lap that was driven without one.
+//! The corridor of a driven lap.
 
 use super::corridor::Corridor;
 use super::error::LineError;
@@ -13,7 +13,7 @@ const SPEAKS: f64 = 6.5;
 /// Stations of a lap to both sides within which the width of a track is about the same.
 const ALIKE: usize = 10;
 
-/// The corridor around a lap that was driven in the middle, between the cones beside it.
+/// The corridor around a lap driven along the centre line, between the cones beside it.
 pub(super) fn around_lap(cones: &[Point], lap: &[Point], p: &LaneParameters) -> Result<Corridor, LineError> {
     let stations: Vec<Pose> = ClosedSpline::through(lap)?
         .resample(1.0)
@@ -44,7 +44,7 @@ pub(super) fn around_lap(cones: &[Point], lap: &[Point], p: &LaneParameters) -> 
         .map(|at| {
             let usual = usual(at);
             let [left, right] = [0, 1].map(|side| between(&sides[side], at, (usual, p.loose)));
-            // Without one edge, it is as far from the other as it usually is.
+            // A missing edge is at the usual distance from the other one.
             let [left, right] = match (left, right) {
                 (Some(left), Some(right)) => [left, right],
                 (Some(left), None) => [left, (2.0 * usual - left).max(0.5)],
@@ -57,7 +57,7 @@ pub(super) fn around_lap(cones: &[Point], lap: &[Point], p: &LaneParameters) -> 
     Corridor::closed(&rows)
 }
 
-/// The distance of an edge at a station of a lap, between the cones before and behind it that are about as far off as is usual.
+/// Distance of an edge at a station of a lap, interpolated between the nearest cones at plausible distances.
 fn between(asides: &[Option<f64>], at: usize, (usual, loose): (f64, f64)) -> Option<f64> {
     let n = asides.len();
     let good = |k: usize| asides[k % n].filter(|aside| (aside - usual).abs() < loose);

@@ -1,4 +1,4 @@
-//! The legs of which a row of cones may be made, from cone to cone.
+//! Legs of candidate rows, from cone to cone.
 
 use std::cell::OnceCell;
 
@@ -8,17 +8,17 @@ use crate::geometry::{Point, Vector, cross, math};
 /// Metres between two cones of a row at least.
 const NEAREST: f64 = 0.3;
 
-/// From a cone, or from where a row begins without one, to a cone that may come next.
+/// From a cone, or from the start of a row without one, to a possible next cone.
 #[derive(Debug)]
 pub(super) struct Leg {
-    /// The cone to which it leads.
+    /// Index of the cone at its end.
     pub(super) to: usize,
     pub(super) ends: [Point; 2],
-    /// The unit vector along it, its heading, and how long it is.
+    /// Unit vector along it, heading (rad) and length (m).
     pub(super) along: Vector,
     pub(super) heading: f64,
     pub(super) length: f64,
-    /// Cones near it, on its right and on its left.
+    /// Number of cones near it, on its right and on its left.
     crowd: OnceCell<[f64; 2]>,
 }
 
@@ -30,8 +30,8 @@ impl Leg {
         Self { to, ends: [from, place], along: way / length, heading, length, crowd: OnceCell::new() }
     }
 
-    /// How many cones stand on the side of the lane within some metres of it, if it is one of a left row and if it is one of a
-    /// right row. Counted once: it is asked with the same cones and metres always.
+    /// Number of cones on the lane's side within a distance, if it belongs to a left row, and if it belongs
+    /// to a right row. Cached: always call it with the same arguments.
     pub(super) fn crowd(&self, cones: &[Cone], within: f64) -> [f64; 2] {
         *self.crowd.get_or_init(|| {
             let mut sides = [0.0; 2];
@@ -48,7 +48,7 @@ impl Leg {
     }
 }
 
-/// The legs from a place to so many cones within reach at most, the nearest ones first.
+/// Legs from a point to at most `most` cones within reach, nearest first.
 pub(super) fn legs_from(from: Point, cones: &[Cone], reach: f64, most: usize) -> Vec<Leg> {
     let mut near: Vec<(f64, usize)> = Vec::new();
     for (index, cone) in cones.iter().enumerate() {

@@ -20,7 +20,7 @@ pub struct RaceObservation {
     pub scan: LidarScan,
 }
 
-/// How a race, or an event, ended.
+/// How a race or an event ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum RaceOutcome {
@@ -28,15 +28,15 @@ pub enum RaceOutcome {
     Finished,
     /// It was lost, and stands.
     Lost,
-    /// The time was over first.
+    /// The time limit was exceeded.
     TimedOut,
-    /// Who watched had seen enough.
+    /// The observer stopped it.
     Stopped,
 }
 
 halts!(RaceOutcome { Finished: "the race is finished", Lost: "the car is lost" });
 
-/// Makes a racer with phases a behaviour of cars with a lidar.
+/// Implements the behaviour traits for a racer with phases.
 macro_rules! races {
     ($racer:ident, $phase:ident) => {
         impl Behaviour for $racer {

@@ -8,7 +8,7 @@ use crate::geometry::{Point, Pose, Vector, cross, direction, math};
 #[derive(Debug, Clone)]
 pub(super) struct Reference {
     pub(super) pose: Pose,
-    /// Where each beam hit, in the robot's frame, in the order of bearing; `None` where nothing was seen.
+    /// Hits in the robot frame, by bearing; `None` without an echo.
     hits: Vec<Option<Hit>>,
 }
 
@@ -16,11 +16,11 @@ pub(super) struct Reference {
 struct Hit {
     point: Point,
     range: f64,
-    /// The unit normal of the surface, towards the viewer; `None` where the neighbours lie on no common line.
+    /// Unit normal of the surface, towards the viewer; `None` if the neighbours are not collinear.
     normal: Option<Vector>,
 }
 
-/// Gauss-Newton's equations for a pose, from the points that have counterparts.
+/// Gauss-Newton equations for a pose, from the points with correspondences.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Evidence {
     pub(super) information: Matrix3<f64>,
@@ -28,29 +28,30 @@ pub(super) struct Evidence {
     pub(super) matched: usize,
 }
 
-/// Points farther from a surface than this, in metres, do not count as shared.
+/// Distance to a surface above which a point does not count as overlapping (m).
 const OVERLAP_GATE: f64 = 0.03;
-/// Bearings that a reference is divided into.
+/// Number of bearing bins of a reference.
 const BINS: usize = 360;
-/// Standard deviation of one matched point, in metres.
+/// Standard deviation of a matched point (m).
 const POINT_NOISE: f64 = 0.01;
-/// How many matched points count as one fact. Scans matched against one reference share its errors, tens of them one
-/// after the other; counted singly they would drown what odometry knows where the surfaces say little, as in a round
-/// room. Found by trial: 2 lets spirals turn the pose by degrees, 200 lets odometry's drift through.
+/// Number of matched points that count as one measurement. Tens of scans matched against one reference share
+/// its errors; counted singly, they would outweigh odometry where surfaces constrain little, as in a round
+/// room. Tuned by experiment: with 2, spirals rotate the pose by degrees; with 200, the drift of odometry
+/// gets through.
 const POINTS_PER_FACT: f64 = 40.0;
-/// Metres that neighbours reach that a line is fitted to.
+/// Extent of the neighbours used for a line (m).
 const LINE_REACH: f64 = 0.06;
-/// How many neighbours on either side there are at least.
+/// Minimum number of neighbours on either side.
 const MIN_NEIGHBOURS: usize = 2;
-/// How many there are at most.
+/// Maximum number of neighbours on either side.
 const MAX_NEIGHBOURS: usize = 25;
-/// Neighbouring beams that hit farther apart than this, in metres, see two surfaces.
+/// Distance between adjacent hits above which they belong to two surfaces (m).
 const EDGE_GAP: f64 = 0.02;
-/// The same as a share of the range: surfaces that are seen at less than about 10 degrees.
+/// Further distance allowed, as a fraction of the range: surfaces seen at more than about 10 degrees.
 const EDGE_SLANT: f64 = 0.1;
-/// How far neighbours may lie from their line, as a share of its length.
+/// Maximum deviation of neighbours from their line (fraction of its length).
 const FLATNESS: f64 = 0.05;
-/// The same in metres, for short lines.
+/// Further deviation allowed, for short lines (m).
 const ROUGHNESS: f64 = 0.003;
 
 impl Reference {
@@ -66,19 +67,19 @@ impl Reference {
         Self { pose, hits }
     }
 
-    /// The rotation from this reference's frame to the world's, for pose covariances.
+    /// Rotation from this reference's frame to the world, for pose covariances.
     fn rotation(&self) -> Matrix3<f64> {
         let d = direction(self.pose.heading);
         Matrix3::new(d.x, -d.y, 0.0, d.y, d.x, 0.0, 0.0, 0.0, 1.0)
     }
 
-    /// The share of a scan's points that have counterparts when it was made at `pose`.
+    /// Fraction of a scan's points with correspondences, for a scan made at `pose`.
     pub(super) fn overlap(&self, pose: Pose, points: &[Point]) -> f64 {
         let found = self.evidence(pose, points, OVERLAP_GATE);
         found.matched as f64 / points.len().max(1) as f64
     }
 
-    /// What the counterparts of a scan's points say about its pose.
+    /// Evidence of a scan's correspondences about its pose.
     pub(super) fn evidence(&self, pose: Pose, points: &[Point], gate: f64) -> Evidence {
         let relative = self.pose.inverse().compose(&pose);
         let local = self.local_evidence(relative, points, gate);
@@ -100,7 +101,7 @@ impl Reference {
             let placed = Point::new(relative.x + turned.x, relative.y + turned.y);
             let Some((normal, error)) = self.counterpart(placed, relative.position(), gate) else { continue };
             evidence.matched += 1;
-            // Large errors count less, so that what has no true counterpart does not pull.
+            // Robust weights: points without a true correspondence have little influence.
             let deviations = error / POINT_NOISE;
             let robust = 1.0 / (1.0 + 0.25 * deviations * deviations);
             let weight = robust / (POINT_NOISE * POINT_NOISE * POINTS_PER_FACT);
@@ -111,13 +112,13 @@ impl Reference {
         evidence
     }
 
-    /// The surface's normal and the signed distance to it, where a point has a counterpart.
+    /// Surface normal and signed distance, if a point has a correspondence.
     ///
-    /// A surface has only one visible side: from `viewer` behind it, a thin wall's other face is seen.
+    /// A surface has one visible side: a viewer behind a thin wall sees its other face.
     fn counterpart(&self, point: Point, viewer: Point, gate: f64) -> Option<(Vector, f64)> {
         let bin = bin_of(point);
         let range = point.coords.norm();
-        // Near surfaces spread over many bins: the best of the neighbours is the nearest point.
+        // Near surfaces spread over many bins: the best of the neighbours is the closest point.
         let candidates = [bin, (bin + 1) % BINS, (bin + BINS - 1) % BINS];
         let hit = candidates
             .iter()
@@ -139,8 +140,9 @@ fn bin_of(point: Point) -> usize {
     ((turn * BINS as f64).round() as i64).rem_euclid(BINS as i64) as usize
 }
 
-/// The normal, towards the viewer at the origin, of the line that a point and its neighbours lie on, if they do. Near surfaces are seen by many beams a few
-/// millimetres apart, so the neighbours reach as far as [`LINE_REACH`], not a fixed number of beams.
+/// Normal, towards the viewer at the origin, of the line through a point and its neighbours, if they are
+/// collinear. Many beams hit a near surface a few millimetres apart, so the neighbourhood is [`LINE_REACH`]
+/// wide rather than a number of beams.
 fn normal_at(points: &[Point], index: usize) -> Option<Vector> {
     let centre = points[index];
     let mut sums = LineSums::default();
@@ -169,7 +171,7 @@ impl LineSums {
         self.product += p.x * p.y;
     }
 
-    /// Adds the neighbours on one side that belong to the same surface, and returns how many they are.
+    /// Adds the neighbours on one side that belong to the same surface; returns their number.
     fn add_side(&mut self, points: &[Point], index: usize, stride: usize) -> usize {
         let centre = points[index];
         let mut last = centre;
@@ -179,7 +181,7 @@ impl LineSums {
             at = (at + stride) % points.len();
             let next = points[at];
             let range = last.coords.norm();
-            // Beams on one surface are about a beam's width apart; across an edge they are much farther.
+            // Hits on one surface are about a beam's width apart; across an edge they are much farther.
             if (next - last).norm() > EDGE_GAP + EDGE_SLANT * range {
                 break;
             }
@@ -193,7 +195,7 @@ impl LineSums {
         added
     }
 
-    /// The normal of the line through the points, if they lie close to one.
+    /// Normal of the line through the points, if they are nearly collinear.
     fn normal(&self) -> Option<Vector> {
         let mean = self.sum / self.count;
         let xx = self.squares.x / self.count - mean.x * mean.x;

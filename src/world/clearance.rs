@@ -6,6 +6,16 @@ use crate::geometry::{Aabb, Point, Segment, Vector, direction, math};
 use crate::parameter::require_positive;
 
 /// Square cells in rows over a part of the floor. The index of a cell counts along x first, then along y.
+///
+/// ```
+/// use roverlab::geometry::{Aabb, Point};
+/// use roverlab::world::Raster;
+/// let raster = Raster::over(Aabb::new(Point::origin(), Point::new(2.0, 1.0)), 0.5)?;
+/// let cell = raster.cell_at(Point::new(0.6, 0.1)).expect("a cell");
+/// assert!((raster.centre(cell) - Point::new(0.75, 0.25)).norm() < 1e-9);
+/// assert_eq!(raster.cell_at(Point::new(-5.0, 0.0)), None);
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Raster {
     corner: Point,

@@ -18,6 +18,17 @@ pub enum Occupancy {
 /// A map of square cells, each with its occupancy in percent: the `OccupancyGrid` of ROS.
 ///
 /// Columns count along the grid's x axis and rows along its y axis, both from 0 at the lower left cell.
+///
+/// ```
+/// use roverlab::geometry::{Point, Pose};
+/// use roverlab::world::{Occupancy, OccupancyGrid};
+/// let mut grid = OccupancyGrid::unknown(4, 3, 0.1, Pose::default())?;
+/// grid.set(2, 1, Occupancy::Occupied);
+/// assert_eq!(grid.cell_at(Point::new(0.25, 0.15)), Some((2, 1)));
+/// assert_eq!((grid.count(Occupancy::Occupied), grid.count_unknown()), (1, 11));
+/// assert_eq!(grid.to_walls().len(), 4, "an occupied cell has four walls");
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct OccupancyGrid {
     width: usize,

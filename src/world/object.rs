@@ -62,6 +62,15 @@ impl Shape {
 }
 
 /// What all objects of one kind share: EyeSim's `.esObj`, or one of its predefined objects.
+///
+/// ```
+/// use roverlab::geometry::Pose;
+/// use roverlab::world::{Colour, Object, ObjectKind, Shape, World};
+/// let ball = ObjectKind::new("ball", Shape::Sphere { radius: 0.1 }, Colour::RED);
+/// let mut world = World::empty(2.0, 2.0);
+/// world.objects.push(Object::new(ball.into(), Pose::new(1.0, 1.0, 0.0)));
+/// assert_eq!(world.objects[0].kind.shape.height(), 0.2);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObjectKind {
     /// The name under which scenes place it.

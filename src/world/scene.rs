@@ -124,6 +124,14 @@ impl RobotPlacement {
 }
 
 /// A world with robots in it: what a simulation starts from.
+///
+/// ```
+/// use roverlab::geometry::Pose;
+/// use roverlab::world::{RobotPlacement, RobotSpec, Scene, World};
+/// let mut scene = Scene::with_robot(World::walled(2.0, 2.0), RobotSpec::s4(), Pose::new(0.5, 0.5, 0.0));
+/// scene.robots.push(RobotPlacement::new(RobotSpec::labbot().into(), Pose::new(1.5, 1.5, 3.1)));
+/// assert_eq!((scene.robots.len(), scene.world.walls.len()), (2, 4));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// Floor, walls, objects and marks.

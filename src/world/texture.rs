@@ -4,6 +4,13 @@ use std::sync::Arc;
 use image::RgbaImage;
 
 /// An image that a file of a world names: the picture on a floor.
+///
+/// ```
+/// use image::RgbaImage;
+/// use roverlab::world::Texture;
+/// let carpet = Texture::new("carpet.png", RgbaImage::new(4, 3));
+/// assert_eq!(carpet.image.expect("it was given").dimensions(), (4, 3));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
     /// The image's file as the world's file names it.

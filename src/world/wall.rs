@@ -2,6 +2,13 @@ use super::Colour;
 use crate::geometry::{Point, Segment};
 
 /// An upright wall on a straight line.
+///
+/// ```
+/// use roverlab::geometry::Point;
+/// use roverlab::world::{Colour, Wall};
+/// let wall = Wall { colour: Colour::RED, ..Wall::new(Point::new(0.0, 0.0), Point::new(3.0, 4.0)) };
+/// assert_eq!(wall.line.length(), 5.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wall {
     /// The middle line of the wall's foot.

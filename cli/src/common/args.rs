@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use roverlab::geometry::Pose;
 use roverlab::io::wrappers::Fault;
 use roverlab::picture::{Picture, SaveError};
+use roverlab::world::InertialSpec;
 
 use super::library::Library;
 use super::values::{
@@ -306,7 +307,7 @@ fn drawn(
 
 /// Fails if a library cannot be loaded.
 fn check_library(library: &Path) -> Result<(), Failure> {
-    let opened = Library::open(library, Pose::default());
+    let opened = Library::open(library, Pose::default(), InertialSpec::default());
     opened
         .map(|_| ())
         .map_err(|error| Failure::input(format!("--robios {error}; expected a library of RoBIOS")))

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use roverlab::geometry::Pose;
+use roverlab::world::InertialSpec;
 
 use super::{Driven, Failure, StageTruth};
 
@@ -22,10 +23,11 @@ impl fmt::Debug for Library {
 }
 
 impl Library {
-    /// Opens a library, whose robot starts at a pose.
+    /// Opens a library, whose robot starts at a pose and has an inertial unit on these channels.
     #[cfg(feature = "native")]
-    pub(super) fn open(path: &Path, start: Pose) -> Result<Self, Failure> {
+    pub(super) fn open(path: &Path, start: Pose, inertial: InertialSpec) -> Result<Self, Failure> {
         let robot = roverlab::io::robios::RobiosRobot::open(path).map_err(Failure::input)?;
+        let robot = robot.with_inertial(inertial);
         let truth: StageTruth = Box::new(robot.truth(start));
         let robot: Driven = Box::new(robot);
         Ok(Self { path: path.into(), robot: Mutex::new(Some(robot)), truth: Mutex::new(Some(truth)) })
@@ -33,7 +35,7 @@ impl Library {
 
     /// There are no libraries in a browser.
     #[cfg(not(feature = "native"))]
-    pub(super) fn open(path: &Path, _start: Pose) -> Result<Self, Failure> {
+    pub(super) fn open(path: &Path, _start: Pose, _inertial: InertialSpec) -> Result<Self, Failure> {
         Err(Failure::input(format!(
             "{}: found a library; expected a program that can load one",
             path.display()

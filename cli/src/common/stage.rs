@@ -158,8 +158,10 @@ impl CommonArgs {
         let stage = match (self.player(), &self.robios) {
             (Some(player), _) => Stage::new(Play::Recording(player), Vec::new()),
             (None, Some(library)) => {
-                let start = scene.robots.first().map_or(Pose::default(), |robot| robot.pose);
-                Stage::new(Play::Library(Library::open(library, start)?), self.faults()?)
+                let robot = scene.robots.first();
+                let start = robot.map_or(Pose::default(), |robot| robot.pose);
+                let inertial = robot.map(|robot| robot.spec.inertial).unwrap_or_default();
+                Stage::new(Play::Library(Library::open(library, start, inertial)?), self.faults()?)
             }
             _ => {
                 let (scene, watcher) = onlooker::watched(scene);

@@ -50,7 +50,7 @@ pub(crate) fn lidarbot() -> RobotSpec {
     let ray = |id: u8, name: &str, y: f64, yaw: f64| PsdSpec {
         id,
         name: name.into(),
-        mount: Mount { x: 0.045, y, z: 0.030, yaw: units::from_deg(yaw) },
+        mount: Mount { x: 0.045, y, z: 0.030, yaw: units::from_deg(yaw), ..Mount::default() },
         max_range: PsdSpec::DEFAULT_MAX_RANGE,
     };
     let more = [

@@ -1,4 +1,4 @@
-//! How a program waits.
+//! Waiting of programs.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -12,28 +12,27 @@ use super::real_time::nap;
 use super::runtime::{enter, enter_quietly};
 use super::threads::{Inside, alone, calls};
 #[cfg(target_os = "linux")]
-use super::turns::{Turn, is_there, own_number};
+use super::turns::{Turn, all_sleep, is_there, own_number};
 use crate::keys::Waiting;
 use crate::robios::Robios;
 
-/// Lets the program wait for so many seconds.
+/// Lets the program wait for a time (s).
 pub(super) fn sleep_for(call: &'static str, seconds: f64) -> Option<()> {
     let start = enter(call, |robios| Ok(robios.now()))?;
     sleep_until(start + seconds)
 }
 
-/// Real time between two looks of a thread that sleeps at what other threads do.
+/// Real time between a sleeping thread's checks of the others.
 const GRACE: Duration = Duration::from_micros(50);
 
-/// When the threads that sleep wake up, in seconds since the start, and their numbers.
+/// Wake-up times of the sleeping threads since the start (s), and their numbers.
 static ENDS: Mutex<BTreeMap<u64, (f64, u32)>> = Mutex::new(BTreeMap::new());
 static SLEEPERS: AtomicU64 = AtomicU64::new(0);
-/// Threads that have started another one and let it run: it does not take them long, so nobody wakes up
+/// Number of threads that are starting another one and let it run: this is short, so nobody wakes up
 /// meanwhile.
 static STARTERS: AtomicU64 = AtomicU64::new(0);
 
-/// Looks at them as within a call, so that a signal handler that sleeps meanwhile does not wait for this
-/// thread.
+/// Accesses the list as within a call, so that a sleeping signal handler does not wait for this thread.
 fn at_ends<T>(look: impl FnOnce(&mut BTreeMap<u64, (f64, u32)>) -> T) -> T {
     let _inside = Inside::new();
     look(&mut ENDS.lock().unwrap_or_else(PoisonError::into_inner))
@@ -43,21 +42,30 @@ fn nobody_starts() -> bool {
     STARTERS.load(Ordering::Relaxed) == 0
 }
 
-/// The numbers of the threads that sleep.
+/// Numbers of the sleeping threads.
 fn asleep() -> Vec<u32> {
     at_ends(|ends| ends.values().map(|&(_, thread)| thread).collect())
 }
 
-/// A thread that sleeps.
+/// Whether all of the program's threads are asleep at a time, and each until later.
+fn all_are_asleep(now: f64) -> bool {
+    let (threads, earliest) = at_ends(|ends| {
+        let earliest = ends.values().map(|&(end, _)| end).fold(f64::INFINITY, f64::min);
+        (ends.values().map(|&(_, thread)| thread).collect::<Vec<_>>(), earliest)
+    });
+    earliest > now && all_sleep(&threads)
+}
+
+/// A sleeping thread.
 struct Sleeper {
     number: u64,
-    /// Looks at somebody else who should have woken up.
+    /// Number of checks for another thread that should have woken up.
     waits: u32,
 }
 
-/// Looks after which whoever should have woken up and has ended is forgotten: its thread has been cancelled.
+/// Checks after which a thread that should have woken up and has ended is forgotten: it was cancelled.
 const SOME_WAITS: u32 = 200;
-/// Looks after which anybody is who should have woken up: it has left its sleep in a way of its own.
+/// Checks after which any thread that should have woken up is forgotten: it left its sleep in another way.
 const MOST_WAITS: u32 = 20_000;
 
 impl Sleeper {
@@ -67,19 +75,26 @@ impl Sleeper {
         Self { number, waits: 0 }
     }
 
-    /// Lets a tick pass, but no more than until somebody wakes up, and nothing before who is due has done so.
-    fn pass(&mut self) -> Option<()> {
+    /// Lets time pass until the next thread wakes up, and nothing before due threads have done so: a tick at most,
+    /// unless all threads were asleep at the present time, so that none can act before.
+    fn pass(&mut self, all_asleep_at: Option<f64>) -> Option<()> {
         let earliest = at_ends(|ends| ends.values().map(|&(end, _)| end).fold(f64::INFINITY, f64::min));
         let passed = enter_quietly(|robios| {
-            let rest = earliest - robios.now();
-            if rest > 0.0 { robios.pass(rest.min(TICK)).map(|()| true) } else { Ok(false) }
+            let now = robios.now();
+            let most = match robios.timers.next() {
+                _ if all_asleep_at != Some(now) => TICK,
+                Some(due) => (due - now).max(TICK),
+                None => f64::INFINITY,
+            };
+            let rest = earliest - now;
+            if rest > 0.0 { robios.pass(rest.min(most)).map(|()| true) } else { Ok(false) }
         })?;
         self.waits = if passed { 0 } else { self.waits + 1 };
         self.forget_others();
         Some(())
     }
 
-    /// Forgets those who should have woken up and never will.
+    /// Forgets threads that should have woken up and never will.
     fn forget_others(&self) {
         if self.waits.is_multiple_of(SOME_WAITS) {
             let lost = self.waits >= MOST_WAITS;
@@ -88,9 +103,9 @@ impl Sleeper {
         }
     }
 
-    /// Whether it is this thread's turn to wake up, of all that should have: those who sleep wake in the
-    /// order of their times, and each one when the one before waits again, so that the system does not decide
-    /// who calls first.
+    /// Whether it is this thread's turn to wake up among all that are due. Sleeping threads wake in the order
+    /// of their times, each when the previous one waits again, so that the order of calls does not depend on
+    /// the system.
     fn may_wake(&mut self, turn: &mut Turn, end: f64) -> bool {
         let first = at_ends(|ends| {
             let earlier = |(&number, &(other, _)): (&u64, &(f64, u32))| (other, number) < (end, self.number);
@@ -108,23 +123,24 @@ impl Drop for Sleeper {
     }
 }
 
-/// Lets the program wait until a time, in seconds since the start. Timers' functions are called in between.
+/// Lets the program wait until a time since the start (s). Timer functions are called in between.
 ///
-/// A program with one thread skips the time. Of several threads, one that sleeps lets the world go on by a
-/// tick whenever the others have had the opportunity to do something and have not taken it.
+/// A program with one thread skips the time, and so does one whose threads all sleep. Otherwise a sleeping one advances
+/// the world by a tick whenever the others have had and not used the opportunity to act.
 fn sleep_until(end: f64) -> Option<()> {
     let (mut sleeper, mut turn) = (Sleeper::new(end), Turn::default());
     let mut waking: Option<Turn> = None;
     loop {
         let (alone, before) = (alone(), calls());
-        let rest = enter_quietly(|robios| {
+        let now = enter_quietly(|robios| {
             let now = robios.now();
             if now < end && alone {
                 let next = robios.timers.next().map_or(end, |due| due.min(end));
                 robios.pass(next - now)?;
             }
-            Ok(end - robios.now())
+            Ok(robios.now())
         })?;
+        let rest = end - now;
         if alone && rest > 0.0 {
             continue;
         }
@@ -138,15 +154,16 @@ fn sleep_until(end: f64) -> Option<()> {
         nap(GRACE);
         if calls() != before || !nobody_starts() {
             turn = Turn::default();
+        } else if all_are_asleep(now) {
+            sleeper.pass(Some(now))?;
         } else if turn.is_over(&asleep()) {
             turn = Turn::default();
-            sleeper.pass()?;
+            sleeper.pass(None)?;
         }
     }
 }
 
-/// Lets the program's other threads go on until they wait: a thread that has just been started is the first
-/// to run.
+/// Lets the program's other threads run until they wait: a thread just started is the first to run.
 #[cfg(target_os = "linux")]
 pub(super) fn let_others_run() {
     let mut turn = Turn::default();
@@ -157,7 +174,7 @@ pub(super) fn let_others_run() {
     STARTERS.fetch_sub(1, Ordering::Relaxed);
 }
 
-/// Where nobody tells what threads do, they have had their turn after a nap.
+/// Where thread states are unknown, the others have had their turn after a nap.
 #[cfg(not(target_os = "linux"))]
 #[derive(Debug, Default)]
 struct Turn;
@@ -165,6 +182,11 @@ struct Turn;
 #[cfg(not(target_os = "linux"))]
 fn own_number() -> u32 {
     0
+}
+
+#[cfg(not(target_os = "linux"))]
+fn all_sleep(_: &[u32]) -> bool {
+    false
 }
 
 #[cfg(not(target_os = "linux"))]
@@ -185,12 +207,12 @@ impl Turn {
     }
 }
 
-/// Whether a call may wait in the world, because the program has nothing else to do meanwhile.
+/// Whether a call may block in the world, because the program has nothing else to do.
 pub(super) fn may_block() -> bool {
     alone() && enter_quietly(|robios| Ok(robios.timers.is_empty())).unwrap_or(true)
 }
 
-/// Waits until a question has an answer.
+/// Waits until a query has an answer.
 pub(super) fn wait_for<T>(
     call: &'static str,
     mut ask: impl FnMut(&mut Robios) -> Result<Waiting<T>>,

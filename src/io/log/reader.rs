@@ -7,18 +7,18 @@ use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use super::{LogError, lengths};
 
-/// The bytes with which MCAP files begin and end.
+/// Bytes at the beginning and the end of MCAP files.
 const MAGIC: &[u8] = mcap::MAGIC;
-/// An opcode and a length.
+/// Size of an opcode and a length.
 const FRAME: usize = 9;
-/// Bytes of a footer: two places and a checksum.
+/// Size of a footer: two positions and a checksum (bytes).
 const FOOTER: usize = 8 + 8 + CRC;
-/// Bytes of a checksum.
+/// Size of a checksum (bytes).
 const CRC: usize = 4;
 /// Bytes of a chunk beside the name of its compression and what is packed.
 const CHUNK_FIELDS: usize = 3 * 8 + 4 + 4 + 8;
 
-/// A record in a file: its kind, where it begins, and what it holds.
+/// A record in a file: kind, position and content.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Framed<'a> {
     pub(super) opcode: u8,
@@ -27,7 +27,7 @@ pub(super) struct Framed<'a> {
 }
 
 impl<'a> Framed<'a> {
-    /// Where the next record begins.
+    /// Position of the next record.
     pub(super) fn end(&self) -> usize {
         self.start + FRAME + self.body.len()
     }
@@ -41,7 +41,7 @@ impl<'a> Framed<'a> {
     }
 }
 
-/// The records in some bytes, from a place on; `None` for one that is cut off.
+/// The records in some bytes from a position on; `None` for a truncated one.
 pub(super) fn records(bytes: &[u8], start: usize) -> impl Iterator<Item = Option<Framed<'_>>> {
     let mut at = start;
     std::iter::from_fn(move || {
@@ -54,7 +54,7 @@ pub(super) fn records(bytes: &[u8], start: usize) -> impl Iterator<Item = Option
     })
 }
 
-/// The record that begins at a place, if it is there as a whole.
+/// The record at a position, if it is complete.
 pub(super) fn record_at(bytes: &[u8], start: usize) -> Option<Framed<'_>> {
     let head = bytes.get(start..start + FRAME)?;
     let length = u64::from_le_bytes(head[1..].try_into().ok()?);
@@ -70,7 +70,7 @@ pub(super) struct MessageAt<'a> {
     pub(super) data: &'a [u8],
 }
 
-/// The parts of a message record's body.
+/// Splits the body of a message record.
 pub(super) fn message(body: &[u8]) -> Option<MessageAt<'_>> {
     let (head, data) = body.split_at_checked(22)?;
     let header = MessageHeader {
@@ -82,7 +82,7 @@ pub(super) fn message(body: &[u8]) -> Option<MessageAt<'_>> {
     Some(MessageAt { header, data })
 }
 
-/// How many files some bytes are, one behind the other, whole or cut off.
+/// Number of concatenated files, whole or truncated.
 pub(super) fn runs(bytes: &[u8]) -> usize {
     let begins = |at: usize| {
         bytes[at..].starts_with(MAGIC)
@@ -92,7 +92,7 @@ pub(super) fn runs(bytes: &[u8]) -> usize {
     bytes.iter().enumerate().filter(|&(at, &byte)| byte == MAGIC[0] && begins(at)).count()
 }
 
-/// The schemas and channels that the summary of a file repeats; none if its end is cut off or damaged.
+/// Schemas and channels repeated in a file's summary; none if its end is truncated or damaged.
 pub(super) fn declarations(bytes: &[u8]) -> Vec<Framed<'_>> {
     let in_summary = || {
         let at = bytes.len().checked_sub(FRAME + FOOTER + MAGIC.len())?;
@@ -107,7 +107,7 @@ pub(super) fn declarations(bytes: &[u8]) -> Vec<Framed<'_>> {
     in_summary().unwrap_or_default()
 }
 
-/// The records of a whole file, up to the end of its data. Fails if a byte of the file is not as it was written.
+/// The records of a whole file up to the end of its data. Fails if any byte of the file is corrupted.
 pub(super) fn whole(bytes: &[u8]) -> Result<Vec<Framed<'_>>, LogError> {
     if !bytes.starts_with(MAGIC) {
         let cut_off = bytes.len() < MAGIC.len() && MAGIC.starts_with(bytes) && !bytes.is_empty();
@@ -141,14 +141,14 @@ fn truncated(bytes: &[u8]) -> LogError {
 }
 
 fn check(part: &str, saved: u32, bytes: &[u8]) -> Result<(), LogError> {
-    // Zero says that no checksum was made.
+    // Zero means that no checksum was made.
     if saved == 0 || saved == crc32fast::hash(bytes) {
         return Ok(());
     }
     Err(LogError::damaged(format!("the checksum of the {part} differs")))
 }
 
-/// Checks the summary, the footer and what follows it.
+/// Checks the summary, the footer and what follows.
 fn check_end(bytes: &[u8], start: usize, footer: &Framed<'_>) -> Result<(), LogError> {
     let Record::Footer(parsed) = footer.parse()? else { return Ok(()) };
     let end = footer.end();
@@ -166,37 +166,37 @@ fn check_end(bytes: &[u8], start: usize, footer: &Framed<'_>) -> Result<(), LogE
     }
 }
 
-/// Whether a chunk has a checksum that tells whether it is intact.
+/// Whether a chunk has a checksum.
 pub(super) fn has_checksum(chunk: &Framed<'_>) -> bool {
     chunk.body.get(24..28).is_some_and(|crc| crc != [0; 4])
 }
 
-/// The bytes that chunks may hold in all, unpacked.
+/// An upper limit of the uncompressed size of all chunks together.
 ///
-/// A file of a few kilobytes may hold gigabytes of nothing.
+/// A file of a few kilobytes may hold gigabytes of zeros.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Budget {
     left: u64,
 }
 
 impl Budget {
-    /// What a file of some bytes may hold.
+    /// The limit for a file.
     pub(super) fn of(file: &[u8]) -> Self {
-        /// Bytes for each of a file's, more than any chunk with its entries in the index is packed to, and for a file
-        /// that hardly has any.
+        /// Bytes per byte of the file: more than a chunk of a recording can be compressed, with its index.
         const PER_BYTE: u64 = 1 << 12;
+        /// Bytes for a very short file.
         const LEAST: u64 = 1 << 26;
         Self { left: LEAST.saturating_add(PER_BYTE.saturating_mul(file.len() as u64)) }
     }
 
-    /// Fails if that is less than some bytes.
+    /// Fails if less than some bytes is left.
     pub(super) fn allows(self, size: u64) -> Result<(), LogError> {
         if size <= self.left {
             return Ok(());
         }
         let most = self.left;
         Err(LogError::damaged(format!(
-            "{size} bytes unpacked in a file that may hold {most} more by its length"
+            "{size} uncompressed bytes; expected at most {most} for a file of this length"
         )))
     }
 
@@ -207,7 +207,7 @@ impl Budget {
     }
 }
 
-/// The bytes of what a chunk holds, unpacked. Fails if they are not as they were written, or more than the budget allows.
+/// The uncompressed content of a chunk. Fails if it is corrupted, or larger than the budget.
 pub(super) fn contents<'a>(record: &Framed<'a>, budget: &mut Budget) -> Result<Cow<'a, [u8]>, LogError> {
     let Record::Chunk { header, data } = record.parse()? else {
         return Err(LogError::damaged(format!("no chunk at byte {}", record.start)));
@@ -230,7 +230,7 @@ pub(super) fn contents<'a>(record: &Framed<'a>, budget: &mut Budget) -> Result<C
     Ok(data)
 }
 
-/// Unpacks a compressed chunk that holds so many bytes.
+/// Decompresses a chunk with a content of so many bytes.
 fn unpacked(chunk: &Framed<'_>, name: &str, size: u64) -> Result<Vec<u8>, LogError> {
     let damaged = |error: &dyn std::fmt::Display| {
         LogError::damaged(format!("{error} in the chunk at byte {}", chunk.start))
@@ -267,7 +267,7 @@ fn unpacked(chunk: &Framed<'_>, name: &str, size: u64) -> Result<Vec<u8>, LogErr
     Ok(plain)
 }
 
-/// An empty list with room for so many bytes. Fails where there is not as much memory.
+/// An empty list with a capacity in bytes. Fails if there is not enough memory.
 pub(super) fn room(size: u64) -> Result<Vec<u8>, LogError> {
     let mut list = Vec::new();
     let size = usize::try_from(size).unwrap_or(usize::MAX);
@@ -275,7 +275,7 @@ pub(super) fn room(size: u64) -> Result<Vec<u8>, LogError> {
     Ok(list)
 }
 
-/// The records in the bytes of a chunk: its messages and what declares them.
+/// The records in a chunk: its messages and their declarations.
 pub(super) fn inner(contents: &[u8]) -> impl Iterator<Item = Result<Framed<'_>, LogError>> {
     let cut_off = || LogError::damaged("a record is longer than the chunk that holds it");
     records(contents, 0).map(move |record| record.ok_or_else(cut_off))

@@ -3,9 +3,9 @@ use std::f64::consts::TAU;
 use crate::geometry::{Aabb, Point, Twist, math};
 use crate::world::Footprint;
 
-/// An outline that moves at a constant speed and turn, and when it touches a point: exactly, not at sampled places.
+/// Computes when an outline moving with a constant twist touches a point; exact, without sampling.
 ///
-/// Seen from the robot, a point moves along an arc about the centre of the robot's own turn.
+/// Relative to the robot, a point moves along an arc around the robot's own centre of rotation.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sweep {
     outline: Footprint,
@@ -16,7 +16,7 @@ pub(super) struct Sweep {
 const STRAIGHT: f64 = 1e-6;
 
 impl Sweep {
-    /// The outline grown by `margin` metres; a rectangle keeps its corners.
+    /// The outline inflated by `margin` metres; a rectangle keeps its corners.
     pub(super) fn new(footprint: &Footprint, margin: f64, twist: Twist) -> Self {
         let outline = match footprint {
             Footprint::Disc { radius } => Footprint::Disc { radius: radius + margin },
@@ -25,9 +25,9 @@ impl Sweep {
         Self { outline, twist }
     }
 
-    /// Seconds until the outline touches one of the points, in the robot's frame; infinite if it never does.
+    /// Time until the outline touches one of the points in the robot's frame (s); infinite if it never does.
     ///
-    /// A point that is inside already counts as touched at once, unless the outline moves off it.
+    /// A point already inside counts as touched at once, unless the outline moves away from it.
     pub(super) fn time_to_contact(&self, points: &[Point]) -> f64 {
         points.iter().map(|&point| self.time_to(point)).fold(f64::INFINITY, f64::min)
     }
@@ -46,7 +46,7 @@ impl Sweep {
         }
     }
 
-    /// Whether a point gets farther from the outline's middle.
+    /// Whether a point gets farther from the outline's centre.
     fn moves_off(&self, point: Point) -> bool {
         let middle = match &self.outline {
             Footprint::Disc { .. } => Point::origin(),
@@ -63,7 +63,7 @@ impl Sweep {
         if speed == 0.0 {
             return f64::INFINITY;
         }
-        // The outline's front and back on the point's line.
+        // Front and back of the outline at the point's y coordinate.
         let (back, front) = match &self.outline {
             Footprint::Disc { radius } => {
                 let depth = radius * radius - point.y * point.y;
@@ -92,7 +92,7 @@ impl Sweep {
         }
     }
 
-    /// The point's circle meets the disc where their centres and the point form a triangle of known sides.
+    /// The point's circle meets the disc where the two centres and the point form a triangle of known sides.
     fn until_disc(&self, point: Point, centre: Point, radius: f64, disc: f64) -> f64 {
         let apart = centre.coords.norm();
         let product = 2.0 * apart * radius;
@@ -138,7 +138,7 @@ impl Sweep {
         least
     }
 
-    /// Seconds until a point has turned about the centre to an angle, seen from the robot: against the robot's own turn.
+    /// Time until a point reaches an angle about the centre (s), moving against the robot's own rotation.
     fn until_angle(&self, point: Point, centre: Point, angle: f64) -> f64 {
         let from = point - centre;
         let now = math::atan2(from.y, from.x);
@@ -161,7 +161,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::testing::cases(256))]
-        /// Moved step by step, the outline is free until the time that is told, and touches then.
+        /// Moved step by step, the outline is free until the predicted time and touches then.
         #[test]
         fn contact_is_when_it_is_told(
             x in -0.5..0.5f64, y in -0.5..0.5f64, linear in -0.3..0.3f64, angular in -2.0..2.0f64, straight in any::<bool>()

@@ -20,6 +20,17 @@ pub fn load(path: impl AsRef<Path>) -> Result<Parsed<BitGrid>, FormatError> {
 }
 
 /// Reads a picture.
+///
+/// ```
+/// use roverlab::world::GridCell;
+/// use roverlab::world::formats::{SourceFile, bitmap};
+/// let name = "floor plan.pgm".to_string();
+/// let grid = bitmap::parse(&SourceFile { name, bytes: b"P5 3 1 255\n\xff\x00\xff".to_vec() })?.value;
+/// assert!(grid.is_free(GridCell::new(0, 0)) && !grid.is_free(GridCell::new(1, 0)), "black is a wall");
+/// // From the disk:
+/// assert!(bitmap::load("no such plan.png").unwrap_err().to_string().contains("no such plan.png"));
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
 pub fn parse(source: &SourceFile) -> Result<Parsed<BitGrid>, FormatError> {
     let picture = decode_image(source)?;
     let (width, height) = (picture.width() as usize, picture.height() as usize);

@@ -13,6 +13,16 @@
 //!
 //! The first row of numbers is that of greatest y. The lower left corner is that of the lower left cell, or, as
 //! `xllcenter` and `yllcenter`, the middle of it. Places without data get the grid's lowest elevation, with a warning.
+//!
+//! ```
+//! use roverlab::world::formats::elevation_grid;
+//! let text = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 25\n3 4\n1 2\n";
+//! let grid = elevation_grid::parse(text, "hill.asc")?.value;
+//! assert_eq!(grid.range(), (1.0, 4.0));
+//! let error = elevation_grid::parse("ncols two\n", "hill.asc").unwrap_err();
+//! assert!(error.to_string().starts_with("hill.asc:1:7"), "{error}");
+//! # Ok::<(), roverlab::world::formats::FormatError>(())
+//! ```
 
 use super::error::{FormatError, Location, Notes, Parsed};
 use super::lexer::shown;

@@ -16,6 +16,15 @@
 //! | `colour R G B` | its colour; a line of our own, which EyeSim skips |
 //!
 //! The model's axes point right, up and forward. The object's shape is the upright one that holds all its colliders.
+//!
+//! ```
+//! use roverlab::world::formats::esobj;
+//! let text = "name Crate\nmass 2 0 0 0\ncollider box 0 100 0 200 200 300\n";
+//! let kind = esobj::parse(text, "crate.esObj")?.value;
+//! assert_eq!((kind.name.as_str(), kind.mass, kind.shape.height()), ("Crate", 2.0, 0.2));
+//! assert_eq!(esobj::parse(&esobj::print(&kind), "crate.esObj")?.value, kind);
+//! # Ok::<(), roverlab::world::formats::FormatError>(())
+//! ```
 
 use std::fmt::Write as _;
 use std::path::PathBuf;

@@ -22,6 +22,16 @@
 //!   `|`, `_` or a blank are skipped.
 //!
 //! Walls are as thick and high as EyeSim's default, whatever the size of a cell.
+//!
+//! ```
+//! use roverlab::world::formats::maz;
+//! let text = " _ _\n|S _|\n|_ _|\n360\n";
+//! let maze: maz::MazGrid = maz::parse_maze(text, "small.maz")?.value;
+//! assert_eq!((maze.columns(), maze.rows(), maze.cell), (2, 2, 0.36));
+//! assert_eq!(maz::parse_maze(&maz::print(&maze), "again.maz")?.value, maze);
+//! assert_eq!(maz::parse(text, "small.maz")?.value.walls, maze.to_world().walls);
+//! # Ok::<(), roverlab::world::formats::FormatError>(())
+//! ```
 
 use std::sync::Arc;
 

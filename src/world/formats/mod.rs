@@ -5,6 +5,7 @@
 
 mod args;
 pub mod bitmap;
+pub mod course;
 pub mod elevation_grid;
 mod error;
 pub mod esobj;

@@ -17,6 +17,17 @@
 //!
 //! N. R. Sturtevant, *Benchmarks for Grid-Based Pathfinding*, IEEE Trans. Computational Intelligence and AI in
 //! Games 4(2), 2012.
+//!
+//! ```
+//! use roverlab::world::formats::movingai::{Map, parse_map, parse_scenarios, print_map, print_scenarios};
+//! let text = "type octile\nheight 2\nwidth 3\nmap\n..@\n.T.\n";
+//! let map: Map = parse_map(text, "yard.map")?.value;
+//! assert_eq!((map.grid().count_free(), print_map(&map).as_str()), (4, text));
+//! let queries = parse_scenarios("version 1\n0 yard.map 3 2 0 0 0 1 1.0\n", "yard.map.scen")?.value;
+//! assert_eq!((queries[0].goal.row, queries[0].optimal), (1, 1.0));
+//! assert_eq!(parse_scenarios(&print_scenarios(&queries), "again.scen")?.value, queries);
+//! # Ok::<(), roverlab::world::formats::FormatError>(())
+//! ```
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -133,6 +144,17 @@ pub struct Query {
 }
 
 /// Reads a map from disk.
+///
+/// ```
+/// use roverlab::world::formats::movingai::{load_map, load_scenarios, parse_map, parse_scenarios};
+/// let map = parse_map("type octile\nheight 1\nwidth 3\nmap\n..@\n", "corridor.map")?.value;
+/// let text = "version 1\n0 corridor.map 3 1 0 0 1 0 1.0\n";
+/// let queries = parse_scenarios(text, "corridor.map.scen")?.value;
+/// assert_eq!((map.grid().count_free(), queries[0].optimal), (2, 1.0));
+/// // From the disk:
+/// assert!(load_map("none.map").is_err() && load_scenarios("none.map.scen").is_err());
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
 pub fn load_map(path: impl AsRef<Path>) -> Result<Parsed<Map>, FormatError> {
     read(path.as_ref(), parse_map)
 }

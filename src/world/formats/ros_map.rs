@@ -45,6 +45,22 @@ pub enum Mode {
 }
 
 /// A map with what its file says about it.
+///
+/// ```
+/// use roverlab::geometry::Pose;
+/// use roverlab::world::formats::{MemoryFiles, ros_map};
+/// use roverlab::world::{BitGrid, formats::ros_map::RosMap};
+/// let grid = BitGrid::from_text("..#\n...")?.to_occupancy(0.05, Pose::default())?;
+/// let map = RosMap::new("hall.pgm", grid);
+/// let mut files = MemoryFiles::default();
+/// files.0.insert("hall.pgm".into(), ros_map::print_image(&map)?);
+/// let read = ros_map::parse(&ros_map::print(&map), "hall.yaml", &mut files)?.value;
+/// assert_eq!(read, map);
+/// // On the disk, the image lies beside the YAML.
+/// assert!(ros_map::save(&map, "no such folder/hall.yaml").is_err());
+/// assert!(ros_map::load("no such folder/hall.yaml").is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct RosMap {
     /// The name of the image as written.

@@ -32,6 +32,15 @@ pub trait FileSource {
 ///
 /// `\` counts as `/`; a leading `~` and `$HOME` stand for the home folder; EyeSim 6's `%sim%` is dropped, and
 /// so is a drive letter where it leads nowhere.
+///
+/// ```
+/// use roverlab::world::formats::DiskFiles;
+/// let files = DiskFiles::with_home(None);
+/// // A name that `src/lib.rs` mentions, in other letters.
+/// let found = files.find("KINEMATICS/mod.rs", "src/lib.rs").expect("it is there");
+/// assert!(found.ends_with("kinematics/mod.rs"));
+/// assert_eq!(files.find("nowhere.wld", "src/lib.rs"), None);
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct DiskFiles {
     home: Option<PathBuf>,

@@ -17,6 +17,17 @@
 //! Keywords are read in any case. A line that begins with anything else is skipped with a warning, and so is a wall
 //! of fewer than four numbers, as EyeSim does. A world without a floor gets one that reaches from (0, 0) as far as
 //! its walls. Objects, marks and places do not belong into this format: simulation scripts hold them.
+//!
+//! ```
+//! use roverlab::world::formats::wld;
+//! let text = "floor 3000 2000\n0 0 3000 0\n1500 0 1500 1200 50 300\nsofa\n";
+//! let parsed = wld::parse(text, "room.wld")?;
+//! assert_eq!(parsed.warnings.len(), 1, "nobody knows what `sofa` means");
+//! let wall = &parsed.value.walls[1];
+//! assert_eq!((wall.line.length(), wall.thickness, wall.height), (1.2, 0.05, 0.3));
+//! assert_eq!(wld::parse(&wld::print(&parsed.value), "again.wld")?.value, parsed.value);
+//! # Ok::<(), roverlab::world::formats::FormatError>(())
+//! ```
 
 use std::fmt::Write as _;
 

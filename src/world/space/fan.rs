@@ -72,6 +72,12 @@ impl Fan {
         Vector::new(self.cos[beam], self.sin[beam])
     }
 
+    /// The direction of a beam in the beams' own frame.
+    #[inline]
+    pub(super) fn own_direction(&self, beam: usize) -> Vector {
+        Vector::new(self.own_cos[beam], self.own_sin[beam])
+    }
+
     /// Turns the beams' frame to a heading in the world.
     pub(super) fn turn_to(&mut self, heading: f64) {
         let (sin, cos) = math::sin_cos(heading);

@@ -10,6 +10,17 @@ use std::sync::Arc;
 pub use height_field::HeightField;
 
 /// The hills of a world, as its file describes them.
+///
+/// ```
+/// use roverlab::geometry::{Aabb, Point};
+/// use roverlab::world::{HeightField, Terrain};
+/// let area = Aabb::new(Point::origin(), Point::new(10.0, 10.0));
+/// let slope = HeightField::from_fn(11, 11, area, |place| 0.1 * place.x)?;
+/// let terrain = Terrain::new("slope.asc", slope);
+/// let surface = terrain.surface.expect("it was given");
+/// assert!((surface.height(Point::new(5.5, 2.0)).expect("a place on it") - 0.55).abs() < 1e-6);
+/// # Ok::<(), roverlab::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Terrain {
     /// Metres along x that the hills cover, from x = 0.

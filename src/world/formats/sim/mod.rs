@@ -26,6 +26,20 @@
 //!
 //! [`SimFile`] is the script as written; [`Scene`](crate::world::Scene) is what it describes, with the files that it
 //! names.
+//!
+//! ```
+//! use roverlab::world::formats::{MemoryFiles, sim};
+//! let text = "S4 400 400 90 drive.x\nCan 1000 1000 0\nmarker 1600 1600 0 180 0\n";
+//! let script: sim::SimFile = sim::parse_document(text, "room.sim")?.value;
+//! assert_eq!(sim::parse_document(&sim::print(&script), "again.sim")?.value, script);
+//! let mut files = MemoryFiles::default();
+//! let scene = sim::parse(text, "room.sim", &mut files)?.value;
+//! assert_eq!((scene.robots.len(), scene.world.objects.len(), scene.world.markers.len()), (1, 1, 1));
+//! let wrong = "S4 400 here 90\n";
+//! assert!(sim::parse(wrong, "room.sim", &mut files).is_err());
+//! assert_eq!(sim::parse_tolerantly(wrong, "room.sim", &mut files)?.warnings.len(), 1);
+//! # Ok::<(), roverlab::world::formats::FormatError>(())
+//! ```
 
 mod definitions;
 mod document;
