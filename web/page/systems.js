@@ -30,7 +30,7 @@ export const FIRST = ["seed", "noise", "time-limit"];
 export const LAST = ["start", "goal", "world", "robot", "track", "maze", "line", "input", "quantised", "fault", "supervised"];
 export const FILES = ["world", "robot", "track", "maze", "line", "input"];
 const HIDDEN = new Set([
-  "record", "replay", "picture", "robios", "json", "timing", "realtime", "threads", "processes", "checkpoint", "campaign", "worlds",
+  "record", "force", "fsync", "replay", "picture", "robios", "json", "timing", "realtime", "threads", "processes", "checkpoint", "campaign", "worlds",
   "levels", "save", "runs", "animation", "output", "lcd", "plan", "compare", "steps", "mms", "mms-run", "mms-limit", "rooms",
   "starts", "scenes", "pairs", "second", "families", "explore", "repeat",
 ]);

@@ -63,6 +63,14 @@ pub(crate) struct CommonArgs {
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) record: Option<PathBuf>,
 
+    /// Record in the place of a file that is no recording too.
+    #[arg(long, requires = "record")]
+    pub(crate) force: bool,
+
+    /// Wait until each second of a recording is on the disk.
+    #[arg(long, requires = "record")]
+    pub(crate) fsync: bool,
+
     /// Run against a recording, with its options; further options override them.
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) replay: Option<PathBuf>,

@@ -1,5 +1,4 @@
 use std::ffi::OsString;
-use std::fs;
 use std::path::Path;
 
 use clap::parser::ValueSource;
@@ -7,14 +6,16 @@ use clap::{ArgAction, ArgMatches, Command};
 use roverlab::io::log::Log;
 use roverlab::world::RobotSpec;
 
-use super::files::recorded_name;
+use super::files::{recorded_name, recording_bytes};
 use super::origin::Facts;
 use super::outputs::check_outputs;
 use super::{CommonArgs, Failure, Heeds, Unheeded, heed, parser, stage};
 
 /// Options that do not affect a run.
-const NOT_RECORDED: [&str; 13] = [
+const NOT_RECORDED: [&str; 15] = [
     "record",
+    "force",
+    "fsync",
     "replay",
     "picture",
     "animation",
@@ -142,7 +143,7 @@ fn replayed(words: &[OsString]) -> Option<OsString> {
 fn recording(wanted: &str, command: &Command, file: &OsString) -> Result<Log, Failure> {
     let name = Path::new(file).display();
     let refused = |error: &dyn std::fmt::Display| Failure::input(format!("--replay {name}: {error}"));
-    let bytes = fs::read(file).map_err(|error| refused(&error))?;
+    let bytes = recording_bytes(Path::new(file)).map_err(|error| refused(&error))?;
     let log = Log::read(bytes).map_err(|error| refused(&error))?;
     let program = &log.header().program;
     if program != wanted {

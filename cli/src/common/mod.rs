@@ -88,6 +88,7 @@ mod workers;
 pub(crate) use args::check_writable;
 pub(crate) use args::{CommonArgs, PlainArgs};
 pub(crate) use failure::Failure;
+pub(crate) use files::recording_bytes;
 pub(crate) use free_floor::FreeFloor;
 pub(crate) use heed::{Heeds, OF_ONE_RUN, Unheeded};
 pub(crate) use images::write_image;

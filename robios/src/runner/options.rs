@@ -78,6 +78,14 @@ pub(crate) struct Options {
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) record: Option<PathBuf>,
 
+    /// Record in the place of a file that is no recording too.
+    #[arg(long, requires = "record")]
+    pub(crate) force: bool,
+
+    /// Wait until each second of a recording is on the disk.
+    #[arg(long, requires = "record")]
+    pub(crate) fsync: bool,
+
     /// Save the display of the last robot that has one as a .png file.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) lcd: Option<PathBuf>,

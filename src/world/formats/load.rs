@@ -101,6 +101,17 @@ pub fn parse_robot(bytes: Vec<u8>, file: &str) -> Result<Parsed<RobotSpec>, Form
 }
 
 /// As [`load_robot_tolerantly`], from the bytes of the robot's file and from the files that it names.
+///
+/// ```
+/// use roverlab::world::formats::{MemoryFiles, parse_robot_tolerantly};
+/// let text = "drive DIFFERENTIAL_DRIVE\nname Mine\nmodel mine.obj\nwheel 54 3600 1100 45\n";
+/// let mut files = MemoryFiles::default();
+/// let bare = parse_robot_tolerantly(text.into(), "mine.robi", &mut files)?;
+/// assert!(bare.value.mesh.is_none() && bare.warnings[0].to_string().contains("mine.obj"));
+/// files.0.insert("mine.obj".into(), b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec());
+/// assert!(parse_robot_tolerantly(text.into(), "mine.robi", &mut files)?.value.mesh.is_some());
+/// # Ok::<(), roverlab::world::formats::FormatError>(())
+/// ```
 pub fn parse_robot_tolerantly(
     bytes: Vec<u8>,
     file: &str,
