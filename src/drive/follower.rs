@@ -1,4 +1,5 @@
 use super::Path;
+use super::way::AHEAD;
 use crate::ParameterError;
 use crate::geometry::{Pose, Twist, angle_difference, math, normalize_angle};
 use crate::io::Result;
@@ -99,13 +100,10 @@ pub struct PathFollower {
     rest: f64,
 }
 
-/// Metres of path in which the next place is looked for. Never behind the last one: where a spline turns back in a cusp,
-/// the way back lies beside the way there.
-const AHEAD: f64 = 0.25;
+/// Seconds without getting on after which a robot gives up.
+pub(super) const PATIENCE: f64 = 3.0;
 /// The tightest bend that is driven, in 1/m: a spline can have a cusp, where no speed would be slow enough.
 const TIGHTEST: f64 = 30.0;
-/// The part of its speed that a robot keeps that points across the path.
-const LEAST_SHARE: f64 = 0.1;
 
 impl PathFollower {
     /// A follower at the start of a path.
@@ -152,7 +150,7 @@ impl PathFollower {
             1.0
         };
         // One that points elsewhere turns first.
-        let along = speed * math::cos(self.heading_error).max(LEAST_SHARE);
+        let along = speed * math::cos(self.heading_error).max(0.0);
         Twist::new(scale * if self.reverse { -along } else { along }, scale * angular)
     }
 

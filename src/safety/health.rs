@@ -5,7 +5,7 @@
 //! show. A jump is told for odometry alone: what a range or an image shows jumps at every edge.
 
 use super::{SignalHealth, SignalLimits, SignalMonitor};
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Pose, Twist, units};
 
 /// Watches odometry: that it reads numbers, does not jump, and moves when the vehicle does.
 #[derive(Debug, Clone)]
@@ -20,8 +20,6 @@ pub(super) struct OdometryHealth {
 
 /// Metres that have to be missing before a pose that stays is odd: encoders count in steps.
 const MISSING: f64 = 0.01;
-/// Metres that a turn of one radian counts as.
-const ARM: f64 = 0.1;
 
 /// Metres, and radians, by which a pose may differ from what the speeds give.
 const STEP: (f64, f64) = (0.05, 0.08);
@@ -62,7 +60,7 @@ impl OdometryHealth {
         // A pose that stays to the bit while wheels turn.
         if pose == before {
             self.frozen = self.frozen.saturating_add(1);
-            self.missing += (speed.linear.abs() + ARM * speed.angular.abs()) * passed;
+            self.missing += (speed.linear.abs() + units::ARM * speed.angular.abs()) * passed;
         } else {
             (self.frozen, self.missing) = (0, 0.0);
         }

@@ -2,6 +2,7 @@ use std::f64::consts::TAU;
 
 use crate::geometry::{Point, Pose, direction, math};
 use crate::io::{Error, LidarScan, Result};
+use crate::kinematics::OUTLIER;
 
 /// Takes the noise out of consecutive lidar scans of a moving robot.
 ///
@@ -32,26 +33,18 @@ struct Beam {
 }
 
 /// The standard deviation of a range, in metres, that is expected before anything was measured: that of an EyeBot's lidar.
-const EXPECTED_NOISE: f64 = 0.010;
+pub(super) const RANGE_ERROR: f64 = 0.010;
 /// A beam that has met nothing.
 const UNKNOWN: Beam = Beam { range: f64::INFINITY, weight: 0.0 };
 /// The most readings that an estimate counts for, so that it still follows small changes.
 const MAX_WEIGHT: f64 = 20.0;
-/// Readings farther from their prediction than this many standard deviations start anew.
-const GATE: f64 = 4.0;
-/// The smallest such distance, in metres: a wall seen at a slant moves by this between beams.
-const MIN_GATE: f64 = 0.015;
 /// Beams next to each other whose ranges differ by less than this part of the range see one surface.
-const SURFACE_STEP: f64 = 0.1;
-/// Beams whose hits lie closer together than this, in metres, see the same piece of surface.
+pub(super) const SURFACE_STEP: f64 = 0.1;
+/// Beams whose hits lie closer together than this, in metres, see the same piece of surface; seen at a slant, it moves by as much
+/// between them.
 const SMOOTHING_ARC: f64 = 0.015;
 /// Neighbours on either side that are averaged at most.
 const MAX_SMOOTHING: usize = 10;
-/// Averages over the inner and the outer half of the neighbours that differ by more than this many standard
-/// deviations show that the surface bends.
-const BEND_GATE: f64 = 3.0;
-/// Metres by which they have to differ as well.
-const MIN_BEND: f64 = 0.0005;
 
 impl Default for ScanFilter {
     fn default() -> Self {
@@ -70,7 +63,7 @@ impl ScanFilter {
             angle_increment: 0.0,
             mount: Pose::default(),
             pose: Pose::default(),
-            noise: EXPECTED_NOISE,
+            noise: RANGE_ERROR,
             scratch: Vec::new(),
         }
     }
@@ -200,7 +193,7 @@ impl ScanFilter {
     }
 
     fn correct(&mut self, ranges: &[f64]) {
-        let gate = (GATE * self.noise).max(MIN_GATE);
+        let gate = (OUTLIER * self.noise).max(SMOOTHING_ARC);
         self.scratch.clear();
         for (beam, &reading) in self.beams.iter_mut().zip(ranges) {
             let surprise = reading - beam.range;
@@ -267,7 +260,7 @@ impl ScanFilter {
             let outer = Mean { sum: whole.sum - inner.sum, weight: whole.weight - inner.weight };
             let bend = (outer.value() - inner.value()).abs();
             let error = self.noise * (1.0 / inner.weight + 1.0 / outer.weight).sqrt();
-            if bend <= BEND_GATE * error + MIN_BEND {
+            if bend <= OUTLIER * error {
                 break;
             }
             reach /= 2;

@@ -2,7 +2,9 @@ use nalgebra::{Matrix2, Matrix2x6, Matrix3, Matrix6, Vector2, Vector6};
 
 use crate::geometry::{Point, Pose, Vector, angle_difference, cross, math, normalize_angle};
 use crate::io::{LidarScan, Result};
-use crate::kinematics::{Differential, Displacement, OdometryErrors, OdometryStep, arc_between};
+use crate::kinematics::{
+    Differential, Displacement, LEAST_RANGE_ERROR, OUTLIER, OdometryErrors, OdometryStep, arc_between,
+};
 use crate::parameter::require_positive;
 
 /// A round pole, a can, say, whose place is known.
@@ -35,12 +37,8 @@ pub struct LandmarkFilter {
 
 /// Metres by which a landmark may seem to be elsewhere than expected.
 const GATE: f64 = 0.12;
-/// The squared Mahalanobis distance up to which a sighting is believed.
-const BELIEVED: f64 = 16.0;
 /// The standard deviation of a bearing in beams, and its least value in radians.
 const BEARING_BEAMS: f64 = 0.4;
-/// The least standard deviation of a range, in metres.
-const LEAST_RANGE_ERROR: f64 = 0.001;
 
 impl LandmarkFilter {
     /// A filter for a robot at a known pose, whose odometry says the pose `odometry`. `range_error` is the standard
@@ -124,7 +122,7 @@ impl LandmarkFilter {
         let noise = Matrix2::from_diagonal(&sighting.variances);
         let spread = measurement * self.covariance * measurement.transpose() + noise;
         let Some(inverse) = spread.try_inverse() else { return false };
-        if (innovation.transpose() * inverse * innovation)[0] > BELIEVED {
+        if (innovation.transpose() * inverse * innovation)[0] > OUTLIER * OUTLIER {
             return false;
         }
         let gain = self.covariance * measurement.transpose() * inverse;

@@ -1,7 +1,8 @@
 use nalgebra::{Matrix5, Vector2, Vector5};
 
-use super::reference::{Evidence, Reference};
+use super::reference::{Evidence, OVERLAP_GATE, Reference};
 use crate::geometry::{Point, Pose, math, normalize_angle};
+use crate::kinematics::{DISTANCE_ERROR, SCALE_ERROR, TURN_ERROR};
 
 /// Corrects odometry by matching scans against earlier ones.
 ///
@@ -35,32 +36,18 @@ pub struct ScanMatcher {
 const REFERENCE_REACH: f64 = 0.8;
 /// How many references a scan is matched against at most.
 const ACTIVE_REFERENCES: usize = 3;
-/// After so many metres they are chosen anew.
+/// After so many metres they are chosen anew, or where the present ones share little with the scan; they stand at least as far apart.
 const CHOICE_SPACING: f64 = 0.1;
-/// The same where the present ones share little with the scan.
-const HASTY_CHOICE_SPACING: f64 = 0.03;
-/// References stand at least so many metres apart.
-const REFERENCE_SPACING: f64 = 0.08;
 /// A scan of which less than this share matches any reference becomes one itself.
 const MIN_OVERLAP: f64 = 0.6;
 /// References that are kept at most.
 const MAX_REFERENCES: usize = 10_000;
-/// A match that moves the predicted pose by more than this, in metres, is not believed.
-const MAX_CORRECTION: f64 = 0.05;
 /// A match below this share is not believed.
 const MIN_MATCH: f64 = 0.3;
 /// Rounds of finding counterparts and solving.
 const ITERATIONS: usize = 6;
 /// Points farther from the reference's surface than this, in metres, have no counterpart in the first round.
 const COARSE_GATE: f64 = 0.10;
-/// The same in the last round.
-const FINE_GATE: f64 = 0.03;
-/// Odometry's error as a share of the distance driven in one step.
-const DISTANCE_ERROR: f64 = 0.01;
-/// Odometry's error as a share of the angle turned in one step.
-const TURN_ERROR: f64 = 0.006;
-/// The standard deviation of wheels' size, as a share, before anything has been matched.
-const SCALE_ERROR: f64 = 0.015;
 /// The same of the track.
 const TRACK_ERROR: f64 = 0.005;
 /// The variance that slip adds to the heading in a metre, in radians squared.
@@ -126,9 +113,8 @@ impl ScanMatcher {
             return predicted;
         }
         let matched = self.lay_over(predicted, points);
-        let strayed = predicted.distance_to(matched.pose.position());
         self.overlap = matched.overlap;
-        if matched.overlap >= MIN_MATCH && strayed < MAX_CORRECTION {
+        if matched.overlap >= MIN_MATCH {
             self.pose = matched.pose;
             self.scale_errors = matched.scale_errors;
             self.covariance = matched.covariance;
@@ -143,8 +129,8 @@ impl ScanMatcher {
             self.add_reference(points);
             return;
         }
-        let spacing = if self.overlap < MIN_OVERLAP { HASTY_CHOICE_SPACING } else { CHOICE_SPACING };
-        if self.active.is_empty() || self.pose.distance_to(self.chosen_at) > spacing {
+        let far = self.pose.distance_to(self.chosen_at) > CHOICE_SPACING;
+        if self.active.is_empty() || far || self.overlap < MIN_OVERLAP {
             self.choose_references(points);
         }
     }
@@ -193,7 +179,7 @@ impl ScanMatcher {
         let mut matched = 0;
         for iteration in 0..ITERATIONS {
             let share = iteration as f64 / (ITERATIONS - 1) as f64;
-            let found = self.evidence(pose, points, COARSE_GATE + (FINE_GATE - COARSE_GATE) * share);
+            let found = self.evidence(pose, points, COARSE_GATE + (OVERLAP_GATE - COARSE_GATE) * share);
             matched = found.matched;
             information = known;
             let mut of_pose = information.fixed_view_mut::<3, 3>(0, 0);
@@ -247,7 +233,7 @@ impl ScanMatcher {
         candidates.truncate(ACTIVE_REFERENCES);
         self.active = candidates.iter().map(|&(index, _)| index).collect();
         let best = candidates.first().map_or(0.0, |&(_, overlap)| overlap);
-        let crowded = self.references.iter().any(|r| r.pose.distance_to(pose.position()) < REFERENCE_SPACING);
+        let crowded = self.references.iter().any(|r| r.pose.distance_to(pose.position()) < CHOICE_SPACING);
         if best < MIN_OVERLAP && !crowded && self.references.len() < MAX_REFERENCES {
             self.add_reference(points);
         }

@@ -2,6 +2,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::filter::{RANGE_ERROR, SURFACE_STEP};
 use crate::geometry::{Point, Pose, Vector, cross, direction, math};
 
 /// A scan that later ones are matched against.
@@ -28,12 +29,10 @@ pub(super) struct Evidence {
     pub(super) matched: usize,
 }
 
-/// Points farther from a surface than this, in metres, do not count as shared.
-const OVERLAP_GATE: f64 = 0.03;
+/// Points farther from a surface than this, in metres, do not count as shared, and have no counterpart in the last round.
+pub(super) const OVERLAP_GATE: f64 = 0.03;
 /// Bearings that a reference is divided into.
 const BINS: usize = 360;
-/// Standard deviation of one matched point, in metres.
-const POINT_NOISE: f64 = 0.01;
 /// How many matched points count as one fact. Scans matched against one reference share its errors, tens of them one
 /// after the other; counted singly they would drown what odometry knows where the surfaces say little, as in a round
 /// room. Found by trial: 2 lets spirals turn the pose by degrees, 200 lets odometry's drift through.
@@ -44,10 +43,6 @@ const LINE_REACH: f64 = 0.06;
 const MIN_NEIGHBOURS: usize = 2;
 /// How many there are at most.
 const MAX_NEIGHBOURS: usize = 25;
-/// Neighbouring beams that hit farther apart than this, in metres, see two surfaces.
-const EDGE_GAP: f64 = 0.02;
-/// The same as a share of the range: surfaces that are seen at less than about 10 degrees.
-const EDGE_SLANT: f64 = 0.1;
 /// How far neighbours may lie from their line, as a share of its length.
 const FLATNESS: f64 = 0.05;
 /// The same in metres, for short lines.
@@ -101,9 +96,9 @@ impl Reference {
             let Some((normal, error)) = self.counterpart(placed, relative.position(), gate) else { continue };
             evidence.matched += 1;
             // Large errors count less, so that what has no true counterpart does not pull.
-            let deviations = error / POINT_NOISE;
+            let deviations = error / RANGE_ERROR;
             let robust = 1.0 / (1.0 + 0.25 * deviations * deviations);
-            let weight = robust / (POINT_NOISE * POINT_NOISE * POINTS_PER_FACT);
+            let weight = robust / (RANGE_ERROR * RANGE_ERROR * POINTS_PER_FACT);
             let gradient = Vector3::new(normal.x, normal.y, cross(turned, normal));
             evidence.information += gradient * gradient.transpose() * weight;
             evidence.residual -= gradient * (weight * error);
@@ -180,7 +175,7 @@ impl LineSums {
             let next = points[at];
             let range = last.coords.norm();
             // Beams on one surface are about a beam's width apart; across an edge they are much farther.
-            if (next - last).norm() > EDGE_GAP + EDGE_SLANT * range {
+            if (next - last).norm() > OVERLAP_GATE + SURFACE_STEP * range {
                 break;
             }
             if added >= MIN_NEIGHBOURS && (next - centre).norm() > LINE_REACH {

@@ -18,7 +18,7 @@ const TOUCH_MARGIN: f64 = 5e-4;
 /// Attempts to push a robot out of what it ran into before it stays where it was.
 const PUSH_ATTEMPTS: usize = 4;
 /// The largest depth, in metres, that counts as pushed out.
-const PUSH_TOLERANCE: f64 = 1e-6;
+pub(super) const PUSH_TOLERANCE: f64 = 1e-6;
 /// What a push may add to a robot's own motion in a tick.
 const SLACK: f64 = 2.0 * PUSH_TOLERANCE;
 

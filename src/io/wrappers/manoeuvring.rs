@@ -1,6 +1,6 @@
 use image::RgbImage;
 
-use crate::geometry::{Pose, Twist, angle_difference};
+use crate::geometry::{Pose, Twist, angle_difference, units};
 use crate::io::control::Stopwatch;
 use crate::io::{
     Camera, Clock, Display, DisplayImage, DisplayOption, DistanceSensors, Drive, Encoders, Fill, Font, Key,
@@ -130,8 +130,6 @@ struct Held {
     told: f64,
 }
 
-/// Metres that a robot moves as it turns by a radian, to tell turning robots from those that are held.
-const ARM: f64 = 0.1;
 /// Metres by which a robot that moves leaves its place.
 const PLACE: f64 = 0.005;
 /// Seconds for which a robot has to be held.
@@ -144,11 +142,11 @@ impl Held {
 
     fn update(&mut self, pose: Pose, told: Twist, seconds: f64) {
         let turned = angle_difference(pose.heading, self.pose.heading).abs();
-        if pose.distance_to(self.pose.position()) + ARM * turned >= PLACE {
+        if pose.distance_to(self.pose.position()) + units::ARM * turned >= PLACE {
             *self = Self::at(pose);
         } else {
             self.seconds += seconds;
-            self.told += (told.linear.abs() + ARM * told.angular.abs()) * seconds;
+            self.told += (told.linear.abs() + units::ARM * told.angular.abs()) * seconds;
         }
     }
 

@@ -1,9 +1,8 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::geometry::{Pose, angle_difference, math};
+use crate::kinematics::{DISTANCE_ERROR, OUTLIER, SCALE_ERROR, TURN_ERROR};
 
-/// Standard deviations by which a measurement may be off and still be one.
-const SIGMAS: f64 = 3.5;
 
 /// How much farther a robot rolls than odometry says, as a share of the way: tyres are worn or new.
 #[derive(Debug, Clone, Copy)]
@@ -35,23 +34,15 @@ pub(super) struct PlaceInCell {
 impl PlaceInCell {
     /// A robot more or less in the middle of a cell.
     pub(super) fn at(odometry: Pose, cell: f64) -> Self {
-        /// Cells by which the robot stands off the middle at the start: a standard deviation.
+        /// Cells by which the robot stands off the middle at the start, and radians by which it is turned: standard deviations.
         const OFF: f64 = 0.05;
-        /// Radians by which it is turned at the start: a standard deviation.
-        const TURN: f64 = 0.06;
-        /// The standard deviation of the scale of odometry, as a share.
-        const STRETCH: f64 = 0.015;
-        let spread = [OFF * OFF * cell * cell, OFF * OFF * cell * cell, TURN * TURN];
-        let stretch = Stretch { share: 0.0, variance: STRETCH * STRETCH, along: 0.0 };
+        let spread = [OFF * OFF * cell * cell, OFF * OFF * cell * cell, OFF * OFF];
+        let stretch = Stretch { share: 0.0, variance: SCALE_ERROR * SCALE_ERROR, along: 0.0 };
         Self { along: 0.0, off: 0.0, turn: 0.0, spread, common: 0.0, stretch, odometry }
     }
 
     /// Follows odometry. The cell turns with a robot that has turned by more than half a quarter.
     pub(super) fn predict(&mut self, odometry: Pose) {
-        /// How much odometry may miss of a way, as a share.
-        const MISSED: f64 = 0.01;
-        /// How much odometry may miss of a turn, as a share.
-        const MISSED_OF_TURN: f64 = 0.006;
         let moved = self.odometry.to_local(odometry.position());
         let way = moved.coords.norm();
         // Wheels that roll farther turn the robot farther, too.
@@ -62,7 +53,7 @@ impl PlaceInCell {
         self.along += ahead * (1.0 + self.stretch.share);
         self.off += sin * moved.x + cos * moved.y;
         let [along, off, turn] = self.spread;
-        let missed = MISSED * MISSED;
+        let missed = DISTANCE_ERROR * DISTANCE_ERROR;
         self.spread = [
             along
                 + missed * way * way.max(0.01)
@@ -70,7 +61,7 @@ impl PlaceInCell {
             off + 2.0 * way * self.common + way * way * turn,
             // What is missed of a turn is so of each of its parts: its square goes by the whole turn, a quarter.
             turn + missed * way
-                + turned.abs() * FRAC_PI_2 * (self.stretch.variance + MISSED_OF_TURN * MISSED_OF_TURN),
+                + turned.abs() * FRAC_PI_2 * (self.stretch.variance + TURN_ERROR * TURN_ERROR),
         ];
         self.common += way * turn;
         self.stretch.along += ahead * self.stretch.variance;
@@ -111,13 +102,13 @@ impl PlaceInCell {
 
     /// Whether the robot can be so much farther along than it takes itself to be.
     pub(super) fn believes_along(&self, farther: f64, error: f64) -> bool {
-        farther * farther < SIGMAS * SIGMAS * (self.spread[0] + error * error)
+        farther * farther < OUTLIER * OUTLIER * (self.spread[0] + error * error)
     }
 
     /// Whether a measurement of how far off the middle the robot is can be one.
     pub(super) fn believes(&self, off: f64, error: f64) -> bool {
         let innovation = off - self.off;
-        innovation * innovation < SIGMAS * SIGMAS * (self.spread[1] + error * error)
+        innovation * innovation < OUTLIER * OUTLIER * (self.spread[1] + error * error)
     }
 
     /// Believes itself a little less, as measurements contradict it.

@@ -1,6 +1,7 @@
 use super::ScanFeaturesParameters;
 use crate::geometry::{Point, direction, math};
 use crate::io::LidarScan;
+use crate::kinematics::OUTLIER;
 
 /// A beam that has hit something.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,8 +22,6 @@ pub(super) struct Cluster {
 
 /// The flattest angle, in radians, at which beams are expected to meet a wall.
 const GRAZING: f64 = 0.1;
-/// Standard deviations by which neighbouring beams on one wall may differ more than that allows.
-const SIGMAS: f64 = 6.0;
 
 /// Parts a scan where neighbouring beams hit different surfaces (G. A. Borges and M.-J. Aldon, "Line extraction in 2D range
 /// images for mobile robotics", 2004). A cluster that reaches over the scan's ends is whole if the scan goes all round.
@@ -71,7 +70,7 @@ fn is_break(scan: &LidarScan, one: usize, other: usize, parameters: &ScanFeature
     }
     let step = scan.angle_increment.abs();
     let slope = math::sin(step) / math::sin((GRAZING - step).max(0.3 * GRAZING));
-    (a - b).abs() > a.min(b) * slope.min(1.0) + SIGMAS * parameters.range_error + 0.01
+    (a - b).abs() > a.min(b) * slope.min(1.0) + OUTLIER * parameters.range_error + 0.01
 }
 
 /// Whether a cluster ends before something farther away, on either side.

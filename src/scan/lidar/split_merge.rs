@@ -13,8 +13,8 @@ pub(super) struct Part {
 
 /// Hits that are averaged before their distances from a line are compared, so that one noisy hit splits no wall.
 const SMOOTHING: usize = 3;
-/// Walls whose directions differ by less than this, in radians, may be one.
-const ALIKE: f64 = 0.12;
+/// Walls whose directions differ by less than this, in radians, may be one, and make no corner.
+pub(super) const ALIKE: f64 = 0.12;
 
 /// Straight parts of a cluster by splitting and merging (T. Pavlidis and S. L. Horowitz, "Segmentation of plane curves",
 /// 1974; V. Nguyen and others compared it to be the fastest and best for scans, 2007).

@@ -4,6 +4,7 @@ use super::LocaliserParameters;
 use super::map::LocalisationMap;
 use crate::geometry::{Pose, Vector, angle_difference, direction, math, normalize_angle};
 use crate::io::LidarScan;
+use crate::scan::filter::RANGE_ERROR;
 use crate::world::space::Scanner;
 
 /// A place where the robot may be.
@@ -41,8 +42,6 @@ struct Evidence {
 const GRAZING: f64 = 0.2;
 /// Beams are not independent of each other: so many count as one.
 const BEAMS_AS_ONE: f64 = 4.0;
-/// The least error of an expected range in metres.
-pub(super) const LEAST_ERROR: f64 = 0.01;
 /// The share of beams that may measure anything.
 const OUTLIERS: f64 = 0.1;
 /// What likelihoods are raised to, since an error of the pose is in all beams.
@@ -144,7 +143,7 @@ fn evidence(
     let lidar = pose.compose(&scan.mount);
     map.expect(&mut bench.scanner, &lidar, &mut bench.expected);
     let expected = &bench.expected;
-    let sigma = parameters.range_error.max(LEAST_ERROR);
+    let sigma = parameters.range_error.max(RANGE_ERROR);
     let blurred = 2.0 * sigma;
     let mut found = Evidence {
         information: Matrix3::zeros(),

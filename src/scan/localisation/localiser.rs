@@ -109,7 +109,7 @@ const LOOK_AGAIN: (f64, f64) = (0.5, 0.5);
 const COUNTS: f64 = 0.02;
 /// The share of beams that have to be as expected.
 const EXPLAINED: f64 = 0.6;
-/// A place is known with a standard deviation of so many metres.
+/// A place is known with a standard deviation of so many metres, and radians.
 const KNOWN: f64 = 0.03;
 /// Scans in a row without an explanation after which the search begins anew.
 const PATIENCE: u32 = 8;
@@ -135,9 +135,7 @@ impl Localiser {
 
     /// Begins with a place that is known to within a few centimetres and degrees, instead of looking everywhere.
     pub fn start_at(&mut self, pose: Pose) {
-        /// Metres and radians.
-        const SPREAD: f64 = 0.03;
-        self.hypotheses = vec![Hypothesis::new(pose, SPREAD)];
+        self.hypotheses = vec![Hypothesis::new(pose, KNOWN)];
         (self.odometry, self.viewed, self.searched, self.unexplained) = (None, None, None, 0);
     }
 
